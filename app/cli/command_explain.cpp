@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cloth/grid.h"
+#include "commands.h"
+#include "console.h"
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "simulation/stages.h"
+#include "simulation/time_step.h"
+
+namespace clothlab::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct MethodLimit {
+  cloth::MethodFacts facts;
+  std::optional<double> stable_step;  ///< s
+  std::optional<double> auto_step;    ///< s
+};
+
+struct Explanation {
+  cloth::Scene scene;
+  std::vector<cloth::StageInfo> stages;
+  double largest_frequency = 0, guaranteed_frequency = 0, provot_step = 0;
+  std::vector<MethodLimit> methods;
+};
+
+Explanation explain_scene(const cloth::Scene& scene) {
+  Explanation e{.scene = scene, .stages = cloth::explain_stages(scene), .methods = {}};
+  if (scene.springs) {
+    e.largest_frequency = cloth::largest_frequency(scene.cloth, *scene.springs);
+    e.guaranteed_frequency = cloth::guaranteed_frequency(scene.cloth, *scene.springs);
+  }
+  e.provot_step = cloth::provot_step(scene);
+  for (const cloth::MethodFacts& facts : cloth::integrator_facts()) {
+    cloth::Scene automatic = scene;
+    automatic.integrator = {facts.name, std::nullopt};
+    e.methods.push_back({facts, cloth::stable_step(facts.name, scene), cloth::resolved_time_step(automatic)});
+  }
+  return e;
+}
+
+std::string step_text(const std::optional<double>& step) {
+  if (!step) return "none";
+  return std::isfinite(*step) ? fmt::format("{:.6g} s", *step) : "any";
+}
+
+std::string to_text(const Explanation& e) {
+  std::string text =
+      fmt::format("{}\n{} particles ({} rows x {} columns), {} pinned\n\nStages of a step\n", e.scene.title,
+                  e.scene.cloth.rows * e.scene.cloth.columns, e.scene.cloth.rows, e.scene.cloth.columns,
+                  cloth::pinned_particles(e.scene.cloth).size());
+  for (const cloth::StageInfo& stage : e.stages)
+    text += fmt::format("  {:<9} {:<19} {}\n", stage.present ? "in" : "left out", stage.name, stage.reason);
+
+  text += fmt::format(
+      "\nLargest frequency       {:.6g} 1/s (flat grid at rest)\n"
+      "Guaranteed bound        {:.6g} 1/s (any configuration)\n"
+      "Provot's criterion      {} (historical; 3 to 5 times too long for a grid)\n",
+      e.largest_frequency, e.guaranteed_frequency, step_text(e.provot_step));
+  text += fmt::format("\n  {:<22} {:>5} {:>12} {:>16} {:>16}\n", "method", "order", "evaluations",
+                      "stable step", "auto");
+  for (const MethodLimit& method : e.methods)
+    text += fmt::format("{} {:<22} {:>5} {:>12} {:>16} {:>16}\n",
+                        method.facts.name == e.scene.integrator.method ? "*" : " ", method.facts.name,
+                        method.facts.order, method.facts.evaluations_per_step, step_text(method.stable_step),
+                        step_text(method.auto_step));
+  const auto step = cloth::resolved_time_step(e.scene);
+  text += step ? fmt::format("\nRun with {} at {:.6g} s{}\n", e.scene.integrator.method, *step,
+                             e.scene.integrator.time_step ? "" : " (auto)")
+               : "\n" + cloth::no_stable_step_text(e.scene) + "\n";
+  return text;
+}
+
+json finite(const std::optional<double>& value) {
+  if (!value) return nullptr;
+  return std::isfinite(*value) ? json(*value) : json("infinity");
+}
+
+std::string to_json(const Explanation& e) {
+  json root{{"title", e.scene.title},
+            {"stages", json::array()},
+            {"springs", json::object()},
+            {"methods", json::array()}};
+  for (const cloth::StageInfo& stage : e.stages)
+    root["stages"].push_back({{"name", stage.name}, {"in", stage.present}, {"reason", stage.reason}});
+  const cloth::ClothSystem system =
+      cloth::make_grid(e.scene.cloth, e.scene.springs.value_or(cloth::SpringMaterial{}));
+  for (const cloth::SpringFamily family : cloth::spring_families)
+    root["springs"][cloth::name_of(family)] = system.spring_count(family);
+  root["largest_frequency_per_s"] = e.largest_frequency;
+  root["guaranteed_frequency_per_s"] = e.guaranteed_frequency;
+  root["provot_step_s"] = finite(e.provot_step);
+  for (const MethodLimit& method : e.methods)
+    root["methods"].push_back({{"name", method.facts.name},
+                               {"order", method.facts.order},
+                               {"evaluations_per_step", method.facts.evaluations_per_step},
+                               {"stable_step_s", finite(method.stable_step)},
+                               {"auto_step_s", finite(method.auto_step)}});
+  root["method"] = e.scene.integrator.method;
+  root["time_step_s"] = finite(cloth::resolved_time_step(e.scene));
+  return root.dump(2) + "\n";
+}
+
+}  // namespace
+
+int explain(const ExplainArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
+  if (!loaded.scene) return loaded.exit_code;
+  const Explanation explanation = explain_scene(*loaded.scene);
+  return print(arguments.json ? to_json(explanation) : to_text(explanation));
+}
+
+}  // namespace clothlab::cli

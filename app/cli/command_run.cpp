@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+
+#include "commands.h"
+#include "console.h"
+#include "simulation/recorder.h"
+#include "simulation/time_step.h"
+
+namespace clothlab::cli {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+extern "C" void request_stop(int) {
+  stop_requested = true;
+}
+
+/// A bar on a terminal, nothing elsewhere: logs stay readable.
+class ProgressBar {
+ public:
+  explicit ProgressBar(double duration) : duration_(duration), shown_(::isatty(STDERR_FILENO) == 1) {}
+  ~ProgressBar() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  void show(double time) const {
+    if (!shown_) return;
+    constexpr int width = 40;
+    const double fraction = std::min(1.0, time / duration_);
+    const int filled = static_cast<int>(std::lround(fraction * width));
+    fmt::print(stderr, "\r[{:=<{}}{:<{}}] {:3.0f} %  t = {:.2f} s", "", filled, "", width - filled,
+               100 * fraction, time);
+    std::fflush(stderr);
+  }
+
+ private:
+  double duration_;
+  bool shown_;
+};
+
+std::string summary_text(const cloth::RunSummary& s, const std::string& folder) {
+  std::string text = fmt::format(
+      "{}: {}, {} steps of {:.6g} s, {:.6g} s simulated in {:.3g} s ({:.3g} ns per particle and step)\n"
+      "largest strain {:.4g} %, energy error {:.3g} J\n",
+      cloth::name_of(s.status), s.method, s.steps, s.time_step, s.simulated, s.wall,
+      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy_drift);
+  if (!folder.empty()) text += fmt::format("results in {}\n", folder);
+  return text;
+}
+
+int exit_code_of(cloth::Status status) {
+  switch (status) {
+    case cloth::Status::finished:
+      return done;
+    case cloth::Status::diverged:
+      return diverged;
+    case cloth::Status::stopped:
+      return interrupted;
+  }
+  return done;
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
+  if (!loaded.scene) return loaded.exit_code;
+  const cloth::Scene& scene = *loaded.scene;
+  const auto time_step = cloth::resolved_time_step(scene);
+  if (!time_step) {
+    say(cloth::no_stable_step_text(scene));
+    return bad_input;
+  }
+  if (!scene.integrator.time_step) say(fmt::format("time step: auto, {:.6g} s", *time_step));
+
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
+
+  cloth::RunResult result;
+  {
+    const ProgressBar bar(scene.duration);
+    result = cloth::run_scene(scene, {.folder = arguments.folder, .progress = [&](double time) {
+                                        bar.show(time);
+                                        return !stop_requested.load();
+                                      }});
+  }
+  const cloth::RunSummary& summary = result.summary;
+  if (!summary.notice.empty()) say(summary.notice);
+  if (summary.divergence) say(cloth::describe(*summary.divergence));
+  if (result.io_error) return report(*result.io_error);
+  const int printed =
+      print(arguments.json ? cloth::summary_json(summary) : summary_text(summary, arguments.folder));
+  return printed == done ? exit_code_of(summary.status) : printed;
+}
+
+}  // namespace clothlab::cli

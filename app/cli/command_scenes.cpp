@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "console.h"
+#include "scene/builtin_scenes.h"
+
+namespace clothlab::cli {
+namespace {
+
+int print_one(const ScenesArguments& arguments) {
+  const cloth::BuiltinScene* scene = cloth::find_builtin_scene(arguments.name);
+  if (scene) return print(scene->text);
+  say(fmt::format("{}: there is no built-in scene of this name; 'clothlab-cli scenes' lists them",
+                  arguments.name));
+  return bad_input;
+}
+
+}  // namespace
+
+int scenes(const ScenesArguments& arguments) {
+  if (!arguments.name.empty()) return print_one(arguments);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::string text;
+  for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
+    const std::string title = cloth::builtin_scene(scene.name).title;
+    list.push_back({{"name", scene.name}, {"title", title}});
+    text += fmt::format("{:<20} {}\n", scene.name, title);
+  }
+  return print(arguments.json ? nlohmann::ordered_json{{"scenes", list}}.dump(2) + "\n" : text);
+}
+
+}  // namespace clothlab::cli

@@ -1,0 +1,34 @@
+// One function per command, in a file of its own. Each returns the program's exit code.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace clothlab::cli {
+
+struct RunArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::string folder;
+  int threads = 1;
+  bool json = false;
+};
+int run(const RunArguments& arguments);
+
+struct ScenesArguments {
+  std::string name;
+  bool json = false;
+};
+int scenes(const ScenesArguments& arguments);
+
+struct ExplainArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  bool json = false;
+};
+int explain(const ExplainArguments& arguments);
+
+int schema();
+int parameters();
+
+}  // namespace clothlab::cli

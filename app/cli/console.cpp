@@ -1,0 +1,66 @@
+#include "console.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "io/run_folder.h"
+#include "scene/builtin_scenes.h"
+
+namespace clothlab::cli {
+
+void say(const std::string& message) {
+  fmt::print(stderr, "clothlab-cli: {}\n", message);
+}
+
+int report(const std::vector<cloth::Problem>& problems) {
+  for (const cloth::Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
+  return bad_input;
+}
+
+int report(const cloth::IoError& error) {
+  say(error.text());
+  return io_failed;
+}
+
+int print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return done;
+  say(fmt::format("standard output: {}", std::strerror(errno)));
+  return io_failed;
+}
+
+LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings) {
+  std::vector<cloth::Override> overrides;
+  for (const std::string& setting : settings) {
+    const auto parsed = cloth::parse_override(setting);
+    if (!parsed) {
+      say(fmt::format("--set {}: must be PATH=VALUE, for example springs.structural=500", setting));
+      return {std::nullopt, bad_input};
+    }
+    overrides.push_back(*parsed);
+  }
+
+  std::string text;
+  std::error_code error;
+  const bool is_file = std::filesystem::exists(name, error);
+  if (is_file) {
+    if (const auto failure = cloth::read_text_file(name, text)) return {std::nullopt, report(*failure)};
+  } else if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name)) {
+    text = builtin->text;
+  } else {
+    say(fmt::format(
+        "{}: there is neither a file nor a built-in scene of this name; 'clothlab-cli scenes' lists the "
+        "built-in ones",
+        name));
+    return {std::nullopt, io_failed};
+  }
+  cloth::SceneReading reading = cloth::read_scene(text, name, overrides);
+  if (!reading.scene) return {std::nullopt, report(reading.problems)};
+  return {std::move(reading.scene), done};
+}
+
+}  // namespace clothlab::cli

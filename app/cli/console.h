@@ -1,0 +1,34 @@
+// What every command shares: exit codes, where a scene comes from, how a message looks.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/csv.h"
+#include "scene/problem.h"
+#include "scene/scene.h"
+
+namespace clothlab::cli {
+
+enum ExitCode { done = 0, bad_input = 2, diverged = 3, io_failed = 4, interrupted = 130 };
+
+/// A scene, or the exit code of a command whose messages are already on standard error.
+struct LoadedScene {
+  std::optional<cloth::Scene> scene;
+  int exit_code = done;
+};
+
+/// `name` is a file or the name of a built-in scene; a file wins. `settings` are PATH=VALUE.
+LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings);
+
+int report(const std::vector<cloth::Problem>& problems);
+int report(const cloth::IoError& error);
+
+/// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe.
+int print(const std::string& text);
+
+/// Writes to standard error with the program's name before it.
+void say(const std::string& message);
+
+}  // namespace clothlab::cli

@@ -1,0 +1,75 @@
+// clothlab-cli: the engine without Qt and without a display.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+#include "console.h"
+#include "io/run_folder.h"
+
+namespace {
+
+namespace cli = clothlab::cli;
+
+const char* const scene_help = "A scene file or the name of a built-in scene";
+const char* const set_help = "Set a parameter, PATH=VALUE, e.g. springs.structural=500; may be repeated";
+const char* const json_help = "Give the result as one JSON object";
+
+const char* const exit_codes =
+    "Exit codes: 0 done; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
+    "on disk); "
+    "4 a file could not be read or written; 130 interrupted.";
+
+struct Arguments {
+  cli::RunArguments run;
+  cli::ScenesArguments scenes;
+  cli::ExplainArguments explain;
+};
+
+void add_commands(CLI::App& app, Arguments& arguments) {
+  CLI::App* run = app.add_subcommand("run", "Run a scene to its duration");
+  run->add_option("scene", arguments.run.scene, scene_help)->required();
+  run->add_option("--set", arguments.run.settings, set_help)->allow_extra_args(false);
+  run->add_option("--out", arguments.run.folder,
+                  "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
+  run->add_option("--threads", arguments.run.threads,
+                  "Threads to use. This version steps on one thread whatever is asked; summary.json says so")
+      ->check(CLI::Range(1, 1024));
+  run->add_flag("--json", arguments.run.json, json_help);
+
+  CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes, or print one");
+  scenes->add_option("name", arguments.scenes.name, "The scene to print");
+  scenes->add_flag("--json", arguments.scenes.json, json_help);
+
+  CLI::App* explain = app.add_subcommand(
+      "explain",
+      "The stages a scene is run with, what was left out and why, and each method's stable time step");
+  explain->add_option("scene", arguments.explain.scene, scene_help)->required();
+  explain->add_option("--set", arguments.explain.settings, set_help)->allow_extra_args(false);
+  explain->add_flag("--json", arguments.explain.json, json_help);
+
+  app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
+  app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Clothlab on the command line: runs, lists and explains cloth simulation scenes.",
+               "clothlab-cli"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", cloth::version());
+  app.footer(exit_codes);
+  Arguments arguments;
+  add_commands(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? cli::done : cli::bad_input;
+  }
+  if (app.got_subcommand("run")) return cli::run(arguments.run);
+  if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
+  if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
+  if (app.got_subcommand("parameters")) return cli::parameters();
+  return cli::schema();
+}

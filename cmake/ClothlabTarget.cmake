@@ -1,0 +1,12 @@
+# What every target of Clothlab is compiled with.
+function(clothlab_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow)
+  if(CLOTHLAB_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(CLOTHLAB_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${CLOTHLAB_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${CLOTHLAB_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,94 @@
+#include "cloth/grid.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace cloth {
+namespace {
+
+/// The springs of one direction. A direction without columns joins whole rows, so that it is a single run.
+void append_runs(ClothSystem& system, const SpringDirection& direction, double rest_length,
+                 double stiffness) {
+  const int rows = system.rows - direction.rows;
+  const int columns = system.columns - std::abs(direction.columns);
+  if (rows <= 0 || columns <= 0) return;
+  const int offset = direction.rows * system.columns + direction.columns;
+  const auto run = [&](int first, int count) {
+    return SpringRun{direction.family, first, count, offset, rest_length, stiffness};
+  };
+  if (direction.columns == 0) {
+    system.springs.push_back(run(0, rows * columns));
+    return;
+  }
+  const int first_column = direction.columns < 0 ? -direction.columns : 0;
+  for (int row = 0; row < rows; ++row)
+    system.springs.push_back(run(system.index(row, first_column), columns));
+}
+
+}  // namespace
+
+GridCell cell_of(const ClothSheet& sheet) {
+  return {sheet.across.normalized() * (sheet.width / (sheet.columns - 1)),
+          sheet.down.normalized() * (sheet.height / (sheet.rows - 1))};
+}
+
+const std::array<SpringDirection, 6>& spring_directions() {
+  static const std::array<SpringDirection, 6> directions{{{SpringFamily::structural, 0, 1},
+                                                          {SpringFamily::structural, 1, 0},
+                                                          {SpringFamily::shear, 1, 1},
+                                                          {SpringFamily::shear, 1, -1},
+                                                          {SpringFamily::flexion, 0, 2},
+                                                          {SpringFamily::flexion, 2, 0}}};
+  return directions;
+}
+
+double stiffness_of(const SpringMaterial& material, SpringFamily family) {
+  switch (family) {
+    case SpringFamily::structural:
+      return material.structural;
+    case SpringFamily::shear:
+      return material.shear;
+    case SpringFamily::flexion:
+      return material.flexion;
+  }
+  return 0;
+}
+
+ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
+  ClothSystem system;
+  system.rows = sheet.rows;
+  system.columns = sheet.columns;
+  const auto size = static_cast<std::size_t>(system.size());
+  system.particle_mass = sheet.mass / static_cast<double>(size);
+  system.inverse_mass.assign(size, 1 / system.particle_mass);
+  system.pinned.assign(size, 0);
+  system.start = Vec3Field(size);
+
+  const Vec3 across = sheet.across.normalized(), down = sheet.down.normalized();
+  for (int row = 0; row < sheet.rows; ++row)
+    for (int column = 0; column < sheet.columns; ++column)
+      system.start.set(static_cast<std::size_t>(system.index(row, column)),
+                       sheet.origin + across * (column * sheet.width / (sheet.columns - 1)) +
+                           down * (row * sheet.height / (sheet.rows - 1)));
+  system.diagonal = (across * sheet.width + down * sheet.height).norm();
+
+  for (const int particle : pinned_particles(sheet)) {
+    system.inverse_mass[static_cast<std::size_t>(particle)] = 0;
+    system.pinned[static_cast<std::size_t>(particle)] = 1;
+  }
+
+  // The rest length is the distance at the start, taken from the cell rather than from rounded coordinates.
+  const GridCell cell = cell_of(sheet);
+  for (const SpringDirection& direction : spring_directions()) {
+    const double stiffness = stiffness_of(material, direction.family);
+    const double rest_length = (direction.columns * cell.across + direction.rows * cell.down).norm();
+    if (stiffness > 0) append_runs(system, direction, rest_length, stiffness);
+  }
+  return system;
+}
+
+ClothState starting_state(const ClothSystem& system) {
+  return {system.start, Vec3Field(static_cast<std::size_t>(system.size())), 0.0, 0};
+}
+
+}  // namespace cloth

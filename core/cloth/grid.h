@@ -1,0 +1,30 @@
+// The grid cloth of the model: where its particles start and which springs join them.
+#pragma once
+
+#include "cloth/cloth_system.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+/// The vectors from a particle to its right and its lower neighbour at rest, in metres.
+struct GridCell {
+  Vec3 across, down;
+};
+GridCell cell_of(const ClothSheet& sheet);
+
+/// The offset (rows, columns) of a spring direction, e.g. (1, 1) for one of the diagonals.
+struct SpringDirection {
+  SpringFamily family;
+  int rows, columns;
+};
+/// structural (0,1) (1,0); shear (1,1) (1,-1); flexion (0,2) (2,0).
+const std::array<SpringDirection, 6>& spring_directions();
+
+double stiffness_of(const SpringMaterial& material, SpringFamily family);
+
+ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material);
+
+/// At rest where the sheet starts.
+ClothState starting_state(const ClothSystem& system);
+
+}  // namespace cloth

@@ -1,0 +1,50 @@
+#include "cloth/normals.h"
+
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+struct Triple {
+  double x, y, z;
+};
+
+Triple between(const double* x, const double* y, const double* z, int from, int to) {
+  return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
+}
+
+Triple cross(const Triple& u, const Triple& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+void normalise(Vec3Field& normal) {
+  double *nx = normal.x(), *ny = normal.y(), *nz = normal.z();
+  for (std::size_t i = 0; i < normal.size(); ++i) {
+    const double length = std::sqrt(nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i]);
+    const double scale = length > 0 ? 1 / length : 0;
+    nx[i] *= scale, ny[i] *= scale, nz[i] *= scale;
+  }
+}
+
+}  // namespace
+
+void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal) {
+  const double *x = position.x(), *y = position.y(), *z = position.z();
+  double *nx = normal.x(), *ny = normal.y(), *nz = normal.z();
+  normal.fill(0);
+  const auto add = [&](int i, const Triple& n) { nx[i] += n.x, ny[i] += n.y, nz[i] += n.z; };
+
+  for (int row = 0; row + 1 < rows; ++row) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      const int a = row * columns + column, b = a + 1, d = a + columns, c = d + 1;
+      const Triple to_c = between(x, y, z, a, c);
+      const Triple lower = cross(between(x, y, z, a, d), to_c);
+      const Triple upper = cross(to_c, between(x, y, z, a, b));
+      const Triple both{lower.x + upper.x, lower.y + upper.y, lower.z + upper.z};
+      add(a, both), add(b, upper), add(c, both), add(d, lower);
+    }
+  }
+  normalise(normal);
+}
+
+}  // namespace cloth

@@ -1,0 +1,12 @@
+// Normals of a grid's particles.
+#pragma once
+
+#include "cloth/vec3_field.h"
+
+namespace cloth {
+
+/// The normalised sum of the cross products of each particle's triangles (a,d,c) and (a,c,b) of every cell, a
+/// = (r,c), b = (r,c+1), c = (r+1,c+1), d = (r+1,c): weighted by area, and zero where that sum is zero.
+void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal);
+
+}  // namespace cloth

@@ -1,0 +1,45 @@
+// Obstacles as tests of single particles: what is inside is put on the nearest point of the surface (sphere:
+// report, Eq. (16); box: only the coordinate of least penetration moves) and its velocity answers if it goes
+// inward.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cloth/cloth_system.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+/// Where a penetrating particle belongs.
+struct SurfacePoint {
+  Vec3 point;
+  Vec3 normal;  ///< outward, of length one
+};
+
+/// The nearest surface point, or nothing if `position` is outside or on the surface.
+std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& position);
+
+/// The velocity after contact, only changed if it goes inward. coulomb: v_n -> -restitution v_n, and the
+/// tangential part loses up to friction |change of v_n|. reflect (report, Eq. (17)): v -> friction (v - 2 v_n
+/// n).
+Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
+
+struct ContactReport {
+  int contacts = 0;  ///< particles that were put back, counted once per obstacle
+};
+
+class ObstacleContact {
+ public:
+  explicit ObstacleContact(std::vector<Obstacle> obstacles);
+
+  ContactReport apply(const ClothSystem& system, ClothState& state) const;
+
+  /// Particles that `apply` would move.
+  bool touches(const ClothSystem& system, const ClothState& state) const;
+
+ private:
+  std::vector<Obstacle> obstacles_;
+};
+
+}  // namespace cloth

@@ -1,0 +1,78 @@
+#include "forces/air.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "cloth/normals.h"
+#include "cloth/sums.h"
+
+namespace cloth {
+
+Vec3 wind_at(const Air& air, double time) {
+  if (!air.gust) return air.wind;
+  return air.wind * (1 + air.gust->amplitude * std::sin(2 * std::numbers::pi * air.gust->frequency * time));
+}
+
+double brush_falloff(const BrushGust& brush, const Vec3& position) {
+  const Eigen::Vector4d clip =
+      brush.world_to_screen * Eigen::Vector4d(position.x(), position.y(), position.z(), 1);
+  if (!(clip.w() > 0)) return 0;  // behind the eye
+  const double distance = (clip.head<2>() / clip.w() - brush.cursor).norm();
+  if (!(distance < brush.radius)) return 0;
+  return std::cos(0.5 * std::numbers::pi * distance / brush.radius);
+}
+
+void AirForce::update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) {
+  if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
+  particle_normals(system.rows, system.columns, position, normal_);
+  wind_ = wind_at(air_, time);
+
+  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+  double *fx = force.x(), *fy = force.y(), *fz = force.z();
+  if (wind_.squaredNorm() > 0) {
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const double push = air_.drag * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
+      fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
+    }
+  }
+  if (brush_) add_brush(position, force);
+}
+
+void AirForce::add_brush(const Vec3Field& position, Vec3Field& force) {
+  if (brush_force_.size() != position.size()) brush_force_ = Vec3Field(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Vec3 n = normal_[i];
+    const Vec3 push = air_.drag * brush_falloff(*brush_, position[i]) * n.dot(brush_->velocity) * n;
+    brush_force_.set(i, push);
+    force.add(i, push);
+  }
+}
+
+void AirForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+  const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+  double *px = product.x(), *py = product.y(), *pz = product.z();
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double drag = air_.drag * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+    px[i] += drag * nx[i], py[i] += drag * ny[i], pz[i] += drag * nz[i];
+  }
+}
+
+bool AirForce::add_node_damping(NodeDamping& damping) const {
+  damping.along_normal += air_.drag;
+  damping.normal = &normal_;
+  return true;
+}
+
+void AirForce::add_power(const Vec3Field& velocity, Work& power) const {
+  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+  const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+  power.air += air_.drag * ordered_sum(velocity.size(), [=, u = wind_](std::size_t i) {
+                 const double along = nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i];
+                 return along * (nx[i] * u.x() + ny[i] * u.y() + nz[i] * u.z() - along);
+               });
+  if (brush_ && brush_force_.size() == velocity.size())
+    power.brush += dot(brush_force_.flat(), velocity.flat());
+}
+
+}  // namespace cloth

@@ -1,0 +1,52 @@
+// Every force of the model is affine in the velocity:
+//
+//     f(x, v, t) = p(x, t) - D(x) v        p: position force, D: symmetric, positive semi-definite
+//
+// so a force is written once as p, D, its energy and its power, and an integrator may treat D v as it likes.
+#pragma once
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+/// Power of the non-conservative forces, or its integral: work. Signed into the cloth, except the loss. W or
+/// J.
+struct Work {
+  double damping_loss = 0;  ///< taken by viscous and spring damping
+  double air = 0;
+  double brush = 0;
+  double pull = 0;
+
+  Work& operator+=(const Work& other);
+  friend Work operator*(double scale, Work work);
+};
+
+/// The part of D that does not couple particles: isotropic * I + along_normal * n n^T, and one particle held
+/// by hand.
+struct NodeDamping {
+  double isotropic = 0;     ///< N s/m
+  double along_normal = 0;  ///< N s/m
+  const Vec3Field* normal = nullptr;
+  int held_particle = -1;
+  double held_isotropic = 0;  ///< N s/m, in addition
+};
+
+class Force {
+ public:
+  virtual ~Force() = default;
+
+  /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
+  virtual void update(const ClothSystem& system, const Vec3Field& position, double time,
+                      Vec3Field& force) = 0;
+
+  /// product += D v
+  virtual void add_damping(const Vec3Field& velocity, Vec3Field& product) const;
+
+  /// Adds this force's part of D to `damping` and returns true, or returns false: D couples particles.
+  virtual bool add_node_damping(NodeDamping& damping) const;
+
+  /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
+  virtual void add_power(const Vec3Field& velocity, Work& power) const;
+};
+
+}  // namespace cloth

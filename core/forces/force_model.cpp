@@ -1,0 +1,83 @@
+#include "forces/force_model.h"
+
+#include "forces/air.h"
+#include "forces/gravity.h"
+#include "forces/pull_force.h"
+#include "forces/springs.h"
+#include "forces/viscous.h"
+
+namespace cloth {
+
+ForceModel::ForceModel(const Scene& scene, const ClothSystem& system)
+    : system_(&system), position_force_(static_cast<std::size_t>(system.size())) {
+  if (scene.gravity && scene.gravity->squaredNorm() > 0)
+    forces_.push_back(std::make_unique<Gravity>(*scene.gravity));
+  if (!system.springs.empty()) forces_.push_back(std::make_unique<SpringForce>());
+  if (!system.springs.empty() && scene.springs->damping > 0)
+    forces_.push_back(std::make_unique<SpringDamping>(scene.springs->damping));
+  if (scene.damping && *scene.damping > 0)
+    forces_.push_back(std::make_unique<ViscousDamping>(*scene.damping));
+  if (scene.air && scene.air->drag > 0) {
+    auto air = std::make_unique<AirForce>(*scene.air);
+    air_ = air.get();
+    forces_.push_back(std::move(air));
+  }
+  note_kinds();
+}
+
+ForceModel::~ForceModel() = default;
+ForceModel::ForceModel(ForceModel&&) noexcept = default;
+ForceModel& ForceModel::operator=(ForceModel&&) noexcept = default;
+
+void ForceModel::note_kinds() {
+  has_damping_ = has_power_ = pull_ != nullptr;
+  for (const auto& force : forces_) {
+    NodeDamping damping;
+    const bool coupled = !force->add_node_damping(damping);
+    if (coupled || damping.isotropic > 0 || damping.along_normal > 0) has_damping_ = has_power_ = true;
+  }
+}
+
+void ForceModel::update(const Vec3Field& position, double time) {
+  ++evaluations_;
+  position_force_.fill(0);
+  for (const auto& force : forces_) force->update(*system_, position, time, position_force_);
+  if (pull_) pull_->update(*system_, position, time, position_force_);
+}
+
+void ForceModel::damping_product(const Vec3Field& velocity, Vec3Field& product) const {
+  product.fill(0);
+  for (const auto& force : forces_) force->add_damping(velocity, product);
+  if (pull_) pull_->add_damping(velocity, product);
+}
+
+void ForceModel::force(const Vec3Field& velocity, Vec3Field& result) const {
+  if (!has_damping_) {
+    result = position_force_;
+    return;
+  }
+  damping_product(velocity, result);
+  const auto p = position_force_.flat();
+  const auto f = result.flat();
+  for (std::size_t k = 0; k < f.size(); ++k) f[k] = p[k] - f[k];
+}
+
+Work ForceModel::power(const Vec3Field& velocity) const {
+  Work power;
+  for (const auto& force : forces_) force->add_power(velocity, power);
+  if (pull_) pull_->add_power(velocity, power);
+  return power;
+}
+
+void ForceModel::set_brush(const std::optional<BrushGust>& brush) {
+  if (air_) air_->set_brush(brush);
+}
+
+void ForceModel::set_pull(const std::optional<Pull>& pull, double stiffness, double damping) {
+  pull_ = pull && !system_->pinned[static_cast<std::size_t>(pull->particle)]
+              ? std::make_unique<PullForce>(*pull, stiffness, damping)
+              : nullptr;
+  note_kinds();
+}
+
+}  // namespace cloth

@@ -1,0 +1,67 @@
+// The forces that a scene has, as one f(x, v, t) = p(x, t) - D(x) v. What integrators see.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "forces/force.h"
+#include "forces/hand.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+class AirForce;
+
+class ForceModel {
+ public:
+  /// Only the forces that the scene has. `system` must outlive the model.
+  ForceModel(const Scene& scene, const ClothSystem& system);
+  ~ForceModel();
+  ForceModel(ForceModel&&) noexcept;
+  ForceModel& operator=(ForceModel&&) noexcept;
+
+  /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it.
+  void update(const Vec3Field& position, double time);
+
+  /// p - D v, in N. Pinned particles have a force too; their inverse mass is 0.
+  void force(const Vec3Field& velocity, Vec3Field& result) const;
+
+  /// The power of everything that is not the derivative of an energy.
+  Work power(const Vec3Field& velocity) const;
+
+  bool has_damping() const { return has_damping_; }
+  bool has_power() const { return has_power_; }
+
+  /// Solves (m + weight D) v = m known + weight p for the velocity of the free particles: the damping centred
+  /// in time. `velocity` holds the guess and becomes the answer; pinned particles keep 0. Returns the
+  /// iterations of conjugate gradients that were needed; 0 where D does not couple particles and the solution
+  /// is closed.
+  int centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity);
+
+  /// The hand. A brush without air and a pull on a pinned particle have no effect.
+  void set_brush(const std::optional<BrushGust>& brush);
+  void set_pull(const std::optional<Pull>& pull, double stiffness, double damping);
+
+  std::int64_t evaluations() const { return evaluations_; }
+
+ private:
+  void note_kinds();
+  void damping_product(const Vec3Field& velocity, Vec3Field& product) const;
+  void solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
+                      Vec3Field& velocity) const;
+  int solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& velocity);
+
+  const ClothSystem* system_;
+  std::vector<std::unique_ptr<Force>> forces_;
+  AirForce* air_ = nullptr;  ///< the one of forces_ that feels the brush
+  std::unique_ptr<Force> pull_;
+  Vec3Field position_force_;
+  Vec3Field rhs_, residual_, direction_,
+      product_;  ///< scratch of the velocity solve, sized when first needed
+  bool has_damping_ = false, has_power_ = false;
+  std::int64_t evaluations_ = 0;
+};
+
+}  // namespace cloth

@@ -1,0 +1,135 @@
+#include "forces/springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/sums.h"
+
+namespace cloth {
+namespace {
+
+// Legend: i, j the spring's ends; d = x_j - x_i; L rest length; k stiffness; g the force on i.
+
+/// Springs are taken in chunks: the forces of a chunk are computed side by side, then added to its two ends,
+/// so that a run whose ends overlap (offset 1) vectorises as well.
+constexpr int chunk_length = 128;
+
+struct Chunk {
+  std::array<double, chunk_length> x, y, z;
+};
+
+void add_to_ends(const Chunk& g, int first, int offset, int count, Vec3Field& force) {
+  double *fx = force.x() + first, *fy = force.y() + first, *fz = force.z() + first;
+  for (int s = 0; s < count; ++s) fx[s] += g.x[s], fy[s] += g.y[s], fz[s] += g.z[s];
+  fx += offset, fy += offset, fz += offset;
+  for (int s = 0; s < count; ++s) fx[s] -= g.x[s], fy[s] -= g.y[s], fz[s] -= g.z[s];
+}
+
+template <class Visit>  // visit(run, first, count)
+void for_each_chunk(const ClothSystem& system, Visit visit) {
+  for (const SpringRun& run : system.springs)
+    for (int begin = 0; begin < run.count; begin += chunk_length)
+      visit(run, run.first + begin, std::min(chunk_length, run.count - begin));
+}
+
+void spring_chunk(const SpringRun& run, int first, int count, const Vec3Field& position, Chunk& g) {
+  const double *xi = position.x() + first, *yi = position.y() + first, *zi = position.z() + first;
+  const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
+  const double k = run.stiffness, L = run.rest_length;
+  for (int s = 0; s < count; ++s) {
+    const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
+    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double scale = length > 0 ? k * (1 - L / length) : 0;
+    g.x[s] = scale * dx, g.y[s] = scale * dy, g.z[s] = scale * dz;
+  }
+}
+
+double run_energy(const SpringRun& run, const Vec3Field& position) {
+  const double *xi = position.x() + run.first, *yi = position.y() + run.first, *zi = position.z() + run.first;
+  const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
+  const double sum =
+      ordered_sum(static_cast<std::size_t>(run.count), [=, L = run.rest_length](std::size_t s) {
+        const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
+        const double elongation = std::sqrt(dx * dx + dy * dy + dz * dz) - L;
+        return elongation * elongation;
+      });
+  return 0.5 * run.stiffness * sum;
+}
+
+}  // namespace
+
+void SpringForce::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) {
+  Chunk g;
+  for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
+    spring_chunk(run, first, count, position, g);
+    add_to_ends(g, first, run.offset, count, force);
+  });
+}
+
+std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position) {
+  std::array<double, 3> energy{};
+  for (const SpringRun& run : system.springs)
+    energy[static_cast<std::size_t>(run.family)] += run_energy(run, position);
+  return energy;
+}
+
+void SpringDamping::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field&) {
+  system_ = &system;
+  std::size_t springs = 0;
+  for (const SpringRun& run : system.springs) springs += static_cast<std::size_t>(run.count);
+  if (direction_.size() != springs) direction_ = Vec3Field(springs);
+
+  double *ex = direction_.x(), *ey = direction_.y(), *ez = direction_.z();
+  for (const SpringRun& run : system.springs) {
+    const double *xi = position.x() + run.first, *yi = position.y() + run.first,
+                 *zi = position.z() + run.first;
+    const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
+    for (int s = 0; s < run.count; ++s) {
+      const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
+      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double scale = length > 0 ? 1 / length : 0;
+      ex[s] = scale * dx, ey[s] = scale * dy, ez[s] = scale * dz;
+    }
+    ex += run.count, ey += run.count, ez += run.count;
+  }
+}
+
+void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+  Chunk g;
+  std::size_t spring = 0;
+  for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
+    const double *vxi = velocity.x() + first, *vyi = velocity.y() + first, *vzi = velocity.z() + first;
+    const double *vxj = vxi + run.offset, *vyj = vyi + run.offset, *vzj = vzi + run.offset;
+    const double *ex = direction_.x() + spring, *ey = direction_.y() + spring, *ez = direction_.z() + spring;
+    for (int s = 0; s < count; ++s) {
+      const double closing =
+          (vxi[s] - vxj[s]) * ex[s] + (vyi[s] - vyj[s]) * ey[s] + (vzi[s] - vzj[s]) * ez[s];
+      const double scale = damping_ * closing;
+      g.x[s] = scale * ex[s], g.y[s] = scale * ey[s], g.z[s] = scale * ez[s];
+    }
+    add_to_ends(g, first, run.offset, count, product);
+    spring += static_cast<std::size_t>(count);
+  });
+}
+
+bool SpringDamping::add_node_damping(NodeDamping&) const {
+  return false;
+}
+
+void SpringDamping::add_power(const Vec3Field& velocity, Work& power) const {
+  std::size_t spring = 0;
+  for (const SpringRun& run : system_->springs) {
+    const double *vxi = velocity.x() + run.first, *vyi = velocity.y() + run.first,
+                 *vzi = velocity.z() + run.first;
+    const double *vxj = vxi + run.offset, *vyj = vyi + run.offset, *vzj = vzi + run.offset;
+    const double *ex = direction_.x() + spring, *ey = direction_.y() + spring, *ez = direction_.z() + spring;
+    power.damping_loss += damping_ * ordered_sum(static_cast<std::size_t>(run.count), [=](std::size_t s) {
+                            const double rate = (vxj[s] - vxi[s]) * ex[s] + (vyj[s] - vyi[s]) * ey[s] +
+                                                (vzj[s] - vzi[s]) * ez[s];
+                            return rate * rate;
+                          });
+    spring += static_cast<std::size_t>(run.count);
+  }
+}
+
+}  // namespace cloth

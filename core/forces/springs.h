@@ -1,0 +1,34 @@
+// Springs, Eq. (1) of the report (Provot 1995): F_i = k (|d| - L) d/|d|, d = x_j - x_i; 0 where |d| = 0.
+#pragma once
+
+#include <array>
+
+#include "forces/force.h"
+
+namespace cloth {
+
+class SpringForce : public Force {
+ public:
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+};
+
+/// sum 1/2 k (|d| - L)^2 per family, in J, indexed by SpringFamily.
+std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position);
+
+/// Spring damping: F_i = k_d ((v_j - v_i) . d/|d|) d/|d| on every spring; 0 where |d| = 0.
+class SpringDamping : public Force {
+ public:
+  explicit SpringDamping(double damping) : damping_(damping) {}
+
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+  void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
+  bool add_node_damping(NodeDamping& damping) const override;
+  void add_power(const Vec3Field& velocity, Work& power) const override;
+
+ private:
+  double damping_;  ///< N s/m
+  const ClothSystem* system_ = nullptr;
+  Vec3Field direction_;  ///< d/|d| of every spring, run after run
+};
+
+}  // namespace cloth

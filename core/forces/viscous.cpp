@@ -1,0 +1,24 @@
+#include "forces/viscous.h"
+
+#include "cloth/sums.h"
+
+namespace cloth {
+
+void ViscousDamping::update(const ClothSystem&, const Vec3Field&, double, Vec3Field&) {}
+
+void ViscousDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+  const auto v = velocity.flat();
+  const auto out = product.flat();
+  for (std::size_t k = 0; k < v.size(); ++k) out[k] += coefficient_ * v[k];
+}
+
+bool ViscousDamping::add_node_damping(NodeDamping& damping) const {
+  damping.isotropic += coefficient_;
+  return true;
+}
+
+void ViscousDamping::add_power(const Vec3Field& velocity, Work& power) const {
+  power.damping_loss += coefficient_ * dot(velocity.flat(), velocity.flat());
+}
+
+}  // namespace cloth

@@ -1,0 +1,21 @@
+// Viscous damping, Eq. (2) of the report: F_i = -c v_i.
+#pragma once
+
+#include "forces/force.h"
+
+namespace cloth {
+
+class ViscousDamping : public Force {
+ public:
+  explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
+
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+  void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
+  bool add_node_damping(NodeDamping& damping) const override;
+  void add_power(const Vec3Field& velocity, Work& power) const override;
+
+ private:
+  double coefficient_;  ///< N s/m
+};
+
+}  // namespace cloth

@@ -1,0 +1,32 @@
+#include "integrators/euler.h"
+
+namespace cloth {
+namespace {
+
+void evaluate(ForceModel& forces, const StepTimes& times, const ClothState& state, Vec3Field& force,
+              Work& work) {
+  if (force.size() != state.position.size()) force = Vec3Field(state.position.size());
+  forces.update(state.position, times.begin);
+  forces.force(state.velocity, force);
+  if (forces.has_power()) work += times.step * forces.power(state.velocity);
+}
+
+}  // namespace
+
+IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                                     ClothState& state, Work& work) {
+  evaluate(forces, times, state, force_, work);
+  add_scaled(times.step, state.velocity, state.position);
+  add_acceleration(system, times.step, force_, state.velocity);
+  return {.force_evaluations = 1};
+}
+
+IntegratorReport SemiImplicitEuler::step(const ClothSystem& system, ForceModel& forces,
+                                         const StepTimes& times, ClothState& state, Work& work) {
+  evaluate(forces, times, state, force_, work);
+  add_acceleration(system, times.step, force_, state.velocity);
+  add_scaled(times.step, state.velocity, state.position);
+  return {.force_evaluations = 1};
+}
+
+}  // namespace cloth

@@ -1,0 +1,29 @@
+// The two one-evaluation Euler methods.
+#pragma once
+
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+/// x' = x + h v, v' = v + h a(x, v, t): order 1, unstable for every undamped oscillation.
+class ExplicitEuler : public Integrator {
+ public:
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  Vec3Field force_;
+};
+
+/// v' = v + h a(x, v, t), x' = x + h v', Eqs. (5)-(7) of the report, which calls it implicit Euler: order 1,
+/// symplectic without damping.
+class SemiImplicitEuler : public Integrator {
+ public:
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  Vec3Field force_;
+};
+
+}  // namespace cloth

@@ -1,0 +1,69 @@
+#include "integrators/registry.h"
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+
+#include "integrators/euler.h"
+#include "integrators/rk4.h"
+#include "integrators/verlet.h"
+
+namespace cloth {
+namespace {
+
+struct Entry {
+  MethodFacts facts;
+  std::function<std::unique_ptr<Integrator>()> make;
+};
+
+template <class Method>
+std::unique_ptr<Integrator> made() {
+  return std::make_unique<Method>();
+}
+
+const std::vector<Entry>& registry() {
+  static const std::vector<Entry> entries{
+      {{"explicit-euler", "Explicit Euler", 1, 1, "Euler 1768"}, made<ExplicitEuler>},
+      {{"semi-implicit-euler", "Semi-implicit Euler", 1, 1, "Provot 1995; report, Eqs. (5)-(7)"},
+       made<SemiImplicitEuler>},
+      {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)"}, made<Verlet>},
+      {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
+  };
+  return entries;
+}
+
+template <class Value, class Get>
+std::vector<Value> collect(Get get) {
+  std::vector<Value> values;
+  for (const Entry& entry : registry()) values.push_back(get(entry));
+  return values;
+}
+
+const Entry& entry_of(const std::string& name) {
+  const auto found = std::find_if(registry().begin(), registry().end(),
+                                  [&](const Entry& entry) { return entry.facts.name == name; });
+  assert(found != registry().end());
+  return *found;
+}
+
+}  // namespace
+
+const std::vector<std::string>& integrator_names() {
+  static const auto names = collect<std::string>([](const Entry& entry) { return entry.facts.name; });
+  return names;
+}
+
+const std::vector<MethodFacts>& integrator_facts() {
+  static const auto facts = collect<MethodFacts>([](const Entry& entry) { return entry.facts; });
+  return facts;
+}
+
+const MethodFacts& facts_of(const std::string& name) {
+  return entry_of(name).facts;
+}
+
+std::unique_ptr<Integrator> make_integrator(const std::string& name) {
+  return entry_of(name).make();
+}
+
+}  // namespace cloth

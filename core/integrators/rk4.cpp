@@ -1,0 +1,45 @@
+#include "integrators/rk4.h"
+
+#include <utility>
+
+namespace cloth {
+namespace {
+
+struct Stage {
+  double node;  ///< where in the step the stage stands, and how far it follows the slope before it
+  double weight;
+};
+constexpr std::array<Stage, 4> stages{{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};
+
+}  // namespace
+
+IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                           ClothState& state, Work& work) {
+  const double h = times.step;
+  if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
+  stage_position_ = state.position;
+  stage_velocity_ = state.velocity;
+  next_position_ = state.position;
+  next_velocity_ = state.velocity;
+
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const double time = stages[s].node == 1 ? times.end : times.begin + stages[s].node * h;
+    forces.update(stage_position_, time);
+    forces.force(stage_velocity_, force_);
+    if (forces.has_power()) work += h * stages[s].weight * forces.power(stage_velocity_);
+    add_scaled(h * stages[s].weight, stage_velocity_, next_position_);
+    add_acceleration(system, h * stages[s].weight, force_, next_velocity_);
+    if (s + 1 == stages.size()) break;
+
+    const double ahead = h * stages[s + 1].node;
+    stage_position_ = state.position;
+    add_scaled(ahead, stage_velocity_, stage_position_);
+    stage_velocity_ = state.velocity;
+    add_acceleration(system, ahead, force_, stage_velocity_);
+  }
+  std::swap(state.position, next_position_);
+  std::swap(state.velocity, next_velocity_);
+  return {.force_evaluations = 4};
+}
+
+}  // namespace cloth

@@ -1,0 +1,28 @@
+// Velocity Verlet with the damping centred in time. Without velocity-dependent forces its positions are the
+// report's Eq. (14), x(t+h) = 2 x(t) - x(t-h) + h^2 a(t).
+//
+//     v_half = v + h/2 a(x, v, t)
+//     x'     = x + h v_half
+//     v'     = v_half + h/2 a(x', v', t+h)      solved for v', a is affine in it
+//
+// Order 2 with damping, drag and wind, one force evaluation a step, stable to omega h = 2 for every damping
+// ratio.
+#pragma once
+
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+class Verlet : public Integrator {
+ public:
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+  void forget() override { holds_force_ = false; }
+
+ private:
+  Vec3Field force_, half_velocity_;
+  Work power_;                ///< at the end of the last step
+  bool holds_force_ = false;  ///< the force model stands at the state's position and time
+};
+
+}  // namespace cloth

@@ -1,0 +1,135 @@
+#include "io/run_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
+      return line.substr(line.find(": ") + 2);
+  return "";
+}
+
+/// JSON has no NaN: a number that is not finite is written as a word.
+json finite_or_word(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "infinity" : "-infinity";
+}
+
+json divergence_json(const Divergence& d) {
+  return {{"step", d.step},
+          {"time_s", d.time},
+          {"particle", d.particle},
+          {"row", d.row},
+          {"column", d.column},
+          {"cause", d.cause},
+          {"time_step_s", d.time_step},
+          {"stable_step_s", d.stable_step > 0 ? finite_or_word(d.stable_step) : json()},
+          {"message", describe(d)}};
+}
+
+}  // namespace
+
+std::optional<IoError> make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return IoError{folder, error.message()};
+  if (!fs::is_directory(folder, error)) return IoError{folder, "is not a folder"};
+  return std::nullopt;
+}
+
+std::optional<IoError> write_text_file(const fs::path& path, const std::string& text) {
+  fs::path draft = path;
+  draft += ".part";
+  errno = 0;
+  std::ofstream file(draft, std::ios::binary | std::ios::trunc);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.close();
+  std::error_code error;
+  if (!file) {
+    const std::string reason = errno != 0 ? std::strerror(errno) : "could not be written";
+    fs::remove(draft, error);
+    return IoError{path, reason};
+  }
+  fs::rename(draft, path, error);
+  if (error) return IoError{path, error.message()};
+  return std::nullopt;
+}
+
+std::optional<IoError> read_text_file(const fs::path& path, std::string& text) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return IoError{path, "is a folder"};
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  if (file) content << file.rdbuf();
+  if (!file && content.str().empty() && errno != 0) return IoError{path, std::strerror(errno)};
+  text = content.str();
+  return std::nullopt;
+}
+
+std::string state_csv(const ClothState& state) {
+  std::string text = "particle,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n";
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const Vec3 x = state.position[i], v = state.velocity[i];
+    text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", i, x.x(), x.y(), x.z(), v.x(),
+                        v.y(), v.z());
+  }
+  return text;
+}
+
+double RunSummary::nanoseconds_per_particle_step() const {
+  return steps > 0 && particles > 0 ? wall * 1e9 / (static_cast<double>(steps) * particles) : 0;
+}
+
+std::string version() {
+  return CLOTHLAB_VERSION;
+}
+
+std::string summary_json(const RunSummary& s) {
+  json root{{"program", "clothlab"},
+            {"version", version()},
+            {"scene_hash", s.scene_hash},
+            {"title", s.title},
+            {"method", s.method},
+            {"time_step_s", s.time_step},
+            {"steps", s.steps},
+            {"force_evaluations", s.force_evaluations},
+            {"particles", s.particles},
+            {"simulated_s", s.simulated},
+            {"wall_s", s.wall},
+            {"ns_per_particle_step", s.nanoseconds_per_particle_step()},
+            {"max_strain", finite_or_word(s.max_strain)},
+            {"energy_drift_J", finite_or_word(s.energy_drift)},
+            {"limiter_excess", finite_or_word(s.limiter_excess)},
+            {"status", name_of(s.status)}};
+  if (s.divergence) root["diverged"] = divergence_json(*s.divergence);
+  if (!s.notice.empty()) root["notice"] = s.notice;
+  root["threads"] = s.threads;
+  root["host"] = {{"name", host_name()},
+                  {"processor", processor()},
+                  {"compiler", CLOTHLAB_COMPILER},
+                  {"build", CLOTHLAB_BUILD_TYPE}};
+  return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace cloth

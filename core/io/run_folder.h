@@ -1,0 +1,52 @@
+// What a run leaves in its folder beside record.csv.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "cloth/cloth_system.h"
+#include "io/csv.h"
+#include "simulation/outcome.h"
+
+namespace cloth {
+
+/// Makes the folder and those above it.
+std::optional<IoError> make_folder(const std::filesystem::path& folder);
+
+/// Writes to a file beside it first, then renames: the file is old or new, never half.
+std::optional<IoError> write_text_file(const std::filesystem::path& path, const std::string& text);
+
+/// The whole file, or why not.
+std::optional<IoError> read_text_file(const std::filesystem::path& path, std::string& text);
+
+/// final_state.csv: particle,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s
+std::string state_csv(const ClothState& state);
+
+struct RunSummary {
+  std::string scene_hash;
+  std::string title;
+  std::string method;
+  double time_step = 0;  ///< s
+  std::int64_t steps = 0;
+  std::int64_t force_evaluations = 0;
+  int particles = 0;
+  double simulated = 0;       ///< s
+  double wall = 0;            ///< s, of stepping alone
+  double max_strain = 0;      ///< largest of all rows
+  double energy_drift = 0;    ///< J, the energy error at the end
+  double limiter_excess = 0;  ///< largest of all rows
+  Status status = Status::finished;
+  std::optional<Divergence> divergence;
+  std::string notice;  ///< e.g. a rate that the pins make unreachable
+  int threads = 1;
+
+  double nanoseconds_per_particle_step() const;
+};
+
+/// summary.json
+std::string summary_json(const RunSummary& summary);
+
+std::string version();
+
+}  // namespace cloth

@@ -1,0 +1,22 @@
+#include "measure/energy.h"
+
+#include "cloth/sums.h"
+#include "forces/gravity.h"
+#include "forces/springs.h"
+
+namespace cloth {
+
+double kinetic_energy(const ClothSystem& system, const Vec3Field& velocity) {
+  return 0.5 * system.particle_mass * dot(velocity.flat(), velocity.flat());
+}
+
+Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleration, const ClothState& state) {
+  Energy energy;
+  energy.kinetic = kinetic_energy(system, state.velocity);
+  energy.elastic_by_family = elastic_energy(system, state.position);
+  for (const double part : energy.elastic_by_family) energy.elastic += part;
+  energy.gravity = gravity_energy(system, gravity_acceleration, state.position);
+  return energy;
+}
+
+}  // namespace cloth

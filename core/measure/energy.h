@@ -1,0 +1,23 @@
+// Energies of a state and the ledger of what entered and left.
+#pragma once
+
+#include <array>
+
+#include "cloth/cloth_system.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+struct Energy {
+  double kinetic = 0, elastic = 0, gravity = 0;  ///< J
+  std::array<double, 3> elastic_by_family{};     ///< J, indexed by SpringFamily
+  double total() const { return kinetic + elastic + gravity; }
+};
+
+/// sum 1/2 m |v|^2, in J.
+double kinetic_energy(const ClothSystem& system, const Vec3Field& velocity);
+
+/// `gravity_acceleration` of zero leaves the potential out.
+Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleration, const ClothState& state);
+
+}  // namespace cloth

@@ -1,0 +1,68 @@
+// A parameter is declared once. Forms, JSON, the JSON Schema, `--set`, chart labels and the reference page
+// follow from the declaration; nothing else knows a parameter's unit, range or wording.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace cloth {
+
+using Vec3 = Eigen::Vector3d;
+using Words = std::vector<std::string>;
+
+/// number -> double, integer -> int64, vector -> Vec3, choice/text -> string, words -> Words.
+using ParameterValue = std::variant<double, std::int64_t, Vec3, std::string, Words>;
+
+enum class Kind { number, integer, vector, choice, words, text };
+enum class Scale { linear, logarithmic };
+
+/// Whether an edit acts on the running simulation at its next step or needs a new start.
+enum class EditCost { live, restart };
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct ParameterInfo {
+  std::string key{};      ///< last part of the dotted path
+  std::string label{};    ///< in a form or on an axis, sentence case
+  std::string unit{};     ///< SI, empty for a pure number
+  std::string doc{};      ///< one sentence: what it means
+  std::string formula{};  ///< optional: where it enters the model
+  Kind kind = Kind::number;
+  EditCost cost = EditCost::live;
+  Scale scale = Scale::linear;
+  double minimum = -infinity;  ///< accepted values, per component for vectors
+  double maximum = infinity;
+  bool minimum_excluded = false;  ///< value > minimum rather than >=
+  bool unit_vector = false;       ///< a direction: any length but zero, normalised when used
+  double slider_minimum = 0;      ///< the range of the form's slider
+  double slider_maximum = 1;
+  bool auto_allowed = false;           ///< the word "auto" is a value too
+  std::vector<std::string> choices{};  ///< Kind::choice
+  std::vector<Words> word_sets{};      ///< Kind::words: the combinations that are allowed
+};
+
+/// The rule that `value` breaks, in words ("must be >= 0"), or nothing.
+std::optional<std::string> broken_rule(const ParameterInfo& info, const ParameterValue& value);
+
+/// The accepted values in words, for tooltips and the reference page ("> 0", ">= 0 and <= 1", "any").
+std::string range_text(const ParameterInfo& info);
+
+/// A value with its unit, shortest form that reads back to the same number ("-3 N/m").
+std::string value_text(const ParameterInfo& info, const ParameterValue& value);
+
+/// A parameter of an Owner struct.
+template <class Owner>
+struct Field {
+  ParameterInfo info;
+  std::function<ParameterValue(const Owner&)> get;
+  std::function<void(Owner&, const ParameterValue&)> set;
+};
+
+}  // namespace cloth

@@ -1,0 +1,101 @@
+#include "scene/json_locator.h"
+
+#include <algorithm>
+
+namespace cloth {
+namespace {
+
+class Locator {
+ public:
+  explicit Locator(std::string_view text) : text_(text) {}
+
+  JsonLocations run() {
+    skip_space();
+    value("");
+    return std::move(locations_);
+  }
+
+ private:
+  static std::string joined(const std::string& path, const std::string& key) {
+    return path.empty() ? key : path + "." + key;
+  }
+
+  void skip_space() {
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
+      ++at_;
+  }
+
+  char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+
+  /// Skips punctuation and the space around it.
+  void skip_mark() {
+    ++at_;
+    skip_space();
+  }
+
+  /// The raw characters between the quotes; escapes are of no interest to a path.
+  std::string string() {
+    const std::size_t begin = ++at_;
+    while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
+    const std::string content(text_.substr(begin, at_ - begin));
+    ++at_;
+    return content;
+  }
+
+  void value(const std::string& path) {
+    locations_.values.insert_or_assign(path, position_of(text_, at_));
+    if (peek() == '{')
+      object(path);
+    else if (peek() == '[')
+      array(path);
+    else if (peek() == '"')
+      string();
+    else
+      while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos)
+        ++at_;
+    skip_space();
+  }
+
+  void object(const std::string& path) {
+    skip_mark();
+    while (at_ < text_.size() && peek() != '}') {
+      const TextPosition key_position = position_of(text_, at_);
+      const std::string member = joined(path, string());
+      if (!locations_.keys.insert_or_assign(member, key_position).second)
+        locations_.repeated.push_back(member);
+      skip_space();
+      skip_mark();  // the colon
+      value(member);
+      if (peek() == ',') skip_mark();
+    }
+    ++at_;
+  }
+
+  void array(const std::string& path) {
+    skip_mark();
+    for (int index = 0; at_ < text_.size() && peek() != ']'; ++index) {
+      value(joined(path, std::to_string(index)));
+      if (peek() == ',') skip_mark();
+    }
+    ++at_;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  JsonLocations locations_;
+};
+
+}  // namespace
+
+TextPosition position_of(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_begin = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  return {static_cast<int>(line), static_cast<int>(before.size() - line_begin) + 1};
+}
+
+JsonLocations locate_json(std::string_view text) {
+  return Locator(text).run();
+}
+
+}  // namespace cloth

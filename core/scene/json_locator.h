@@ -1,0 +1,28 @@
+// Where the values of a JSON text stand. The JSON library checks the text; this only finds lines and columns
+// in it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cloth {
+
+struct TextPosition {
+  int line = 1, column = 1;  ///< from 1; columns count bytes
+};
+
+/// The position of byte `offset` of `text`.
+TextPosition position_of(std::string_view text, std::size_t offset);
+
+struct JsonLocations {
+  std::map<std::string, TextPosition> values;  ///< by dotted path; "" is the root
+  std::map<std::string, TextPosition> keys;    ///< by dotted path, where the key itself stands
+  std::vector<std::string> repeated;           ///< paths that an object has more than once
+};
+
+/// Precondition: `text` is one valid JSON value.
+JsonLocations locate_json(std::string_view text);
+
+}  // namespace cloth

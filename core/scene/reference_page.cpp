@@ -1,0 +1,82 @@
+#include "scene/reference_page.h"
+
+#include <fmt/format.h>
+
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+namespace {
+
+/// A scene that has every block once.
+Scene full_scene() {
+  Scene scene;
+  scene.springs.emplace();
+  scene.damping = 0;
+  scene.gravity = Vec3::Zero();
+  scene.air.emplace().gust.emplace();
+  scene.deformation.emplace();
+  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
+    scene.obstacles.emplace_back().shape = shape;
+  return scene;
+}
+
+std::string allowed(const ParameterInfo& info) {
+  switch (info.kind) {
+    case Kind::choice:
+      return fmt::format("`{}`", fmt::join(info.choices, "`, `"));
+    case Kind::words: {
+      std::string text;
+      for (const Words& set : info.word_sets)
+        text += fmt::format("{}`{}`", text.empty() ? "" : ", ", value_text(info, set));
+      return text;
+    }
+    case Kind::text:
+      return "any text";
+    case Kind::integer:
+      return "whole, " + range_text(info);
+    case Kind::vector:
+      return info.unit_vector ? "a direction, not zero" : "three numbers, " + range_text(info);
+    case Kind::number:
+      return range_text(info) + (info.auto_allowed ? ", or `\"auto\"`" : "");
+  }
+  return "";
+}
+
+/// "obstacles.0.radius" is one of many: obstacles.N.radius.
+std::string general_path(const std::string& path) {
+  const std::string list = "obstacles.";
+  if (path.rfind(list, 0) != 0) return path;
+  return list + "N" + path.substr(path.find('.', list.size()));
+}
+
+std::string row(const Scene& scene, const Parameter& parameter) {
+  const ParameterInfo& info = parameter.info;
+  const auto initial = default_of(scene, parameter.path);
+  return fmt::format("| `{}` | {} | {} | {} | {} | {}{} | {} |\n", general_path(parameter.path), info.label,
+                     info.unit.empty() ? "1" : info.unit, allowed(info),
+                     initial ? value_text(info, *initial) : "", info.doc,
+                     info.formula.empty() ? "" : " `" + info.formula + "`",
+                     info.cost == EditCost::live ? "at the next step" : "restarts");
+}
+
+}  // namespace
+
+std::string reference_page() {
+  const Scene scene = full_scene();
+  std::string page =
+      "# Parameters\n\nMade from the declarations in `core/scene/scene_declarations.cpp` by `clothlab-cli "
+      "parameters`; do "
+      "not edit. \"Start value\" is what the window fills in when a block is added and what a reset returns "
+      "to. A "
+      "stiffness, damping or block that a file does not name is absent physics.\n";
+  for (const Block& block : blocks_of(scene)) {
+    page += fmt::format(
+        "\n## {}\n\n{}\n\n| path | label | unit | accepted | start value | meaning | an edit acts |\n"
+        "|---|---|---|---|---|---|---|\n",
+        block.title, block.doc);
+    for (const Parameter& parameter : block.parameters) page += row(scene, parameter);
+  }
+  return page;
+}
+
+}  // namespace cloth

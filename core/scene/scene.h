@@ -1,0 +1,125 @@
+// A scene is a value: everything that decides a run, and nothing else. Window, command line, tests and
+// benchmarks start from the same scenes. An absent block is absent physics. SI units throughout.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "params/parameter.h"
+
+namespace cloth {
+
+enum class NamedPin {
+  top_left,
+  top_right,
+  bottom_left,
+  bottom_right,
+  top_edge,
+  bottom_edge,
+  left_edge,
+  right_edge
+};
+
+struct PinnedParticle {
+  int row = 0, column = 0;
+  bool operator==(const PinnedParticle&) const = default;
+};
+
+using Pin = std::variant<NamedPin, PinnedParticle>;
+
+/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0.
+struct ClothSheet {
+  int columns = 33, rows = 33;
+  double width = 1.0, height = 1.0;  ///< m
+  double mass = 0.25;                ///< kg, of the whole cloth
+  Vec3 origin{-0.5, 1.0, 0.0};       ///< m, where particle (0, 0) starts
+  Vec3 across{1, 0, 0}, down{0, -1, 0};
+  std::vector<Pin> pins;
+  bool operator==(const ClothSheet&) const = default;
+};
+
+/// Stiffnesses in N/m; a family of stiffness 0 does not exist.
+struct SpringMaterial {
+  double structural = 0, shear = 0, flexion = 0;
+  double damping = 0;  ///< N s/m, along every spring
+  bool operator==(const SpringMaterial&) const = default;
+};
+
+/// wind * (1 + amplitude * sin(2 pi frequency t))
+struct Gust {
+  double amplitude = 0.5;
+  double frequency = 0.7;  ///< Hz
+  bool operator==(const Gust&) const = default;
+};
+
+struct Air {
+  double drag = 0.01;  ///< N s/m per particle, along the normal
+  Vec3 wind{0, 0, 0};  ///< m/s
+  std::optional<Gust> gust;
+  bool operator==(const Air&) const = default;
+};
+
+/// Provot's deformation rate: the largest elongation (|d| - L)/L that limited springs may keep.
+struct Deformation {
+  double rate = 0.1;
+  Words springs{"structural", "shear"};
+  double tolerance = 1e-4;  ///< relative to the rest length
+  std::int64_t max_sweeps = 200;
+  bool operator==(const Deformation&) const = default;
+};
+
+enum class Shape { sphere, box, plane };
+
+/// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal.
+struct Obstacle {
+  Shape shape = Shape::sphere;
+  Vec3 center{0, 0, 0};
+  double radius = 0.3;
+  Vec3 size{0.4, 0.4, 0.4};
+  Vec3 point{0, 0, 0};
+  Vec3 normal{0, 1, 0};
+  std::string response = "coulomb";
+  double friction = 0.3;
+  double restitution = 0;
+  bool operator==(const Obstacle&) const = default;
+};
+
+struct IntegratorChoice {
+  std::string method = "verlet";
+  std::optional<double> time_step;  ///< s; absent: "auto", 80 % of the method's stability limit
+  bool operator==(const IntegratorChoice&) const = default;
+};
+
+struct Recording {
+  double interval = 0.01;  ///< s of simulated time between rows
+  bool operator==(const Recording&) const = default;
+};
+
+struct Scene {
+  std::string title;
+  ClothSheet cloth;
+  std::optional<SpringMaterial> springs;
+  std::optional<double> damping;  ///< viscous, N s/m per particle
+  std::optional<Vec3> gravity;    ///< m/s^2
+  std::optional<Air> air;
+  std::optional<Deformation> deformation;
+  std::vector<Obstacle> obstacles;
+  IntegratorChoice integrator;
+  double duration = 5.0;  ///< s
+  Recording record;
+  bool operator==(const Scene&) const = default;
+};
+
+const char* name_of(Shape shape);
+const char* name_of(NamedPin pin);
+std::optional<NamedPin> pin_named(const std::string& name);
+inline constexpr int named_pin_count = 8;
+
+/// The particles (row * columns + column) that `pins` hold, ascending, each once. Pins outside the grid are
+/// ignored.
+std::vector<int> pinned_particles(const ClothSheet& cloth);
+
+}  // namespace cloth

@@ -1,0 +1,56 @@
+#include "scene/scene_checks.h"
+
+#include <fmt/format.h>
+
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+namespace {
+
+void check_parameters(const Scene& scene, std::vector<Problem>& problems) {
+  for (const Parameter& parameter : parameters_of(scene)) {
+    const ParameterValue value = parameter.get(scene);
+    if (const auto rule = broken_rule(parameter.info, value))
+      problems.push_back({parameter.path, value_text(parameter.info, value), *rule, "", 0, 0});
+  }
+}
+
+void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
+  for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
+    const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
+    if (!pin) continue;
+    if (pin->row >= 0 && pin->row < cloth.rows && pin->column >= 0 && pin->column < cloth.columns) continue;
+    problems.push_back(
+        {fmt::format("cloth.pins.{}", i), fmt::format("[{}, {}]", pin->row, pin->column),
+         fmt::format("must lie in the grid: row 0 to {}, column 0 to {}", cloth.rows - 1, cloth.columns - 1),
+         "", 0, 0});
+  }
+}
+
+void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
+  if (!(cloth.across.norm() > 0) || !(cloth.down.norm() > 0)) return;  // said already
+  constexpr double least_sine = 1e-6;
+  if (cloth.across.normalized().cross(cloth.down.normalized()).norm() > least_sine) return;
+  const Vec3& down = cloth.down;
+  problems.push_back({"cloth.down", fmt::format("[{}, {}, {}]", down.x(), down.y(), down.z()),
+                      "must not be parallel to cloth.across", "", 0, 0});
+}
+
+}  // namespace
+
+std::string Problem::text() const {
+  std::string text;
+  if (!place.empty()) text = line > 0 ? fmt::format("{}:{}:{}: ", place, line, column) : place + ": ";
+  if (!path.empty()) text += value.empty() ? path + ": " : fmt::format("{} = {}: ", path, value);
+  return text + rule;
+}
+
+std::vector<Problem> find_problems(const Scene& scene) {
+  std::vector<Problem> problems;
+  check_parameters(scene, problems);
+  check_pins(scene.cloth, problems);
+  check_directions(scene.cloth, problems);
+  return problems;
+}
+
+}  // namespace cloth

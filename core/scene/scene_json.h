@@ -1,0 +1,44 @@
+// Scenes as JSON: reading with every problem at once, writing, and the JSON Schema of the format.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/problem.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+inline constexpr const char* scene_format = "clothlab/scene/1";
+
+/// Sets one parameter before the scene is checked: `value` is JSON ("3", "\"auto\"", "[0, 0, 3]") or a bare
+/// word.
+struct Override {
+  std::string path;
+  std::string value;
+};
+
+/// "springs.structural=500" as an override; nullopt without "=".
+std::optional<Override> parse_override(const std::string& text);
+
+/// A scene, or why there is none. Exactly one of the two is there.
+struct SceneReading {
+  std::optional<Scene> scene;
+  std::vector<Problem> problems;
+};
+
+/// `place` names the text in messages.
+SceneReading read_scene(const std::string& text, const std::string& place,
+                        const std::vector<Override>& overrides = {});
+
+/// Writes every value, defaults resolved, with numbers that read back to the same bits.
+std::string write_scene(const Scene& scene);
+
+/// JSON Schema (draft 7) of the scene file.
+std::string scene_schema();
+
+/// 64-bit FNV-1a of write_scene, as 16 hexadecimal digits.
+std::string scene_hash(const Scene& scene);
+
+}  // namespace cloth

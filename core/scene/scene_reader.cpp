@@ -1,0 +1,362 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "scene/json_locator.h"
+#include "scene/scene_checks.h"
+#include "scene/scene_json.h"
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::json;
+
+std::string joined(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+std::string number_text(const json& value) {
+  return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
+}
+
+std::string shown(const json& value) {
+  constexpr std::size_t longest = 60;
+  std::string text =
+      value.is_number() ? number_text(value) : value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
+  return text;
+}
+
+/// Takes a JSON document apart block by block. Problems are collected, never thrown.
+class SceneReader {
+ public:
+  std::vector<Problem> problems;
+
+  Scene read(const json& root) {
+    Scene scene;
+    if (!object(root, "")) return scene;
+    known_keys(root, "",
+               {"format", "title", "cloth", "springs", "damping", "gravity", "air", "deformation",
+                "obstacles", "integrator", "duration", "record"});
+    if (const json* format = member(root, "format"); format && *format != scene_format)
+      problem("format", *format, fmt::format("must be \"{}\"", scene_format));
+
+    fields(root, "", scene_fields(), scene);
+    if (const json* cloth = member(root, "cloth"))
+      read_cloth(*cloth, scene.cloth);
+    else
+      problems.push_back({"cloth", "", "must be given: a scene needs a cloth", "", 0, 0});
+    block(root, "springs", spring_fields(), scene.springs);
+    block(root, "deformation", deformation_fields(), scene.deformation);
+    if (const json* air = member(root, "air")) read_air(*air, scene.air.emplace());
+    if (const json* obstacles = member(root, "obstacles")) read_obstacles(*obstacles, scene.obstacles);
+    required_block(root, "integrator", integrator_fields(), scene.integrator);
+    required_block(root, "record", recording_fields(), scene.record);
+    return scene;
+  }
+
+ private:
+  void problem(const std::string& path, const json& value, const std::string& rule) {
+    problems.push_back({path, shown(value), rule, "", 0, 0});
+  }
+
+  static const json* member(const json& from, const std::string& key) {
+    const auto found = from.find(key);
+    return found == from.end() ? nullptr : &*found;
+  }
+
+  bool object(const json& value, const std::string& path) {
+    if (value.is_object()) return true;
+    problem(path, value, "must be an object in braces");
+    return false;
+  }
+
+  void known_keys(const json& from, const std::string& path, const std::set<std::string>& known) {
+    for (const auto& [key, value] : from.items())
+      if (!known.count(key))
+        problems.push_back({joined(path, key), "",
+                            fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
+                            0});
+  }
+
+  template <class Owner>
+  std::set<std::string> keys_of(const Fields<Owner>& declared, std::set<std::string> also = {}) {
+    for (const Field<Owner>& field : declared) also.insert(field.info.key);
+    return also;
+  }
+
+  template <class Owner>
+  void fields(const json& from, const std::string& path, const Fields<Owner>& declared, Owner& owner) {
+    for (const Field<Owner>& field : declared)
+      if (const json* value = member(from, field.info.key))
+        if (const auto parsed = parse(*value, joined(path, field.info.key), field.info))
+          field.set(owner, *parsed);
+  }
+
+  template <class Owner>
+  void block(const json& root, const std::string& key, const Fields<Owner>& declared,
+             std::optional<Owner>& owner) {
+    if (member(root, key)) required_block(root, key, declared, owner.emplace());
+  }
+
+  template <class Owner>
+  void required_block(const json& root, const std::string& key, const Fields<Owner>& declared, Owner& owner) {
+    const json* value = member(root, key);
+    if (!value || !object(*value, key)) return;
+    known_keys(*value, key, keys_of(declared));
+    fields(*value, key, declared, owner);
+  }
+
+  void read_cloth(const json& value, ClothSheet& cloth) {
+    if (!object(value, "cloth")) return;
+    if (value.contains("mesh")) {
+      problem("cloth.mesh", value["mesh"], "cloths from mesh files are not supported by this version");
+      return;
+    }
+    known_keys(value, "cloth", keys_of(cloth_fields(), {"pins"}));
+    fields(value, "cloth", cloth_fields(), cloth);
+    if (const json* pins = member(value, "pins")) read_pins(*pins, cloth.pins);
+  }
+
+  void read_pins(const json& value, std::vector<Pin>& pins) {
+    if (!value.is_array()) return problem("cloth.pins", value, "must be a list");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const json& pin = value[i];
+      const std::string path = fmt::format("cloth.pins.{}", i);
+      if (pin.is_string()) {
+        if (const auto named = pin_named(pin.get<std::string>()))
+          pins.emplace_back(*named);
+        else
+          problem(path, pin,
+                  "must be top-left, top-right, bottom-left, bottom-right, top-edge, bottom-edge, left-edge, "
+                  "right-edge or [row, column]");
+      } else if (pin.is_array() && pin.size() == 2 && small_integer(pin[0]) && small_integer(pin[1])) {
+        pins.emplace_back(PinnedParticle{pin[0].get<int>(), pin[1].get<int>()});
+      } else {
+        problem(path, pin, "must be a name or [row, column] in whole numbers");
+      }
+    }
+  }
+
+  static bool small_integer(const json& value) {
+    return value.is_number_integer() && std::abs(value.get<double>()) < 1e9;
+  }
+
+  void read_air(const json& value, Air& air) {
+    if (!object(value, "air")) return;
+    known_keys(value, "air", keys_of(air_fields(), {"gust"}));
+    fields(value, "air", air_fields(), air);
+    if (const json* gust = member(value, "gust"); gust && object(*gust, "air.gust")) {
+      known_keys(*gust, "air.gust", keys_of(gust_fields()));
+      fields(*gust, "air.gust", gust_fields(), air.gust.emplace());
+    }
+  }
+
+  void read_obstacles(const json& value, std::vector<Obstacle>& obstacles) {
+    if (!value.is_array()) return problem("obstacles", value, "must be a list");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const std::string path = fmt::format("obstacles.{}", i);
+      Obstacle& obstacle = obstacles.emplace_back();
+      if (!object(value[i], path)) continue;
+      const json* shape = member(value[i], "shape");
+      if (!shape) {
+        problems.push_back(
+            {path + ".shape", "", "must be given: \"sphere\", \"box\" or \"plane\"", "", 0, 0});
+        continue;
+      }
+      if (*shape == "mesh") {
+        problem(path + ".shape", *shape, "mesh obstacles are not supported by this version");
+        continue;
+      }
+      if (*shape != "sphere" && *shape != "box" && *shape != "plane") {
+        problem(path + ".shape", *shape, "must be \"sphere\", \"box\" or \"plane\"");
+        continue;
+      }
+      obstacle.shape = *shape == "sphere" ? Shape::sphere : *shape == "box" ? Shape::box : Shape::plane;
+      known_keys(value[i], path, keys_of(obstacle_fields(obstacle.shape), {"shape"}));
+      fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);
+    }
+  }
+
+  std::optional<ParameterValue> parse(const json& value, const std::string& path, const ParameterInfo& info) {
+    switch (info.kind) {
+      case Kind::number:
+        if (value.is_number()) return value.get<double>();
+        if (info.auto_allowed && value == "auto") return std::string("auto");
+        problem(path, value, info.auto_allowed ? "must be a number or \"auto\"" : "must be a number");
+        return std::nullopt;
+      case Kind::integer:
+        if (value.is_number_integer() && std::abs(value.get<double>()) <= 2e9)
+          return value.get<std::int64_t>();
+        problem(path, value, "must be a whole number, " + range_text(info));
+        return std::nullopt;
+      case Kind::vector:
+        if (value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
+            value[2].is_number())
+          return Vec3(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
+        problem(path, value, "must be three numbers [x, y, z]");
+        return std::nullopt;
+      case Kind::choice:
+      case Kind::text:
+        if (value.is_string()) return value.get<std::string>();
+        problem(path, value, "must be a text in quotes");
+        return std::nullopt;
+      case Kind::words:
+        return parse_words(value, path);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<ParameterValue> parse_words(const json& value, const std::string& path) {
+    const bool strings = value.is_array() && std::all_of(value.begin(), value.end(),
+                                                         [](const json& word) { return word.is_string(); });
+    if (strings) return value.get<Words>();
+    problem(path, value, "must be a list of texts");
+    return std::nullopt;
+  }
+};
+
+/// Only notes where and why a text is not JSON.
+struct SyntaxCheck : nlohmann::json_sax<json> {
+  std::size_t offset = 0;
+  std::string message;
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool key(string_t&) override { return true; }
+  bool parse_error(std::size_t position, const std::string& last_token,
+                   const json::exception& error) override {
+    offset = position > 0 ? position - 1 : 0;
+    message = error.id == 406      ? "the number " + last_token + " is too large"
+              : last_token.empty() ? std::string("is not JSON: the text ends too early")
+                                   : "is not JSON from here on: unexpected '" + last_token + "'";
+    return false;
+  }
+};
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return text;
+}
+
+/// A bare word that is no JSON stands for itself, so that `--set integrator.method=rk4` needs no quotes.
+json parse_value(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() ? json(text) : value;
+}
+
+/// Walks to the parent of `path`, making objects on the way, and sets its last key.
+bool set_at(json& root, const std::string& path, const json& value) {
+  json* at = &root;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string key = path.substr(begin, end - begin);
+    json* next = nullptr;
+    if (at->is_array()) {
+      const bool digits = !key.empty() && key.size() < 7 && std::all_of(key.begin(), key.end(), ::isdigit);
+      if (!digits || std::stoul(key) >= at->size()) return false;
+      next = &(*at)[std::stoul(key)];
+    } else if (at->is_object() && !key.empty()) {
+      next = &(*at)[key];
+    } else {
+      return false;
+    }
+    if (end == path.size()) {
+      *next = value;
+      return true;
+    }
+    if (next->is_null()) *next = json::object();
+    at = next;
+    begin = end + 1;
+  }
+}
+
+/// Finds for every problem the most precise place that the text has for it.
+class Placer {
+ public:
+  Placer(const std::string& text, std::string place, const std::vector<Override>& overrides)
+      : locations_(locate_json(text)), place_(std::move(place)), overrides_(overrides) {}
+
+  void operator()(Problem& problem) const {
+    for (const Override& override_ : overrides_) {
+      if (problem.path == override_.path || problem.path.rfind(override_.path + ".", 0) == 0) {
+        problem.place = "--set";
+        return;
+      }
+    }
+    problem.place = place_;
+    const auto key = locations_.keys.find(problem.path);
+    if (problem.value.empty() && key != locations_.keys.end()) return put(problem, key->second);
+    std::string path = problem.path;  // a value that is not in the text is placed at what would hold it
+    while (!locations_.values.count(path))
+      path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
+    put(problem, locations_.values.at(path));
+  }
+
+  const std::vector<std::string>& repeated() const { return locations_.repeated; }
+
+ private:
+  static void put(Problem& problem, const TextPosition& at) {
+    problem.line = at.line, problem.column = at.column;
+  }
+
+  JsonLocations locations_;
+  std::string place_;
+  const std::vector<Override>& overrides_;
+};
+
+}  // namespace
+
+std::optional<Override> parse_override(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return std::nullopt;
+  return Override{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+SceneReading read_scene(const std::string& text, const std::string& place,
+                        const std::vector<Override>& overrides) {
+  SyntaxCheck syntax;
+  if (!json::sax_parse(text, &syntax)) {
+    const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
+    return {std::nullopt, {{"", "", printable(syntax.message), place, at.line, at.column}}};
+  }
+  json document = json::parse(text);
+  const Placer place_problem(text, place, overrides);
+
+  SceneReader reader;
+  for (const std::string& path : place_problem.repeated())
+    reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
+  for (const Override& override_ : overrides)
+    if (!set_at(document, override_.path, parse_value(override_.value)))
+      reader.problems.push_back(
+          {override_.path, override_.value, "there is no such parameter in this scene", "", 0, 0});
+
+  Scene scene = reader.read(document);
+  std::set<std::string> named;
+  for (const Problem& problem : reader.problems) named.insert(problem.path);
+  for (Problem& problem : find_problems(scene))
+    if (!named.count(problem.path)) reader.problems.push_back(std::move(problem));
+
+  if (reader.problems.empty()) return {std::move(scene), {}};
+  for (Problem& problem : reader.problems) place_problem(problem);
+  std::stable_sort(reader.problems.begin(), reader.problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
+  return {std::nullopt, std::move(reader.problems)};
+}
+
+}  // namespace cloth

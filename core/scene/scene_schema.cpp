@@ -1,0 +1,98 @@
+#include <nlohmann/json.hpp>
+
+#include "scene/scene_json.h"
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json number_schema(const ParameterInfo& info) {
+  json schema{{"type", "number"}};
+  if (info.minimum > -infinity) schema[info.minimum_excluded ? "exclusiveMinimum" : "minimum"] = info.minimum;
+  if (info.maximum < infinity) schema["maximum"] = info.maximum;
+  return schema;
+}
+
+json value_schema(const ParameterInfo& info) {
+  switch (info.kind) {
+    case Kind::number: {
+      const json number = number_schema(info);
+      if (!info.auto_allowed) return number;
+      return {{"anyOf", json::array({number, json{{"const", "auto"}}})}};
+    }
+    case Kind::integer: {
+      json schema = number_schema(info);
+      schema["type"] = "integer";
+      return schema;
+    }
+    case Kind::vector:
+      return {{"type", "array"}, {"items", number_schema(info)}, {"minItems", 3}, {"maxItems", 3}};
+    case Kind::choice:
+      return {{"enum", info.choices}};
+    case Kind::words:
+      return {{"enum", info.word_sets}};
+    case Kind::text:
+      return {{"type", "string"}};
+  }
+  return json::object();
+}
+
+json described(const ParameterInfo& info) {
+  json schema = value_schema(info);
+  schema["title"] = info.label;
+  schema["description"] = info.unit.empty() ? info.doc : info.doc + " In " + info.unit + ".";
+  return schema;
+}
+
+template <class Owner>
+json object_schema(const Fields<Owner>& fields, json properties = json::object()) {
+  for (const Field<Owner>& field : fields) properties[field.info.key] = described(field.info);
+  return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+}
+
+json pins_schema() {
+  json names = json::array();
+  for (int pin = 0; pin < named_pin_count; ++pin) names.push_back(name_of(static_cast<NamedPin>(pin)));
+  const json particle{
+      {"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}, {"minItems", 2}, {"maxItems", 2}};
+  return {{"type", "array"},
+          {"items", {{"anyOf", json::array({json{{"enum", names}}, particle})}}},
+          {"description", "Pinned particles: names of corners and edges, or [row, column]."}};
+}
+
+json obstacles_schema() {
+  json shapes = json::array();
+  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane}) {
+    json entry = object_schema(obstacle_fields(shape), {{"shape", {{"const", name_of(shape)}}}});
+    entry["required"] = {"shape"};
+    shapes.push_back(std::move(entry));
+  }
+  return {{"type", "array"}, {"items", {{"anyOf", std::move(shapes)}}}};
+}
+
+}  // namespace
+
+std::string scene_schema() {
+  json properties{{"format", {{"const", scene_format}}}};
+  json cloth = object_schema(cloth_fields());
+  cloth["properties"]["pins"] = pins_schema();
+  properties["cloth"] = std::move(cloth);
+  properties["springs"] = object_schema(spring_fields());
+  json air = object_schema(air_fields());
+  air["properties"]["gust"] = object_schema(gust_fields());
+  properties["air"] = std::move(air);
+  properties["deformation"] = object_schema(deformation_fields());
+  properties["obstacles"] = obstacles_schema();
+  properties["integrator"] = object_schema(integrator_fields());
+  properties["record"] = object_schema(recording_fields());
+
+  json schema = object_schema(scene_fields(), std::move(properties));
+  schema["required"] = {"cloth"};
+  json root{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Clothlab scene"}};
+  root.update(schema);
+  return root.dump(2) + "\n";
+}
+
+}  // namespace cloth

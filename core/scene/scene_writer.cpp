@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "scene/scene_json.h"
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct ToJson {
+  json operator()(double value) const { return value; }
+  json operator()(std::int64_t value) const { return value; }
+  json operator()(const Vec3& v) const { return json::array({v.x(), v.y(), v.z()}); }
+  json operator()(const std::string& value) const { return value; }
+  json operator()(const Words& value) const { return value; }
+};
+
+template <class Owner>
+void put_fields(const Fields<Owner>& fields, const Owner& owner, json& into) {
+  for (const Field<Owner>& field : fields) into[field.info.key] = std::visit(ToJson{}, field.get(owner));
+}
+
+template <class Owner>
+json block(const Fields<Owner>& fields, const Owner& owner) {
+  json into = json::object();
+  put_fields(fields, owner, into);
+  return into;
+}
+
+json pins_json(const std::vector<Pin>& pins) {
+  json list = json::array();
+  for (const Pin& pin : pins) {
+    if (const auto* named = std::get_if<NamedPin>(&pin))
+      list.push_back(name_of(*named));
+    else
+      list.push_back({std::get<PinnedParticle>(pin).row, std::get<PinnedParticle>(pin).column});
+  }
+  return list;
+}
+
+json scene_json(const Scene& scene) {
+  json root;
+  root["format"] = scene_format;
+  root["title"] = scene.title;
+  root["cloth"] = block(cloth_fields(), scene.cloth);
+  root["cloth"]["pins"] = pins_json(scene.cloth.pins);
+  if (scene.springs) root["springs"] = block(spring_fields(), *scene.springs);
+  if (scene.damping) root["damping"] = *scene.damping;
+  if (scene.gravity) root["gravity"] = ToJson{}(*scene.gravity);
+  if (scene.air) {
+    root["air"] = block(air_fields(), *scene.air);
+    if (scene.air->gust) root["air"]["gust"] = block(gust_fields(), *scene.air->gust);
+  }
+  if (scene.deformation) root["deformation"] = block(deformation_fields(), *scene.deformation);
+  if (!scene.obstacles.empty()) {
+    root["obstacles"] = json::array();
+    for (const Obstacle& obstacle : scene.obstacles) {
+      json entry{{"shape", name_of(obstacle.shape)}};
+      put_fields(obstacle_fields(obstacle.shape), obstacle, entry);
+      root["obstacles"].push_back(std::move(entry));
+    }
+  }
+  root["integrator"] = block(integrator_fields(), scene.integrator);
+  root["duration"] = scene.duration;
+  root["record"] = block(recording_fields(), scene.record);
+  return root;
+}
+
+/// Short arrays and objects of plain values stay on one line: a scene is read by people.
+void print(const json& value, int indent, std::string& out) {
+  const std::string flat = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  const bool nested = value.is_structured() &&
+                      std::any_of(value.begin(), value.end(), [](const json& v) { return v.is_object(); });
+  constexpr std::size_t line_length = 100;
+  if (!value.is_structured() ||
+      (!nested && (value.is_array() || flat.size() + 2 * indent < line_length) && indent > 0)) {
+    std::string spaced;
+    bool quoted = false;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+      spaced += flat[i];
+      if (flat[i] == '"' && (i == 0 || flat[i - 1] != '\\')) quoted = !quoted;
+      if (!quoted && (flat[i] == ',' || flat[i] == ':')) spaced += ' ';
+    }
+    out += spaced;
+    return;
+  }
+  const std::string pad(static_cast<std::size_t>(2 * (indent + 1)), ' ');
+  out += value.is_object() ? "{\n" : "[\n";
+  std::size_t left = value.size();
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    out += pad;
+    if (value.is_object()) out += fmt::format("{}: ", json(it.key()).dump());
+    print(*it, indent + 1, out);
+    out += --left ? ",\n" : "\n";
+  }
+  out += std::string(static_cast<std::size_t>(2 * indent), ' ') + (value.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+std::string write_scene(const Scene& scene) {
+  std::string out;
+  print(scene_json(scene), 0, out);
+  return out + "\n";
+}
+
+std::string scene_hash(const Scene& scene) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const unsigned char byte : write_scene(scene)) hash = (hash ^ byte) * 1099511628211u;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace cloth

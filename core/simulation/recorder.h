@@ -1,0 +1,46 @@
+// record.csv: which columns a scene has, when a row is due, and a run from start to end.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "io/csv.h"
+#include "io/run_folder.h"
+#include "simulation/simulation.h"
+
+namespace cloth {
+
+/// The columns of record.csv for these quantities, in the file's order.
+std::vector<std::string> record_columns(const Quantities& quantities);
+
+/// One row. `step_time` in s: mean wall time of a step since the row before.
+std::vector<std::string> record_row(const Measurement& measurement, const Quantities& quantities,
+                                    double step_time);
+
+/// When a row is due: every `stride` steps from `origin`.
+struct RowClock {
+  std::int64_t origin = 0, stride = 1;
+  static RowClock of(const Simulation& simulation);
+  bool due(std::int64_t step) const { return (step - origin) % stride == 0; }
+};
+
+struct RunOptions {
+  std::filesystem::path folder;  ///< empty: leave nothing on disk
+  /// Called some ten times a second with the simulated time; false stops the run.
+  std::function<bool(double time)> progress;
+};
+
+struct RunResult {
+  RunSummary summary;
+  std::optional<IoError> io_error;  ///< what was written before it is valid
+  ClothState final_state;           ///< the last good one
+};
+
+/// Runs a scene to its duration. Precondition: as for Simulation.
+RunResult run_scene(const Scene& scene, const RunOptions& options);
+
+/// What the geometry says about a rate that cannot be kept.
+std::string describe(const UnreachableRate& unreachable, int columns);
+
+}  // namespace cloth

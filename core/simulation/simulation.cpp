@@ -1,0 +1,213 @@
+#include "simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/grid.h"
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "simulation/time_step.h"
+
+namespace cloth {
+namespace {
+
+/// A kinetic energy this many times all that the scene can hold is a run that has run away.
+constexpr double runaway_factor = 10;
+
+double elastic_scale_of(const ClothSystem& system) {
+  double energy = 0;
+  for (const SpringRun& run : system.springs)
+    energy += 0.5 * run.stiffness * run.rest_length * run.rest_length * run.count;
+  return energy;
+}
+
+Vec3 gravity_of(const Scene& scene) {
+  return scene.gravity.value_or(Vec3::Zero());
+}
+
+/// Takes from `material` only what exists, so that an absent block is a material of zeros.
+SpringMaterial material_of(const Scene& scene) {
+  return scene.springs.value_or(SpringMaterial{});
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene) : scene_(scene) {
+  system_ = make_grid(scene_.cloth, material_of(scene_));
+  state_ = starting_state(system_);
+  time_step_ = resolved_time_step(scene_).value();
+  integrator_ = make_integrator(scene_.integrator.method);
+  assemble();
+  ledger_.initial = total_energy();
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::assemble() {
+  forces_ = std::make_unique<ForceModel>(scene_, system_);
+  limiter_.reset();
+  if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
+    limiter_.emplace(*scene_.deformation, system_);
+  contact_.reset();
+  if (!scene_.obstacles.empty()) contact_.emplace(scene_.obstacles);
+  unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
+  elastic_scale_ = elastic_scale_of(system_);
+  last_limit_ = {};
+  last_contact_ = {};
+
+  const bool brush = quantities_.brush, pull = quantities_.pull;  // a hand that acted keeps its column
+  quantities_ = Quantities{
+      .damping = scene_.damping.value_or(0) > 0 || (!system_.springs.empty() && scene_.springs->damping > 0),
+      .air = scene_.air && scene_.air->drag > 0,
+      .brush = brush,
+      .pull = pull,
+      .limiter = limiter_.has_value(),
+      .contact = contact_.has_value(),
+      .structural = system_.spring_count(SpringFamily::structural) > 0,
+      .shear = system_.spring_count(SpringFamily::shear) > 0};
+
+  choose_pull_stiffness();
+  forces_->set_brush(brush_);
+  forces_->set_pull(pull_, pull_stiffness_, pull_damping_);
+}
+
+/// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit.
+void Simulation::choose_pull_stiffness() {
+  const double mass = system_.particle_mass;
+  const SpringMaterial material = material_of(scene_);
+  const double omega = largest_frequency(scene_.cloth, material);
+  const double limit = stable_step(scene_.integrator.method, scene_).value_or(0);
+  const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / time_step_ : 1 / time_step_;
+  const double strongest =
+      std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
+  pull_stiffness_ = std::clamp(0.5 * mass * (allowed * allowed - omega * omega), 0.0, strongest);
+  pull_damping_ = std::min(std::sqrt(pull_stiffness_ * mass), 0.1 * mass / time_step_);
+}
+
+std::optional<Divergence> Simulation::step() {
+  const std::int64_t next = state_.step + 1;
+  const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
+                        time_step_};
+  const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
+  if (limiter_) limit_deformation();
+  if (contact_) resolve_contact();
+  state_.time = times.end;
+  state_.step = next;
+
+  ++count_.steps;
+  count_.force_evaluations += report.force_evaluations;
+  count_.velocity_iterations += report.velocity_iterations;
+  count_.limiter_sweeps += last_limit_.sweeps;
+  return find_divergence();
+}
+
+void Simulation::limit_deformation() {
+  last_limit_ = {.sweeps = 0, .excess = limiter_->excess(system_, state_.position)};
+  if (limiter_->accepts(last_limit_.excess)) return;
+  const double before = total_energy();
+  last_limit_ = limiter_->apply(system_, time_step_, state_);
+  ledger_.limiter += total_energy() - before;
+  integrator_->forget();
+}
+
+void Simulation::resolve_contact() {
+  last_contact_ = {};
+  if (!contact_->touches(system_, state_)) return;
+  const double before = total_energy();
+  last_contact_ = contact_->apply(system_, state_);
+  ledger_.contact += total_energy() - before;
+  integrator_->forget();
+}
+
+void Simulation::edit(const Scene& scene) {
+  const double before = total_energy();
+  const bool new_method = scene.integrator.method != scene_.integrator.method;
+  scene_ = scene;
+  const Vec3Field start = std::move(system_.start);
+  system_ = make_grid(scene_.cloth, material_of(scene_));
+  system_.start = start;
+  for (std::size_t i = 0; i < state_.velocity.size(); ++i)
+    if (system_.pinned[i]) state_.velocity.set(i, Vec3::Zero());
+
+  const double time_step = resolved_time_step(scene_).value();
+  if (time_step != time_step_) {
+    first_time_ = state_.time;
+    first_step_ = state_.step;
+    time_step_ = time_step;
+  }
+  if (new_method) integrator_ = make_integrator(scene_.integrator.method);
+  assemble();
+  integrator_->forget();
+  ledger_.initial += total_energy() - before;
+}
+
+void Simulation::set_brush(const std::optional<BrushGust>& brush) {
+  brush_ = brush;
+  if (brush && quantities_.air) quantities_.brush = true;
+  forces_->set_brush(brush);
+  integrator_->forget();
+}
+
+void Simulation::set_pull(const std::optional<Pull>& pull) {
+  pull_ = pull;
+  if (pull) quantities_.pull = true;
+  forces_->set_pull(pull, pull_stiffness_, pull_damping_);
+  integrator_->forget();
+}
+
+double Simulation::total_energy() const {
+  return measure_energy(system_, gravity_of(scene_), state_).total();
+}
+
+Measurement Simulation::measure() const {
+  return {.time = state_.time,
+          .step = state_.step,
+          .energy = measure_energy(system_, gravity_of(scene_), state_),
+          .ledger = ledger_,
+          .strain = measure_strain(system_, state_.position),
+          .limiter_sweeps = last_limit_.sweeps,
+          .limiter_excess = last_limit_.excess,
+          .contacts = last_contact_.contacts};
+}
+
+/// The most kinetic energy that anything in the scene could give: all springs released from twice their
+/// length, the whole fall, the full wind, what the hand did.
+double Simulation::energy_scale() const {
+  const double mass = system_.particle_mass * system_.size();
+  const double fall = gravity_of(scene_).norm() * state_.time;
+  const double drop = gravity_of(scene_).norm() * system_.diagonal;
+  double wind = 0;
+  if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
+  return elastic_scale_ + mass * (0.5 * fall * fall + drop + 0.5 * wind * wind) +
+         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.initial);
+}
+
+std::optional<Divergence> Simulation::find_divergence() const {
+  const double kinetic = kinetic_energy(system_, state_.velocity);
+  if (std::isfinite(kinetic) && kinetic <= runaway_factor * energy_scale()) return std::nullopt;
+
+  Divergence divergence;
+  divergence.step = state_.step;
+  divergence.time = state_.time;
+  divergence.time_step = time_step_;
+  divergence.stable_step = stable_step(scene_.integrator.method, scene_).value_or(0);
+  double fastest = -1;
+  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
+    const Vec3 v = state_.velocity[i];
+    if (!v.allFinite()) {
+      divergence.particle = static_cast<int>(i);
+      divergence.cause = "its velocity is not finite";
+      break;
+    }
+    if (const double speed = v.stableNorm(); speed > fastest) {
+      fastest = speed;
+      divergence.particle = static_cast<int>(i);
+      divergence.cause = "its speed has run away";
+    }
+  }
+  divergence.row = divergence.particle / system_.columns;
+  divergence.column = divergence.particle % system_.columns;
+  return divergence;
+}
+
+}  // namespace cloth

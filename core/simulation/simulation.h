@@ -1,0 +1,120 @@
+// The loop that owns time: integrate, limit, contact, advance; and the ledger of energy beside it.
+//
+//     Simulation simulation(scene);                       // a scene without problems and with a time step
+//     while (simulation.time() < scene.duration)
+//       if (auto divergence = simulation.step()) break;
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "contact/obstacle_contact.h"
+#include "forces/force_model.h"
+#include "integrators/integrator.h"
+#include "limiter/deformation_limiter.h"
+#include "measure/energy.h"
+#include "measure/strain.h"
+#include "simulation/outcome.h"
+
+namespace cloth {
+
+/// What entered the cloth since t = 0, in J; the loss left it.
+struct EnergyLedger {
+  Work forces;
+  double limiter = 0;
+  double contact = 0;
+  double initial = 0;  ///< total energy at t = 0, moved by what edits added
+  double entered() const {
+    return forces.air + forces.brush + forces.pull + limiter + contact - forces.damping_loss;
+  }
+};
+
+/// Everything a row of a recording says about the present state.
+struct Measurement {
+  double time = 0;
+  std::int64_t step = 0;
+  Energy energy;
+  EnergyLedger ledger;
+  Strain strain;
+  std::int64_t limiter_sweeps = 0;  ///< of the last step
+  double limiter_excess = 0;
+  int contacts = 0;
+  /// total - total(0) - works + losses: what the method itself added or lost, J
+  double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
+};
+
+/// Which optional quantities the scene's stages give: columns, curves and rows of a form follow it.
+struct Quantities {
+  bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
+  bool structural = false, shear = false;
+  bool operator==(const Quantities&) const = default;
+};
+
+struct StepCount {
+  std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
+};
+
+class Simulation {
+ public:
+  /// Precondition: find_problems(scene) is empty and resolved_time_step(scene) has a value.
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// One step; or, where the new state is not finite or has run away, why. The state is then the bad one.
+  std::optional<Divergence> step();
+
+  /// Puts an edited scene in force from the next step on, keeping the state. Precondition: as for the
+  /// constructor, and only parameters of EditCost::live differ (and pins). The ledger takes up the jump in
+  /// energy.
+  void edit(const Scene& scene);
+
+  /// The hand, from the next step on.
+  void set_brush(const std::optional<BrushGust>& brush);
+  void set_pull(const std::optional<Pull>& pull);
+
+  const Scene& scene() const { return scene_; }
+  const ClothSystem& system() const { return system_; }
+  const ClothState& state() const { return state_; }
+  double time() const { return state_.time; }
+  double time_step() const { return time_step_; }
+  const Quantities& quantities() const { return quantities_; }
+  const StepCount& count() const { return count_; }
+  const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
+
+  Measurement measure() const;
+
+ private:
+  void assemble();
+  void choose_pull_stiffness();
+  void limit_deformation();
+  void resolve_contact();
+  double total_energy() const;
+  std::optional<Divergence> find_divergence() const;
+  double energy_scale() const;
+
+  Scene scene_;
+  ClothSystem system_;
+  ClothState state_;
+  std::unique_ptr<ForceModel> forces_;
+  std::unique_ptr<Integrator> integrator_;
+  std::optional<DeformationLimiter> limiter_;
+  std::optional<ObstacleContact> contact_;
+
+  double time_step_ = 0;
+  double first_time_ = 0;  ///< time and step at which the present time step came in force
+  std::int64_t first_step_ = 0;
+  EnergyLedger ledger_;
+  Quantities quantities_;
+  StepCount count_;
+  LimiterReport last_limit_;
+  ContactReport last_contact_;
+  std::optional<UnreachableRate> unreachable_;
+  std::optional<BrushGust> brush_;
+  std::optional<Pull> pull_;
+  double pull_stiffness_ = 0, pull_damping_ = 0;
+  double elastic_scale_ = 0;  ///< J, all springs at twice their length
+};
+
+}  // namespace cloth

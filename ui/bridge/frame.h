@@ -1,0 +1,24 @@
+// What the worker hands to the view: one picture of the cloth, newest wins. Plain values, single precision, ready to
+// upload.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace clothlab {
+
+struct ClothFrame {
+  std::uint64_t topology = 0;  ///< changes when rows, columns or a new start change the mesh
+  int rows = 0, columns = 0;
+  std::vector<float> positions;      ///< m; x y z of particle 0, of particle 1, ... (row-major)
+  std::vector<float> strain;         ///< per particle: largest |d|/L - 1 of its structural and shear springs
+  std::vector<std::uint8_t> pinned;  ///< per particle: 1 where pinned
+  std::vector<cloth::Obstacle> obstacles;
+  double deformation_rate = -1;  ///< negative: the scene has none
+  double time = 0;               ///< s
+  std::int64_t step = 0;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,43 @@
+// The look: one light and one dark set of colours that follow the desktop, one accent, one spacing unit.
+#pragma once
+
+#include <QColor>
+#include <QIcon>
+#include <QPalette>
+#include <QString>
+
+class QApplication;
+
+namespace clothlab {
+
+struct Theme {
+  bool dark = false;
+  QColor window, panel, field;  ///< surfaces, from back to front
+  QColor text, muted_text, disabled_text;
+  QColor border, grid_line;
+  QColor accent, accent_text;    ///< the one accent, and text on it
+  QColor warning, error, good;   ///< states: gauge, messages
+  QColor view_top, view_bottom;  ///< background gradient behind the cloth
+  /// Curves, colour-blind safe (Okabe and Ito 2008, adjusted for contrast with the panel).
+  QColor kinetic, elastic, gravity, total, strain, limit, step_time, draw_time;
+};
+
+/// The set for the application's present palette (or for an explicit choice).
+const Theme& theme();
+const Theme& light_theme();
+const Theme& dark_theme();
+
+/// Fusion style, palette and style sheet. Follows the desktop: dark when the desktop's window colour is dark,
+/// unless the environment variable CLOTHLAB_THEME says "light" or "dark".
+void apply_theme(QApplication& application);
+void apply_theme(QApplication& application, bool dark);
+
+QPalette palette_for(const Theme& theme);
+
+/// One of our own icons from resources/icons by its base name ("play"), tinted with the theme's text colour
+/// (normal), accent (checked) and disabled colour.
+QIcon icon(const QString& name);
+
+inline constexpr int spacing = 8;  ///< px: every margin and gap is a multiple of half of it
+
+}  // namespace clothlab

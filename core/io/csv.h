@@ -1,46 +1,27 @@
-// A CSV file that is valid whenever a process ends: whole rows are written at once, and a row that no longer
-// fits on the disk is taken back.
+// CSV after RFC 4180.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace cloth {
+#include "io/line_file.h"
 
-/// A file that could not be read or written: which, and what the system said.
-struct IoError {
-  std::filesystem::path path;
-  std::string message;
-  std::string text() const { return path.string() + ": " + message; }
-};
+namespace cloth {
 
 class CsvFile {
  public:
-  CsvFile() = default;
-  ~CsvFile();
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
-
   /// Makes or empties the file and writes the header row.
   std::optional<IoError> open(const std::filesystem::path& path, const std::vector<std::string>& header);
 
   /// Keeps one row until the next flush, or until enough have gathered.
   std::optional<IoError> add(const std::vector<std::string>& fields);
 
-  std::optional<IoError> flush();
-  std::optional<IoError> close();
-  bool is_open() const { return descriptor_ >= 0; }
+  std::optional<IoError> flush() { return lines_.flush(); }
+  std::optional<IoError> close() { return lines_.close(); }
+  bool is_open() const { return lines_.is_open(); }
 
  private:
-  std::optional<IoError> failure() const;
-
-  std::filesystem::path path_;
-  int descriptor_ = -1;
-  std::int64_t written_ = 0;  ///< bytes, whole rows only
-  std::string pending_;
+  LineFile lines_;
 };
 
 /// 17 significant digits and a decimal point, whatever the locale: reads back to the same bits.

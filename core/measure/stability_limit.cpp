@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double auto_scan_ratio = 1.05;  // between two frequencies of a scan
+constexpr double scan_ratio = 1.1;  // between two frequencies of a scan
 
 double particle_mass(const ClothSheet& sheet) {
   return sheet.mass / (double(sheet.rows) * sheet.columns);
@@ -73,7 +73,7 @@ std::complex<double> rk4_factor(std::complex<double> z) {
 /// Largest stable h for one oscillator with eigenvalue `lambda` (of negative real part, |lambda| > 0).
 double rk4_limit(std::complex<double> lambda) {
   constexpr double largest_modulus = 4;  // the region of stability ends before
-  constexpr double resolution = 1e-3;
+  constexpr double resolution = 0.01;
   const std::complex<double> ray = lambda / std::abs(lambda);
   // On the imaginary axis |R|^2 = 1 - z^6/72 + z^8/576 is within rounding of 1 for small z.
   const auto stable = [&](double modulus) { return std::abs(rk4_factor(modulus * ray)) <= 1 + 1e-14; };
@@ -95,16 +95,6 @@ std::complex<double> eigenvalue(double omega, double c) {
   const double discriminant = 0.25 * c * c - omega * omega;
   if (discriminant >= 0) return -(0.5 * c + std::sqrt(discriminant));
   return {-0.5 * c, std::sqrt(-discriminant)};
-}
-
-/// Largest stable step of one method for one oscillator; 0 if none is.
-double oscillator_limit(const std::string& method, double omega, double c) {
-  if (omega == 0 && c == 0) return infinity;
-  if (method == "verlet") return omega > 0 ? 2 / omega : infinity;
-  if (method == "semi-implicit-euler") return 4 / (std::sqrt(c * c + 4 * omega * omega) + c);
-  const std::complex<double> lambda = eigenvalue(omega, c);
-  if (method == "explicit-euler") return lambda.imag() != 0 ? c / (omega * omega) : -2 / lambda.real();
-  return rk4_limit(lambda);
 }
 
 }  // namespace
@@ -138,12 +128,21 @@ DampingRates damping_rates(const Scene& scene) {
   return rates;
 }
 
+double oscillator_limit(const std::string& method, double omega, double c) {
+  if (omega == 0 && c == 0) return infinity;
+  if (method == "verlet") return omega > 0 ? 2 / omega : infinity;
+  if (method == "semi-implicit-euler") return 4 / (std::sqrt(c * c + 4 * omega * omega) + c);
+  const std::complex<double> lambda = eigenvalue(omega, c);
+  if (method == "explicit-euler") return lambda.imag() != 0 ? c / (omega * omega) : -2 / lambda.real();
+  return rk4_limit(lambda);
+}
+
 std::optional<double> stable_step(const std::string& method, double largest_omega,
                                   const DampingRates& rates) {
   constexpr int scanned_rates = 8;
   double limit = infinity;
   const auto consider = [&](double omega) {
-    for (int k = 0; k <= scanned_rates; ++k) {
+    for (int k = 0; k <= (rates.most > rates.least ? scanned_rates : 0); ++k) {
       const double c = rates.least + (rates.most - rates.least) * k / scanned_rates;
       limit = std::min(limit, oscillator_limit(method, omega, c));
     }
@@ -151,8 +150,7 @@ std::optional<double> stable_step(const std::string& method, double largest_omeg
   consider(0);
   // Slower motions matter too: a heavily damped slow one decays faster than a fast one oscillates.
   if (largest_omega > 0)
-    for (double omega = largest_omega; omega > 1e-3 * largest_omega; omega /= auto_scan_ratio)
-      consider(omega);
+    for (double omega = largest_omega; omega > 1e-3 * largest_omega; omega /= scan_ratio) consider(omega);
   if (!(limit > 0)) return std::nullopt;
   return limit;
 }
@@ -167,10 +165,6 @@ double provot_step(const Scene& scene) {
   const double stiffness =
       std::max({scene.springs->structural, scene.springs->shear, scene.springs->flexion});
   return stiffness > 0 ? pi * std::sqrt(particle_mass(scene.cloth) / stiffness) : infinity;
-}
-
-double rk4_oscillator_limit(double damping_ratio) {
-  return rk4_limit(eigenvalue(1, 2 * damping_ratio));
 }
 
 }  // namespace cloth

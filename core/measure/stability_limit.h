@@ -25,6 +25,10 @@ struct DampingRates {
 };
 DampingRates damping_rates(const Scene& scene);
 
+/// The largest stable step in s of `method` for the one oscillator x'' = -omega^2 x - c x'; 0 if none is
+/// stable, infinity if all are.
+double oscillator_limit(const std::string& method, double omega, double c);
+
 /// The largest step in s at which `method` is stable for x'' = -omega^2 x - c x' for every omega in [0,
 /// largest] and c in `rates`. nullopt: no step is stable (explicit Euler without damping of every motion).
 /// infinity: no step is too long.
@@ -36,8 +40,5 @@ std::optional<double> stable_step(const std::string& method, const Scene& scene)
 /// Provot's criterion (1995): pi sqrt(m/k), k the largest stiffness; 3 to 5 times too long for a grid.
 /// infinity without springs.
 double provot_step(const Scene& scene);
-
-/// Largest z with the real-coefficient oscillator stable along one ray; exposed for tests.
-double rk4_oscillator_limit(double damping_ratio);
 
 }  // namespace cloth

@@ -10,6 +10,8 @@ class Locator {
   explicit Locator(std::string_view text) : text_(text) {}
 
   JsonLocations run() {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text_.substr(0, byte_order_mark.size()) == byte_order_mark) at_ = byte_order_mark.size();
     skip_space();
     value("");
     return std::move(locations_);

@@ -219,10 +219,22 @@ class SceneReader {
   }
 };
 
-/// Only notes where and why a text is not JSON.
+/// Only notes where and why a text is not JSON, or is nested so deeply that it cannot be a scene.
 struct SyntaxCheck : nlohmann::json_sax<json> {
+  static constexpr int deepest = 64;
   std::size_t offset = 0;
   std::string message;
+  int depth = 0;
+
+  bool enter() {
+    if (++depth <= deepest) return true;
+    message = "is nested too deeply for a scene";
+    return false;
+  }
+  bool leave() {
+    --depth;
+    return true;
+  }
 
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -231,10 +243,10 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   bool number_float(number_float_t, const string_t&) override { return true; }
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
+  bool start_object(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
   bool key(string_t&) override { return true; }
   bool parse_error(std::size_t position, const std::string& last_token,
                    const json::exception& error) override {

@@ -141,6 +141,16 @@ void Simulation::edit(const Scene& scene) {
   ledger_.initial += total_energy() - before;
 }
 
+void Simulation::restore(const Checkpoint& checkpoint) {
+  state_ = checkpoint.state;
+  ledger_ = checkpoint.ledger;
+  first_time_ = state_.time;
+  first_step_ = state_.step;
+  last_limit_ = {};
+  last_contact_ = {};
+  integrator_->forget();
+}
+
 void Simulation::set_brush(const std::optional<BrushGust>& brush) {
   brush_ = brush;
   if (brush && quantities_.air) quantities_.brush = true;

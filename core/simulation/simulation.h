@@ -50,6 +50,12 @@ struct Quantities {
   bool operator==(const Quantities&) const = default;
 };
 
+/// Enough to go on from here later, to the bit.
+struct Checkpoint {
+  ClothState state;
+  EnergyLedger ledger;
+};
+
 struct StepCount {
   std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
 };
@@ -69,6 +75,10 @@ class Simulation {
   /// constructor, and only parameters of EditCost::live differ (and pins). The ledger takes up the jump in
   /// energy.
   void edit(const Scene& scene);
+
+  Checkpoint checkpoint() const { return {state_, ledger_}; }
+  /// Goes back to a checkpoint of this simulation; the scene in force stays as it is.
+  void restore(const Checkpoint& checkpoint);
 
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);

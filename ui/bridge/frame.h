@@ -1,5 +1,5 @@
-// What the worker hands to the view: one picture of the cloth, newest wins. Plain values, single precision, ready to
-// upload.
+// What the worker hands to the view: one picture of the cloth, newest wins. Plain values, single precision,
+// ready to upload.
 #pragma once
 
 #include <cstdint>

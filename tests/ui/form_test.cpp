@@ -1,0 +1,516 @@
+// The parameter panel, driven by real keys and mouse events.
+#include <QAccessible>
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QLocale>
+#include <QMenu>
+#include <QPointer>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSlider>
+#include <QToolButton>
+#include <QWheelEvent>
+#include <QtTest>
+#include <cmath>
+#include <memory>
+
+#include "params/number_text.h"
+#include "params/parameter_panel.h"
+#include "params/slider_scale.h"
+
+using namespace clothlab;
+using cloth::Vec3;
+
+namespace {
+
+cloth::Scene plain_scene() {
+  cloth::Scene scene;
+  scene.springs = cloth::SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0};
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.deformation = cloth::Deformation{};
+  return scene;
+}
+
+cloth::ParameterInfo scaled(cloth::Scale scale, double from, double to) {
+  cloth::ParameterInfo info;
+  info.scale = scale;
+  info.slider_minimum = from;
+  info.slider_maximum = to;
+  return info;
+}
+
+bool close(double a, double b, double tolerance) {
+  return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
+}
+
+}  // namespace
+
+class FormTest : public QObject {
+  Q_OBJECT
+
+ private:
+  std::unique_ptr<LabDocument> document_;
+  std::unique_ptr<ParameterPanel> panel_;
+
+  LabDocument& doc() { return *document_; }
+  ParameterPanel& panel() { return *panel_; }
+  QUndoStack& undo() { return doc().undoStack(); }
+
+  template <class Widget>
+  Widget* part(const char* path, const char* name) {
+    auto* editor = panel().findChild<QWidget*>(QString("param:") + path);
+    return editor ? editor->findChild<Widget*>(name) : nullptr;
+  }
+  QLineEdit* field(const char* path) { return part<QLineEdit>(path, "field"); }
+  QSlider* slider(const char* path) { return part<QSlider>(path, "slider"); }
+  QWidget* section(const char* path) { return panel().findChild<QWidget*>(QString("section:") + path); }
+  double structural() { return doc().scene().springs->structural; }
+
+  void type(QLineEdit* into, const QString& text, Qt::Key then = Qt::Key_Return) {
+    into->setFocus();
+    into->selectAll();
+    QTest::keyClicks(into, text);
+    QTest::keyClick(into, then);
+  }
+  static QPoint at(QSlider* slider, double part) {
+    return {static_cast<int>(part * (slider->width() - 1)), slider->height() / 2};
+  }
+  void drag(QSlider* slider, double from, double to) {
+    QTest::mousePress(slider, Qt::LeftButton, {}, at(slider, from));
+    for (int i = 1; i <= 20; ++i) QTest::mouseMove(slider, at(slider, from + (to - from) * i / 20));
+    QTest::mouseRelease(slider, Qt::LeftButton, {}, at(slider, to));
+  }
+  static void wheel(QWidget* over, int angle) {
+    const QPointF middle = over->rect().center();
+    QWheelEvent event(middle, over->mapToGlobal(middle), {}, {0, angle}, Qt::NoButton, {}, Qt::NoScrollPhase,
+                      false);
+    QSpontaneKeyEvent::setSpontaneous(&event);  // only the system's own wheel events go on to the parents
+    qApp->notify(over, &event);
+  }
+
+ private Q_SLOTS:
+  void init() {
+    document_ = std::make_unique<LabDocument>();
+    doc().load(plain_scene());
+    panel_ = std::make_unique<ParameterPanel>(doc());
+    panel().resize(320, 700);
+    panel().show();
+    QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
+    panel().activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(panel_.get()));
+  }
+  void cleanup() {
+    panel_.reset();
+    document_.reset();
+  }
+
+  void one_slider_drag_is_one_undo_step() {
+    int live_edits = 0;
+    connect(&doc(), &LabDocument::sceneChanged, this, [&] { ++live_edits; });
+    drag(slider("springs.structural"), 0.5, 0.9);
+    QVERIFY2(live_edits >= 10, "moving the slider acts at once");
+    QVERIFY(structural() > 5000);
+    QCOMPARE(undo().count(), 1);
+    undo().undo();
+    QCOMPARE(structural(), 500.0);
+  }
+
+  void two_drags_are_two() {
+    drag(slider("springs.structural"), 0.5, 0.7);
+    const double between = structural();
+    drag(slider("springs.structural"), 0.7, 0.9);
+    QCOMPARE(undo().count(), 2);
+    undo().undo();
+    QCOMPARE(structural(), between);
+  }
+
+  void taking_the_handle_without_moving_it_changes_nothing() {
+    doc().setParameter("springs.structural", 512.3456789);
+    QSlider* s = slider("springs.structural");
+    SliderScale scale(find_parameter(doc().scene(), "springs.structural")->info);
+    const int x = static_cast<int>(7 + scale.position_of(structural()) * (s->width() - 14));
+    QTest::mouseClick(s, Qt::LeftButton, {}, {x, s->height() / 2});
+    QCOMPARE(structural(), 512.3456789);
+  }
+
+  void a_click_on_the_groove_is_one_step_to_that_place() {
+    QTest::mouseClick(slider("springs.structural"), Qt::LeftButton, {},
+                      at(slider("springs.structural"), 0.99));
+    QCOMPARE(structural(), 1e5);
+    QCOMPARE(undo().count(), 1);
+  }
+
+  void the_left_end_of_a_log_slider_from_zero_is_zero() {
+    drag(slider("springs.structural"), 0.5, 0.0);
+    QCOMPARE(structural(), 0.0);
+  }
+
+  void an_arrow_key_on_a_slider_is_one_step() {
+    slider("springs.structural")->setFocus();
+    QTest::keyClick(slider("springs.structural"), Qt::Key_Right);
+    QCOMPARE(structural(), 510.0);
+    QTest::keyClick(slider("springs.structural"), Qt::Key_Left);
+    QCOMPARE(structural(), 500.0);
+    QCOMPARE(undo().count(), 2);
+  }
+
+  void undo_then_redo_gives_the_same_scene_and_the_same_form() {
+    drag(slider("springs.structural"), 0.5, 0.8);
+    const cloth::Scene after = doc().scene();
+    const QString text = field("springs.structural")->text();
+    undo().undo();
+    QCOMPARE(field("springs.structural")->text(), QString("500"));
+    undo().redo();
+    QVERIFY(doc().scene() == after);
+    QCOMPARE(field("springs.structural")->text(), QString(text));
+  }
+
+  void exact_field_accepts_scientific_notation() {
+    type(field("deformation.tolerance"), "2.5e-3");
+    QCOMPARE(doc().scene().deformation->tolerance, 2.5e-3);
+    type(field("springs.structural"), "1E3 N/m");
+    QCOMPARE(structural(), 1000.0);
+    type(field("deformation.max_sweeps"), "1e2");
+    QCOMPARE(doc().scene().deformation->max_sweeps, std::int64_t{100});
+  }
+
+  void seventeen_digits_are_stored_and_showing_fewer_changes_nothing() {
+    type(field("springs.structural"), "123.45678901234567", Qt::Key_Tab);
+    QCOMPARE(structural(), 123.45678901234567);
+    QCOMPARE(field("springs.structural")->text(), QString("123.457"));
+    field("springs.structural")->setFocus();
+    QCOMPARE(field("springs.structural")->text(), QString("123.45678901234567"));
+    QTest::keyClick(field("springs.structural"), Qt::Key_Tab);
+    QCOMPARE(structural(), 123.45678901234567);
+    QCOMPARE(undo().count(), 1);
+  }
+
+  void a_refused_value_changes_nothing_and_says_the_rule() {
+    auto* rule = part<QLabel>("springs.structural", "rule");
+    QVERIFY(!rule->isVisible());
+    for (const char* text : {"-3", "abc", "1e999", "nan", "1,5", "3 m", "0x10"}) {
+      type(field("springs.structural"), text);
+      QVERIFY2(rule->isVisible() && !rule->text().isEmpty(), text);
+      QCOMPARE(structural(), 500.0);
+      QCOMPARE(field("springs.structural")->text(), QString(text));
+    }
+    type(field("springs.structural"), "-3");
+    QVERIFY(rule->text().startsWith(QStringLiteral("Must be ≥ 0")));
+    type(field("deformation.max_sweeps"), "2.5");
+    QVERIFY(part<QLabel>("deformation.max_sweeps", "rule")->text().startsWith("Must be a whole number"));
+    QCOMPARE(undo().count(), 0);
+    type(field("springs.structural"), "7");
+    QVERIFY(!rule->isVisible());
+    QCOMPARE(structural(), 7.0);
+  }
+
+  void escape_brings_the_value_back() {
+    type(field("springs.structural"), "-3");
+    QTest::keyClick(field("springs.structural"), Qt::Key_Escape);
+    QCOMPARE(field("springs.structural")->text(), QString("500"));
+    QVERIFY(!part<QLabel>("springs.structural", "rule")->isVisible());
+  }
+
+  void decimal_comma_locale_changes_nothing() {
+    const QLocale before;
+    QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
+    doc().load(plain_scene());
+    type(field("deformation.rate"), "0.25", Qt::Key_Tab);
+    QCOMPARE(doc().scene().deformation->rate, 0.25);
+    QCOMPARE(field("deformation.rate")->text(), QString("0.25"));
+    doc().setParameter("springs.structural", 54321.5);
+    QCOMPARE(field("springs.structural")->text(), QString("54321.5"));
+    type(field("deformation.rate"), "0,5");
+    QCOMPARE(doc().scene().deformation->rate, 0.25);
+    QLocale::setDefault(before);
+  }
+
+  void the_up_and_down_keys_step_a_field_as_one_step_each() {
+    QLineEdit* f = field("springs.structural");
+    f->setFocus();
+    QTest::keyClick(f, Qt::Key_Up);
+    QCOMPARE(structural(), 510.0);
+    QTest::keyClick(f, Qt::Key_Down);
+    QCOMPARE(structural(), 500.0);
+    QCOMPARE(undo().count(), 2);
+  }
+
+  void a_vector_is_edited_by_its_parts() {
+    type(part<QLineEdit>("gravity", "field_y"), "-1.62");
+    QCOMPARE(doc().scene().gravity->y(), -1.62);
+    QCOMPARE(undo().count(), 1);
+  }
+
+  void a_direction_may_pass_through_zero_while_it_is_typed() {
+    type(part<QLineEdit>("cloth.down", "field_y"), "0", Qt::Key_Tab);
+    QVERIFY(part<QLabel>("cloth.down", "rule")->isVisible());
+    QCOMPARE(doc().scene().cloth.down, Vec3(0, -1, 0));
+    type(part<QLineEdit>("cloth.down", "field_z"), "1");
+    QCOMPARE(doc().scene().cloth.down, Vec3(0, 0, 1));
+    QVERIFY(!part<QLabel>("cloth.down", "rule")->isVisible());
+    QCOMPARE(undo().count(), 1);
+  }
+
+  void a_choice_is_shown_in_words_and_set_by_key() {
+    auto* combo = part<QComboBox>("integrator.method", "combo");
+    QCOMPARE(combo->currentText(), QString("Verlet"));
+    combo->setFocus();
+    QTest::keyClick(combo, Qt::Key_Up);
+    QCOMPARE(doc().scene().integrator.method, std::string("semi-implicit-euler"));
+    undo().undo();
+    QCOMPARE(combo->currentText(), QString("Verlet"));
+  }
+
+  void auto_gives_way_to_a_number_and_back() {
+    panel().setAutoValue("integrator.time_step", 0.00042);
+    auto* toggle = part<QCheckBox>("integrator.time_step", "auto");
+    QVERIFY(toggle->isChecked());
+    QTest::mouseClick(toggle, Qt::LeftButton, {}, {8, toggle->height() / 2});
+    QCOMPARE(doc().scene().integrator.time_step, std::optional<double>(0.00042));
+    type(field("integrator.time_step"), "auto");
+    QVERIFY(!doc().scene().integrator.time_step);
+    QVERIFY(toggle->isChecked());
+    type(field("integrator.time_step"), "1e-3");
+    QCOMPARE(doc().scene().integrator.time_step, std::optional<double>(1e-3));
+    QVERIFY(!toggle->isChecked());
+  }
+
+  void log_slider_round_trips() {
+    for (const auto& [from, to] : {std::pair(0.0, 1e5), std::pair(1e-6, 0.1), std::pair(0.01, 10.0)}) {
+      const SliderScale scale(scaled(cloth::Scale::logarithmic, from, to));
+      QCOMPARE(scale.value_at(0), from);
+      QCOMPARE(scale.value_at(1), to);
+      double last = -1;
+      for (int i = 0; i <= 1000; ++i) {
+        const double value = scale.value_at(i / 1000.0);
+        QVERIFY(value >= last);
+        last = value;
+        const double again = scale.value_at(scale.position_of(value));
+        QVERIFY2(close(value, again, 1e-12), qPrintable(exact_text(value) + " " + exact_text(again)));
+      }
+    }
+    const SliderScale from_zero(scaled(cloth::Scale::logarithmic, 0, 1));
+    QCOMPARE(from_zero.position_of(0), 0.0);
+    QVERIFY(from_zero.position_of(1e-9) > from_zero.position_of(0));
+  }
+
+  void linear_slider_round_trips() {
+    const SliderScale scale(scaled(cloth::Scale::linear, -20, 20));
+    for (int i = 0; i <= 1000; ++i) {
+      const double value = scale.value_at(i / 1000.0);
+      QCOMPARE(scale.value_at(scale.position_of(value)), value);
+    }
+    QCOMPARE(scale.value_at(0.5), 0.0);
+  }
+
+  void a_slider_never_leaves_the_accepted_values() {
+    for (const cloth::Parameter& parameter : parameters_of(doc().scene())) {
+      if (parameter.info.kind != cloth::Kind::number && parameter.info.kind != cloth::Kind::integer) continue;
+      const SliderScale scale(parameter.info);
+      for (const double position : {0.0, 0.001, 0.02, 0.5, 1.0})
+        QVERIFY2(!broken_rule(parameter.info, scale.value_at(position)), parameter.path.c_str());
+    }
+  }
+
+  void a_step_up_and_a_step_down_cancel() {
+    const SliderScale log(scaled(cloth::Scale::logarithmic, 0, 1e5));
+    const SliderScale linear(scaled(cloth::Scale::linear, 0, 1));
+    for (const double value : {0.0, 12.0, 100.0, 500.0, 9900.0, 1e5})
+      QCOMPARE(log.stepped(log.stepped(value, 1), -1), value);
+    for (const double value : {0.0, 0.1, 0.3, 0.99})
+      QCOMPARE(linear.stepped(linear.stepped(value, 1), -1), value);
+    QCOMPARE(linear.stepped(0.1, 2), 0.12);
+  }
+
+  void wheel_without_focus_changes_nothing() {
+    panel().resize(320, 400);
+    const cloth::Scene before = doc().scene();
+    auto* bar = panel().findChild<QScrollArea*>("scroll")->verticalScrollBar();
+    QCoreApplication::processEvents();
+    QVERIFY(bar->maximum() > 0);
+    for (QWidget* over :
+         std::initializer_list<QWidget*>{slider("springs.structural"), field("springs.structural"),
+                                         part<QComboBox>("deformation.springs", "combo")}) {
+      bar->setValue(0);
+      wheel(over, -120);
+      QVERIFY2(bar->value() > 0, qPrintable(over->objectName()));
+    }
+    QVERIFY(doc().scene() == before);
+  }
+
+  void only_present_blocks_have_a_section() {
+    QVERIFY(section("springs") && section("gravity") && section("cloth") && section("integrator"));
+    QVERIFY(!section("air") && !section("damping") && !section("obstacles.0"));
+    QVERIFY(section("springs")->findChild<QToolButton*>("remove"));
+    QVERIFY(!section("cloth")->findChild<QToolButton*>("remove"));
+    for (const cloth::Parameter& parameter : parameters_of(doc().scene()))
+      QVERIFY2(panel().findChild<QWidget*>("param:" + QString::fromStdString(parameter.path)),
+               parameter.path.c_str());
+  }
+
+  void add_menu_brings_wind_and_the_cross_takes_it_out() {
+    auto* button = panel().findChild<QToolButton*>("add");
+    auto* menu = panel().findChild<QMenu*>("addMenu");
+    QTimer::singleShot(50, menu, [menu] {
+      menu->setActiveAction(menu->findChild<QAction*>("offer:air"));
+      QTest::keyClick(menu, Qt::Key_Return);
+    });
+    QTest::mouseClick(button, Qt::LeftButton);  // returns when the menu has closed
+    QVERIFY(doc().scene().air.has_value());
+    QVERIFY(section("air"));
+    QVERIFY(!menu->findChild<QAction*>("offer:air"));
+    auto* cross = section("air")->findChild<QToolButton*>("remove");
+    panel().findChild<QScrollArea*>("scroll")->ensureWidgetVisible(cross);
+    QTest::mouseClick(cross, Qt::LeftButton);
+    QVERIFY(!doc().scene().air);
+    QVERIFY(!section("air"));
+    QVERIFY(menu->findChild<QAction*>("offer:air"));
+    QCOMPARE(undo().count(), 2);
+  }
+
+  void removing_an_obstacle_does_not_hand_its_typed_text_to_the_next() {
+    doc().addBlock("sphere");
+    doc().addBlock("sphere");
+    QLineEdit* radius = field("obstacles.0.radius");
+    radius->setFocus();
+    radius->selectAll();
+    QTest::keyClicks(radius, "0.9");
+    doc().removeBlock("obstacles.0");
+    QCoreApplication::processEvents();
+    QCOMPARE(doc().scene().obstacles.size(), std::size_t(1));
+    QVERIFY(doc().scene().obstacles[0].radius != 0.9);
+  }
+
+  void the_form_follows_in_place_and_keeps_focus_scroll_and_collapsed_sections() {
+    panel().resize(320, 400);
+    QPointer<QLineEdit> focused = field("deformation.rate");
+    focused->setFocus();
+    QTest::mouseClick(section("springs")->findChild<QAbstractButton*>("header"), Qt::LeftButton);
+    QVERIFY(!slider("springs.structural")->isVisible());
+    auto* bar = panel().findChild<QScrollArea*>("scroll")->verticalScrollBar();
+    QCoreApplication::processEvents();
+    bar->setValue(60);
+    doc().setParameter("deformation.rate", 0.2);
+    doc().addBlock("air");
+    doc().removeBlock("gravity");
+    QVERIFY(focused && focused->hasFocus());
+    QCOMPARE(focused->text(), QString("0.2"));
+    QVERIFY(!slider("springs.structural")->isVisible());
+    QCOMPARE(bar->value(), 60);
+    doc().load(doc().scene());
+    QVERIFY(!slider("springs.structural")->isVisible());
+    QVERIFY(field("deformation.rate")->hasFocus());
+    QCOMPARE(bar->value(), 60);
+  }
+
+  void reset_returns_the_declared_default() {
+    auto* reset = part<QToolButton>("springs.structural", "reset");
+    const double fallback = std::get<double>(*cloth::default_of(doc().scene(), "springs.structural"));
+    doc().setParameter("springs.structural", fallback + 1);
+    QVERIFY(reset->isVisible());
+    QTest::mouseClick(reset, Qt::LeftButton);
+    QCOMPARE(structural(), fallback);
+    QVERIFY(!reset->isVisible());
+  }
+
+  void the_default_of_an_obstacle_goes_with_the_cloth() {
+    doc().addBlock("sphere");
+    QVERIFY(!part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
+    doc().setParameter("cloth.width", 2.0);
+    QVERIFY(part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
+    doc().resetParameter("obstacles.0.radius");
+    QCOMPARE(doc().scene().obstacles[0].radius, 0.5);
+    QVERIFY(!part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
+  }
+
+  void a_note_survives_a_new_form() {
+    panel().setNote("integrator.time_step", "auto: 0.42 ms");
+    QVERIFY(part<QLabel>("integrator.time_step", "note")->isVisible());
+    doc().load(plain_scene());
+    QCOMPARE(part<QLabel>("integrator.time_step", "note")->text(), QString("auto: 0.42 ms"));
+    panel().setNote("integrator.time_step", {});
+    QVERIFY(!part<QLabel>("integrator.time_step", "note")->isVisible());
+  }
+
+  void tab_visits_the_form_from_top_to_bottom() {
+    doc().addBlock("air");
+    slider("springs.structural")->setFocus();
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+    QCOMPARE(QApplication::focusWidget(), field("springs.structural"));
+    int last_y = 0;
+    for (int i = 0; i < 40; ++i) {
+      QWidget* now = QApplication::focusWidget();
+      auto* content = panel().findChild<QScrollArea*>("scroll")->widget();
+      const int y = now->mapTo(content, now->rect().center()).y();
+      QVERIFY2(y >= last_y - 16, qPrintable(now->accessibleName()));
+      last_y = y;
+      QTest::keyClick(now, Qt::Key_Tab);
+      if (!content->isAncestorOf(QApplication::focusWidget())) return;
+    }
+  }
+
+  void every_control_has_an_accessible_name() {
+    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane"}) doc().addBlock(offer);
+    for (const QWidget* widget : panel().findChildren<QWidget*>())
+      if (widget->focusPolicy() & Qt::TabFocus) {
+        QAccessibleInterface* face = QAccessible::queryAccessibleInterface(const_cast<QWidget*>(widget));
+        QVERIFY2(face && !face->text(QAccessible::Name).isEmpty(),
+                 qPrintable(QString("%1 %2").arg(widget->metaObject()->className(), widget->objectName())));
+      }
+  }
+
+  void nothing_is_wider_than_280_pixels() {
+    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane"}) doc().addBlock(offer);
+    panel().resize(280, 700);
+    QCoreApplication::processEvents();
+    QCOMPARE(panel().width(), 280);
+    auto* area = panel().findChild<QScrollArea*>("scroll");
+    QVERIFY(area->widget()->width() <= area->viewport()->width());
+  }
+
+  void undo_keys_reach_the_document_from_a_field_that_is_not_being_typed_in() {
+    std::unique_ptr<QAction> action(undo().createUndoAction(&panel()));
+    action->setShortcut(QKeySequence::Undo);
+    panel().addAction(action.get());
+    type(field("springs.structural"), "700");
+    QTest::keyClick(field("springs.structural"), Qt::Key_Z, Qt::ControlModifier);
+    QCOMPARE(structural(), 500.0);
+    QCOMPARE(field("springs.structural")->text(), QString("500"));
+  }
+
+  void a_window_takes_document_and_form_down_in_any_order_while_one_types() {
+    for (const bool document_first : {true, false}) {
+      auto window = std::make_unique<QWidget>();
+      auto* document = new LabDocument;
+      document->load(plain_scene());
+      auto* form = new ParameterPanel(*document);
+      if (document_first) document->setParent(window.get());
+      form->setParent(window.get());
+      document->setParent(window.get());
+      window->show();
+      QVERIFY(QTest::qWaitForWindowExposed(window.get()));
+      window->activateWindow();
+      QVERIFY(QTest::qWaitForWindowActive(window.get()));
+      auto* field = form->findChild<QWidget*>("param:springs.structural")->findChild<QLineEdit*>("field");
+      field->setFocus();
+      QTest::keyClicks(field, "9");
+      window.reset();
+    }
+  }
+
+  void a_block_that_goes_while_its_slider_is_held_ends_the_drag() {
+    QSlider* held = slider("springs.structural");
+    QTest::mousePress(held, Qt::LeftButton, {}, at(held, 0.9));
+    QVERIFY(doc().removeBlock("springs"));
+    QCoreApplication::processEvents();
+    doc().setParameter("deformation.rate", 0.2);
+    doc().setParameter("deformation.rate", 0.3);
+    QCOMPARE(undo().count(), 4);
+  }
+};
+
+QTEST_MAIN(FormTest)
+#include "form_test.moc"

@@ -1,0 +1,540 @@
+// Laws of the 3-D view: what is drawn where, and what the mouse means. Runs on a real display (Xvfb with GLX
+// will do).
+#include <QApplication>
+#include <QProcess>
+#include <QSignalSpy>
+#include <QTest>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "theme/theme.h"
+#include "viewport/cloth_view.h"
+#include "viewport/gl/weave.h"
+#include "viewport/picking.h"
+
+using namespace clothlab;
+
+namespace {
+
+constexpr int side = 17;  // particles along each edge
+
+/// A flat, upright square cloth of 1 m about (0, 0.5, 0), its face towards +z; strain grows from left to
+/// right.
+std::shared_ptr<ClothFrame> flat_cloth(std::uint64_t topology = 1, int n = side) {
+  auto frame = std::make_shared<ClothFrame>();
+  frame->topology = topology;
+  frame->rows = frame->columns = n;
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < n; ++c) {
+      const float u = static_cast<float>(c) / static_cast<float>(n - 1),
+                  v = static_cast<float>(r) / static_cast<float>(n - 1);
+      frame->positions.insert(frame->positions.end(), {u - 0.5F, 1 - v, 0});
+      frame->strain.push_back(0.2F * u);
+      frame->pinned.push_back(r == 0 && c == 0);
+    }
+  }
+  return frame;
+}
+
+CameraPose head_on(double distance = 3) {
+  return {{0, 0.5, 0}, distance, 0, 0};
+}
+
+QPoint rounded(const Eigen::Vector2d& p) {
+  return {static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))};
+}
+
+/// How far apart two colours are, 0 to 441.
+double distance(QColor a, QColor b) {
+  return std::hypot(a.red() - b.red(), a.green() - b.green(), a.blue() - b.blue());
+}
+
+/// Light and shade change a thread's brightness, hardly its balance of red to blue.
+bool is_weft(QColor seen) {
+  const auto balance = [](QColor c) { return std::log((c.red() + 1.0) / (c.blue() + 1.0)); };
+  const double warp = balance(warp_colour()), weft = balance(weft_colour());
+  return std::abs(balance(seen) - weft) < std::abs(balance(seen) - warp);
+}
+
+double saturation(QColor c) {
+  return c.hsvSaturationF();
+}
+
+Eigen::Vector2d through(const Eigen::Matrix4d& to_screen, const Eigen::Vector3d& point) {
+  const Eigen::Vector4d h = to_screen * point.homogeneous();
+  return h.head<2>() / h.w();
+}
+
+/// Real mouse events with a button held, which QTest::mouseMove does not hold.
+void drag(QWidget& view, QPoint from, QPoint to, Qt::MouseButton button = Qt::LeftButton,
+          Qt::KeyboardModifiers modifiers = {}, bool release = true) {
+  QTest::mousePress(&view, button, modifiers, from);
+  for (const QPoint at : {(from + to) / 2, to}) {
+    QMouseEvent move(QEvent::MouseMove, at, view.mapToGlobal(at), Qt::NoButton, button, modifiers);
+    QApplication::sendEvent(&view, &move);
+  }
+  if (release) QTest::mouseRelease(&view, button, modifiers, to);
+}
+
+}  // namespace
+
+class ViewTest : public QObject {
+  Q_OBJECT
+
+ private:
+  std::unique_ptr<ClothView> view_;
+
+  QPoint at(int particle) const {
+    return rounded(view_->camera().project(particle_position(*view_->frame(), particle)));
+  }
+  QImage picture() { return view_->grabPicture(); }
+  static int middle() { return side / 2 * side + side / 2; }
+
+ private Q_SLOTS:
+  void initTestCase() { apply_theme(*qApp, false); }
+
+  void init() {
+    view_ = std::make_unique<ClothView>();
+    if (!view_->hasOpenGl()) {
+      if (QTest::currentTestFunction() == QLatin1String("a_display_without_opengl_gets_a_message")) return;
+      QSKIP(qPrintable("no OpenGL here: " + view_->openGlProblem()));
+    }
+    view_->setAnimated(false);
+    view_->resize(600, 500);
+    view_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(view_.get()));
+    view_->showFrame(flat_cloth());
+    view_->setCameraPose(head_on());
+    picture();
+  }
+  void cleanup() { view_.reset(); }
+
+  // ---- pixels
+  // ------------------------------------------------------------------------------------------------------
+
+  void a_cloth_is_drawn_where_its_particles_project() {
+    const QImage with = picture();
+    view_->clear();
+    const QImage without = picture();
+    const auto changed = [&](QPoint p) { return distance(with.pixelColor(p), without.pixelColor(p)) > 12; };
+    for (int r = 1; r + 1 < side; r += 3)
+      for (int c = 1; c + 1 < side; c += 3) {
+        const Eigen::Vector3d p(c / (side - 1.0) - 0.5, 1 - r / (side - 1.0), 0);
+        QVERIFY2(changed(rounded(view_->camera().project(p))), "a particle inside the sheet is covered");
+      }
+    for (const Eigen::Vector3d& beside :
+         {Eigen::Vector3d(-0.6, 0.5, 0), Eigen::Vector3d(0.6, 0.7, 0), Eigen::Vector3d(0.2, 1.1, 0)})
+      QVERIFY2(!changed(rounded(view_->camera().project(beside))), "beside the sheet nothing is drawn");
+  }
+
+  void a_cloth_that_moves_is_drawn_at_its_new_place() {
+    auto moved = std::make_shared<ClothFrame>(*flat_cloth());
+    for (std::size_t i = 0; i < moved->positions.size(); i += 3) moved->positions[i] += 1.1F;
+    const QImage before = picture();
+    view_->showFrame(moved);
+    const QImage after = picture();
+    const QPoint old_place = rounded(view_->camera().project({-0.2, 0.5, 0}));
+    const QPoint new_place = rounded(view_->camera().project({0.8, 0.5, 0}));
+    QVERIFY(distance(before.pixelColor(old_place), after.pixelColor(old_place)) > 12);
+    QVERIFY(distance(before.pixelColor(new_place), after.pixelColor(new_place)) > 12);
+  }
+
+  void the_texture_shows_both_thread_colours() {
+    view_->setCameraPose(head_on(0.25));  // threads of some ten pixels
+    const QImage image = picture();
+    int warp = 0, weft = 0, all = 0;
+    for (int y = 150; y < 350; ++y)
+      for (int x = 200; x < 400; ++x, ++all) {
+        const QColor c = image.pixelColor(x, y);
+        (is_weft(c) ? weft : warp)++;
+      }
+    QVERIFY2(warp > all / 5 && weft > all / 5,
+             qPrintable(QString("%1 warp, %2 weft of %3").arg(warp).arg(weft).arg(all)));
+    int crossings = 0;  // from one kind of thread to the other, along that line of pixels which has most
+    for (int y = 240; y < 260; ++y) {
+      int along_line = 0;
+      for (int x = 201; x < 400; ++x)
+        along_line += is_weft(image.pixelColor(x - 1, y)) != is_weft(image.pixelColor(x, y));
+      crossings = std::max(crossings, along_line);
+    }
+    QVERIFY2(crossings >= 8 && crossings <= 100, qPrintable(QString::number(crossings)));
+  }
+
+  void the_weave_is_the_same_every_time_and_has_no_seam() {
+    const QImage tile = weave_tile(256);
+    QCOMPARE(weave_tile(256), tile);
+    const auto step_across = [&](int left, int right) {
+      double sum = 0;
+      for (int y = 0; y < 256; ++y) sum += distance(tile.pixelColor(left, y), tile.pixelColor(right, y));
+      return sum;
+    };
+    double largest_inside = 0;  // between two threads
+    for (int x = 16; x < 256; x += 16) largest_inside = std::max(largest_inside, step_across(x - 1, x));
+    QVERIFY(step_across(255, 0) <= 1.1 * largest_inside);
+  }
+
+  void modes_look_different() {
+    QList<QImage> looks;
+    for (const ViewMode mode : {ViewMode::textured, ViewMode::wireframe, ViewMode::strain}) {
+      view_->setMode(mode);
+      looks.push_back(picture());
+    }
+    const QRect sheet = QRect(at(0), at(side * side - 1)).normalized().adjusted(10, 10, -10, -10);
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < i; ++k) {
+        int different = 0, all = 0;
+        for (int y = sheet.top(); y < sheet.bottom(); y += 2)
+          for (int x = sheet.left(); x < sheet.right(); x += 2, ++all)
+            different += distance(looks[i].pixelColor(x, y), looks[k].pixelColor(x, y)) > 20;
+        QVERIFY2(different > all / 2,
+                 qPrintable(QString("modes %1 and %2: %3 of %4").arg(i).arg(k).arg(different).arg(all)));
+      }
+  }
+
+  void wireframe_lines_run_through_the_particles() {
+    view_->setMode(ViewMode::wireframe);
+    const QImage image = picture();
+    const auto darkest_about = [&](const Eigen::Vector3d& p) {
+      const QPoint middle_pixel = rounded(view_->camera().project(p));
+      int darkest = 255;
+      for (const QPoint by : {QPoint(0, 0), QPoint(-1, 0), QPoint(0, -1), QPoint(-1, -1)})
+        darkest = std::min(darkest, image.pixelColor(middle_pixel + by).lightness());
+      return darkest;
+    };
+    const double cell = 1.0 / (side - 1);
+    for (int r = 2; r + 2 < side; r += 3)
+      for (int c = 2; c + 2 < side; c += 3) {
+        const Eigen::Vector3d p(c * cell - 0.5, 1 - r * cell, 0);
+        const Eigen::Vector3d between = p + Eigen::Vector3d(cell / 2, cell / 2, 0);
+        QVERIFY2(darkest_about(p) < darkest_about(between) - 20,
+                 "on the light theme lines are darker than the sheet");
+      }
+  }
+
+  void strain_mode_colours_follow_the_strain() {
+    view_->setMode(ViewMode::strain);
+    const QImage image = picture();
+    double last = -1;
+    for (int c = 1; c < side - 1; c += 3) {
+      const QColor seen = image.pixelColor(at(side / 2 * side + c));
+      const QColor meant = strain_colour(0.2 * c / (side - 1) / 0.2);
+      QVERIFY2(distance(seen, meant) < 70, qPrintable(seen.name() + " for " + meant.name()));
+      QVERIFY2(qGray(seen.rgb()) > last, "lighter where more strained");
+      last = qGray(seen.rgb());
+    }
+    QVERIFY(saturation(image.pixelColor(at(middle()))) > 0.3);
+  }
+
+  void pinned_particles_wear_the_accent() {
+    const QColor centre = picture().pixelColor(at(0));
+    QVERIFY2(distance(centre, theme().accent) < 40, qPrintable(centre.name()));
+  }
+
+  void obstacles_and_their_covering_of_the_cloth_are_drawn() {
+    auto frame = std::make_shared<ClothFrame>(*flat_cloth());
+    const QImage before = picture();
+    cloth::Obstacle ball, box;
+    ball.center = {0, 0.5, 0.5}, ball.radius = 0.15;
+    box.shape = cloth::Shape::box, box.center = {0.8, 0.5, 0}, box.size = {0.2, 0.2, 0.2};
+    frame->obstacles = {ball, box};
+    view_->showFrame(frame);
+    const QImage after = picture();
+    for (const Eigen::Vector3d& p : {ball.center, box.center}) {
+      const QPoint place = rounded(view_->camera().project(p));
+      QVERIFY(distance(before.pixelColor(place), after.pixelColor(place)) > 10);
+      QVERIFY2(saturation(after.pixelColor(place)) < 0.2, "obstacles are neutral");
+    }
+  }
+
+  void an_empty_view_says_so() {
+    view_->clear();
+    const QImage empty = picture();
+    int written = 0;
+    for (int x = 150; x < 450; ++x)
+      for (int y = 190; y < 270; ++y) written += empty.pixelColor(x, y).lightness() < 120;
+    QVERIFY2(written > 100, "dark text in the middle of the light view");
+  }
+
+  void frames_that_contradict_themselves_are_ignored() {
+    auto wrong = std::make_shared<ClothFrame>(*flat_cloth(7));
+    wrong->positions.pop_back();
+    view_->showFrame(wrong);
+    QCOMPARE(view_->frame()->topology, 1U);
+    view_->showFrame(nullptr);
+    QVERIFY(view_->frame());
+  }
+
+  void the_edges_of_the_cloth_are_smooth() {
+    view_->clear();
+    const QImage without = picture();
+    view_->showFrame(flat_cloth(2));
+    view_->setMode(ViewMode::strain);
+    view_->setCameraPose({{0, 0.5, 0}, 3, 0.3, 0.2});  // a slanting upper edge
+    const QImage with = picture();
+    int between = 0;  // columns whose edge pixel mixes cloth and background
+    for (int x = 230; x < 370; ++x)
+      for (int y = 1; y < 400; ++y) {
+        const double covered = distance(with.pixelColor(x, y), without.pixelColor(x, y));
+        if (covered < 12) continue;
+        between += covered < 0.8 * distance(with.pixelColor(x, y + 3), without.pixelColor(x, y + 3));
+        break;
+      }
+    QVERIFY2(between > 50, qPrintable(QString::number(between)));
+  }
+
+  void every_picture_is_timed() {
+    QSignalSpy drawn(view_.get(), &ClothView::frameDrawn);
+    view_->showFrame(flat_cloth());
+    picture();
+    QVERIFY(drawn.count() >= 1);
+    QCOMPARE(drawn.last().at(0).toDouble(), view_->lastDrawMilliseconds());
+    QVERIFY(view_->lastDrawMilliseconds() > 0);
+  }
+
+  // ---- the hand
+  // ----------------------------------------------------------------------------------------------------
+
+  void dragging_the_cloth_pulls_the_particle_under_the_cursor() {
+    QSignalSpy pulled(view_.get(), &ClothView::pullChanged), ended(view_.get(), &ClothView::pullEnded);
+    const QPoint from = at(middle()), to = from + QPoint(60, -40);
+    drag(*view_, from, to, Qt::LeftButton, {}, false);
+    QVERIFY(pulled.count() >= 3);
+    const auto first = pulled.first().at(0).value<cloth::Pull>(),
+               last = pulled.last().at(0).value<cloth::Pull>();
+    QCOMPARE(first.particle, middle());
+    QCOMPARE(last.particle, middle());
+    QVERIFY((first.target - particle_position(*view_->frame(), middle())).norm() < 0.01);
+    QCOMPARE(rounded(view_->camera().project(last.target)), to);
+    QVERIFY2(std::abs(last.target.z()) < 1e-9, "the plane through the particle, parallel to the screen");
+    QVERIFY(ended.isEmpty());
+    QTest::mouseRelease(view_.get(), Qt::LeftButton, {}, to);
+    QCOMPARE(ended.count(), 1);
+  }
+
+  void dragging_beside_the_cloth_orbits_and_pulls_nothing() {
+    QSignalSpy pulled(view_.get(), &ClothView::pullChanged);
+    drag(*view_, {20, 20}, {60, 30});
+    QVERIFY(pulled.isEmpty());
+    QVERIFY(view_->camera().pose().yaw < 0);
+    QVERIFY(view_->camera().pose().pitch > 0);
+  }
+
+  void a_pull_ends_when_the_cloth_is_replaced() {
+    QSignalSpy ended(view_.get(), &ClothView::pullEnded);
+    drag(*view_, at(middle()), at(middle()) + QPoint(20, 0), Qt::LeftButton, {}, false);
+    view_->showFrame(flat_cloth(2, 5));
+    QCOMPARE(ended.count(), 1);
+  }
+
+  void the_brush_reports_cursor_radius_and_velocity() {
+    view_->setTool(Tool::brush);
+    view_->setBrushRadius(64);
+    view_->setBrushSpeedPerPixel(0.1);
+    QSignalSpy blown(view_.get(), &ClothView::brushChanged), ended(view_.get(), &ClothView::brushEnded);
+    drag(*view_, {200, 200}, {250, 170});
+    QCOMPARE(blown.count(), 2);  // one per move
+    const auto gust = blown.last().at(0).value<cloth::BrushGust>();
+    QVERIFY((gust.cursor - Eigen::Vector2d(250, 170)).norm() < 1e-9);
+    QCOMPARE(gust.radius, 64.0);
+    QVERIFY2((gust.velocity - Eigen::Vector3d(5, 3, 0)).norm() < 1e-9, "50 px right, 30 px up, 0.1 m/s each");
+    QCOMPARE(ended.count(), 1);
+  }
+
+  void shift_is_the_brush_in_every_tool() {
+    QSignalSpy blown(view_.get(), &ClothView::brushChanged), pulled(view_.get(), &ClothView::pullChanged);
+    drag(*view_, at(middle()), at(middle()) + QPoint(30, 0), Qt::LeftButton, Qt::ShiftModifier);
+    QVERIFY(!blown.isEmpty());
+    QVERIFY(pulled.isEmpty());
+  }
+
+  void the_wheel_sizes_the_brush_while_it_blows() {
+    view_->setTool(Tool::brush);
+    drag(*view_, {200, 200}, {230, 200}, Qt::LeftButton, {}, false);
+    const double before = view_->brushRadius(), distance_before = view_->camera().pose().distance;
+    QWheelEvent turn({230, 200}, view_->mapToGlobal(QPointF(230, 200)), {}, {0, 120}, Qt::LeftButton, {},
+                     Qt::NoScrollPhase, false);
+    QApplication::sendEvent(view_.get(), &turn);
+    QVERIFY(view_->brushRadius() > before);
+    QCOMPARE(view_->camera().pose().distance, distance_before);
+  }
+
+  void a_particle_at_the_cursor_projects_to_the_cursor() {
+    view_->setCameraPose({{0.1, 0.4, 0.05}, 2.2, 0.7, 0.3});
+    QSignalSpy blown(view_.get(), &ClothView::brushChanged);
+    const int particle = 4 * side + 11;
+    const QPoint to = at(particle);
+    drag(*view_, to - QPoint(30, 10), to, Qt::LeftButton, Qt::ShiftModifier);
+    const auto gust = blown.last().at(0).value<cloth::BrushGust>();
+    const Eigen::Vector2d seen = through(gust.world_to_screen, particle_position(*view_->frame(), particle));
+    QVERIFY2((seen - gust.cursor).norm() < 1, "within the rounding of a mouse position");
+  }
+
+  void pin_mode_click_names_the_particle() {
+    view_->setTool(Tool::pin);
+    QSignalSpy toggled(view_.get(), &ClothView::pinToggled), pulled(view_.get(), &ClothView::pullChanged);
+    const int particle = 5 * side + 3;
+    QTest::mouseClick(view_.get(), Qt::LeftButton, {}, at(particle));
+    QCOMPARE(toggled.count(), 1);
+    QCOMPARE(toggled.first().at(0).toInt(), particle);
+    QTest::mouseClick(view_.get(), Qt::LeftButton, {}, {10, 10});
+    QCOMPARE(toggled.count(), 1);
+    QVERIFY(pulled.isEmpty());
+  }
+
+  void a_particle_just_beside_the_cursor_is_still_picked() {
+    const Eigen::Vector2d corner = view_->camera().project(particle_position(*view_->frame(), side - 1));
+    QCOMPARE(pick_particle(*view_->frame(), view_->camera(), corner + Eigen::Vector2d(6, -6)),
+             std::optional(side - 1));
+    QVERIFY(!pick_particle(*view_->frame(), view_->camera(), corner + Eigen::Vector2d(30, -30)));
+  }
+
+  void the_tool_announces_its_change_once() {
+    QSignalSpy changed(view_.get(), &ClothView::toolChanged);
+    view_->setTool(Tool::brush);
+    view_->setTool(Tool::brush);
+    QCOMPARE(changed.count(), 1);
+  }
+
+  // ---- camera
+  // ------------------------------------------------------------------------------------------------------
+
+  void what_is_under_the_cursor_stays_there_while_zooming() {
+    Camera camera;
+    camera.set_viewport(900, 700);
+    camera.set_pose({{0.2, 0.1, 0}, 4, 0.4, 0.3});
+    const Eigen::Vector2d cursor(700, 150);
+    const Eigen::Vector3d under = camera.on_screen_plane(cursor, camera.pose().target);
+    camera.zoom(1.7, cursor);
+    QVERIFY((camera.project(under) - cursor).norm() < 1e-6);
+    QVERIFY(std::abs(camera.pose().distance - 4 / 1.7) < 1e-12);
+  }
+
+  void panning_moves_the_target_plane_with_the_cursor() {
+    Camera camera;
+    camera.set_viewport(900, 700);
+    const Eigen::Vector3d target = camera.pose().target;
+    camera.pan(40, -25);
+    QVERIFY((camera.project(target) - Eigen::Vector2d(490, 325)).norm() < 1e-6);
+  }
+
+  void a_ray_through_a_projection_meets_its_point() {
+    Camera camera;
+    camera.set_viewport(640, 480);
+    camera.set_pose({{0, 0, 0}, 2, -1.1, 0.6});
+    const Eigen::Vector3d p(0.3, -0.2, 0.4);
+    const Ray ray = camera.ray(camera.project(p));
+    QVERIFY(ray.direction.cross(p - ray.origin).norm() < 1e-9);
+  }
+
+  void presets_look_from_the_named_side_with_y_up() {
+    const std::pair<CameraPreset, Eigen::Vector3d> sides[] = {
+        {CameraPreset::front, {0, 0, 1}}, {CameraPreset::back, {0, 0, -1}},
+        {CameraPreset::left, {-1, 0, 0}}, {CameraPreset::right, {1, 0, 0}},
+        {CameraPreset::top, {0, 1, 0}},   {CameraPreset::isometric, Eigen::Vector3d(1, 1, 1).normalized()}};
+    for (const auto& [preset, from] : sides) {
+      view_->setPreset(preset);
+      const Camera& camera = view_->camera();
+      QVERIFY((camera.forward() + from).norm() < 1e-9);
+      QVERIFY(camera.up().y() >= -1e-9);
+      QVERIFY(std::abs(camera.right().cross(camera.up()).dot(-camera.forward()) - 1) < 1e-9);
+    }
+  }
+
+  void a_framed_box_is_seen_whole_and_large() {
+    Camera camera;
+    for (const double width : {300.0, 900.0, 1600.0}) {
+      camera.set_viewport(width, 700);
+      const Eigen::AlignedBox3d box(Eigen::Vector3d(-2, 0, -0.5), Eigen::Vector3d(1, 1, 0.7));
+      camera.set_pose(camera.framed(box, {{9, 9, 9}, 1, 0.8, 0.4}));
+      double largest = 0;
+      for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector2d p = camera.project(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+        const double x = std::abs(2 * p.x() / width - 1), y = std::abs(2 * p.y() / 700 - 1);
+        QVERIFY(x < 1 && y < 1);
+        largest = std::max({largest, x, y});
+      }
+      QVERIFY(largest > 0.75);
+    }
+  }
+
+  void a_camera_that_was_not_moved_follows_a_new_topology_and_one_that_was_stays() {
+    view_->resetCamera();
+    auto far_away = std::make_shared<ClothFrame>(*flat_cloth(2));
+    for (std::size_t i = 0; i < far_away->positions.size(); i += 3) far_away->positions[i] += 10;
+    view_->showFrame(far_away);
+    QVERIFY(std::abs(view_->camera().pose().target.x() - 10) < 0.2);
+    drag(*view_, {10, 10}, {40, 10}, Qt::RightButton);
+    const CameraPose moved = view_->camera().pose();
+    view_->showFrame(flat_cloth(3));
+    QVERIFY(view_->camera().pose() == moved);
+    view_->resetCamera();
+    QVERIFY(std::abs(view_->camera().pose().target.x()) < 0.2);
+  }
+
+  void a_flight_ends_where_it_was_sent() {
+    CameraFlight flight;
+    const CameraPose from = head_on(3), to{{1, 2, 3}, 5, 0.4, 1.0};
+    flight.start(from, to);
+    const CameraPose half = flight.advance(CameraFlight::duration / 2);
+    QVERIFY(half.distance > 3 && half.distance < 5 && flight.flying());
+    QVERIFY(flight.advance(CameraFlight::duration) == to);
+    QVERIFY(!flight.flying());
+  }
+
+  // ---- ground and colours
+  // ------------------------------------------------------------------------------------------
+
+  void the_ground_is_the_level_plane_or_below_where_the_cloth_can_hang() {
+    const auto lying = std::make_shared<ClothFrame>(*flat_cloth());
+    for (std::size_t i = 0; i < lying->positions.size();
+         i += 3) {  // pinned at one corner, lying flat at y = 1
+      lying->positions[i + 2] = 1 - lying->positions[i + 1];
+      lying->positions[i + 1] = 1;
+    }
+    const Ground below = ground_below(reach_of_cloth(*lying), {});
+    QVERIFY(!below.is_obstacle);
+    QVERIFY2(below.height < 1 - std::numbers::sqrt2 + 0.05, "the diagonal hangs down from the pin");
+    cloth::Obstacle plane;
+    plane.shape = cloth::Shape::plane;
+    plane.point = {0, -0.3, 0};
+    QVERIFY(ground_below(reach_of_cloth(*lying), {plane}).is_obstacle);
+    QCOMPARE(ground_below(reach_of_cloth(*lying), {plane}).height, -0.3);
+  }
+
+  void strain_colours_grow_lighter_in_even_steps() {
+    double last = -1;
+    for (const QColor& c : strain_colours()) {
+      const double luminance = 0.2126 * std::pow(c.redF(), 2.2) + 0.7152 * std::pow(c.greenF(), 2.2) +
+                               0.0722 * std::pow(c.blueF(), 2.2);
+      QVERIFY(luminance > last - 0.002);
+      last = std::max(last, luminance);
+    }
+    QCOMPARE(strain_colour(-1), strain_colours().front());
+    QCOMPARE(strain_colour(2), strain_colours().back());
+  }
+
+  void the_strain_range_is_round_steady_and_shows_the_rate() {
+    QCOMPARE(round_maximum(0.11), 0.12);
+    QCOMPARE(round_maximum(0.2), 0.2);
+    StrainRange range;
+    range.follow(0.19, -1, 0.02);
+    QCOMPARE(range.maximum(), 0.2);
+    for (int i = 0; i < 20; ++i) range.follow(0.12 + 0.06 * (i % 2), -1, 0.02);
+    QCOMPARE(range.maximum(), 0.2);
+    range.follow(0.45, -1, 0.02);
+    QVERIFY(range.maximum() > 0.2 && range.maximum() < 0.5);  // glides
+    for (int i = 0; i < 100; ++i) range.follow(0.45, -1, 0.02);
+    QCOMPARE(range.maximum(), 0.5);
+    for (int i = 0; i < 50; ++i) range.follow(0.05, -1, 0.02);
+    QCOMPARE(range.maximum(), 0.5);  // a second of calm is not enough
+    for (int i = 0; i < 200; ++i) range.follow(0.05, -1, 0.02);
+    QCOMPARE(range.maximum(), 0.05);
+    StrainRange with_rate;
+    with_rate.follow(0.04, 0.1, 0.02);
+    QVERIFY(with_rate.maximum() > 0.1);
+  }
+};
+
+QTEST_MAIN(ViewTest)
+#include "view_test.moc"

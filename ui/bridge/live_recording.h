@@ -1,0 +1,73 @@
+// A recording that is written while the window runs: the same files and rows as clothlab-cli run, and the log
+// of edits.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "forces/hand.h"
+#include "io/run_folder.h"
+#include "scene/scene_edits.h"
+#include "simulation/recorder.h"
+
+namespace clothlab {
+
+/// One line of edits.jsonl, made when an edit is put in force.
+struct EditLogEntry {
+  std::int64_t step = 0;
+  double time = 0;    ///< s
+  std::string path;   ///< of a parameter; "brush", "pull" or "state" for the rest
+  std::string value;  ///< JSON
+};
+
+std::string brush_json(const std::optional<cloth::BrushGust>& brush);
+std::string pull_json(const std::optional<cloth::Pull>& pull);
+
+class LiveRecording {
+ public:
+  LiveRecording() = default;
+  LiveRecording(const LiveRecording&) = delete;
+  LiveRecording& operator=(const LiveRecording&) = delete;
+
+  /// Begins in `folder` at the simulation's present state and writes its first row. A recording that begins
+  /// later than step 0 keeps the state it began from in start_state.csv.
+  std::optional<cloth::IoError> begin(const std::filesystem::path& folder,
+                                      const cloth::Simulation& simulation);
+
+  bool is_active() const { return active_; }
+  const std::filesystem::path& folder() const { return folder_; }
+  std::int64_t rows() const { return rows_; }
+
+  /// A row that is due; `steps` since the row before took `wall` s. Where the scene's stages have changed
+  /// since the last row, a new file (record-2.csv, ...) with the new columns goes on.
+  std::optional<cloth::IoError> add_row(const cloth::Simulation& simulation,
+                                        const cloth::Measurement& measurement, double wall,
+                                        std::int64_t steps);
+
+  std::optional<cloth::IoError> log(const EditLogEntry& entry);
+
+  /// Puts everything on disk if the last time was more than half a second ago.
+  std::optional<cloth::IoError> keep_current();
+
+  /// Ends with final_state.csv (of `last_good`) and summary.json.
+  std::optional<cloth::IoError> end(const cloth::Simulation& simulation, const cloth::ClothState& last_good,
+                                    const std::optional<cloth::Divergence>& divergence);
+
+ private:
+  std::optional<cloth::IoError> open_record(const cloth::Quantities& quantities);
+
+  std::filesystem::path folder_;
+  cloth::CsvFile record_;
+  cloth::LineFile edits_;
+  bool active_ = false;
+  int part_ = 0;
+  std::int64_t rows_ = 0, first_step_ = 0;
+  double first_time_ = 0, wall_ = 0, max_strain_ = 0, limiter_excess_ = 0, energy_error_ = 0;
+  cloth::Quantities quantities_;
+  std::chrono::steady_clock::time_point last_flush_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,39 @@
+// The worker as the window sees it: a QObject that fetches what is new at the screen's pace while there is anything to
+// fetch, and does nothing at all while there is not.
+#pragma once
+
+#include <QObject>
+#include <QTimer>
+#include <memory>
+#include <vector>
+
+#include "bridge/simulation_worker.h"
+
+namespace clothlab {
+
+class SimulationLink : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit SimulationLink(QObject* parent = nullptr);
+
+  void send(Command command);
+  const WorkerStatus& status() const { return status_; }
+
+  /// Waits for the commands sent so far and delivers what they gave. For tests and for orderly ends.
+  void settle();
+
+ Q_SIGNALS:
+  void frameReady(std::shared_ptr<const clothlab::ClothFrame> frame);
+  void samplesReady(const std::vector<clothlab::ChartSample>& samples);
+  void statusChanged(const clothlab::WorkerStatus& status);
+
+ private:
+  void fetch();
+
+  SimulationWorker worker_;
+  QTimer timer_;
+  WorkerStatus status_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,319 @@
+#include "bridge/simulation_worker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "measure/strain.h"
+#include "scene/scene_checks.h"
+#include "simulation/time_step.h"
+
+namespace clothlab {
+namespace {
+
+using Clock = WorkerPace::Clock;
+
+constexpr auto frame_interval =
+    std::chrono::milliseconds(14);                         // a little more often than a 60 Hz screen asks
+constexpr auto batch_time = std::chrono::milliseconds(5);  // between two looks at the inbox
+constexpr std::size_t most_samples = 1 << 18;              // an hour at 60 a second
+
+double seconds(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// Why a scene cannot be run, or nothing.
+std::string refusal_of(const cloth::Scene& scene) {
+  if (const auto problems = cloth::find_problems(scene); !problems.empty()) return problems.front().text();
+  if (!cloth::resolved_time_step(scene)) return cloth::no_stable_step_text(scene);
+  return "";
+}
+
+/// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big cloth
+/// assembles.
+bool is_overtaken_by(const Command& command, const Command& next) {
+  return (std::holds_alternative<command::Load>(command) || std::holds_alternative<command::Edit>(command)) &&
+         command.index() == next.index();
+}
+
+}  // namespace
+
+SimulationWorker::SimulationWorker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SimulationWorker::~SimulationWorker() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SimulationWorker::send(Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    inbox_.push_back(std::move(command));
+    busy_ = true;
+  }
+  wake_.notify_one();
+}
+
+std::vector<ChartSample> SimulationWorker::take_samples() {
+  const std::lock_guard lock(mutex_);
+  return std::move(samples_);
+}
+
+WorkerStatus SimulationWorker::status() const {
+  const std::lock_guard lock(mutex_);
+  return shared_status_;
+}
+
+void SimulationWorker::wait_until_idle() {
+  std::unique_lock lock(mutex_);
+  idle_.wait(lock, [this] { return inbox_.empty() && !handling_; });
+}
+
+void SimulationWorker::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::vector<Command> commands;
+    {
+      std::unique_lock lock(mutex_);
+      wait_for_work(lock, stop);
+      commands.swap(inbox_);
+      handling_ = true;
+    }
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1]))
+        std::visit([this](const auto& c) { handle(c); }, commands[i]);
+    if (status_.playing) play_for_a_moment();
+    if (recording_.is_active()) note_record(recording_.keep_current());
+    publish_status();
+  }
+  if (recording_.is_active()) end_recording();
+}
+
+/// Until there is a command, or the next step is due.
+void SimulationWorker::wait_for_work(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+  handling_ = false;
+  if (inbox_.empty()) {
+    busy_ = status_.playing;
+    idle_.notify_all();
+  }
+  const auto has_command = [this] { return !inbox_.empty(); };
+  if (!status_.playing)
+    wake_.wait(lock, stop, has_command);
+  else if (const auto due = pace_.due_time(simulation_->time() + simulation_->time_step());
+           due > Clock::now())
+    wake_.wait_until(lock, stop, due, has_command);
+}
+
+void SimulationWorker::handle(const command::Load& load) {
+  if (recording_.is_active()) end_recording();
+  if (start_simulation(load.scene)) ++topology_;
+  publish_frame();
+}
+
+void SimulationWorker::handle(const command::Restart&) {
+  if (!simulation_) return;
+  if (recording_.is_active()) end_recording();
+  const cloth::Scene scene = simulation_->scene();
+  start_simulation(scene);
+  publish_frame();
+}
+
+bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
+  status_.playing = false;
+  status_.refusal = refusal_of(scene);
+  if (!status_.refusal.empty()) return false;
+  simulation_ = std::make_unique<cloth::Simulation>(scene);
+  last_good_ = simulation_->checkpoint();
+  rows_ = cloth::RowClock::of(*simulation_);
+  status_.divergence.reset();
+  wall_since_row_ = 0;
+  steps_since_row_ = 0;
+  meter_.restart(0, Clock::now());
+  take_sample();
+  return true;
+}
+
+void SimulationWorker::handle(const command::Edit& edit) {
+  if (!simulation_) return;
+  status_.refusal = refusal_of(edit.scene);
+  if (!status_.refusal.empty()) return;
+  if (recording_.is_active())
+    for (const cloth::SceneEdit& change : cloth::edits_between(simulation_->scene(), edit.scene))
+      note_record(
+          recording_.log({simulation_->state().step, simulation_->time(), change.path, change.value}));
+  const double time_step = simulation_->time_step(), interval = simulation_->scene().record.interval;
+  simulation_->edit(edit.scene);
+  if (simulation_->time_step() != time_step || edit.scene.record.interval != interval)
+    rows_ = cloth::RowClock::of(*simulation_);
+  last_good_ = simulation_->checkpoint();
+  publish_frame();
+}
+
+void SimulationWorker::handle(const command::Play&) {
+  if (!simulation_ || !status_.refusal.empty()) return;
+  status_.divergence.reset();
+  status_.playing = true;
+  pace_.restart(simulation_->time(), Clock::now());
+  meter_.restart(simulation_->time(), Clock::now());
+}
+
+void SimulationWorker::handle(const command::Pause&) {
+  status_.playing = false;
+}
+
+void SimulationWorker::handle(const command::SingleStep&) {
+  status_.playing = false;
+  if (!simulation_ || !status_.refusal.empty()) return;
+  status_.divergence.reset();
+  if (advance()) publish_frame();
+}
+
+void SimulationWorker::handle(const command::Speed& speed) {
+  status_.speed = speed.factor;
+  pace_.set_speed(speed.factor, simulation_ ? simulation_->time() : 0, Clock::now());
+}
+
+void SimulationWorker::handle(const command::Brush& brush) {
+  if (!simulation_) return;
+  if (recording_.is_active())
+    note_record(
+        recording_.log({simulation_->state().step, simulation_->time(), "brush", brush_json(brush.gust)}));
+  simulation_->set_brush(brush.gust);
+}
+
+void SimulationWorker::handle(const command::Pull& pull) {
+  if (!simulation_) return;
+  if (pull.pull && (pull.pull->particle < 0 || pull.pull->particle >= simulation_->system().size())) return;
+  if (recording_.is_active())
+    note_record(
+        recording_.log({simulation_->state().step, simulation_->time(), "pull", pull_json(pull.pull)}));
+  simulation_->set_pull(pull.pull);
+}
+
+void SimulationWorker::handle(const command::StartRecording& start) {
+  if (!simulation_) return;
+  if (recording_.is_active()) end_recording();
+  status_.recording_error.clear();
+  rows_.origin = simulation_->state().step;
+  wall_since_row_ = 0;
+  steps_since_row_ = 0;
+  const auto error = recording_.begin(start.folder, *simulation_);
+  status_.recording_folder = start.folder;
+  note_record(error);
+}
+
+void SimulationWorker::handle(const command::StopRecording&) {
+  if (recording_.is_active()) end_recording();
+}
+
+/// Steps that are due, for a few milliseconds at most; then a frame, if the last one is old enough.
+void SimulationWorker::play_for_a_moment() {
+  const Clock::time_point start = Clock::now();
+  Clock::time_point now = start;
+  do {
+    if (!pace_.is_due(simulation_->time() + simulation_->time_step(), now)) break;
+    if (!advance()) break;
+    now = Clock::now();
+    meter_.count(simulation_->time(), now);
+  } while (now - start < batch_time && !thread_.get_stop_token().stop_requested());
+  if (now - last_frame_ >= frame_interval) publish_frame();
+}
+
+bool SimulationWorker::advance() {
+  const Clock::time_point start = Clock::now();
+  const auto divergence = simulation_->step();
+  wall_since_row_ += seconds(Clock::now() - start);
+  if (divergence) {
+    diverge(*divergence);
+    return false;
+  }
+  ++steps_since_row_;
+  if (rows_.due(simulation_->state().step)) take_sample();
+  return true;
+}
+
+void SimulationWorker::take_sample() {
+  const cloth::Measurement m = simulation_->measure();
+  last_good_ = simulation_->checkpoint();
+  ChartSample sample{.time_s = m.time,
+                     .kinetic_J = m.energy.kinetic,
+                     .elastic_J = m.energy.elastic,
+                     .gravity_J = m.energy.gravity,
+                     .total_J = m.energy.total(),
+                     .max_strain = m.strain.maximum()};
+  if (steps_since_row_ > 0) sample.step_ms = 1e3 * wall_since_row_ / static_cast<double>(steps_since_row_);
+  if (recording_.is_active())
+    note_record(recording_.add_row(*simulation_, m, wall_since_row_, steps_since_row_));
+  wall_since_row_ = 0;
+  steps_since_row_ = 0;
+
+  const std::lock_guard lock(mutex_);
+  if (samples_.size() < most_samples)
+    samples_.push_back(sample);
+  else
+    ++status_.lost_samples;
+}
+
+/// The view keeps the last good state, and so does the simulation: after an edit it can go on from there.
+void SimulationWorker::diverge(const cloth::Divergence& divergence) {
+  status_.divergence = divergence;
+  status_.playing = false;
+  if (recording_.is_active()) end_recording();
+  simulation_->restore(last_good_);
+  rows_.origin = simulation_->state().step;
+  publish_frame();
+}
+
+void SimulationWorker::note_record(const std::optional<cloth::IoError>& error) {
+  if (!error) return;
+  status_.recording_error = error->text();
+  if (recording_.is_active()) end_recording();
+}
+
+void SimulationWorker::end_recording() {
+  const auto error = recording_.end(*simulation_, last_good_.state, status_.divergence);
+  if (error && status_.recording_error.empty()) status_.recording_error = error->text();
+}
+
+void SimulationWorker::publish_frame() {
+  if (!simulation_) return;
+  const cloth::ClothSystem& system = simulation_->system();
+  const cloth::Vec3Field& position = simulation_->state().position;
+  const auto frame = frames_.blank();
+  frame->topology = topology_;
+  frame->rows = system.rows;
+  frame->columns = system.columns;
+  frame->positions.resize(3 * position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    frame->positions[3 * i] = static_cast<float>(position.x()[i]);
+    frame->positions[3 * i + 1] = static_cast<float>(position.y()[i]);
+    frame->positions[3 * i + 2] = static_cast<float>(position.z()[i]);
+  }
+  frame->strain.resize(position.size());
+  cloth::particle_strain(system, position, frame->strain);
+  frame->pinned = system.pinned;
+  frame->obstacles = simulation_->scene().obstacles;
+  const auto& deformation = simulation_->scene().deformation;
+  frame->deformation_rate = simulation_->quantities().limiter ? deformation->rate : -1;
+  frame->time = simulation_->time();
+  frame->step = simulation_->state().step;
+  frames_.publish(frame);
+  last_frame_ = Clock::now();
+}
+
+void SimulationWorker::publish_status() {
+  if (simulation_) {
+    status_.time = simulation_->time();
+    status_.step = simulation_->state().step;
+    status_.time_step = simulation_->time_step();
+    const auto& unreachable = simulation_->unreachable_rate();
+    status_.notice = unreachable ? cloth::describe(*unreachable, simulation_->system().columns) : "";
+  }
+  status_.steps_per_second = status_.playing ? meter_.steps_per_second() : 0;
+  status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
+  status_.recording = recording_.is_active();
+  status_.recorded_rows = recording_.rows();
+  const std::lock_guard lock(mutex_);
+  shared_status_ = status_;
+}
+
+}  // namespace clothlab

@@ -1,0 +1,126 @@
+// The worker: owns the simulation and its thread. The window sends commands and fetches frames, samples and
+// status; it never locks the simulation and never waits for it. Edits are put in force between steps.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "bridge/chart_sample.h"
+#include "bridge/frame_exchange.h"
+#include "bridge/live_recording.h"
+#include "bridge/worker_pace.h"
+#include "bridge/worker_status.h"
+#include "simulation/simulation.h"
+
+namespace clothlab {
+
+namespace command {
+struct Load {
+  cloth::Scene scene;
+};                  ///< a new start, paused
+struct Restart {};  ///< the scene in force, from t = 0, paused
+struct Edit {
+  cloth::Scene scene;
+};  ///< live parameters or pins changed
+struct Play {};
+struct Pause {};
+struct SingleStep {};
+struct Speed {
+  double factor;
+};  ///< infinity: as fast as it goes
+struct Brush {
+  std::optional<cloth::BrushGust> gust;
+};
+struct Pull {
+  std::optional<cloth::Pull> pull;
+};
+struct StartRecording {
+  std::filesystem::path folder;
+};
+struct StopRecording {};
+}  // namespace command
+
+using Command = std::variant<command::Load, command::Restart, command::Edit, command::Play, command::Pause,
+                             command::SingleStep, command::Speed, command::Brush, command::Pull,
+                             command::StartRecording, command::StopRecording>;
+
+class SimulationWorker {
+ public:
+  SimulationWorker();
+  /// Stops within one step; a recording is ended properly.
+  ~SimulationWorker();
+  SimulationWorker(const SimulationWorker&) = delete;
+  SimulationWorker& operator=(const SimulationWorker&) = delete;
+
+  void send(Command command);
+
+  /// The newest frame that was not fetched yet, or nullptr.
+  std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }
+  /// Every sample since the last call, in order.
+  std::vector<ChartSample> take_samples();
+  WorkerStatus status() const;
+
+  /// True while fetching is worth while: playing, or something is waiting to be done or fetched.
+  bool is_busy() const { return busy_; }
+
+  /// Blocks until every command sent before is in force. For tests and for closing; the window never calls
+  /// it.
+  void wait_until_idle();
+
+ private:
+  void run(const std::stop_token& stop);
+  void wait_for_work(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
+  void handle(const command::Load& load);
+  void handle(const command::Restart&);
+  void handle(const command::Edit& edit);
+  void handle(const command::Play&);
+  void handle(const command::Pause&);
+  void handle(const command::SingleStep&);
+  void handle(const command::Speed& speed);
+  void handle(const command::Brush& brush);
+  void handle(const command::Pull& pull);
+  void handle(const command::StartRecording& start);
+  void handle(const command::StopRecording&);
+
+  bool start_simulation(const cloth::Scene& scene);
+  void play_for_a_moment();
+  bool advance();
+  void take_sample();
+  void diverge(const cloth::Divergence& divergence);
+  void note_record(const std::optional<cloth::IoError>& error);
+  void end_recording();
+  void publish_frame();
+  void publish_status();
+
+  // Shared with the window.
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_, idle_;
+  std::vector<Command> inbox_;
+  std::vector<ChartSample> samples_;
+  WorkerStatus shared_status_;
+  bool handling_ = false;
+  std::atomic<bool> busy_{false};
+  FrameExchange frames_;
+
+  // The worker's own.
+  std::unique_ptr<cloth::Simulation> simulation_;
+  cloth::Checkpoint last_good_;
+  cloth::RowClock rows_;
+  LiveRecording recording_;
+  WorkerStatus status_;
+  WorkerPace pace_;
+  RateMeter meter_;
+  std::uint64_t topology_ = 0;
+  double wall_since_row_ = 0;  ///< s
+  std::int64_t steps_since_row_ = 0;
+  WorkerPace::Clock::time_point last_frame_{};
+
+  std::jthread thread_;  ///< last: starts when all else is there, stops first
+};
+
+}  // namespace clothlab

@@ -1,0 +1,62 @@
+// What the charts have recorded, and which curves each chart makes of it.
+#pragma once
+
+#include <QString>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bridge/chart_sample.h"
+#include "charts/curve_style.h"
+#include "charts/nice_range.h"
+#include "charts/sample_series.h"
+
+namespace clothlab {
+
+/// Columns of ChartRecord::samples, in the order of ChartSample.
+enum SampleColumn : std::size_t { kinetic, elastic, gravity, total, strain, step_time, sample_columns };
+
+struct ChartRecord {
+  SampleSeries samples{sample_columns};
+  SampleSeries draws{
+      1};  ///< time per drawing (ms), at times of its own: drawing and simulation do not march in step
+  std::optional<double> deformation_rate;  ///< a fraction
+
+  /// A time before the last one starts a new record: the simulation was reset.
+  void append(std::span<const ChartSample> batch);
+  void append_draw_time(double time_s, double milliseconds);
+  void clear();
+  bool empty() const { return samples.empty() && draws.empty(); }
+  /// From the first to the last sample (s); draw times count only while there are no samples.
+  Range times() const;
+};
+
+enum class Source { samples, draws };
+
+struct CurveSpec {
+  QString name;
+  Source source = Source::samples;
+  std::size_t column = 0;
+  double scale = 1;  ///< recorded value to the chart's unit
+  CurveStyle style;
+
+  const SampleSeries& series(const ChartRecord& record) const {
+    return source == Source::samples ? record.samples : record.draws;
+  }
+};
+
+struct ChartSpec {
+  QString key;    ///< for object names
+  QString title;  ///< the y axis' title, with its unit
+  QString unit;
+  bool from_zero = false;  ///< the automatic linear range begins at zero
+  std::vector<CurveSpec> curves;
+  bool has_limit = false;  ///< shows the deformation rate as a level line
+};
+
+/// Energy, strain and frame time, from top to bottom.
+const std::vector<ChartSpec>& chart_specs();
+/// The deformation rate's line, and its factor to the chart's percent.
+const CurveSpec& limit_spec();
+
+}  // namespace clothlab

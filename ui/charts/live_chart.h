@@ -1,0 +1,76 @@
+// One of the stacked charts: its title and legend above its plot, its y axis' range, and what the cursor
+// reads.
+#pragma once
+
+#include <QWidget>
+
+#include "charts/chart_buttons.h"
+#include "charts/plot_view.h"
+
+class QLabel;
+
+namespace clothlab {
+
+class LiveChart : public QWidget {
+  Q_OBJECT
+ public:
+  LiveChart(const ChartSpec& spec, bool time_labels, QWidget* parent = nullptr);
+
+  const ChartSpec& spec() const { return spec_; }
+  PlotScene& scene() { return *scene_; }
+  PlotView& view() { return *view_; }
+
+  bool is_logarithmic() const { return logarithmic_; }
+  void set_logarithmic(bool on);
+  /// Whether the user has chosen the y range.
+  bool has_own_y_range() const { return own_y_.has_value(); }
+  void zoom_y(double anchor, double factor);
+  void pan_y(double by);
+  void set_y_range(std::optional<Range> axis_range);
+
+  /// First half of an update: chooses the range and the ticks for these times. Returns the room its y labels
+  /// need (px).
+  double prepare(const ChartRecord& record, Range time);
+  /// Second half: draws with the plot's left edge at `gutter`.
+  void draw(const ChartRecord& record, double gutter);
+  /// Shows the values at the sample nearest to a time, or nothing.
+  void read(const ChartRecord& record, std::optional<double> time_s);
+  void set_message(const QString& message) { scene_->overlay().set_message(message); }
+  void apply_look();
+
+  /// Rows of the header at a width, and the whole height that is not plot (px).
+  int height_beside_plot(int width) const;
+  /// What is drawn now, for an exported picture.
+  PlotFrame frame_for(QSizeF plot_size) const;
+  bool limit_on(const ChartRecord& record) const;
+  std::vector<bool> shown_curves() const;
+
+ Q_SIGNALS:
+  void changed();  ///< a curve was hidden or shown, or the scale switched
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+
+ private:
+  int header_height(int width) const;
+  void lay_out();
+  Range automatic_y(const ChartRecord& record);
+  Range data_range(const ChartRecord& record, bool positive) const;
+  void choose_ticks(PlotFrame& frame, QSizeF plot_size) const;
+  QRectF plot_rect(double gutter) const;
+
+  const ChartSpec& spec_;
+  bool time_labels_;
+  QLabel* title_;
+  std::vector<LegendEntry*> legend_;
+  LegendEntry* limit_entry_ = nullptr;
+  FlatButton* log_button_;
+  PlotScene* scene_;
+  PlotView* view_;
+  bool logarithmic_ = false;
+  std::optional<Range> own_y_;  ///< in axis coordinates
+  StickyRange sticky_;
+  PlotFrame frame_;
+};
+
+}  // namespace clothlab

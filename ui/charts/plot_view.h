@@ -1,0 +1,55 @@
+// The window onto a chart's picture: turns wheel, drags and double-clicks into wishes in the axes' own
+// coordinates.
+#pragma once
+
+#include <QGraphicsView>
+#include <optional>
+
+#include "charts/plot_scene.h"
+
+namespace clothlab {
+
+class PlotView : public QGraphicsView {
+  Q_OBJECT
+ public:
+  explicit PlotView(PlotScene* scene, QWidget* parent = nullptr);
+  void fit(QSize size);
+  /// Left-drag pulls a zoom box instead of panning.
+  void set_box_mode(bool on) { box_mode_ = on; }
+  static QString help();
+
+ Q_SIGNALS:
+  void hovered(std::optional<double> time_s);
+  /// A factor below 1 zooms in; the anchor stays where it is.
+  void time_zoomed(double anchor_s, double factor);
+  void time_panned(double by_s);
+  void y_zoomed(double anchor, double factor);
+  void y_panned(double by);
+  void box_chosen(clothlab::Range time, clothlab::Range y);
+  void reset_wanted();
+  void y_reset_wanted();
+
+ protected:
+  void wheelEvent(QWheelEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+
+ private:
+  enum class Drag { none, pressed, pan, box };
+  bool over_y_axis(QPointF at) const;
+  void drag_to(QPointF at);
+  void finish_box(QPointF at);
+  void end_drag();
+
+  PlotScene* scene_;
+  bool box_mode_ = false;
+  Drag drag_ = Drag::none;
+  bool wants_box_ = false;  ///< what the press becomes once the pointer moves
+  bool on_y_axis_ = false;
+  QPointF pressed_at_, last_;
+};
+
+}  // namespace clothlab

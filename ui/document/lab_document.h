@@ -1,0 +1,92 @@
+// The one home for state: the scene being edited, its file and its undo history. Every edit is an undoable
+// command, and every change, undo and redo included, is announced by the same signals. It knows no worker and
+// no widget.
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <QUndoStack>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/scene_parameters.h"
+
+namespace clothlab {
+
+/// What an edit asks of a running simulation, from ParameterInfo::cost: the next step takes a live edit over,
+/// a restart needs a new start. A block that comes or goes demands a restart if one of its parameters does.
+struct SceneChange {
+  enum class Effect { live, restart } effect = Effect::live;
+  std::string path;  ///< of the parameter or block; "cloth.pins" for pins
+};
+
+class LabDocument : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit LabDocument(QObject* parent = nullptr);
+  ~LabDocument() override;
+
+  const cloth::Scene& scene() const { return scene_; }
+  /// The value at `path`, if the scene has that parameter.
+  std::optional<cloth::ParameterValue> value(const std::string& path) const;
+
+  QUndoStack& undoStack() { return undo_stack_; }
+  QString path() const { return path_; }  ///< of the file; empty for built-in and unsaved scenes
+  QString title() const;                  ///< the scene's, else the file's name, else "Untitled"
+  bool isModified() const { return !undo_stack_.isClean(); }
+
+  /// Takes another scene over and forgets the history.
+  void load(cloth::Scene scene, const QString& path = {});
+  /// The scene as it is now lies in the file `path`.
+  void markSaved(const QString& path);
+
+  /// Changes one parameter. Returns the rule that `value` breaks ("must be >= 0") and then changes nothing;
+  /// returns an empty string when done. An equal value is no edit.
+  QString setParameter(const std::string& path, const cloth::ParameterValue& value);
+  /// Back to the declared default, as far as there is one.
+  QString resetParameter(const std::string& path);
+
+  /// Between the two, edits of one parameter are one undo step, and none at all if the value comes back.
+  void beginDrag();
+  void endDrag();
+
+  /// By the path of a cloth::BlockOffer ("air", "sphere"); false if the scene is not offered it.
+  bool addBlock(const std::string& offer_path);
+  /// By the path of a removable cloth::Block; false if there is none.
+  bool removeBlock(const std::string& block_path);
+
+  void setPins(std::vector<cloth::Pin> pins);
+  /// Pins a free particle and frees a pinned one; see toggled_pins().
+  void togglePin(int row, int column);
+
+ Q_SIGNALS:
+  void parameterChanged(const std::string& path);
+  void
+  blocksChanged();  ///< blocks or parameters came or went; comes before parameterChanged of the same edit
+  void pinsChanged();
+  void loaded();  ///< the whole scene is new; no other signal about its content comes with it
+  void sceneChanged(const clothlab::SceneChange& change);  ///< once for each edit, undo and redo; last
+  void titleChanged();
+  void modifiedChanged(bool modified);
+
+ private:
+  class EditCommand;
+
+  void apply(const cloth::Scene& target, const SceneChange& change);
+  void push(const QString& text, cloth::Scene after, SceneChange change, int drag = 0);
+  QString change(const std::string& path, const cloth::ParameterValue& value, const QString& verb);
+  const cloth::Scene& sceneBefore(const std::string& path) const;
+
+  cloth::Scene scene_;
+  QString path_;
+  QUndoStack undo_stack_;
+  int drag_ = 0;  ///< number of the present drag; 0: none
+  int last_drag_ = 0;
+};
+
+}  // namespace clothlab
+
+Q_DECLARE_METATYPE(clothlab::SceneChange)

@@ -1,0 +1,276 @@
+#include "main_window/main_window.h"
+
+#include <QAction>
+#include <QCloseEvent>
+#include <QDesktopServices>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QUrl>
+#include <QVBoxLayout>
+
+#include "main_window/scene_library.h"
+#include "main_window/view_bar.h"
+#include "simulation/time_step.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr QSize pleasant_size{1440, 900};
+constexpr int parameters_width = 340, charts_width = 400;  // px
+
+}  // namespace
+
+MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
+  setObjectName("mainWindow");
+  setAcceptDrops(true);
+  resize(pleasant_size);
+  setDockNestingEnabled(true);
+  view_ = new ClothView(this);
+  charts_ = new ChartPanel(this);
+  parameters_ = new ParameterPanel(document_, this);
+  notice_ = new NoticeBar(this);
+  makeActions();
+  makeLayout();
+  makeMenus();
+  connectDocument();
+  connectView();
+  connectSimulation();
+  updateTitle();
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::makeLayout() {
+  transport_ = new TransportBar({play_, step_, reset_, record_}, this);
+  view_bar_ = new ViewBar(*view_, save_picture_, this);
+  view_->setMinimumSize(320, 240);
+
+  auto* middle = new QWidget(this);
+  auto* column = new QVBoxLayout(middle);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  column->addWidget(view_bar_);
+  column->addWidget(notice_);
+  column->addWidget(view_, 1);
+  column->addWidget(transport_);
+  setCentralWidget(middle);
+
+  const auto dock = [this](const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area) {
+    auto* widget = new QDockWidget(title, this);
+    widget->setObjectName(name);
+    widget->setWidget(content);
+    addDockWidget(area, widget);
+    return widget;
+  };
+  QDockWidget* left = dock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
+  QDockWidget* right = dock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
+  resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
+}
+
+void MainWindow::connectDocument() {
+  connect(&document_, &LabDocument::sceneChanged, this, &MainWindow::followChange);
+  connect(&document_, &LabDocument::loaded, this, [this] {
+    view_->resetCamera();
+    startSimulation();
+  });
+  connect(&document_, &LabDocument::titleChanged, this, &MainWindow::updateTitle);
+  connect(&document_, &LabDocument::modifiedChanged, this, &MainWindow::updateTitle);
+}
+
+void MainWindow::connectView() {
+  connect(view_, &ClothView::pullChanged, this, [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
+  connect(view_, &ClothView::pullEnded, this, [this] { link_.send(command::Pull{}); });
+  connect(view_, &ClothView::brushChanged, this, &MainWindow::brush);
+  connect(view_, &ClothView::brushEnded, this, [this] { link_.send(command::Brush{}); });
+  connect(view_, &ClothView::pinToggled, this, [this](int particle) {
+    const int columns = document_.scene().cloth.columns;
+    document_.togglePin(particle / columns, particle % columns);
+  });
+  connect(view_, &ClothView::openGlFailed, this, [this](const QString& reason) {
+    notice_->show("opengl", NoticeBar::Level::warning,
+                  tr("The view needs OpenGL 3.3, which this machine does not give (%1). Everything else works.").arg(reason));
+  });
+  connect(view_, &ClothView::frameDrawn, this, [this](double milliseconds) {
+    if (shown_status_.playing) charts_->appendDrawTime(shown_status_.time, milliseconds);
+  });
+}
+
+void MainWindow::connectSimulation() {
+  connect(&link_, &SimulationLink::frameReady, view_, &ClothView::showFrame);
+  connect(&link_, &SimulationLink::samplesReady, this,
+          [this](const std::vector<ChartSample>& samples) { charts_->append(samples); });
+  connect(&link_, &SimulationLink::statusChanged, this, &MainWindow::followStatus);
+  connect(transport_, &TransportBar::speedChosen, this, [this](double factor) { link_.send(command::Speed{factor}); });
+  connect(play_, &QAction::triggered, this, [this](bool play) {
+    play ? link_.send(command::Play{}) : link_.send(command::Pause{});
+  });
+  connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
+  connect(reset_, &QAction::triggered, this, [this] { link_.send(command::Restart{}); });
+  connect(record_, &QAction::triggered, this, &MainWindow::toggleRecording);
+}
+
+void MainWindow::openScene(const QString& name) {
+  if (mayLoseChanges()) takeScene(open_scene(name));
+}
+
+void MainWindow::takeScene(const OpenedScene& opened) {
+  if (!opened.scene) {
+    notice_->show("open", NoticeBar::Level::error, tr("The scene was not opened.\n%1").arg(opened.problems));
+    return;
+  }
+  notice_->withdraw("open");
+  if (!opened.path.isEmpty()) remember_scene(opened.path);
+  document_.load(*opened.scene, opened.path);
+}
+
+void MainWindow::startSimulation() {
+  charts_->clear();
+  link_.send(command::Load{document_.scene()});
+  readStability();
+}
+
+void MainWindow::followChange(const SceneChange& change) {
+  if (change.effect == SceneChange::Effect::live) {
+    link_.send(command::Edit{document_.scene()});
+    readStability();
+    return;
+  }
+  const bool was_playing = shown_status_.playing;
+  startSimulation();
+  if (was_playing) link_.send(command::Play{});
+}
+
+void MainWindow::readStability() {
+  const StabilityReading reading = read_stability(document_.scene());
+  transport_->gauge().setReading(reading);
+  const bool has_step = reading.time_step > 0;
+  parameters_->setAutoValue("integrator.time_step", has_step ? std::optional(reading.time_step) : std::nullopt);
+
+  const auto& deformation = document_.scene().deformation;
+  charts_->setDeformationRate(deformation && !deformation->springs.empty() ? std::optional(deformation->rate)
+                                                                           : std::nullopt);
+  if (reading.level == StabilityReading::Level::unstable)
+    notice_->show("stability", NoticeBar::Level::warning,
+                  tr("The time step is over the limit of this method: the run will diverge."), tr("Use auto"),
+                  [this] { takeStableStep(); });
+  else
+    notice_->withdraw("stability");
+}
+
+void MainWindow::takeStableStep() { document_.setParameter("integrator.time_step", std::string("auto")); }
+
+void MainWindow::followStatus(const WorkerStatus& status) {
+  play_->setChecked(status.playing);
+  play_->setIcon(icon(status.playing ? "pause" : "play"));
+  play_->setText(status.playing ? tr("Pause") : tr("Play"));
+  play_->setEnabled(status.refusal.empty());
+  step_->setEnabled(status.refusal.empty());
+  transport_->showStatus(status);
+
+  if (!status.refusal.empty())
+    notice_->show("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
+  else
+    notice_->withdraw("refusal");
+  if (status.notice != shown_status_.notice) {
+    if (status.notice.empty())
+      notice_->withdraw("unreachable");
+    else
+      notice_->show("unreachable", NoticeBar::Level::warning, QString::fromStdString(status.notice));
+  }
+  followDivergence(status);
+  followRecording(status);
+  shown_status_ = status;
+}
+
+void MainWindow::followDivergence(const WorkerStatus& status) {
+  if (!status.divergence) {
+    if (shown_status_.divergence) notice_->withdraw("divergence");
+    return;
+  }
+  if (shown_status_.divergence) return;
+  const QString text = tr("The run %1. The view shows the last good state.")
+                           .arg(QString::fromStdString(cloth::describe(*status.divergence)));
+  if (status.divergence->stable_step > 0)
+    notice_->show("divergence", NoticeBar::Level::error, text, tr("Use auto and restart"), [this] {
+      takeStableStep();
+      link_.send(command::Restart{});
+    });
+  else
+    notice_->show("divergence", NoticeBar::Level::error, text);
+}
+
+void MainWindow::followRecording(const WorkerStatus& status) {
+  record_->setChecked(status.recording);
+  record_->setIcon(icon(status.recording ? "stop-record" : "record"));
+  if (status.recording_error != shown_status_.recording_error && !status.recording_error.empty()) {
+    notice_->show("recording", NoticeBar::Level::error,
+                  tr("Recording stopped: %1. What was written before is valid.")
+                      .arg(QString::fromStdString(status.recording_error)));
+  } else if (shown_status_.recording && !status.recording) {
+    const QString folder = QString::fromStdString(status.recording_folder.string());
+    notice_->show("recording", NoticeBar::Level::info,
+                  tr("Recorded %1 rows in %2").arg(status.recorded_rows).arg(folder), tr("Open folder"),
+                  [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
+  }
+}
+
+void MainWindow::brush(const cloth::BrushGust& gust) {
+  const auto& air = document_.scene().air;
+  if (!air || !(air->drag > 0)) {
+    notice_->show("brush", NoticeBar::Level::info, tr("The wind brush needs air, and this scene has none."),
+                  tr("Add still air"), [this] { addStillAir(); });
+    return;
+  }
+  link_.send(command::Brush{gust});
+}
+
+void MainWindow::addStillAir() {
+  document_.undoStack().beginMacro(tr("Add still air"));
+  if (!document_.scene().air) {
+    document_.addBlock("air");
+    document_.setParameter("air.wind", cloth::Vec3(0, 0, 0));
+  } else {
+    document_.resetParameter("air.drag");
+  }
+  document_.undoStack().endMacro();
+}
+
+void MainWindow::startRecording(const QString& folder) { link_.send(command::StartRecording{folder.toStdString()}); }
+
+void MainWindow::updateTitle() {
+  setWindowTitle(QStringLiteral("%1[*] – Clothlab").arg(document_.title()));
+  setWindowModified(document_.isModified());
+}
+
+bool MainWindow::mayLoseChanges() {
+  if (!asks_to_save_ || !document_.isModified()) return true;
+  const auto answer = QMessageBox::question(
+      this, tr("Unsaved changes"), tr("\"%1\" was changed. Save the changes?").arg(document_.title()),
+      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
+  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!mayLoseChanges()) {
+    event->ignore();
+    return;
+  }
+  link_.send(command::Pause{});
+  link_.send(command::StopRecording{});
+  event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const auto urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  event->acceptProposedAction();
+  openScene(event->mimeData()->urls().front().toLocalFile());
+}
+
+}  // namespace clothlab

@@ -1,0 +1,103 @@
+// The window: the view in the middle, parameters and charts beside it, the worker behind it. It connects the rooms and
+// decides nothing that one of them could.
+#pragma once
+
+#include <QMainWindow>
+#include <QPointer>
+
+#include "bridge/simulation_link.h"
+#include "charts/chart_panel.h"
+#include "document/lab_document.h"
+#include "main_window/notice_bar.h"
+#include "main_window/transport_bar.h"
+#include "params/parameter_panel.h"
+#include "viewport/cloth_view.h"
+
+class QMenu;
+
+namespace clothlab {
+
+struct OpenedScene;
+class ViewBar;
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit MainWindow(QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  /// A file or the name of a built-in scene. What cannot be opened is said in the window, and the scene before stays.
+  void openScene(const QString& name);
+
+  /// Records into `folder` until the record action is switched off.
+  void startRecording(const QString& folder);
+
+  /// Whether closing or opening another scene asks about unsaved changes.
+  void setAsksToSave(bool asks) { asks_to_save_ = asks; }
+
+  LabDocument& document() { return document_; }
+  SimulationLink& simulation() { return link_; }
+  ClothView& view() { return *view_; }
+  ChartPanel& charts() { return *charts_; }
+  ParameterPanel& parameters() { return *parameters_; }
+  NoticeBar& notice() { return *notice_; }
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+
+ private:
+  // main_window.cpp
+  void makeLayout();
+  void connectDocument();
+  void connectView();
+  void connectSimulation();
+  void takeScene(const OpenedScene& opened);
+  void followChange(const SceneChange& change);
+  void startSimulation();
+  void followStatus(const WorkerStatus& status);
+  void followRecording(const WorkerStatus& status);
+  void followDivergence(const WorkerStatus& status);
+  void readStability();
+  void takeStableStep();
+  void brush(const cloth::BrushGust& gust);
+  void addStillAir();
+  void updateTitle();
+  bool mayLoseChanges();
+
+  // main_window_menus.cpp
+  void makeActions();
+  void makeMenus();
+  void fillRecentMenu();
+  void openWithDialog();
+  bool save();
+  bool saveAs();
+  void savePicture();
+  void toggleRecording(bool on);
+  void showAbout();
+
+  LabDocument document_;
+  SimulationLink link_;
+  ClothView* view_ = nullptr;
+  ChartPanel* charts_ = nullptr;
+  ParameterPanel* parameters_ = nullptr;
+  NoticeBar* notice_ = nullptr;
+  TransportBar* transport_ = nullptr;
+  ViewBar* view_bar_ = nullptr;
+  QMenu* recent_menu_ = nullptr;
+  QMenu* windows_menu_ = nullptr;
+
+  QAction* play_ = nullptr;
+  QAction* step_ = nullptr;
+  QAction* reset_ = nullptr;
+  QAction* record_ = nullptr;
+  QAction* save_picture_ = nullptr;
+  QAction* save_plots_ = nullptr;
+
+  WorkerStatus shown_status_;
+  bool asks_to_save_ = true;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,75 @@
+#include "main_window/scene_library.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFileInfo>
+#include <QSettings>
+#include <QStandardPaths>
+
+#include "io/run_folder.h"
+#include "scene/builtin_scenes.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int most_recent = 8;
+const char* const recent_key = "recentScenes";
+
+OpenedScene read_text(const std::string& text, const std::string& place, const QString& path) {
+  cloth::SceneReading reading = cloth::read_scene(text, place);
+  OpenedScene opened{std::move(reading.scene), path, {}};
+  QStringList lines;
+  for (const cloth::Problem& problem : reading.problems) lines << QString::fromStdString(problem.text());
+  opened.problems = lines.join('\n');
+  return opened;
+}
+
+}  // namespace
+
+OpenedScene open_scene_file(const QString& path) {
+  std::string text;
+  if (const auto error = cloth::read_text_file(path.toStdString(), text))
+    return {std::nullopt, path, QString::fromStdString(error->text())};
+  return read_text(text, QFileInfo(path).fileName().toStdString(), QFileInfo(path).absoluteFilePath());
+}
+
+OpenedScene open_scene(const QString& name) {
+  if (QFileInfo::exists(name)) return open_scene_file(name);
+  if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name.toStdString()))
+    return read_text(builtin->text, builtin->name, {});
+  return {std::nullopt, name, QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
+}
+
+QString save_scene_file(const cloth::Scene& scene, const QString& path) {
+  const auto error = cloth::write_text_file(path.toStdString(), cloth::write_scene(scene));
+  return error ? QString::fromStdString(error->text()) : QString();
+}
+
+QStringList recent_scenes() {
+  QStringList existing;
+  for (const QString& path : QSettings().value(recent_key).toStringList())
+    if (QFileInfo::exists(path)) existing << path;
+  return existing;
+}
+
+void remember_scene(const QString& path) {
+  QStringList recent = recent_scenes();
+  const QString absolute = QFileInfo(path).absoluteFilePath();
+  recent.removeAll(absolute);
+  recent.prepend(absolute);
+  QSettings().setValue(recent_key, QStringList(recent.mid(0, most_recent)));
+}
+
+QString new_recording_folder(const QString& title) {
+  QString name;
+  for (const QChar c : title.toLower()) name += c.isLetterOrNumber() ? c : QChar('-');
+  while (name.contains("--")) name.replace("--", "-");
+  const QString stamp = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
+  const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
+  const QString base = QDir(documents).filePath("Clothlab/" + stamp + "-" + name.left(40));
+  QString folder = base;
+  for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);
+  return folder;
+}
+
+}  // namespace clothlab

@@ -1,0 +1,34 @@
+// Where scenes come from: files, the built-in ones, and those that were open lately.
+#pragma once
+
+#include <QString>
+#include <QStringList>
+#include <optional>
+
+#include "scene/scene.h"
+
+namespace clothlab {
+
+/// A scene, or why there is none, in words for a person.
+struct OpenedScene {
+  std::optional<cloth::Scene> scene;
+  QString path;      ///< of the file; empty for a built-in scene
+  QString problems;  ///< every problem, a line each
+};
+
+OpenedScene open_scene_file(const QString& path);
+
+/// `name` is a file or a built-in scene, as on the command line.
+OpenedScene open_scene(const QString& name);
+
+/// Empty when done, else what went wrong.
+QString save_scene_file(const cloth::Scene& scene, const QString& path);
+
+/// The files opened or saved last, newest first, those that still exist.
+QStringList recent_scenes();
+void remember_scene(const QString& path);
+
+/// A new folder's path for a recording of this scene, in the user's documents.
+QString new_recording_folder(const QString& title);
+
+}  // namespace clothlab

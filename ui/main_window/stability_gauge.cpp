@@ -1,0 +1,139 @@
+#include "main_window/stability_gauge.h"
+
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+
+#include "measure/stability_limit.h"
+#include "simulation/time_step.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int bar_width = 72, bar_height = 6;  // px
+constexpr double bar_maximum = 1.25;           // of the limit, at the bar's right end
+
+QString step_text(double seconds) {
+  if (seconds >= 0.1) return QString::number(seconds, 'g', 3) + QStringLiteral(" s");
+  if (seconds >= 1e-4) return QString::number(1e3 * seconds, 'g', 3) + QStringLiteral(" ms");
+  return QString::number(1e6 * seconds, 'g', 3) + QStringLiteral(" µs");
+}
+
+QColor level_colour(StabilityReading::Level level) {
+  switch (level) {
+    case StabilityReading::Level::unlimited:
+    case StabilityReading::Level::stable: return theme().good;
+    case StabilityReading::Level::near: return theme().warning;
+    case StabilityReading::Level::unstable:
+    case StabilityReading::Level::impossible: return theme().error;
+  }
+  return theme().good;
+}
+
+}  // namespace
+
+StabilityReading read_stability(const cloth::Scene& scene) {
+  using Level = StabilityReading::Level;
+  StabilityReading reading;
+  reading.automatic = !scene.integrator.time_step.has_value();
+  reading.time_step = cloth::resolved_time_step(scene).value_or(0);
+  const auto limit = cloth::stable_step(scene.integrator.method, scene);
+  if (!limit) {
+    reading.level = Level::impossible;
+  } else if (std::isinf(*limit)) {
+    reading.level = Level::unlimited;
+  } else {
+    reading.stable_step = *limit;
+    const double fraction = reading.fraction();
+    reading.level = fraction >= 1 ? Level::unstable : fraction >= near_limit ? Level::near : Level::stable;
+  }
+  return reading;
+}
+
+StabilityGauge::StabilityGauge(QWidget* parent) : QWidget(parent) {
+  setAccessibleName(tr("Stability of the time step"));
+  setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+}
+
+void StabilityGauge::setReading(const StabilityReading& reading) {
+  reading_ = reading;
+  setToolTip(explanation());
+  setAccessibleDescription(text());
+  updateGeometry();
+  update();
+}
+
+QString StabilityGauge::text() const {
+  using Level = StabilityReading::Level;
+  switch (reading_.level) {
+    case Level::impossible:
+      return reading_.time_step > 0 ? tr("%1, no step is stable").arg(step_text(reading_.time_step))
+                                    : tr("No step is stable");
+    case Level::unlimited: return tr("%1, any step is stable").arg(step_text(reading_.time_step));
+    default: break;
+  }
+  const int percent = static_cast<int>(std::lround(100 * reading_.fraction()));
+  return tr("%1, %2 % of the limit").arg(step_text(reading_.time_step)).arg(std::min(percent, 9999));
+}
+
+QString StabilityGauge::explanation() const {
+  using Level = StabilityReading::Level;
+  const QString step = reading_.automatic ? tr("Time step %1, chosen by auto.") : tr("Time step %1.");
+  QString text = reading_.time_step > 0 ? step.arg(step_text(reading_.time_step)) + QStringLiteral(" ") : QString();
+  switch (reading_.level) {
+    case Level::impossible:
+      text += tr("This method amplifies every motion that is not damped, and the scene has no viscous damping: it "
+                 "diverges at any step.");
+      break;
+    case Level::unlimited: text += tr("Nothing in this scene limits the step."); break;
+    case Level::stable:
+      text += tr("The method is stable for this scene up to %1.").arg(step_text(reading_.stable_step));
+      break;
+    case Level::near:
+      text += tr("The limit of the method for this scene is %1. Stretching the cloth lowers it by a few percent, so this "
+                 "step may diverge.")
+                  .arg(step_text(reading_.stable_step));
+      break;
+    case Level::unstable:
+      text += tr("The limit of the method for this scene is %1: the run will diverge.").arg(step_text(reading_.stable_step));
+      break;
+  }
+  return text;
+}
+
+QSize StabilityGauge::sizeHint() const {
+  const int widest = fontMetrics().horizontalAdvance(tr("0.000 ms, 100 % of the limit"));
+  return {bar_width + spacing + std::max(widest, fontMetrics().horizontalAdvance(text())), fontMetrics().height() + spacing};
+}
+
+QSize StabilityGauge::minimumSizeHint() const { return {bar_width, sizeHint().height()}; }
+
+void StabilityGauge::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const QRectF bar(0, (height() - bar_height) / 2.0, bar_width, bar_height);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(theme().border);
+  painter.drawRoundedRect(bar, bar_height / 2.0, bar_height / 2.0);
+
+  const bool over = reading_.level == StabilityReading::Level::impossible;
+  const double fraction = over ? bar_maximum : std::min(reading_.fraction(), bar_maximum);
+  QRectF filled = bar;
+  filled.setWidth(std::max<double>(bar_height, bar.width() * fraction / bar_maximum));
+  painter.setBrush(level_colour(reading_.level));
+  painter.drawRoundedRect(filled, bar_height / 2.0, bar_height / 2.0);
+
+  const double limit_x = std::round(bar.left() + bar.width() / bar_maximum) + 0.5;
+  painter.setPen(QPen(theme().text, 1));
+  painter.drawLine(QPointF(limit_x, bar.top() - 3), QPointF(limit_x, bar.bottom() + 3));
+
+  const QRect text_rect = rect().adjusted(bar_width + spacing, 0, 0, 0);
+  const bool alarming = reading_.level == StabilityReading::Level::unstable || over;
+  painter.setPen(alarming ? theme().error
+                          : reading_.level == StabilityReading::Level::near ? theme().warning : theme().text);
+  painter.drawText(text_rect, Qt::AlignVCenter | Qt::AlignLeft,
+                   fontMetrics().elidedText(text(), Qt::ElideRight, text_rect.width()));
+}
+
+}  // namespace clothlab

@@ -1,0 +1,47 @@
+// The gauge that says how near the time step is to the method's stability limit for the scene.
+#pragma once
+
+#include <QWidget>
+#include <optional>
+
+#include "scene/scene.h"
+
+namespace clothlab {
+
+/// What the gauge shows.
+struct StabilityReading {
+  enum class Level { unlimited, stable, near, unstable, impossible } level = Level::stable;
+  double time_step = 0;    ///< s; 0 where there is none
+  double stable_step = 0;  ///< s; 0 where there is none
+  bool automatic = false;  ///< the step was chosen by "auto"
+  double fraction() const { return stable_step > 0 ? time_step / stable_step : 0; }
+};
+
+/// Above this part of the limit the gauge warns.
+inline constexpr double near_limit = 0.9;
+
+StabilityReading read_stability(const cloth::Scene& scene);
+
+class StabilityGauge : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit StabilityGauge(QWidget* parent = nullptr);
+
+  void setReading(const StabilityReading& reading);
+  const StabilityReading& reading() const { return reading_; }
+  QString text() const;  ///< "0.91 ms, 73 % of the limit"
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QString explanation() const;
+
+  StabilityReading reading_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,113 @@
+#include "main_window/transport_bar.h"
+
+#include <QAction>
+#include <QComboBox>
+#include <QFontDatabase>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QToolButton>
+#include <limits>
+
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr double as_fast_as_possible = std::numeric_limits<double>::infinity();
+
+/// Width that does not change while digits do.
+QLabel* number_label(const QString& widest, const QString& name, QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setMinimumWidth(label->fontMetrics().horizontalAdvance(widest));
+  return label;
+}
+
+QString grouped(double value) {
+  const QString digits = QString::number(value, 'f', 0);
+  QString text;
+  for (int i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += QChar(0x202f);  // narrow no-break space
+    text += digits[i];
+  }
+  return text;
+}
+
+}  // namespace
+
+TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
+    : QFrame(parent),
+      speed_(new QComboBox(this)),
+      time_(number_label("000.000 s", "timeLabel", this)),
+      rate_(number_label("000 000 steps/s, 0.00x real time", "rateLabel", this)),
+      recording_(new QLabel(this)),
+      gauge_(new StabilityGauge(this)) {
+  setObjectName("transportBar");
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
+  row->setSpacing(spacing / 2);
+  QToolButton* play = makeButton(actions.play);
+  play->setIconSize({24, 24});
+  row->addWidget(play);
+  row->addWidget(makeButton(actions.step));
+  row->addWidget(makeButton(actions.reset));
+  row->addWidget(makeButton(actions.record));
+  row->addSpacing(spacing);
+  row->addWidget(speed_);
+  row->addSpacing(spacing);
+  QFont bold = time_->font();
+  bold.setBold(true);
+  time_->setFont(bold);
+  time_->setToolTip(tr("Simulated time"));
+  row->addWidget(time_);
+  rate_->setProperty("muted", true);
+  rate_->setToolTip(tr("Steps per second of the clock, and simulated seconds per second"));
+  rate_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  row->addWidget(rate_, 1);
+  recording_->setObjectName("recordingLabel");
+  row->addWidget(recording_);
+  row->addSpacing(spacing);
+  row->addWidget(gauge_);
+
+  fillSpeeds();
+  showStatus({});
+}
+
+QToolButton* TransportBar::makeButton(QAction* action) {
+  auto* button = new QToolButton(this);
+  button->setDefaultAction(action);
+  button->setAutoRaise(true);
+  button->setIconSize({20, 20});
+  button->setObjectName(action->objectName() + "Button");
+  button->setAccessibleName(action->text());
+  return button;
+}
+
+void TransportBar::fillSpeeds() {
+  speed_->setObjectName("speed");
+  speed_->setToolTip(tr("Speed: simulated seconds per second"));
+  speed_->setAccessibleName(tr("Speed"));
+  for (const double factor : {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0})
+    speed_->addItem(tr("%1x").arg(factor), factor);
+  speed_->addItem(tr("Fastest"), as_fast_as_possible);
+  speed_->setCurrentIndex(3);
+  connect(speed_, &QComboBox::currentIndexChanged, this,
+          [this](int index) { Q_EMIT speedChosen(speed_->itemData(index).toDouble()); });
+}
+
+void TransportBar::showStatus(const WorkerStatus& status) {
+  time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
+  if (status.divergence)
+    rate_->setText(tr("Stopped: diverged"));
+  else if (!status.playing)
+    rate_->setText(status.step > 0 ? tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step))) : tr("Ready"));
+  else if (status.steps_per_second > 0)
+    rate_->setText(tr("%1 steps/s, %2x real time")
+                       .arg(grouped(status.steps_per_second))
+                       .arg(status.real_time_factor, 0, 'f', 2));
+  else
+    rate_->setText(tr("Running"));
+  recording_->setText(status.recording ? tr("%1 rows").arg(status.recorded_rows) : QString());
+}
+
+}  // namespace clothlab

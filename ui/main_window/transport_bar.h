@@ -1,0 +1,47 @@
+// Below the view: play, step, reset, speed; how time goes; the stability gauge; record.
+#pragma once
+
+#include <QFrame>
+
+#include "bridge/worker_status.h"
+#include "main_window/stability_gauge.h"
+
+class QAction;
+class QComboBox;
+class QLabel;
+class QToolButton;
+
+namespace clothlab {
+
+/// The actions that the bar shows as buttons; the window's menus have them too.
+struct TransportActions {
+  QAction* play;
+  QAction* step;
+  QAction* reset;
+  QAction* record;
+};
+
+class TransportBar : public QFrame {
+  Q_OBJECT
+
+ public:
+  TransportBar(const TransportActions& actions, QWidget* parent = nullptr);
+
+  void showStatus(const WorkerStatus& status);
+  StabilityGauge& gauge() { return *gauge_; }
+
+ Q_SIGNALS:
+  void speedChosen(double factor);  ///< simulated seconds per second; infinity: as fast as it goes
+
+ private:
+  QToolButton* makeButton(QAction* action);
+  void fillSpeeds();
+
+  QComboBox* speed_;
+  QLabel* time_;
+  QLabel* rate_;
+  QLabel* recording_;
+  StabilityGauge* gauge_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,196 @@
+#include "params/exact_field.h"
+
+#include <QKeyEvent>
+#include <QPainter>
+#include <QStyle>
+#include <QStyleOptionFrame>
+
+#include "params/number_text.h"
+#include "params/panel_parts.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int gap = spacing / 2;
+
+int steps_of(const QKeyEvent& key) {
+  if (key.modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier)) return 0;
+  const int arrow = key.modifiers() & Qt::ShiftModifier ? 10 : 1;
+  switch (key.key()) {
+    case Qt::Key_Up:
+      return arrow;
+    case Qt::Key_Down:
+      return -arrow;
+    case Qt::Key_PageUp:
+      return 10;
+    case Qt::Key_PageDown:
+      return -10;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+ExactField::ExactField(QWidget* parent) : QLineEdit(parent) {
+  setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+  setMaxLength(64);
+  connect(this, &QLineEdit::textEdited, this, [this] { setInvalid(false); });
+}
+
+void ExactField::setUnit(const QString& unit) {
+  unit_ = unit;
+  updateMargins();
+}
+
+void ExactField::setPrefix(const QString& text) {
+  prefix_ = text;
+  updateMargins();
+}
+
+void ExactField::updateMargins() {
+  const auto room = [this](const QString& text) {
+    return text.isEmpty() ? 0 : fontMetrics().horizontalAdvance(text) + gap;
+  };
+  setTextMargins(room(prefix_), 0, room(unit_), 0);
+}
+
+void ExactField::showValue(double value) {
+  short_ = short_text(value);
+  exact_ = exact_text(value);
+  setPlaceholderText({});
+  abandonEdit();
+}
+
+void ExactField::showNothing(const QString& hint) {
+  short_.clear();
+  exact_.clear();
+  setPlaceholderText(hint);
+  abandonEdit();
+}
+
+void ExactField::abandonEdit() {
+  setInvalid(false);
+  setModified(false);
+  showText();
+}
+
+void ExactField::showText() {
+  const QString& wanted = hasFocus() ? exact_ : short_;
+  if (text() == wanted) return;
+  const bool all_selected = hasSelectedText() && selectedText() == text();
+  setText(wanted);
+  if (all_selected)
+    selectAll();
+  else if (!hasFocus())
+    setCursorPosition(0);  // a long number shows its first digits
+}
+
+void ExactField::setInvalid(bool invalid) {
+  if (invalid_ == invalid) return;
+  invalid_ = invalid;
+  set_style_property(*this, "invalid", invalid);
+}
+
+void ExactField::commit() {
+  if (!isModified()) return;
+  setModified(false);
+  Q_EMIT committed(text());
+}
+
+bool ExactField::event(QEvent* event) {
+  // With nothing typed, undo and redo are the document's, not the line's.
+  if (event->type() == QEvent::ShortcutOverride && !isModified()) {
+    auto* key = static_cast<QKeyEvent*>(event);
+    if (key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo)) {
+      event->ignore();
+      return false;
+    }
+  }
+  return QLineEdit::event(event);
+}
+
+void ExactField::keyPressEvent(QKeyEvent* event) {
+  if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) {
+    commit();
+    if (!invalid_) selectAll();
+    return;
+  }
+  if (event->key() == Qt::Key_Escape && hasPendingText()) {
+    abandonEdit();
+    selectAll();
+    Q_EMIT abandoned();
+    return;
+  }
+  if (const int steps = steps_of(*event); steps != 0) {
+    stepping_ = true;
+    commit();
+    if (!invalid_) Q_EMIT stepped(steps);
+    return;
+  }
+  QLineEdit::keyPressEvent(event);
+}
+
+void ExactField::keyReleaseEvent(QKeyEvent* event) {
+  if (!event->isAutoRepeat() && steps_of(*event) != 0) endSteps();
+  QLineEdit::keyReleaseEvent(event);
+}
+
+void ExactField::endSteps() {
+  if (!stepping_) return;
+  stepping_ = false;
+  Q_EMIT stepsEnded();
+}
+
+void ExactField::focusInEvent(QFocusEvent* event) {
+  if (!hasPendingText()) showText();
+  QLineEdit::focusInEvent(event);
+  select_on_release_ = event->reason() == Qt::MouseFocusReason;
+}
+
+void ExactField::focusOutEvent(QFocusEvent* event) {
+  QLineEdit::focusOutEvent(event);
+  endSteps();
+  if (event->reason() == Qt::PopupFocusReason) return;
+  commit();
+  if (!hasPendingText()) showText();
+}
+
+void ExactField::mousePressEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton && !hasFocus()) select_on_release_ = true;
+  QLineEdit::mousePressEvent(event);
+}
+
+void ExactField::mouseReleaseEvent(QMouseEvent* event) {
+  QLineEdit::mouseReleaseEvent(event);
+  if (select_on_release_ && event->button() == Qt::LeftButton && !hasSelectedText()) selectAll();
+  select_on_release_ = false;
+}
+
+void ExactField::changeEvent(QEvent* event) {
+  QLineEdit::changeEvent(event);
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) updateMargins();
+}
+
+void ExactField::paintEvent(QPaintEvent* event) {
+  QLineEdit::paintEvent(event);
+  QStyleOptionFrame option;
+  initStyleOption(&option);
+  const QRect inside =
+      style()->subElementRect(QStyle::SE_LineEditContents, &option, this).adjusted(2, 0, -2, 0);
+  QPainter painter(this);
+  painter.setPen(isEnabled() ? theme().muted_text : theme().disabled_text);
+  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignRight, unit_);
+  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignLeft, prefix_);
+}
+
+QSize ExactField::sizeHint() const {
+  return {112, QLineEdit::sizeHint().height()};
+}
+
+QSize ExactField::minimumSizeHint() const {
+  return {56, QLineEdit::minimumSizeHint().height()};
+}
+
+}  // namespace clothlab

@@ -1,0 +1,61 @@
+// A field for one exact number with its unit: what is typed is what is stored. It shows six digits while
+// nobody edits it and all of them while it has the focus; showing never changes the value.
+#pragma once
+
+#include <QLineEdit>
+
+namespace clothlab {
+
+class ExactField : public QLineEdit {
+  Q_OBJECT
+
+ public:
+  explicit ExactField(QWidget* parent = nullptr);
+
+  void setUnit(const QString& unit);    ///< after the number, muted
+  void setPrefix(const QString& text);  ///< before the number, muted: an axis
+
+  /// Shows a value and forgets what was typed.
+  void showValue(double value);
+  /// Shows that there is no number; `hint` stands in its place, muted.
+  void showNothing(const QString& hint);
+
+  /// Whether the text is a person's and not yet the document's: being typed, or refused.
+  bool hasPendingText() const { return isModified() || invalid_; }
+  void setInvalid(bool invalid);
+  void abandonEdit();  ///< back to the value that was shown
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ Q_SIGNALS:
+  void committed(const QString& text);  ///< Enter, or the focus leaves, after an edit
+  void abandoned();                     ///< Escape, after an edit
+  void stepped(int steps);              ///< arrow and page keys
+  void stepsEnded();                    ///< the key is up again
+
+ protected:
+  bool event(QEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void keyReleaseEvent(QKeyEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void changeEvent(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  void commit();
+  void showText();
+  void updateMargins();
+  void endSteps();
+
+  QString unit_, prefix_;
+  QString short_, exact_;  ///< of the value shown
+  bool invalid_ = false;
+  bool stepping_ = false;
+  bool select_on_release_ = false;
+};
+
+}  // namespace clothlab

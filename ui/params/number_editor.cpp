@@ -1,0 +1,159 @@
+#include "params/number_editor.h"
+
+#include <QCheckBox>
+#include <QHBoxLayout>
+#include <QToolButton>
+#include <cmath>
+
+#include "params/exact_field.h"
+#include "params/number_text.h"
+#include "params/value_slider.h"
+#include "params/wording.h"
+
+namespace clothlab {
+namespace {
+
+const cloth::ParameterValue auto_word = std::string("auto");
+
+std::optional<double> as_number(const cloth::ParameterValue& value) {
+  if (const double* number = std::get_if<double>(&value)) return *number;
+  if (const std::int64_t* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+}  // namespace
+
+NumberEditor::NumberEditor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent)
+    : ParameterEditor(document, parameter, parent),
+      scale_(parameter.info),
+      slider_(new ValueSlider(this)),
+      field_(new ExactField(this)) {
+  name(*slider_, "slider");
+  name(*field_, "field", tr("exact value"));
+  field_->setUnit(unit_text(info().unit));
+  field_->setMinimumWidth(104);
+  field_->setMaximumWidth(136);
+  controlRow().addWidget(slider_, 5);
+  controlRow().addWidget(field_, 4);
+  if (info().auto_allowed) makeAutoToggle();
+
+  LabDocument* doc = &document;
+  connect(slider_, &ValueSlider::dragBegan, doc, &LabDocument::beginDrag);
+  connect(slider_, &ValueSlider::moved, this,
+          [this](double position) { commitNumber(scale_.value_at(position)); });
+  connect(slider_, &ValueSlider::stepped, this, &NumberEditor::step);
+  connect(slider_, &ValueSlider::dragEnded, this, [this] {
+    this->document().endDrag();
+    refresh();
+  });
+  connect(field_, &ExactField::committed, this, &NumberEditor::commitText);
+  connect(field_, &ExactField::stepped, this, [this](int steps) {
+    if (!stepping_) this->document().beginDrag();
+    stepping_ = true;
+    step(steps);
+  });
+  connect(field_, &ExactField::stepsEnded, this, [this] {
+    if (stepping_) this->document().endDrag();
+    stepping_ = false;
+  });
+  connect(field_, &ExactField::textEdited, this, [this] { showRule({}); });
+  connect(field_, &ExactField::abandoned, this, &NumberEditor::refresh);
+  refresh();
+}
+
+void NumberEditor::makeAutoToggle() {
+  auto_ = new QCheckBox(tr("Auto"), this);
+  name(*auto_, "auto", tr("automatic"));
+  titleRow().addWidget(auto_);
+  connect(auto_, &QCheckBox::clicked, this, &NumberEditor::commitAuto);
+}
+
+QList<QWidget*> NumberEditor::tabStops() const {
+  QList<QWidget*> stops{slider_, field_, &resetButton()};
+  if (auto_) stops.prepend(auto_);
+  return stops;
+}
+
+void NumberEditor::abandonEdits() {
+  const QSignalBlocker quiet(field_);
+  field_->abandonEdit();
+}
+
+void NumberEditor::showValue(const cloth::ParameterValue& value) {
+  const auto number = as_number(value);
+  if (auto_) auto_->setChecked(!number);
+  slider_->setEnabled(number || auto_value_);
+  if (!number) return showAuto();
+  last_number_ = number;
+  field_->showValue(*number);
+  // The hand is on the handle: rounding the value must not make it jump.
+  if (!slider_->isSliderDown()) slider_->setPosition(scale_.position_of(*number));
+}
+
+void NumberEditor::showAuto() {
+  field_->showNothing(auto_value_ ? short_text(*auto_value_) : tr("auto"));
+  if (!slider_->isSliderDown()) slider_->setPosition(scale_.position_of(startingNumber()));
+}
+
+void NumberEditor::setAutoValue(std::optional<double> value) {
+  auto_value_ = value;
+  if (this->value() == auto_word && !field_->hasPendingText()) {
+    slider_->setEnabled(value.has_value());
+    showAuto();
+  }
+}
+
+void NumberEditor::showDefault(const std::optional<cloth::ParameterValue>& fallback) {
+  const auto number = fallback ? as_number(*fallback) : std::nullopt;
+  slider_->setMark(number ? scale_.position_of(*number) : -1);
+}
+
+void NumberEditor::markInvalid(bool invalid) {
+  field_->setInvalid(invalid);
+}
+
+double NumberEditor::startingNumber() const {
+  if (auto_value_) return *auto_value_;
+  return last_number_ ? *last_number_ : scale_.value_at(0.5);
+}
+
+void NumberEditor::commitAuto(bool on) {
+  if (on)
+    commit(auto_word);
+  else
+    commitNumber(startingNumber());
+}
+
+void NumberEditor::commitText(const QString& text) {
+  if (info().auto_allowed && text.trimmed().compare("auto", Qt::CaseInsensitive) == 0) {
+    commit(auto_word);
+    return;
+  }
+  const auto number = number_from(text, unit_text(info().unit));
+  if (number) return commitNumber(*number);
+  if (info().auto_allowed && text.trimmed().isEmpty()) return refresh();
+  showRule(text.contains(',') ? tr("must be a number with a decimal point, like 1.5")
+                              : tr("must be a number"));
+}
+
+void NumberEditor::commitNumber(double number) {
+  if (info().kind == cloth::Kind::number) {
+    commit(number);
+    return;
+  }
+  // The range first, so that the number fits its type.
+  constexpr double exactly_whole = 9007199254740992.0;  // 2^53
+  if (const auto rule = broken_rule(info(), number)) return showRule(QString::fromStdString(*rule));
+  if (number != std::round(number) || std::abs(number) > exactly_whole)
+    return showRule(tr("must be a whole number"));
+  commit(static_cast<std::int64_t>(number));
+}
+
+void NumberEditor::step(int steps) {
+  const auto present = value();
+  if (!present) return;
+  const auto number = as_number(*present);
+  commitNumber(scale_.stepped(number ? *number : startingNumber(), steps));
+}
+
+}  // namespace clothlab

@@ -1,0 +1,54 @@
+// Small parts that the forms are made of.
+#pragma once
+
+#include <QAbstractButton>
+#include <QComboBox>
+#include <QLabel>
+
+namespace clothlab {
+
+/// Sets a property that the style sheet asks for, and has the widget restyled.
+void set_style_property(QWidget& widget, const char* name, const QVariant& value);
+
+/// One line that ends in an ellipsis where it has no room.
+class ElidedLabel : public QLabel {
+  Q_OBJECT
+
+ public:
+  using QLabel::QLabel;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+};
+
+/// A combo box that leaves the wheel to the panel and can be narrower than its longest entry.
+class QuietCombo : public QComboBox {
+  Q_OBJECT
+
+ public:
+  explicit QuietCombo(QWidget* parent = nullptr);
+
+ protected:
+  void wheelEvent(QWheelEvent* event) override;
+};
+
+/// The head of a section: chevron and title, the whole width a button. Checked means open.
+class SectionHeader : public QAbstractButton {
+  Q_OBJECT
+
+ public:
+  explicit SectionHeader(const QString& title, QWidget* parent = nullptr);
+  void setUnit(const QString& unit);  ///< muted, at the right end
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void keyPressEvent(QKeyEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QString unit_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,181 @@
+#include "params/parameter_editor.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <utility>
+
+#include "params/choice_editor.h"
+#include "params/number_editor.h"
+#include "params/panel_parts.h"
+#include "params/text_editor.h"
+#include "params/vector_editor.h"
+#include "params/wording.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+QLabel* message_label(QWidget* parent, const char* name) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  label->setTextFormat(Qt::PlainText);
+  label->hide();
+  return label;
+}
+
+QFont smaller(QFont font) {
+  font.setPointSizeF(font.pointSizeF() - 1);
+  return font;
+}
+
+}  // namespace
+
+ParameterEditor::ParameterEditor(LabDocument& document, cloth::Parameter parameter, QWidget* parent)
+    : QWidget(parent), document_(document), parameter_(std::move(parameter)) {
+  setObjectName("param:" + QString::fromStdString(parameter_.path));
+  setAccessibleName(QString::fromStdString(info().label));
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(spacing / 4);
+  makeTitle(*column);
+  control_row_ = new QHBoxLayout;
+  control_row_->setSpacing(spacing);
+  makeReset();
+  auto* control_and_reset = new QHBoxLayout;
+  control_and_reset->setSpacing(spacing / 2);
+  control_and_reset->addLayout(control_row_, 1);
+  control_and_reset->addWidget(reset_, 0, Qt::AlignVCenter);
+  column->addLayout(control_and_reset);
+  makeMessages(*column);
+}
+
+void ParameterEditor::makeTitle(QVBoxLayout& column) {
+  title_ = new QWidget(this);
+  title_row_ = new QHBoxLayout(title_);
+  title_row_->setContentsMargins(0, 0, 24 + spacing / 2, 0);  // ends where the control ends
+  title_row_->setSpacing(spacing);
+  label_ = new ElidedLabel(QString::fromStdString(info().label), title_);
+  title_row_->addWidget(label_);
+  if (info().cost == cloth::EditCost::restart) {
+    auto* mark = new QLabel(tr("restarts"), title_);
+    mark->setObjectName("restarts");
+    mark->setProperty("muted", true);
+    mark->setFont(smaller(mark->font()));
+    mark->setToolTip(tr("An edit restarts the simulation"));
+    title_row_->addWidget(mark);
+  }
+  title_row_->addStretch(1);
+  if (info().kind == cloth::Kind::vector && !info().unit.empty()) {
+    auto* unit = new QLabel(unit_text(info().unit), title_);
+    unit->setProperty("muted", true);
+    title_row_->addWidget(unit);
+  }
+  column.addWidget(title_);
+}
+
+void ParameterEditor::makeReset() {
+  reset_ = new QToolButton(this);
+  reset_->setObjectName("reset");
+  reset_->setIcon(icon("reset-value"));
+  reset_->setIconSize({16, 16});
+  reset_->setFixedSize(24, 24);
+  reset_->setFocusPolicy(Qt::TabFocus);
+  reset_->setAccessibleName(tr("Reset %1").arg(QString::fromStdString(info().label)));
+  QSizePolicy keep_room = reset_->sizePolicy();
+  keep_room.setRetainSizeWhenHidden(true);  // controls do not move when it comes and goes
+  reset_->setSizePolicy(keep_room);
+  connect(reset_, &QToolButton::clicked, this, [this] {
+    if (reset_->hasFocus()) tabStops().first()->setFocus(Qt::OtherFocusReason);
+    document_.resetParameter(path());
+    refresh();
+  });
+}
+
+void ParameterEditor::makeMessages(QVBoxLayout& column) {
+  rule_ = message_label(this, "rule");
+  rule_->setProperty("state", "error");
+  note_ = message_label(this, "note");
+  note_->setProperty("muted", true);
+  for (QLabel* label : {rule_, note_}) {
+    label->setFont(smaller(label->font()));
+    column.addWidget(label);
+  }
+}
+
+void ParameterEditor::name(QWidget& part, const QString& object_name, const QString& suffix) {
+  const QString label = QString::fromStdString(info().label);
+  part.setObjectName(object_name);
+  part.setAccessibleName(suffix.isEmpty() ? label : label + ' ' + suffix);
+  part.setAccessibleDescription(QString::fromStdString(info().doc));
+  named_ << &part;
+}
+
+void ParameterEditor::hideTitle() {
+  title_->hide();
+}
+
+void ParameterEditor::refresh() {
+  const auto present = value();
+  if (!present) return;
+  showRule({});
+  showValue(*present);
+  refreshDefault();
+}
+
+void ParameterEditor::refreshDefault() {
+  const auto present = value();
+  const auto fallback = cloth::default_of(document_.scene(), path());
+  reset_->setVisible(fallback && present && *present != *fallback);
+  if (fallback == default_ && !label_->toolTip().isEmpty()) return;
+  default_ = fallback;
+  const QString tooltip = tooltip_of(parameter_, default_);
+  label_->setToolTip(tooltip);
+  for (QWidget* part : named_) part->setToolTip(tooltip);
+  if (default_) reset_->setToolTip(tr("Back to %1").arg(value_in_words(info(), *default_)));
+  showDefault(default_);
+}
+
+bool ParameterEditor::commit(const cloth::ParameterValue& value) {
+  const QString rule = document_.setParameter(path(), value);
+  if (rule.isEmpty())
+    refresh();
+  else
+    showRule(rule);
+  return rule.isEmpty();
+}
+
+void ParameterEditor::showRule(const QString& rule) {
+  markInvalid(!rule.isEmpty());
+  rule_->setVisible(!rule.isEmpty());
+  if (rule.isEmpty()) return;
+  QString sentence = typographic(rule);
+  sentence[0] = sentence[0].toUpper();
+  const auto kept = value();
+  rule_->setText(kept ? tr("%1. Still %2.").arg(sentence, value_in_words(info(), *kept)) : sentence);
+}
+
+void ParameterEditor::setNote(const QString& note) {
+  note_->setText(note);
+  note_->setVisible(!note.isEmpty());
+}
+
+ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent) {
+  switch (parameter.info.kind) {
+    case cloth::Kind::number:
+    case cloth::Kind::integer:
+      return new NumberEditor(document, parameter, parent);
+    case cloth::Kind::vector:
+      return new VectorEditor(document, parameter, parent);
+    case cloth::Kind::choice:
+    case cloth::Kind::words:
+      return new ChoiceEditor(document, parameter, parent);
+    case cloth::Kind::text:
+      return new TextEditor(document, parameter, parent);
+  }
+  return nullptr;
+}
+
+}  // namespace clothlab

@@ -1,0 +1,82 @@
+// The form of one parameter: label, control, a way back to the default, and room for a broken rule and a
+// note.
+#pragma once
+
+#include <QList>
+#include <QWidget>
+#include <optional>
+#include <string>
+
+#include "document/lab_document.h"
+
+class QHBoxLayout;
+class QLabel;
+class QToolButton;
+class QVBoxLayout;
+
+namespace clothlab {
+
+class ElidedLabel;
+
+class ParameterEditor : public QWidget {
+  Q_OBJECT
+
+ public:
+  const std::string& path() const { return parameter_.path; }
+
+  /// Shows the document's value. What was typed and not accepted is gone then.
+  void refresh();
+  /// Asks again what the default is: an obstacle's goes with the size of the cloth.
+  void refreshDefault();
+  void setNote(const QString& note);
+  /// For a parameter alone in its section, whose head then says label and unit.
+  void hideTitle();
+
+  /// What the Tab key visits, in order.
+  virtual QList<QWidget*> tabStops() const = 0;
+  /// Forgets what is being typed; the editor is about to go.
+  virtual void abandonEdits() {}
+
+ protected:
+  ParameterEditor(LabDocument& document, cloth::Parameter parameter, QWidget* parent);
+
+  virtual void showValue(const cloth::ParameterValue& value) = 0;
+  virtual void showDefault(const std::optional<cloth::ParameterValue>&) {}
+  virtual void markInvalid(bool) {}
+
+  /// Hands a value to the document. False if it breaks a rule, which then stands below the control.
+  bool commit(const cloth::ParameterValue& value);
+  void showRule(const QString& rule);  ///< empty: none
+
+  const cloth::ParameterInfo& info() const { return parameter_.info; }
+  LabDocument& document() { return document_; }
+  std::optional<cloth::ParameterValue> value() const { return document_.value(path()); }
+
+  QHBoxLayout& titleRow() { return *title_row_; }
+  QHBoxLayout& controlRow() { return *control_row_; }
+  QToolButton& resetButton() const { return *reset_; }
+  /// Sets the names by which screen readers and tests know a part; its tooltip follows with the default.
+  void name(QWidget& part, const QString& object_name, const QString& suffix = {});
+
+ private:
+  void makeTitle(QVBoxLayout& column);
+  void makeReset();
+  void makeMessages(QVBoxLayout& column);
+
+  LabDocument& document_;
+  cloth::Parameter parameter_;
+  std::optional<cloth::ParameterValue> default_;
+  QWidget* title_ = nullptr;
+  QHBoxLayout* title_row_ = nullptr;
+  QHBoxLayout* control_row_ = nullptr;
+  ElidedLabel* label_ = nullptr;
+  QList<QWidget*> named_;
+  QToolButton* reset_ = nullptr;
+  QLabel* rule_ = nullptr;
+  QLabel* note_ = nullptr;
+};
+
+/// The editor for the parameter's kind.
+ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent);
+
+}  // namespace clothlab

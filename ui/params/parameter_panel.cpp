@@ -1,0 +1,243 @@
+#include "params/parameter_panel.h"
+
+#include <QCoreApplication>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <utility>
+
+#include "params/number_editor.h"
+#include "params/parameter_section.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+/// Which part of which editor has the focus, to find it again in another editor of the same parameter.
+struct FocusPlace {
+  QString editor, part;
+};
+
+FocusPlace focus_place(const QWidget* root) {
+  const QWidget* focus = root->focusWidget();
+  if (!focus || !focus->hasFocus()) return {};
+  for (const QWidget* up = focus; up && up != root; up = up->parentWidget())
+    if (up->objectName().startsWith("param:")) return {up->objectName(), focus->objectName()};
+  return {};
+}
+
+void restore_focus(const QWidget* root, const FocusPlace& place) {
+  if (place.editor.isEmpty()) return;
+  const auto* editor = root->findChild<QWidget*>(place.editor);
+  auto* part = editor ? editor->findChild<QWidget*>(place.part) : nullptr;
+  if (part && !part->hasFocus()) part->setFocus(Qt::OtherFocusReason);
+}
+
+}  // namespace
+
+ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
+    : QWidget(parent), document_(document) {
+  setObjectName("parameterPanel");
+  setAccessibleName(tr("Parameters"));
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  column->addWidget(makeHead());
+  makeScrollArea();
+  column->addWidget(scroll_, 1);
+  rebuild();
+
+  connect(&document, &LabDocument::parameterChanged, this, &ParameterPanel::follow);
+  connect(&document, &LabDocument::blocksChanged, this, &ParameterPanel::rebuild);
+  connect(&document, &LabDocument::loaded, this, &ParameterPanel::rebuild);
+}
+
+QWidget* ParameterPanel::makeHead() {
+  auto* head = new QWidget(this);
+  auto* row = new QHBoxLayout(head);
+  row->setContentsMargins(2 * spacing, spacing, spacing, spacing);
+  auto* title = new QLabel(tr("Parameters"), head);
+  title->setProperty("heading", true);
+  row->addWidget(title, 1);
+  add_ = new QToolButton(head);
+  add_->setObjectName("add");
+  add_->setText(tr("Add"));
+  add_->setIcon(icon("add"));
+  add_->setIconSize({16, 16});
+  add_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  add_->setPopupMode(QToolButton::InstantPopup);
+  add_->setFocusPolicy(Qt::TabFocus);
+  add_->setToolTip(tr("Bring physics or an obstacle into the scene"));
+  menu_ = new QMenu(add_);
+  menu_->setObjectName("addMenu");
+  menu_->setToolTipsVisible(true);
+  add_->setMenu(menu_);
+  row->addWidget(add_);
+  return head;
+}
+
+void ParameterPanel::makeScrollArea() {
+  scroll_ = new QScrollArea(this);
+  scroll_->setObjectName("scroll");
+  scroll_->setWidgetResizable(true);
+  scroll_->setFrameShape(QFrame::NoFrame);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_->setFocusPolicy(Qt::NoFocus);
+  content_ = new QWidget;
+  column_ = new QVBoxLayout(content_);
+  column_->setContentsMargins(0, 0, 0, 0);
+  column_->setSpacing(0);
+  column_->addStretch(1);
+  scroll_->setWidget(content_);
+}
+
+void ParameterPanel::fillAddMenu() {
+  menu_->clear();
+  bool among_obstacles = false;
+  for (const cloth::BlockOffer& offer : offers_for(document_.scene())) {
+    const bool obstacle = offer.path == "sphere" || offer.path == "box" || offer.path == "plane";
+    if (obstacle && !among_obstacles && !menu_->isEmpty()) menu_->addSeparator();
+    among_obstacles = obstacle;
+    QAction* action = menu_->addAction(QString::fromStdString(offer.title));
+    action->setObjectName("offer:" + QString::fromStdString(offer.path));
+    action->setToolTip(QString::fromStdString(offer.doc));
+    connect(action, &QAction::triggered, this, [this, path = offer.path] { add(path); });
+  }
+  add_->setEnabled(!menu_->isEmpty());
+}
+
+void ParameterPanel::add(const std::string& offer_path) {
+  std::set<std::string> before;
+  for (const ParameterSection* section : sections_) before.insert(section->path());
+  if (!document_.addBlock(offer_path)) return;
+  for (ParameterSection* section : sections_) {
+    if (before.count(section->path())) continue;
+    section->setCollapsed(false);
+    QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
+    scroll_->ensureWidgetVisible(section, 0, 0);
+  }
+}
+
+ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
+  auto* section = new ParameterSection(document_, block, content_);
+  section->setCollapsed(collapsed_.count(block.path) > 0);
+  connect(section, &ParameterSection::collapsedChanged, this, [this, path = block.path](bool collapsed) {
+    if (collapsed)
+      collapsed_.insert(path);
+    else
+      collapsed_.erase(path);
+  });
+  connect(section, &ParameterSection::removeRequested, this,
+          [this, path = block.path] { document_.removeBlock(path); });
+  for (const cloth::Parameter& parameter : block.parameters) applyNotes(*section->editor(parameter.path));
+  return section;
+}
+
+void ParameterPanel::retire(ParameterSection* section) {
+  // It may be the sender of the signal that led here, and what is typed in it must not reach another block.
+  section->abandonEdits();
+  section->hide();
+  section->setParent(nullptr);
+  section->deleteLater();
+}
+
+void ParameterPanel::follow(const std::string& path) {
+  if (ParameterEditor* changed = editor(path)) changed->refresh();
+  if (path.rfind("cloth.", 0) != 0) return;
+  for (const ParameterSection* section : sections_)
+    for (ParameterEditor* other : section->editors()) other->refreshDefault();
+}
+
+void ParameterPanel::rebuild() {
+  const int place = scroll_->verticalScrollBar()->value();
+  const FocusPlace focus = focus_place(this);
+  content_->setUpdatesEnabled(false);
+  std::vector<ParameterSection*> old = std::exchange(sections_, {});
+  for (const cloth::Block& block : blocks_of(document_.scene())) {
+    const auto same =
+        std::find_if(old.begin(), old.end(), [&](const ParameterSection* s) { return s->shows(block); });
+    if (same == old.end()) {
+      sections_.push_back(makeSection(block));
+    } else {
+      (*same)->refresh();
+      sections_.push_back(*same);
+      old.erase(same);
+    }
+  }
+  for (ParameterSection* section : old) retire(section);
+  for (std::size_t i = 0; i < sections_.size(); ++i) column_->insertWidget(static_cast<int>(i), sections_[i]);
+  for (ParameterSection* section : sections_) section->show();
+  fillAddMenu();
+  orderTabs();
+  content_->setUpdatesEnabled(true);
+  QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
+  restore_focus(this, focus);
+  scroll_->verticalScrollBar()->setValue(place);
+}
+
+void ParameterPanel::orderTabs() {
+  QWidget* last = add_;
+  for (const ParameterSection* section : sections_)
+    for (QWidget* stop : section->tabStops()) {
+      QWidget::setTabOrder(last, stop);
+      last = stop;
+    }
+}
+
+ParameterEditor* ParameterPanel::editor(const std::string& path) const {
+  for (const ParameterSection* section : sections_)
+    if (ParameterEditor* found = section->editor(path)) return found;
+  return nullptr;
+}
+
+void ParameterPanel::applyNotes(ParameterEditor& which) {
+  if (const auto note = notes_.find(which.path()); note != notes_.end()) which.setNote(note->second);
+  const auto value = auto_values_.find(which.path());
+  auto* number = qobject_cast<NumberEditor*>(&which);
+  if (number && value != auto_values_.end()) number->setAutoValue(value->second);
+}
+
+void ParameterPanel::setNote(const std::string& path, const QString& note) {
+  notes_[path] = note;
+  if (ParameterEditor* found = editor(path)) found->setNote(note);
+}
+
+void ParameterPanel::setAutoValue(const std::string& path, std::optional<double> value) {
+  if (value)
+    auto_values_[path] = *value;
+  else
+    auto_values_.erase(path);
+  if (auto* number = qobject_cast<NumberEditor*>(editor(path))) number->setAutoValue(value);
+}
+
+bool ParameterPanel::reveal(const std::string& path) {
+  for (ParameterSection* section : sections_)
+    if (ParameterEditor* found = section->editor(path)) {
+      section->setCollapsed(false);
+      QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
+      scroll_->ensureWidgetVisible(found, 0, 2 * spacing);
+      found->tabStops().first()->setFocus(Qt::OtherFocusReason);
+      return true;
+    }
+  return false;
+}
+
+void ParameterPanel::paintEvent(QPaintEvent*) {
+  QPainter(this).fillRect(rect(), theme().panel);
+}
+
+QSize ParameterPanel::sizeHint() const {
+  return {320, 640};
+}
+
+QSize ParameterPanel::minimumSizeHint() const {
+  return {280, 240};
+}
+
+}  // namespace clothlab

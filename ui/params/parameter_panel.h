@@ -1,0 +1,71 @@
+// The form of a scene: one section for each block that it has, and a menu of those it could have. Made from
+// the declarations; it edits through the document and follows it.
+#pragma once
+
+#include <QWidget>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "document/lab_document.h"
+
+class QMenu;
+class QScrollArea;
+class QToolButton;
+class QVBoxLayout;
+
+namespace clothlab {
+
+class ParameterEditor;
+class ParameterSection;
+
+class ParameterPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ParameterPanel(LabDocument& document, QWidget* parent = nullptr);
+
+  /// A muted line below a parameter, present or future; empty takes it away.
+  void setNote(const std::string& path, const QString& note);
+
+  /// What "auto" comes to at present for a parameter that allows it, in its unit.
+  void setAutoValue(const std::string& path, std::optional<double> value);
+
+  /// Opens the parameter's section, scrolls to it and gives it the focus. False if the scene does not have
+  /// it.
+  bool reveal(const std::string& path);
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QWidget* makeHead();
+  void makeScrollArea();
+  void fillAddMenu();
+  void add(const std::string& offer_path);
+  void rebuild();
+  void follow(const std::string& path);
+  ParameterSection* makeSection(const cloth::Block& block);
+  void retire(ParameterSection* section);
+  void orderTabs();
+  void applyNotes(ParameterEditor& editor);
+  ParameterEditor* editor(const std::string& path) const;
+
+  LabDocument& document_;
+  QToolButton* add_ = nullptr;
+  QMenu* menu_ = nullptr;
+  QScrollArea* scroll_ = nullptr;
+  QWidget* content_ = nullptr;
+  QVBoxLayout* column_ = nullptr;
+  std::vector<ParameterSection*> sections_;
+  std::set<std::string> collapsed_;
+  std::map<std::string, QString> notes_;
+  std::map<std::string, double> auto_values_;
+};
+
+}  // namespace clothlab

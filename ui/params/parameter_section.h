@@ -1,0 +1,56 @@
+// One block of a scene as a section of the form: a head that opens and closes it, a cross where the block may
+// go, and an editor for each of its parameters.
+#pragma once
+
+#include <QWidget>
+#include <string>
+#include <vector>
+
+#include "document/lab_document.h"
+
+class QToolButton;
+class QVBoxLayout;
+
+namespace clothlab {
+
+class ParameterEditor;
+class SectionHeader;
+
+class ParameterSection : public QWidget {
+  Q_OBJECT
+
+ public:
+  ParameterSection(LabDocument& document, const cloth::Block& block, QWidget* parent = nullptr);
+
+  const std::string& path() const { return path_; }
+  /// Whether this section can show the block as it is: same title, same parameters.
+  bool shows(const cloth::Block& block) const;
+
+  void setCollapsed(bool collapsed);
+  bool isCollapsed() const;
+
+  void refresh();
+  ParameterEditor* editor(const std::string& path) const;
+  const std::vector<ParameterEditor*>& editors() const { return editors_; }
+  QList<QWidget*> tabStops() const;
+  void abandonEdits();
+
+ Q_SIGNALS:
+  void collapsedChanged(bool collapsed);
+  void removeRequested();
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  void makeHead(const cloth::Block& block, QVBoxLayout& column);
+  void makeBody(LabDocument& document, const cloth::Block& block, QVBoxLayout& column);
+
+  std::string path_, title_;
+  SectionHeader* head_ = nullptr;
+  QToolButton* cross_ = nullptr;
+  QWidget* body_ = nullptr;
+  std::vector<ParameterEditor*> editors_;
+};
+
+}  // namespace clothlab

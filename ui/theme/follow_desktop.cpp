@@ -1,0 +1,83 @@
+#include "theme/follow_desktop.h"
+
+#include <QApplication>
+#include <QDBusConnection>
+#include <QDBusMessage>
+#include <QEvent>
+#include <QFileInfo>
+#include <QTimer>
+
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+const char* const service = "org.freedesktop.portal.Desktop";
+const char* const path = "/org/freedesktop/portal/desktop";
+const char* const interface = "org.freedesktop.portal.Settings";
+const char* const appearance = "org.freedesktop.appearance";
+const char* const colour_scheme = "color-scheme";
+
+/// Asking for the bus where there is none makes D-Bus try to start one, which takes its time and leaves a
+/// process.
+bool has_session_bus() {
+  return qEnvironmentVariableIsSet("DBUS_SESSION_BUS_ADDRESS") ||
+         QFileInfo::exists(qEnvironmentVariable("XDG_RUNTIME_DIR") + "/bus");
+}
+
+/// The older call of the portal wraps its answer in one variant more.
+QVariant unwrapped(QVariant value) {
+  while (value.canConvert<QDBusVariant>()) value = value.value<QDBusVariant>().variant();
+  return value;
+}
+
+}  // namespace
+
+std::optional<bool> portal_prefers_dark() {
+  if (!has_session_bus()) return std::nullopt;
+  QDBusMessage question = QDBusMessage::createMethodCall(service, path, interface, "Read");
+  question << QString(appearance) << QString(colour_scheme);
+  // The window waits for this before it opens: a portal that is slow to start is taken for one that is not
+  // there.
+  constexpr int patience_ms = 500;
+  const QDBusMessage answer = QDBusConnection::sessionBus().call(question, QDBus::Block, patience_ms);
+  if (answer.type() != QDBusMessage::ReplyMessage || answer.arguments().isEmpty()) return std::nullopt;
+  switch (unwrapped(answer.arguments().constFirst()).toUInt()) {
+    case 1:
+      return true;
+    case 2:
+      return false;
+    default:
+      return std::nullopt;  // 0 is "no preference"
+  }
+}
+
+FollowDesktop::FollowDesktop(QApplication& application) : QObject(&application) {
+  application.installEventFilter(this);
+  if (has_session_bus())
+    QDBusConnection::sessionBus().connect(service, path, interface, "SettingChanged", this,
+                                          SLOT(setting_changed(QString, QString, QDBusVariant)));
+}
+
+bool FollowDesktop::eventFilter(QObject* watched, QEvent* event) {
+  // Sent to every window when the desktop changes its theme, and never by setPalette() or setStyleSheet():
+  // acting on it cannot start a loop.
+  if (event->type() == QEvent::ThemeChange) follow_soon();
+  return QObject::eventFilter(watched, event);
+}
+
+void FollowDesktop::setting_changed(const QString& group, const QString& key, const QDBusVariant&) {
+  if (group == appearance && key == colour_scheme) follow_soon();
+}
+
+/// Waits for the event loop, so that the news from all windows and from the portal together cost one change.
+void FollowDesktop::follow_soon() {
+  if (waiting_) return;
+  waiting_ = true;
+  QTimer::singleShot(0, this, [this] {
+    waiting_ = false;
+    apply_theme(*qApp);
+  });
+}
+
+}  // namespace clothlab

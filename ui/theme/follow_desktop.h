@@ -1,0 +1,33 @@
+// Turns the window dark or light with the desktop while it is open.
+#pragma once
+
+#include <QDBusVariant>
+#include <QObject>
+#include <QString>
+#include <optional>
+
+class QApplication;
+
+namespace clothlab {
+
+/// What the desktop says in its settings portal (GNOME, KDE and others answer there): dark, light, or
+/// nothing. Qt 6.4 does not ask it by itself.
+std::optional<bool> portal_prefers_dark();
+
+class FollowDesktop : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit FollowDesktop(QApplication& application);
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private Q_SLOTS:
+  void setting_changed(const QString& group, const QString& key, const QDBusVariant& value);
+
+ private:
+  void follow_soon();
+
+  bool waiting_ = false;
+};
+
+}  // namespace clothlab

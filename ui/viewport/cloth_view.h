@@ -1,0 +1,180 @@
+// The 3-D view: shows the newest frame and lets a hand into it. It draws, it never simulates: what the mouse
+// does to the cloth leaves as signals.
+//
+//   left-drag      on the cloth: pull a particle; beside it: orbit   (tool pin: click pins or frees a
+//   particle) Shift+left     wind brush, also without Shift when it is the tool; wheel while blowing: radius
+//   right, middle  orbit (also Alt+left); with Ctrl+right or Shift+middle: pan; wheel: zoom towards the
+//   cursor
+#pragma once
+
+#include <QElapsedTimer>
+#include <QImage>
+#include <QSurfaceFormat>
+#include <QTimer>
+#include <QWidget>
+#include <memory>
+#include <optional>
+
+#include "bridge/frame.h"
+#include "forces/hand.h"
+#include "viewport/camera.h"
+#include "viewport/overlay.h"
+#include "viewport/scene_extent.h"
+#include "viewport/strain_scale.h"
+#include "viewport/view_mode.h"
+
+class QLabel;
+
+namespace clothlab {
+
+class ClothRenderer;
+class GlCanvas;
+class RestingPicture;
+struct Shot;
+struct Theme;
+
+class ClothView : public QWidget {
+  Q_OBJECT
+  Q_PROPERTY(double brushRadius READ brushRadius WRITE setBrushRadius NOTIFY brushRadiusChanged)
+  Q_PROPERTY(double brushSpeedPerPixel READ brushSpeedPerPixel WRITE setBrushSpeedPerPixel)
+
+ public:
+  explicit ClothView(QWidget* parent = nullptr);
+  ~ClothView() override;
+
+  /// OpenGL 3.3 core, 4 samples. Where the processor draws none (once a QGuiApplication is there to ask): the
+  /// view is smoothed there too, but only while it rests.
+  static QSurfaceFormat surface_format();
+
+  /// False: the view shows a message instead of the scene, and takes no mouse.
+  bool hasOpenGl() const { return problem_.isEmpty(); }
+  QString openGlProblem() const { return problem_; }
+
+  /// The newest wins. Frames whose array sizes do not fit rows x columns are ignored.
+  void showFrame(std::shared_ptr<const ClothFrame> frame);
+  const std::shared_ptr<const ClothFrame>& frame() const { return frame_; }
+  /// No cloth: the empty state.
+  void clear();
+
+  ViewMode mode() const { return mode_; }
+  void setMode(ViewMode mode);
+  Tool tool() const { return tool_; }
+  void setTool(Tool tool);
+
+  const Camera& camera() const { return camera_; }
+  void setCameraPose(const CameraPose& pose);
+  void frameAll();
+  void setPreset(CameraPreset preset);
+  /// For a newly opened scene: the next frame is framed, and every new topology until the user moves the
+  /// camera.
+  void resetCamera();
+  bool animated() const { return animated_; }
+  void setAnimated(bool animated) { animated_ = animated; }  ///< camera presets fly or jump
+
+  double brushRadius() const { return brush_radius_; }  ///< px
+  void setBrushRadius(double pixels);
+  double brushSpeedPerPixel() const { return brush_speed_per_pixel_; }  ///< m/s per px of displacement
+  void setBrushSpeedPerPixel(double speed) { brush_speed_per_pixel_ = speed; }
+
+  /// The view with its overlays, in device pixels.
+  QImage grabPicture();
+  /// ms spent drawing last time. Where the processor draws, until the picture was complete; a graphics
+  /// card is not waited for, since waiting would slow it, so there it is the time to hand the picture over.
+  double lastDrawMilliseconds() const { return last_draw_; }
+
+ Q_SIGNALS:
+  void openGlFailed(QString reason);
+  void frameDrawn(double milliseconds);
+  void pullChanged(cloth::Pull pull);
+  void pullEnded();
+  void brushChanged(cloth::BrushGust gust);
+  void brushEnded();
+  void brushRadiusChanged(double pixels);
+  void pinToggled(int particle);
+  void toolChanged(clothlab::Tool tool);
+  void modeChanged(clothlab::ViewMode mode);
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void changeEvent(QEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void enterEvent(QEnterEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
+
+ private:
+  enum class Gesture { none, orbit, pan, pull, brush, pin };
+
+  void initialiseGl();
+  void resizeGl(int width, int height);
+  void paintGl();
+  void redraw();
+  void fail(const QString& reason);
+  void releaseRenderer();
+  void learnExtent(bool new_topology);
+  void fitUnmovedCamera();
+  void showAnew();
+  void flyTo(const CameraPose& pose);
+  void advanceTime();
+  Shot shot() const;
+  void drawScene();
+  void paintOverlays();
+  void paintHand(QPainter& painter);
+  QPointF screenPoint(int particle) const;
+
+  void startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers);
+  void endGesture();
+  void moveCamera(QPointF by);
+  void sendPull();
+  void sendBrush();
+  void updateHover();
+  void followShift(bool held);
+  bool brushShown() const;
+  void updateCursor();
+  std::optional<int> pick(QPointF at) const;
+
+  QString problem_;
+  QLabel* problem_label_ = nullptr;
+  std::unique_ptr<GlCanvas> canvas_;  // none without OpenGL
+  std::unique_ptr<ClothRenderer> renderer_;
+  std::unique_ptr<RestingPicture> resting_picture_;  // where the processor draws
+  QTimer rest_timer_;                                // since the last movement
+  bool smooth_next_ = false;                         // draw the resting picture
+  bool grabbing_ = false;                            // smooth even if the cloth is moving
+
+  std::shared_ptr<const ClothFrame> frame_;
+  bool frame_uploaded_ = false;
+  float largest_strain_ = 0;
+  std::vector<cloth::Obstacle> known_obstacles_;
+  Eigen::AlignedBox3d cloth_reach_, extent_;
+  Ground ground_;
+
+  Camera camera_;
+  CameraFlight flight_;
+  bool animated_ = true;
+  bool camera_moved_ = false;  // by the user, since the scene was opened
+  CameraPose drawn_pose_;      // what the last picture shows
+  QElapsedTimer clock_;        // since the last picture
+
+  ViewMode mode_ = ViewMode::textured;
+  StrainRange strain_range_;
+  Overlay overlay_;
+  const Theme* painted_theme_ = nullptr;
+  double last_draw_ = 0;  // ms
+
+  Tool tool_ = Tool::pull;
+  Gesture gesture_ = Gesture::none;
+  Qt::MouseButton gesture_button_ = Qt::NoButton;
+  QPointF cursor_, gesture_start_;  // px
+  bool cursor_inside_ = false, shift_held_ = false;
+  std::optional<int> hovered_, grabbed_;
+  Eigen::Vector3d grab_point_{0, 0, 0};  // m
+  double brush_radius_ = 80;             // px
+  double brush_speed_per_pixel_ = 0.05;  // m/s
+};
+
+}  // namespace clothlab

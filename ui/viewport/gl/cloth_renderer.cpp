@@ -1,0 +1,296 @@
+#include "viewport/gl/cloth_renderer.h"
+
+#include <QMatrix4x4>
+#include <QOpenGLContext>
+#include <QVector2D>
+#include <QVector3D>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "theme/theme.h"
+#include "viewport/gl/shader_program.h"
+#include "viewport/gl/weave.h"
+#include "viewport/picking.h"
+#include "viewport/strain_scale.h"
+
+namespace clothlab {
+namespace {
+
+constexpr double tiles_along_cloth = 9;  // of the weave, over the longer side
+
+QVector3D vector(const Eigen::Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+QMatrix4x4 matrix(const Eigen::Matrix4d& m) {
+  QMatrix4x4 result;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) result(r, c) = static_cast<float>(m(r, c));
+  return result;
+}
+
+float number(double value) {
+  return static_cast<float>(value);
+}
+
+/// m, along the chain of particles first, first + stride, ...
+double chain_length(const ClothFrame& frame, int first, int stride, int count) {
+  double length = 0;
+  for (int k = 1; k < count; ++k)
+    length +=
+        (particle_position(frame, first + k * stride) - particle_position(frame, first + (k - 1) * stride))
+            .norm();
+  return length;
+}
+
+/// The distance of grid lines: 1, 2 or 5 times a power of ten, some 16 over `size`.
+double grid_step_for(double size) {
+  const double fine = std::max(size, 1e-6) / 16, decade = std::pow(10, std::floor(std::log10(fine)));
+  return (fine <= 2 * decade ? 2 : fine <= 5 * decade ? 5 : 10) * decade;
+}
+
+QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
+  const float s = 1 - share_of_b;
+  return QColor::fromRgbF(s * a.redF() + share_of_b * b.redF(), s * a.greenF() + share_of_b * b.greenF(),
+                          s * a.blueF() + share_of_b * b.blueF());
+}
+
+}  // namespace
+
+ClothRenderer::~ClothRenderer() {
+  if (weave_ != 0) glDeleteTextures(1, &weave_);
+  if (palette_ != 0) glDeleteTextures(1, &palette_);
+}
+
+bool ClothRenderer::initialise(bool frugal, QString* problem) {
+  if (!initializeOpenGLFunctions()) {
+    *problem = QStringLiteral("the functions of OpenGL 3.3 are missing");
+    return false;
+  }
+  if (!build_programs(problem)) return false;
+  QOpenGLFunctions_3_3_Core& gl = *this;
+  surface_ = std::make_unique<ClothSurface>(gl);
+  solids_ = std::make_unique<Solids>(gl);
+  make_textures(!frugal);
+  return true;
+}
+
+bool ClothRenderer::build_programs(QString* problem) {
+  for (std::size_t look = 0; look < cloth_.size(); ++look) {
+    const QByteArray definition = "#define LOOK " + QByteArray::number(static_cast<int>(look)) + '\n';
+    if (!build_program(cloth_[look], "cloth.vert", "cloth.frag", {true, definition}, problem)) return false;
+  }
+  return build_program(background_, "background.vert", "background.frag", {}, problem) &&
+         build_program(plane_, "plane.vert", "plane.frag", {}, problem) &&
+         build_program(solid_, "solid.vert", "solid.frag", {true}, problem) &&
+         build_program(marker_, "marker.vert", "marker.frag", {}, problem);
+}
+
+void ClothRenderer::make_textures(bool anisotropic) {
+  const QImage tile = weave_tile();
+  glGenTextures(1, &weave_);
+  glBindTexture(GL_TEXTURE_2D, weave_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, tile.width(), tile.height(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               tile.constBits());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // The extension's numbers: OpenGL 3.3's own headers do not have them (core since 4.6).
+  constexpr GLenum texture_max_anisotropy = 0x84FE, max_texture_max_anisotropy = 0x84FF;
+  if (anisotropic && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
+    GLfloat most = 1;
+    glGetFloatv(max_texture_max_anisotropy, &most);
+    glTexParameterf(GL_TEXTURE_2D, texture_max_anisotropy, std::min(most, 8.0F));
+  }
+
+  std::array<std::uint8_t, 4 * strain_colour_count> row{};
+  for (std::size_t i = 0; i < strain_colours().size(); ++i) {
+    const QColor& c = strain_colours()[i];
+    row[4 * i] = static_cast<std::uint8_t>(c.red());
+    row[4 * i + 1] = static_cast<std::uint8_t>(c.green());
+    row[4 * i + 2] = static_cast<std::uint8_t>(c.blue());
+    row[4 * i + 3] = 255;
+  }
+  glGenTextures(1, &palette_);
+  glBindTexture(GL_TEXTURE_2D, palette_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, strain_colour_count, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               row.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void ClothRenderer::set_frame(const ClothFrame& frame) {
+  obstacles_ = frame.obstacles;
+  has_cloth_ = frame.rows > 1 && frame.columns > 1;
+  if (!has_cloth_) return;
+  if (frame.topology != topology_ || frame.rows != rows_ || frame.columns != columns_) {
+    topology_ = frame.topology;
+    rows_ = frame.rows;
+    columns_ = frame.columns;
+    const double width = chain_length(frame, 0, 1, columns_),
+                 height = chain_length(frame, 0, columns_, rows_);
+    const double longer = std::max({width, height, 1e-9});
+    cell_length_ = std::min(width / (columns_ - 1), height / (rows_ - 1));
+    tiles_per_cell_ = {number(tiles_along_cloth * width / longer / (columns_ - 1)),
+                       number(tiles_along_cloth * height / longer / (rows_ - 1))};
+  }
+  surface_->upload(frame);
+}
+
+void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
+  glEnable(GL_MULTISAMPLE);  // QPainter leaves it off
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glClearDepth(1);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glActiveTexture(GL_TEXTURE0);
+  glDisable(GL_DEPTH_TEST);
+  draw_background(theme);
+
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  if (has_cloth_) draw_cloth(shot, theme);
+  draw_obstacles(shot, theme);
+
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the view itself stays opaque
+  glDepthMask(GL_FALSE);
+  draw_planes(shot, theme);
+  if (has_cloth_ && surface_->has_pinned_points()) draw_pins(shot, theme);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+}
+
+void ClothRenderer::draw_background(const Theme& theme) {
+  background_.bind();
+  background_.setUniformValue("top", as_srgb(theme.view_top));
+  background_.setUniformValue("bottom", as_srgb(theme.view_bottom));
+  solids_->draw_screen();
+  background_.release();
+}
+
+void ClothRenderer::light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme) {
+  program.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  program.setUniformValue("eye", vector(shot.eye));
+  // The key light goes half way with the eye: folds read the same from every side, yet turning shows relief.
+  const Eigen::Vector3d key = Eigen::Vector3d(-0.20, 0.70, 0.20) - 0.35 * shot.forward - 0.65 * shot.right;
+  const Eigen::Vector3d fill = 0.9 * shot.right - 0.45 * shot.forward - 0.1 * shot.up;
+  program.setUniformValue("key_direction", vector(key.normalized()));
+  program.setUniformValue("fill_direction", vector(fill.normalized()));
+  program.setUniformValue("exposure", theme.dark ? 0.92F : 1.05F);
+}
+
+void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
+  solid_.bind();
+  light(solid_, shot, theme);
+  const QColor body = theme.dark ? mixed(theme.view_top, QColor(0xA6, 0xAB, 0xB3), 0.62F)
+                                 : mixed(theme.view_top, QColor(0xB4, 0xB8, 0xBE), 0.75F);
+  solid_.setUniformValue("body_colour", linear_light(body));
+  // Cloth rests on the obstacles' surface with its particles, and its flat triangles cut below: the drawn
+  // body is pushed back in depth, and a ball made smaller by the height of the arc over a cell's diagonal.
+  glEnable(GL_CULL_FACE);  // pushed back, a near face could fall behind a far one
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5F, 4.0F);
+  for (const cloth::Obstacle& o : obstacles_) {
+    if (o.shape == cloth::Shape::plane) continue;
+    solid_.setUniformValue("center", vector(o.center));
+    if (o.shape == cloth::Shape::sphere) {
+      const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
+      solid_.setUniformValue("scale",
+                             vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
+      solids_->draw_sphere();
+    } else {
+      solid_.setUniformValue("scale", vector(0.995 * o.size));
+      solids_->draw_box();
+    }
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_CULL_FACE);
+  solid_.release();
+}
+
+void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
+  QOpenGLShaderProgram& cloth = cloth_[static_cast<std::size_t>(shot.mode)];
+  cloth.bind();
+  light(cloth, shot, theme);
+  if (shot.mode == ViewMode::textured) {
+    glBindTexture(GL_TEXTURE_2D, weave_);
+    cloth.setUniformValue("weave", 0);
+    cloth.setUniformValue("tiles_per_cell", tiles_per_cell_);
+  } else if (shot.mode == ViewMode::wireframe) {
+    const QColor sheet = theme.dark ? QColor(0x3C, 0x46, 0x52) : QColor(0xF4, 0xF6, 0xF8);
+    const QColor thread = theme.dark ? QColor(0xB9, 0xC7, 0xD6) : QColor(0x3F, 0x56, 0x6E);
+    cloth.setUniformValue("last_cell", QVector2D(number(columns_ - 1), number(rows_ - 1)));
+    cloth.setUniformValue("line_width", number(1.25 * shot.pixel_ratio));
+    cloth.setUniformValue("sheet_colour", linear_light(sheet));
+    cloth.setUniformValue("thread_colour", linear_light(thread));
+  } else {
+    glBindTexture(GL_TEXTURE_2D, palette_);
+    cloth.setUniformValue("strain_palette", 0);
+    cloth.setUniformValue("strain_maximum", number(shot.strain_maximum));
+  }
+  surface_->draw_triangles();
+  glBindTexture(GL_TEXTURE_2D, 0);
+  cloth.release();
+}
+
+void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
+  plane_.bind();
+  plane_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  plane_.setUniformValue("line_width", number(shot.pixel_ratio));
+  plane_.setUniformValue("line_colour",
+                         as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
+  plane_.setUniformValue("floor_colour",
+                         as_srgb(theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(0xFF, 0xFF, 0xFF)));
+  plane_.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
+  plane_.setUniformValue("floor_opacity", theme.dark ? 0.22F : 0.35F);
+  for (const cloth::Obstacle& o : obstacles_)
+    if (o.shape == cloth::Shape::plane) draw_plane(shot, o.point, o.normal.normalized());
+  if (!shot.ground.is_obstacle) draw_plane(shot, {0, shot.ground.height, 0}, Eigen::Vector3d::UnitY());
+  plane_.release();
+}
+
+void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
+                               const Eigen::Vector3d& normal) {
+  if (!normal.allFinite()) return;
+  const Eigen::Vector3d about = shot.extent.isEmpty() ? point : shot.extent.center();
+  const double size = shot.extent.isEmpty() ? 1 : shot.extent.diagonal().norm();
+  // Along x and z on level ground; the other planes take the nearest such pair.
+  const Eigen::Vector3d hint =
+      std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d u = (hint - hint.dot(normal) * normal).normalized(), v = normal.cross(u);
+  const Eigen::Vector3d middle = about - (about - point).dot(normal) * normal;
+  plane_.setUniformValue("middle", vector(middle));
+  plane_.setUniformValue("axis_u", vector(u));
+  plane_.setUniformValue("axis_v", vector(v));
+  plane_.setUniformValue("reach", number(2.2 * size));
+  plane_.setUniformValue("grid_step", number(grid_step_for(size)));
+  plane_.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
+  solids_->draw_strip();
+}
+
+void ClothRenderer::draw_pins(const Shot& shot, const Theme& theme) {
+  const double cell = cell_length_ / std::max(shot.metres_per_pixel, 1e-12);
+  // Smaller where a whole edge is pinned, so that the markers stay a row of dots.
+  const double diameter = std::clamp(0.85 * cell, 4 * shot.pixel_ratio, 11 * shot.pixel_ratio);
+  marker_.bind();
+  marker_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  marker_.setUniformValue("diameter", number(diameter));
+  marker_.setUniformValue("disc_colour", as_srgb(theme.accent));
+  marker_.setUniformValue("rim_colour", as_srgb(theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white)));
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  surface_->draw_pinned_points();
+  glDisable(GL_PROGRAM_POINT_SIZE);
+  marker_.release();
+}
+
+}  // namespace clothlab

@@ -1,0 +1,79 @@
+// Draws a frame into whichever framebuffer is bound. Knows OpenGL, the theme's colours and the frame; nothing
+// of widgets, mice or time.
+#pragma once
+
+#include <Eigen/Core>
+#include <QOpenGLFunctions_3_3_Core>
+#include <QOpenGLShaderProgram>
+#include <array>
+#include <memory>
+
+#include "bridge/frame.h"
+#include "viewport/gl/cloth_surface.h"
+#include "viewport/gl/solids.h"
+#include "viewport/scene_extent.h"
+#include "viewport/view_mode.h"
+
+namespace clothlab {
+
+struct Theme;
+
+/// From where and how a picture is drawn.
+struct Shot {
+  Eigen::Matrix4d world_to_clip = Eigen::Matrix4d::Identity();
+  Eigen::Vector3d eye{0, 0, 1}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< m; unit vectors
+  double metres_per_pixel = 0.001;  ///< where the eye looks, in the picture's own pixels
+  double pixel_ratio = 1;           ///< the picture's pixels per device-independent px
+  ViewMode mode = ViewMode::textured;
+  double strain_maximum = 0.1;  ///< of the colours' range
+  Ground ground;
+  Eigen::AlignedBox3d extent;  ///< m: how large the grid of the ground is drawn, and about where
+};
+
+/// A context (OpenGL 3.3 core or later) must be current whenever a member is called, the destructor included.
+class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
+ public:
+  ClothRenderer() = default;
+  ~ClothRenderer();
+  ClothRenderer(const ClothRenderer&) = delete;
+  ClothRenderer& operator=(const ClothRenderer&) = delete;
+
+  /// Shaders, meshes, textures. On failure false, and why in `problem`; nothing else may be called then.
+  /// `frugal`: the processor draws, so leave out what costs it much and shows little.
+  bool initialise(bool frugal, QString* problem);
+
+  /// Takes the frame's geometry over into graphics memory. Rows, columns and array sizes must agree.
+  void set_frame(const ClothFrame& frame);
+
+  /// The whole picture, without overlays. Sets all the state it needs and leaves depth test and blending off.
+  void draw(const Shot& shot, const Theme& theme);
+
+  /// Waits until everything drawn so far is in the framebuffer.
+  void finish() { glFinish(); }
+
+ private:
+  bool build_programs(QString* problem);
+  void make_textures(bool anisotropic);
+  void light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme);
+  void draw_background(const Theme& theme);
+  void draw_obstacles(const Shot& shot, const Theme& theme);
+  void draw_cloth(const Shot& shot, const Theme& theme);
+  void draw_planes(const Shot& shot, const Theme& theme);
+  void draw_plane(const Shot& shot, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
+  void draw_pins(const Shot& shot, const Theme& theme);
+
+  QOpenGLShaderProgram background_, plane_, solid_, marker_;
+  std::array<QOpenGLShaderProgram, 3> cloth_;  // by ViewMode
+  std::unique_ptr<ClothSurface> surface_;
+  std::unique_ptr<Solids> solids_;
+  GLuint weave_ = 0, palette_ = 0;
+
+  bool has_cloth_ = false;
+  std::uint64_t topology_ = 0;
+  int rows_ = 0, columns_ = 0;
+  double cell_length_ = 0;    // m, between neighbours when the run began
+  QVector2D tiles_per_cell_;  // of the weave
+  std::vector<cloth::Obstacle> obstacles_;
+};
+
+}  // namespace clothlab

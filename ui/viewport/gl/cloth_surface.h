@@ -1,0 +1,43 @@
+// The cloth in the graphics memory: uploaded when a new frame comes, drawn as often as wanted.
+#pragma once
+
+#include <QOpenGLFunctions_3_3_Core>
+#include <vector>
+
+#include "bridge/frame.h"
+
+namespace clothlab {
+
+/// A context must be current whenever a member is called, the destructor included.
+class ClothSurface {
+ public:
+  explicit ClothSurface(QOpenGLFunctions_3_3_Core& gl);
+  ~ClothSurface();
+  ClothSurface(const ClothSurface&) = delete;
+  ClothSurface& operator=(const ClothSurface&) = delete;
+
+  /// Positions, normals and strain always; cells and indices only when the topology has changed.
+  void upload(const ClothFrame& frame);
+  void draw_triangles();
+  void draw_pinned_points();
+  bool has_pinned_points() const { return pinned_count_ > 0; }
+
+ private:
+  enum Buffer { positions, normals, strain, cells, triangles, pinned, buffer_count };
+
+  void upload_grid(const ClothFrame& frame);
+  void upload_pins(const ClothFrame& frame);
+  void refill(Buffer buffer, const std::vector<float>& values);
+
+  QOpenGLFunctions_3_3_Core& gl_;
+  GLuint vertex_array_ = 0;
+  GLuint buffers_[buffer_count] = {};
+  int rows_ = 0, columns_ = 0;
+  std::uint64_t topology_ = 0;
+  GLsizei index_count_ = 0, pinned_count_ = 0;
+  std::vector<float> normal_values_;
+  std::vector<std::uint8_t> pinned_flags_;  // as uploaded
+  std::vector<std::uint32_t> pinned_indices_;
+};
+
+}  // namespace clothlab

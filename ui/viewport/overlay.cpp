@@ -1,0 +1,242 @@
+#include "viewport/overlay.h"
+
+#include <QLocale>
+#include <QPainterPath>
+#include <algorithm>
+#include <cmath>
+
+#include "theme/theme.h"
+#include "viewport/strain_scale.h"
+
+namespace clothlab {
+namespace {
+
+QFont font_of(const QPainter& painter, double scale, QFont::Weight weight) {
+  QFont font = painter.font();
+  font.setPointSizeF(font.pointSizeF() * scale);
+  font.setWeight(weight);
+  return font;
+}
+
+QColor faded(QColor colour, double opacity) {
+  colour.setAlphaF(static_cast<float>(opacity));
+  return colour;
+}
+
+/// A quiet surface under text, so that it can be read over anything.
+void card(QPainter& painter, const QRectF& area, const Theme& theme) {
+  painter.setPen(QPen(faded(theme.border, 0.8), 1));
+  painter.setBrush(faded(theme.panel, 0.86));
+  painter.drawRoundedRect(area.adjusted(0.5, 0.5, -0.5, -0.5), 6, 6);
+}
+
+QString percent(double strain) {
+  return QLocale::c().toString(100 * strain, 'g', 4);
+}
+
+/// A line that stands out from light and dark alike: a soft dark or light edge under the colour.
+void haloed_line(QPainter& painter, const QLineF& line, const QColor& colour, const QColor& halo,
+                 double width) {
+  painter.setPen(QPen(halo, width + 2, Qt::SolidLine, Qt::RoundCap));
+  painter.drawLine(line);
+  painter.setPen(QPen(colour, width, Qt::SolidLine, Qt::RoundCap));
+  painter.drawLine(line);
+}
+
+QColor halo_of(const Theme& theme) {
+  return faded(theme.dark ? QColor(Qt::black) : QColor(Qt::white), 0.65);
+}
+
+void arrow(QPainter& painter, const QLineF& line, const Theme& theme) {
+  haloed_line(painter, line, theme.accent, halo_of(theme), 2);
+  const double length = line.length(), head = std::min(11.0, 0.5 * length);
+  const QPointF along = (line.p2() - line.p1()) / length, across(-along.y(), along.x());
+  QPainterPath tip(line.p2() + 2 * along);
+  tip.lineTo(line.p2() - head * along + 0.5 * head * across);
+  tip.lineTo(line.p2() - 0.7 * head * along);
+  tip.lineTo(line.p2() - head * along - 0.5 * head * across);
+  tip.closeSubpath();
+  painter.setPen(QPen(halo_of(theme), 1));
+  painter.setBrush(theme.accent);
+  painter.drawPath(tip);
+}
+
+}  // namespace
+
+void PaintedLayer::lay(QPainter& view, const QRectF& area, const Key& key,
+                       const std::function<void(QPainter&)>& paint) {
+  const QRect whole = area.toAlignedRect();
+  const double ratio = view.device()->devicePixelRatioF();
+  if (image_.isNull() || key != key_ || whole != area_ || image_.devicePixelRatio() != ratio) {
+    const QSize pixels = (QSizeF(whole.size()) * ratio).toSize();
+    if (image_.size() != pixels) image_ = QImage(pixels, QImage::Format_ARGB32_Premultiplied);
+    image_.setDevicePixelRatio(ratio);
+    image_.fill(Qt::transparent);
+    QPainter painter(&image_);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setFont(view.font());
+    painter.translate(-whole.topLeft());
+    paint(painter);
+    key_ = key;
+    area_ = whole;
+  }
+  view.drawImage(whole.topLeft(), image_);
+}
+
+void Overlay::forget() {
+  for (PaintedLayer* layer : {&bar_, &mode_, &brush_, &ring_, &line_, &message_}) layer->forget();
+}
+
+void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum,
+                         double deformation_rate) {
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
+  const bool has_rate = deformation_rate >= 0;
+  const QString rate_text = has_rate ? tr("Limit %1").arg(percent(deformation_rate)) : QString();
+  const double line = metrics.height();
+  const double text_width =
+      std::max(metrics.horizontalAdvance(tr("Strain [%]")), metrics.horizontalAdvance(rate_text));
+  const double card_width = text_width + 34;
+  const double height = std::clamp(size.height() - 2 * spacing - 40, 60.0, 230.0);
+  const QRectF area(size.width() - card_width - 2 * spacing, size.height() - height - 2 * spacing, card_width,
+                    height);
+  const auto paint = [&](QPainter& p) {
+    card(p, area, theme);
+    p.setFont(font_of(p, 0.9, QFont::DemiBold));
+    p.setPen(theme.text);
+    p.drawText(area.adjusted(12, 7, 0, 0), Qt::AlignLeft | Qt::AlignTop, tr("Strain [%]"));
+    p.setFont(font_of(p, 1, QFont::Normal));
+    if (has_rate) {
+      p.setPen(theme.muted_text);
+      p.drawText(area.adjusted(12, 0, 0, -8), Qt::AlignLeft | Qt::AlignBottom, rate_text);
+    }
+
+    const QRectF bar(area.left() + 12, area.top() + line + 19, 14,
+                     height - line - 34 - (has_rate ? line + 6 : 0));
+    const auto y_of = [&](double strain) { return bar.bottom() - bar.height() * strain / maximum; };
+    QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
+    for (int i = 0; i <= 32; ++i) gradient.setColorAt(i / 32.0, strain_colour(i / 32.0));
+    p.setPen(Qt::NoPen);
+    p.setBrush(gradient);
+    p.drawRoundedRect(bar, 2, 2);
+
+    const bool rate_shown = has_rate && deformation_rate <= maximum;
+    for (const double tick : round_ticks(maximum)) {
+      const double y = y_of(tick);
+      p.setPen(QPen(theme.muted_text, 1));
+      p.drawLine(QPointF(bar.right() + 3, y), QPointF(bar.right() + 7, y));
+      p.setPen(theme.text);
+      p.drawText(QRectF(bar.right() + 11, y - line / 2, area.right() - bar.right() - 14, line),
+                 Qt::AlignLeft | Qt::AlignVCenter, percent(tick));
+    }
+    if (rate_shown) {
+      const double y = y_of(deformation_rate);
+      haloed_line(p, {bar.left() - 3, y, bar.right() + 3, y}, theme.limit, faded(theme.panel, 0.9), 2);
+      QPainterPath mark(QPointF(bar.left() - 2, y));
+      mark.lineTo(bar.left() - 8, y - 4.5);
+      mark.lineTo(bar.left() - 8, y + 4.5);
+      mark.closeSubpath();
+      p.setPen(Qt::NoPen);
+      p.setBrush(theme.limit);
+      p.drawPath(mark);
+    }
+  };
+  bar_.lay(view, area, {maximum, deformation_rate}, paint);
+}
+
+void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode) {
+  const QString name = mode == ViewMode::textured    ? tr("Textured")
+                       : mode == ViewMode::wireframe ? tr("Wireframe")
+                                                     : tr("Strain");
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Medium), view.device());
+  const QRectF area(2 * spacing, 2 * spacing, metrics.horizontalAdvance(name) + 20, metrics.height() + 8);
+  mode_.lay(view, area, {static_cast<double>(mode)}, [&](QPainter& p) {
+    card(p, area, theme);
+    p.setFont(font_of(p, 0.9, QFont::Medium));
+    p.setPen(theme.muted_text);
+    p.drawText(area, Qt::AlignCenter, name);
+  });
+}
+
+void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
+  const QLineF drag(brush.start, brush.cursor);
+  const bool has_arrow = brush.blowing && drag.length() > 4;
+  const QString speed = tr("%1 m/s").arg(brush.speed, 0, 'f', 1);
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::DemiBold), view.device());
+  const QRectF label(brush.cursor.x() + 14, brush.cursor.y() + 14, metrics.horizontalAdvance(speed) + 16,
+                     metrics.height() + 6);
+  const double r = brush.radius + 3;
+  QRectF area(brush.cursor - QPointF(r, r), QSizeF(2 * r, 2 * r));
+  if (has_arrow) area |= QRectF(brush.start, brush.cursor).normalized().adjusted(-16, -16, 16, 16) | label;
+  const PaintedLayer::Key key{brush.cursor.x(), brush.cursor.y(), brush.start.x(),
+                              brush.start.y(),  brush.radius,     brush.blowing ? brush.speed : -1};
+  brush_.lay(view, area, key, [&](QPainter& p) {
+    // The gust's own falloff (cosine of the distance), as a breath of colour.
+    QRadialGradient breath(brush.cursor, brush.radius);
+    for (int i = 0; i <= 8; ++i)
+      breath.setColorAt(i / 8.0,
+                        faded(theme.accent, (brush.blowing ? 0.20 : 0.10) * std::cos(i / 8.0 * M_PI_2)));
+    p.setBrush(breath);
+    p.setPen(QPen(halo_of(theme), 3));
+    p.drawEllipse(brush.cursor, brush.radius, brush.radius);
+    p.setBrush(Qt::NoBrush);
+    p.setPen(QPen(faded(theme.accent, brush.blowing ? 1 : 0.85), 1.5));
+    p.drawEllipse(brush.cursor, brush.radius, brush.radius);
+    if (!has_arrow) return;
+    p.setPen(Qt::NoPen);
+    p.setBrush(theme.accent);
+    p.drawEllipse(brush.start, 3, 3);
+    arrow(p, drag, theme);
+    card(p, label, theme);
+    p.setFont(font_of(p, 0.9, QFont::DemiBold));
+    p.setPen(theme.text);
+    p.drawText(label, Qt::AlignCenter, speed);
+  });
+}
+
+void Overlay::ring(QPainter& view, const Theme& theme, QPointF at, Ring ring) {
+  const double r = ring == Ring::highlight ? 7 : 9;
+  const QRectF area = QRectF(at, QSizeF()).adjusted(-14, -14, 14, 14);
+  ring_.lay(view, area, {at.x(), at.y(), static_cast<double>(ring)}, [&](QPainter& p) {
+    const QColor colour = ring == Ring::remove ? theme.error : theme.accent;
+    p.setBrush(Qt::NoBrush);
+    p.setPen(QPen(halo_of(theme), 4.5));
+    p.drawEllipse(at, r, r);
+    p.setPen(QPen(colour, 2));
+    p.drawEllipse(at, r, r);
+    if (ring == Ring::remove) {
+      const double k = r * M_SQRT1_2;
+      haloed_line(p, {at.x() - k, at.y() - k, at.x() + k, at.y() + k}, colour, halo_of(theme), 2);
+      haloed_line(p, {at.x() - k, at.y() + k, at.x() + k, at.y() - k}, colour, halo_of(theme), 2);
+    } else if (ring == Ring::add) {
+      p.setPen(Qt::NoPen);
+      p.setBrush(colour);
+      p.drawEllipse(at, 3, 3);
+    }
+  });
+}
+
+void Overlay::pull_line(QPainter& view, const Theme& theme, QPointF particle, QPointF cursor) {
+  const QRectF area = QRectF(particle, cursor).normalized().adjusted(-8, -8, 8, 8);
+  line_.lay(view, area, {particle.x(), particle.y(), cursor.x(), cursor.y()}, [&](QPainter& p) {
+    haloed_line(p, {particle, cursor}, theme.accent, halo_of(theme), 1.5);
+    p.setPen(QPen(halo_of(theme), 1.5));
+    p.setBrush(theme.accent);
+    p.drawEllipse(particle, 4, 4);
+    p.drawEllipse(cursor, 2.5, 2.5);
+  });
+}
+
+void Overlay::message(QPainter& view, QSizeF size, const Theme& theme, const QString& title,
+                      const QString& text) {
+  const QRectF area(0, size.height() / 2 - 50, size.width(), 100);
+  message_.lay(view, area, {}, [&](QPainter& p) {
+    p.setFont(font_of(p, 1.4, QFont::DemiBold));
+    p.setPen(theme.text);
+    p.drawText(QRectF(area.left(), area.top(), area.width(), 48), Qt::AlignHCenter | Qt::AlignBottom, title);
+    p.setFont(font_of(p, 1 / 1.4, QFont::Normal));
+    p.setPen(theme.muted_text);
+    p.drawText(QRectF(area.left(), area.top() + 54, area.width(), 40), Qt::AlignHCenter | Qt::AlignTop, text);
+  });
+}
+
+}  // namespace clothlab

@@ -1,0 +1,61 @@
+// What lies over the picture: colour bar, mode, brush circle, rings, lines, messages. Painted smoothly into
+// small images by the processor, which are then laid over the view: so they are as crisp without
+// multisampling as with it, and those that do not change are painted once.
+#pragma once
+
+#include <QCoreApplication>
+#include <QImage>
+#include <QPainter>
+#include <QString>
+#include <array>
+#include <functional>
+
+#include "viewport/view_mode.h"
+
+namespace clothlab {
+
+struct Theme;
+
+/// An image that is painted anew only when its key changes.
+class PaintedLayer {
+ public:
+  using Key = std::array<double, 6>;
+
+  /// Lays the layer over `area` (device-independent px) of the view, painting it first if needed; the painter
+  /// that `paint` gets is in the view's coordinates.
+  void lay(QPainter& view, const QRectF& area, const Key& key, const std::function<void(QPainter&)>& paint);
+  void forget() { image_ = QImage(); }
+
+ private:
+  QImage image_;
+  QRect area_;
+  Key key_{};
+};
+
+class Overlay {
+  Q_DECLARE_TR_FUNCTIONS(ClothView)
+
+ public:
+  struct Brush {
+    QPointF cursor, start;  ///< px
+    double radius = 0;      ///< px
+    double speed = 0;       ///< m/s
+    bool blowing = false;
+  };
+  enum class Ring { highlight, add, remove };
+
+  /// Everything is painted anew, as after a change of theme.
+  void forget();
+
+  void colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum, double deformation_rate);
+  void mode_name(QPainter& view, const Theme& theme, ViewMode mode);
+  void brush(QPainter& view, const Theme& theme, const Brush& brush);
+  void ring(QPainter& view, const Theme& theme, QPointF at, Ring ring);
+  void pull_line(QPainter& view, const Theme& theme, QPointF particle, QPointF cursor);
+  void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);
+
+ private:
+  PaintedLayer bar_, mode_, brush_, ring_, line_, message_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,20 @@
+// Which particle lies under the cursor.
+#pragma once
+
+#include <optional>
+
+#include "bridge/frame.h"
+#include "viewport/camera.h"
+
+namespace clothlab {
+
+inline constexpr double picking_tolerance = 12;  ///< px, around particles the ray passes by
+
+/// The particle nearest to where the ray through `cursor` (px) first meets the cloth; if it meets none, the
+/// particle that is drawn nearest to the cursor within the tolerance.
+std::optional<int> pick_particle(const ClothFrame& frame, const Camera& camera,
+                                 const Eigen::Vector2d& cursor);
+
+Eigen::Vector3d particle_position(const ClothFrame& frame, int particle);  ///< m
+
+}  // namespace clothlab

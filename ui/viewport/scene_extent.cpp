@@ -1,0 +1,82 @@
+#include "viewport/scene_extent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace clothlab {
+namespace {
+
+Eigen::Vector3d particle(const ClothFrame& frame, std::size_t i) {
+  const float* p = frame.positions.data() + 3 * i;
+  return {p[0], p[1], p[2]};
+}
+
+}  // namespace
+
+Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; 3 * i < frame.positions.size(); ++i) {
+    const Eigen::Vector3d p = particle(frame, i);
+    if (p.allFinite()) box.extend(p);  // a run that has diverged must not take the camera with it
+  }
+  return box;
+}
+
+Eigen::AlignedBox3d bounds_of_obstacles(const std::vector<cloth::Obstacle>& obstacles) {
+  Eigen::AlignedBox3d box;
+  for (const cloth::Obstacle& o : obstacles) {
+    if (o.shape == cloth::Shape::plane) continue;
+    const Eigen::Vector3d half =
+        o.shape == cloth::Shape::sphere ? Eigen::Vector3d::Constant(o.radius) : Eigen::Vector3d(o.size / 2);
+    box.extend(o.center - half);
+    box.extend(o.center + half);
+  }
+  return box;
+}
+
+Eigen::AlignedBox3d reach_of_cloth(const ClothFrame& frame) {
+  Eigen::AlignedBox3d box = bounds_of_cloth(frame);
+  std::vector<Eigen::Vector3d> pins;
+  for (std::size_t i = 0; i < frame.pinned.size(); ++i)
+    if (frame.pinned[i]) pins.push_back(particle(frame, i));
+  if (pins.empty() || box.isEmpty()) return box;
+
+  // A bound is enough: at most some 64 x 64 particles and 64 pins are looked at.
+  const std::size_t count = frame.positions.size() / 3;
+  const std::size_t stride = std::max<std::size_t>(count / 4096, 1);
+  const std::size_t pin_stride = std::max<std::size_t>(pins.size() / 64, 1);
+  double lowest = box.min().y();
+  for (std::size_t i = 0; i < count; i += stride) {
+    const Eigen::Vector3d p = particle(frame, i);
+    double nearest = std::numeric_limits<double>::infinity(), from = p.y();
+    for (std::size_t k = 0; k < pins.size(); k += pin_stride) {
+      const double distance = (pins[k] - p).norm();
+      if (distance < nearest) nearest = distance, from = pins[k].y();
+    }
+    if (std::isfinite(nearest)) lowest = std::min(lowest, from - nearest);
+  }
+  box.extend(Eigen::Vector3d(box.center().x(), lowest, box.center().z()));
+  return box;
+}
+
+bool is_level(const cloth::Obstacle& obstacle) {
+  if (obstacle.shape != cloth::Shape::plane) return false;
+  return std::abs(obstacle.normal.normalized().y()) > 0.999;
+}
+
+Ground ground_below(const Eigen::AlignedBox3d& reach, const std::vector<cloth::Obstacle>& obstacles) {
+  Ground ground;
+  for (const cloth::Obstacle& o : obstacles) {
+    if (!is_level(o) || (ground.is_obstacle && o.point.y() <= ground.height)) continue;
+    ground = {o.point.y(), true};
+  }
+  if (ground.is_obstacle) return ground;
+  Eigen::AlignedBox3d all = reach;
+  all.extend(bounds_of_obstacles(obstacles));
+  if (all.isEmpty()) return ground;
+  ground.height = all.min().y() - 0.06 * all.diagonal().norm();
+  return ground;
+}
+
+}  // namespace clothlab

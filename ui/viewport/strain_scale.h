@@ -1,0 +1,46 @@
+// The colours of strain and the range they stand for.
+#pragma once
+
+#include <QColor>
+#include <array>
+#include <vector>
+
+namespace clothlab {
+
+inline constexpr int strain_colour_count = 256;
+
+/// From no strain to the largest: dark to light at an even pace (equal steps in OKLab, Ottosson 2020), from
+/// indigo over teal to yellow, so that lightness alone tells the order to every kind of colour vision and in
+/// print.
+const std::array<QColor, strain_colour_count>& strain_colours();
+
+/// The colour at `fraction` of the range; clamped to [0, 1].
+QColor strain_colour(double fraction);
+
+/// The top of the colour bar. It follows the largest strain upwards at once, settles on round numbers, and
+/// comes down only after the strain has stayed well below for a while, so that the colours mean the same from
+/// frame to frame.
+class StrainRange {
+ public:
+  /// `largest` strain now (pure number), the scene's deformation rate (negative: none), `seconds` since last
+  /// time.
+  void follow(double largest, double deformation_rate, double seconds);
+  void reset() { *this = StrainRange(); }
+
+  double maximum() const { return shown_; }  ///< what the colours use now
+  double target() const { return target_; }  ///< the round number it glides to
+  bool settled() const { return shown_ == target_; }
+
+ private:
+  double target_ = 0.01, shown_ = 0.01;
+  double seconds_below_ = 0;
+  bool started_ = false;
+};
+
+/// The least of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value`.
+double round_maximum(double value);
+
+/// Four to seven round ticks from 0 up to `maximum`.
+std::vector<double> round_ticks(double maximum);
+
+}  // namespace clothlab

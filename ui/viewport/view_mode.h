@@ -1,0 +1,11 @@
+// What the view shows and what the left mouse button does in it.
+#pragma once
+
+#include <QtGlobal>
+
+namespace clothlab {
+
+enum class ViewMode { textured, wireframe, strain };
+enum class Tool { pull, brush, pin };
+
+}  // namespace clothlab

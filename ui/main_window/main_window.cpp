@@ -7,6 +7,8 @@
 #include <QDragEnterEvent>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
+#include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
 
@@ -19,14 +21,16 @@ namespace clothlab {
 namespace {
 
 constexpr QSize pleasant_size{1440, 900};
-constexpr int parameters_width = 340, charts_width = 400;  // px
+constexpr int parameters_width = 330, charts_width = 400;  // px
+constexpr int title_bar_height = 32;                       // px, at least what a desktop puts above a window
 
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   setObjectName("mainWindow");
   setAcceptDrops(true);
-  resize(pleasant_size);
+  const QSize room = screen()->availableSize() - QSize(0, title_bar_height);
+  resize(pleasant_size.boundedTo(room));
   setDockNestingEnabled(true);
   view_ = new ClothView(this);
   charts_ = new ChartPanel(this);
@@ -41,7 +45,11 @@ MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   updateTitle();
 }
 
-MainWindow::~MainWindow() = default;
+MainWindow::~MainWindow() {
+  // The widgets refer to the document and the link, which as members would go first.
+  delete takeCentralWidget();
+  qDeleteAll(findChildren<QDockWidget*>());
+}
 
 void MainWindow::makeLayout() {
   transport_ = new TransportBar({play_, step_, reset_, record_}, this);
@@ -55,12 +63,18 @@ void MainWindow::makeLayout() {
   column->addWidget(view_bar_);
   column->addWidget(notice_);
   column->addWidget(view_, 1);
-  column->addWidget(transport_);
   setCentralWidget(middle);
+
+  auto* bottom = new QToolBar(tr("Run"), this);
+  bottom->setObjectName("transportToolBar");
+  bottom->setMovable(false);
+  bottom->addWidget(transport_);
+  addToolBar(Qt::BottomToolBarArea, bottom);
 
   const auto dock = [this](const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area) {
     auto* widget = new QDockWidget(title, this);
     widget->setObjectName(name);
+    widget->setTitleBarWidget(new QWidget(widget));  // the panels have heads of their own
     widget->setWidget(content);
     addDockWidget(area, widget);
     return widget;
@@ -68,6 +82,7 @@ void MainWindow::makeLayout() {
   QDockWidget* left = dock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
   QDockWidget* right = dock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
+  view_->setFocus();
 }
 
 void MainWindow::connectDocument() {

@@ -62,7 +62,6 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
   row->addWidget(time_);
   rate_->setProperty("muted", true);
   rate_->setToolTip(tr("Steps per second of the clock, and simulated seconds per second"));
-  rate_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   row->addWidget(rate_, 1);
   recording_->setObjectName("recordingLabel");
   row->addWidget(recording_);

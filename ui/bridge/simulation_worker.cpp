@@ -270,7 +270,8 @@ void SimulationWorker::note_record(const std::optional<cloth::IoError>& error) {
 }
 
 void SimulationWorker::end_recording() {
-  const auto error = recording_.end(*simulation_, last_good_.state, status_.divergence);
+  const cloth::ClothState& last = status_.divergence ? last_good_.state : simulation_->state();
+  const auto error = recording_.end(*simulation_, last, status_.divergence);
   if (error && status_.recording_error.empty()) status_.recording_error = error->text();
 }
 

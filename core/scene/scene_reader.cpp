@@ -222,9 +222,12 @@ class SceneReader {
 /// Only notes where and why a text is not JSON, or is nested so deeply that it cannot be a scene.
 struct SyntaxCheck : nlohmann::json_sax<json> {
   static constexpr int deepest = 64;
+  const std::size_t length;  // of the text
   std::size_t offset = 0;
   std::string message;
   int depth = 0;
+
+  explicit SyntaxCheck(std::size_t text_length) : length(text_length) {}
 
   bool enter() {
     if (++depth <= deepest) return true;
@@ -251,9 +254,9 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   bool parse_error(std::size_t position, const std::string& last_token,
                    const json::exception& error) override {
     offset = position > 0 ? position - 1 : 0;
-    message = error.id == 406      ? "the number " + last_token + " is too large"
-              : last_token.empty() ? std::string("is not JSON: the text ends too early")
-                                   : "is not JSON from here on: unexpected '" + last_token + "'";
+    message = error.id == 406     ? "the number " + last_token + " is too large"
+              : position > length ? std::string("is not JSON: the text ends too early")
+                                  : "is not JSON from here on: unexpected '" + last_token + "'";
     return false;
   }
 };
@@ -341,7 +344,7 @@ std::optional<Override> parse_override(const std::string& text) {
 
 SceneReading read_scene(const std::string& text, const std::string& place,
                         const std::vector<Override>& overrides) {
-  SyntaxCheck syntax;
+  SyntaxCheck syntax(text.size());
   if (!json::sax_parse(text, &syntax)) {
     const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
     return {std::nullopt, {{"", "", printable(syntax.message), place, at.line, at.column}}};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "forces/gravity.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "simulation/time_step.h"
@@ -11,8 +12,11 @@
 namespace cloth {
 namespace {
 
-/// A kinetic energy this many times all that the scene can hold is a run that has run away.
+/// A kinetic energy this many times all that the scene can give is a run that has run away.
 constexpr double runaway_factor = 10;
+
+/// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
+constexpr double rounding_floor = 1e-6;
 
 double elastic_scale_of(const ClothSystem& system) {
   double energy = 0;
@@ -144,8 +148,9 @@ void Simulation::edit(const Scene& scene) {
 void Simulation::restore(const Checkpoint& checkpoint) {
   state_ = checkpoint.state;
   ledger_ = checkpoint.ledger;
-  first_time_ = state_.time;
-  first_step_ = state_.step;
+  const bool same_step = checkpoint.time_step == time_step_;
+  first_time_ = same_step ? checkpoint.first_time : state_.time;
+  first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = {};
   last_contact_ = {};
   integrator_->forget();
@@ -180,21 +185,25 @@ Measurement Simulation::measure() const {
           .contacts = last_contact_.contacts};
 }
 
-/// The most kinetic energy that anything in the scene could give: all springs released from twice their
-/// length, the whole fall, the full wind, what the hand did.
-double Simulation::energy_scale() const {
+/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full wind, what the
+/// hand did, what there was at the start.
+double Simulation::energy_scale(double fallen) const {
   const double mass = system_.particle_mass * system_.size();
-  const double fall = gravity_of(scene_).norm() * state_.time;
-  const double drop = gravity_of(scene_).norm() * system_.diagonal;
+  const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
   double wind = 0;
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
-  return elastic_scale_ + mass * (0.5 * fall * fall + drop + 0.5 * wind * wind) +
-         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.initial);
+  return std::max(drop, fallen) + 0.5 * mass * wind * wind + std::abs(ledger_.forces.brush) +
+         std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
+}
+
+bool Simulation::has_run_away(double kinetic) const {
+  if (!std::isfinite(kinetic)) return true;
+  if (kinetic <= runaway_factor * energy_scale(0)) return false;
+  return !(kinetic <= runaway_factor * energy_scale(-gravity_energy(system_, gravity_of(scene_), state_.position)));
 }
 
 std::optional<Divergence> Simulation::find_divergence() const {
-  const double kinetic = kinetic_energy(system_, state_.velocity);
-  if (std::isfinite(kinetic) && kinetic <= runaway_factor * energy_scale()) return std::nullopt;
+  if (!has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
 
   Divergence divergence;
   divergence.step = state_.step;

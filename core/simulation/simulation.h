@@ -54,6 +54,9 @@ struct Quantities {
 struct Checkpoint {
   ClothState state;
   EnergyLedger ledger;
+  double time_step = 0;   ///< s, in force since `first_step`, which began at `first_time`
+  double first_time = 0;  ///< s
+  std::int64_t first_step = 0;
 };
 
 struct StepCount {
@@ -76,7 +79,7 @@ class Simulation {
   /// energy.
   void edit(const Scene& scene);
 
-  Checkpoint checkpoint() const { return {state_, ledger_}; }
+  Checkpoint checkpoint() const { return {state_, ledger_, time_step_, first_time_, first_step_}; }
   /// Goes back to a checkpoint of this simulation; the scene in force stays as it is.
   void restore(const Checkpoint& checkpoint);
 
@@ -102,7 +105,8 @@ class Simulation {
   void resolve_contact();
   double total_energy() const;
   std::optional<Divergence> find_divergence() const;
-  double energy_scale() const;
+  double energy_scale(double fallen) const;
+  bool has_run_away(double kinetic) const;
 
   Scene scene_;
   ClothSystem system_;

@@ -148,7 +148,9 @@ TEST(SimulationWorker, TakesCommandsFromTheWindowWhileItRuns) {
     scene.springs->structural = 100 + n;
     worker.send(command::Edit{scene});
     worker.send(command::Pull{cloth::Pull{.particle = n % 81, .target = {0, 1, 0.2}}});
-    if (const auto frame = worker.take_frame()) ASSERT_EQ(frame->positions.size(), 243u);
+    if (const auto frame = worker.take_frame()) {
+      ASSERT_EQ(frame->positions.size(), 243u);
+    }
     worker.take_samples();
   }
   worker.send(command::Pull{});

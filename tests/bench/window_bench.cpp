@@ -1,0 +1,93 @@
+// clothlab-window-bench: how long the window's events and pictures take with a cloth running. Prints figures; judges
+// nothing. Needs a display.
+//
+//     clothlab-window-bench [PARTICLES PER SIDE] [SECONDS]
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QStandardPaths>
+#include <QTimer>
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include "main_window/main_window.h"
+#include "scene/builtin_scenes.h"
+#include "theme/theme.h"
+
+namespace {
+
+/// Times every event that the window's thread handles, nested ones with the one around them.
+class TimedApplication : public QApplication {
+ public:
+  using QApplication::QApplication;
+
+  bool notify(QObject* receiver, QEvent* event) override {
+    if (depth_ > 0 || !watching) return QApplication::notify(receiver, event);
+    const int type = event->type();
+    QElapsedTimer timer;
+    timer.start();
+    ++depth_;
+    const bool handled = QApplication::notify(receiver, event);
+    --depth_;
+    const double taken = static_cast<double>(timer.nsecsElapsed()) * 1e-6;
+    ++events;
+    if (taken > longest) longest = taken, longest_type = type, longest_receiver = receiver->metaObject()->className();
+    return handled;
+  }
+
+  bool watching = false;
+  long events = 0;
+  double longest = 0;  // ms
+  int longest_type = 0;
+  const char* longest_receiver = "";
+
+ private:
+  int depth_ = 0;
+};
+
+double quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  TimedApplication application(argc, argv);
+  QStandardPaths::setTestModeEnabled(true);
+  const int side = argc > 1 ? std::max(2, std::atoi(argv[1])) : 128;
+  const double seconds = argc > 2 ? std::atof(argv[2]) : 10;
+
+  QSurfaceFormat::setDefaultFormat(clothlab::ClothView::surface_format());
+  clothlab::apply_theme(application);
+  clothlab::MainWindow window;
+  window.setAsksToSave(false);
+  window.show();
+
+  cloth::Scene scene = cloth::builtin_scene("wind");
+  scene.cloth.rows = scene.cloth.columns = side;
+  window.document().load(scene);
+
+  std::vector<double> drawings;
+  QObject::connect(&window.view(), &clothlab::ClothView::frameDrawn, &application, [&](double milliseconds) {
+    if (application.watching) drawings.push_back(milliseconds);
+  });
+  constexpr int warm_up = 2000;  // ms
+  window.simulation().send(clothlab::command::Play{});
+  QTimer::singleShot(warm_up, &application, [&] { application.watching = true; });
+  QTimer::singleShot(warm_up + static_cast<int>(1000 * seconds), &application, &QApplication::quit);
+  QApplication::exec();
+  application.watching = false;
+
+  const clothlab::WorkerStatus status = window.simulation().status();
+  std::printf("cloth %d x %d, view %d x %d px, %.0f s\n", side, side, window.view().width(), window.view().height(), seconds);
+  std::printf("drawings per second   %8.1f\n", static_cast<double>(drawings.size()) / seconds);
+  std::printf("drawing, ms           %8.2f median, %.2f lower and %.2f upper quartile\n", quantile(drawings, 0.5),
+              quantile(drawings, 0.25), quantile(drawings, 0.75));
+  std::printf("longest event, ms     %8.1f of %ld (type %d to %s)\n", application.longest, application.events,
+              application.longest_type, application.longest_receiver);
+  std::printf("simulation            %8.0f steps/s, %.3f x real time\n", status.steps_per_second, status.real_time_factor);
+  return 0;
+}

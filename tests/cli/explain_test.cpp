@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/command_line.h"
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "scene/builtin_scenes.h"
+
+namespace cloth::test {
+namespace {
+
+nlohmann::json explained(const std::string& arguments) {
+  const CommandResult result = cli("explain " + arguments + " --json");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  return nlohmann::json::parse(result.output);
+}
+
+TEST(Explain, SaysWhichStagesAreInAndWhyTheRestIsLeftOut) {
+  std::map<std::string, std::string> left_out;
+  const auto explanation = explained("free-fall");
+  for (const auto& stage : explanation["stages"])
+    if (!stage["in"].get<bool>()) left_out[stage["name"]] = stage["reason"];
+  EXPECT_EQ(left_out,
+            (std::map<std::string, std::string>{{"viscous damping", "the scene has no \"damping\""},
+                                                {"air drag", "the scene has no \"air\""},
+                                                {"wind", "there is no air to blow"},
+                                                {"deformation rate", "the scene has no \"deformation\""},
+                                                {"contact", "the scene has no \"obstacles\""}}));
+  const std::string text = cli("explain free-fall").output;
+  for (const auto& [name, reason] : left_out) {
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+    EXPECT_NE(text.find(reason), std::string::npos) << text;
+  }
+}
+
+TEST(Explain, CountsTheSpringsOfEveryFamily) {
+  const auto springs = explained("free-fall")["springs"];  // 17 x 17
+  EXPECT_EQ(springs["structural"], 2 * 17 * 16);
+  EXPECT_EQ(springs["shear"], 2 * 16 * 16);
+  EXPECT_EQ(springs["flexion"], 2 * 17 * 15);
+}
+
+TEST(Explain, GivesTheFrequencyItsBoundAndEveryMethodsStep) {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    const Scene scene = builtin_scene(builtin.name);
+    const auto json = explained(builtin.name);
+    EXPECT_EQ(json["largest_frequency_per_s"], largest_frequency(scene.cloth, *scene.springs));
+    EXPECT_EQ(json["guaranteed_frequency_per_s"], guaranteed_frequency(scene.cloth, *scene.springs));
+    ASSERT_EQ(json["methods"].size(), integrator_names().size());
+    for (const auto& method : json["methods"]) {
+      const auto limit = stable_step(method["name"].get<std::string>(), scene);
+      if (limit)
+        EXPECT_EQ(method["stable_step_s"], *limit) << builtin.name;
+      else
+        EXPECT_TRUE(method["stable_step_s"].is_null() && method["auto_step_s"].is_null()) << builtin.name;
+    }
+  }
+}
+
+TEST(Explain, SaysThatExplicitEulerHasNoStepWithoutDamping) {
+  const CommandResult result = cli("explain free-fall --set integrator.method=explicit-euler");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.output.find("no stable time step"), std::string::npos) << result.output;
+}
+
+TEST(Explain, TakesSettings) {
+  EXPECT_EQ(explained("free-fall --set integrator.time_step=0.0001")["time_step_s"], 0.0001);
+  EXPECT_EQ(explained("free-fall --set springs.flexion=0")["springs"]["flexion"], 0);
+}
+
+}  // namespace
+}  // namespace cloth::test

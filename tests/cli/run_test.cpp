@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/command_line.h"
+#include "io/run_folder.h"
+#include "scene/scene_json.h"
+#include "support/files.h"
+
+namespace cloth::test {
+namespace {
+
+const std::string short_run = "run pendulum --set duration=0.2 ";
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string out(const TemporaryFolder& folder, const std::string& name = "result") {
+  return "--out '" + (folder / name).string() + "'";
+}
+
+TEST(Run, LeavesItsFourFilesInTheFolder) {
+  const TemporaryFolder folder;
+  const CommandResult result = cli(short_run + out(folder, "a/new/folder"));
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "a/new/folder"))
+    files.insert(entry.path().filename());
+  EXPECT_EQ(files, std::set<std::string>({"scene.json", "record.csv", "final_state.csv", "summary.json"}));
+  EXPECT_EQ(parse_csv(content_of(folder / "a/new/folder/record.csv")).rows.size(), 21u);
+  EXPECT_TRUE(has(result.output, "finished"));
+}
+
+TEST(Run, SaysProgressOnStandardErrorAndTheResultOnStandardOutput) {
+  const CommandResult result = cli(short_run);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(has(result.errors, "time step: auto")) << result.errors;
+  EXPECT_FALSE(has(result.output, "time step: auto"));
+  EXPECT_FALSE(has(result.errors, "\r")) << "no progress bar where there is no terminal";
+}
+
+TEST(Run, GivesItsSummaryAsJson) {
+  const TemporaryFolder folder;
+  const CommandResult result = cli(short_run + "--json " + out(folder));
+  const auto summary = nlohmann::json::parse(result.output);
+  EXPECT_EQ(summary["status"], "finished");
+  EXPECT_EQ(summary, nlohmann::json::parse(content_of(folder / "result/summary.json")));
+}
+
+TEST(Run, OfTheRecordedSceneGivesTheSameRecord) {
+  const TemporaryFolder folder;
+  cli(short_run + out(folder, "first"));
+  const CommandResult again =
+      cli("run '" + (folder / "first/scene.json").string() + "' " + out(folder, "second"));
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(without_column(parse_csv(content_of(folder / "first/record.csv")), "step_time_us").rows,
+            without_column(parse_csv(content_of(folder / "second/record.csv")), "step_time_us").rows);
+}
+
+TEST(Run, TakesSettings) {
+  const TemporaryFolder folder;
+  cli(short_run + "--set integrator.method=verlet --set springs.structural=77 " + out(folder));
+  const auto reading = read_scene(content_of(folder / "result/scene.json"), "scene.json");
+  ASSERT_TRUE(reading.scene);
+  EXPECT_EQ(reading.scene->integrator.method, "verlet");
+  EXPECT_EQ(reading.scene->springs->structural, 77);
+}
+
+TEST(Run, ThatDivergesExitsWithThreeAndKeepsTheLastGoodState) {
+  const TemporaryFolder folder;
+  const CommandResult result = cli("run corners-free --set integrator.time_step=0.005 --json " + out(folder));
+  EXPECT_EQ(result.exit_code, 3);
+  for (const char* word : {"diverged in step", "particle", "row", "t = ", "stable for this scene is up to"})
+    EXPECT_TRUE(has(result.errors, word)) << result.errors;
+  EXPECT_EQ(nlohmann::json::parse(result.output)["status"], "diverged");
+  const CsvTable state = parse_csv(content_of(folder / "result/final_state.csv"));
+  EXPECT_EQ(state.rows.size(), 33u * 33u);
+  for (const char* column : {"x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"})
+    for (const double value : column_of(state, column)) ASSERT_TRUE(std::isfinite(value));
+  for (const double value : column_of(parse_csv(content_of(folder / "result/record.csv")), "kinetic_J"))
+    EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(Run, WithoutAStableStepExitsWithTwoAndSaysWhy) {
+  const CommandResult result = cli("run free-fall --set integrator.method=explicit-euler");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.output, "");
+  EXPECT_TRUE(has(result.errors, "explicit-euler has no stable time step for this scene")) << result.errors;
+}
+
+TEST(Run, IntoAFolderThatCannotBeMadeExitsWithFour) {
+  const TemporaryFolder folder;
+  ASSERT_FALSE(write_text_file(folder / "file", "x"));
+  const CommandResult result = cli(short_run + out(folder, "file/below"));
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_TRUE(has(result.errors, "file/below")) << result.errors;
+  EXPECT_EQ(result.output, "");
+}
+
+TEST(Run, WhereNobodyMayWriteExitsWithFour) {
+  const CommandResult result = cli(short_run + "--out /proc/clothlab-result");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_TRUE(has(result.errors, "/proc/clothlab-result: ")) << result.errors;
+}
+
+TEST(Run, IntoAFolderThatIsNotWritableExitsWithFour) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const CommandResult result = cli(short_run + "--out '" + folder.path().string() + "'");
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_TRUE(has(result.errors, "Permission denied")) << result.errors;
+}
+
+TEST(Run, OnADiskThatFillsUpExitsWithFourAndLeavesAValidRecord) {
+  const TemporaryFolder folder;
+  const std::string run = "\"$CLI\" run pendulum --set record.interval=0.0005 " + out(folder);
+  const CommandResult result = shell("ulimit -f 40\n" + run);  // blocks of 512 bytes or of 1 KiB
+  EXPECT_EQ(result.exit_code, 4) << result.errors;
+  EXPECT_TRUE(has(result.errors, "record.csv: File too large")) << result.errors;
+  const std::string record = content_of(folder / "result/record.csv");
+  const CsvTable table = parse_csv(record);
+  EXPECT_EQ(record.back(), '\n');
+  EXPECT_GT(table.rows.size(), 10u);
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
+}
+
+TEST(Run, IntoAClosedPipeEnds) {
+  const CommandResult result = shell("\"$CLI\" " + short_run + "| head -c 0; echo over");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.output, "over\n");
+}
+
+TEST(Run, ThatIsInterruptedLeavesAValidRecordAndSaysStopped) {
+  const TemporaryFolder folder;
+  // The shell ends the run once its record has grown, however long that takes.
+  const std::string record = (folder / "result/record.csv").string();
+  const CommandResult result = shell("\"$CLI\" run corners-shear --set duration=100000 " + out(folder) +
+                                     " &\n"
+                                     "run=$!\n"
+                                     "until [ \"$(wc -l < '" +
+                                     record +
+                                     "' 2> /dev/null || echo 0)\" -gt 3 ]; do sleep 0.05; done\n"
+                                     "kill -TERM $run\n"
+                                     "wait $run");
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  const CsvTable table = parse_csv(content_of(record));
+  EXPECT_GT(table.rows.size(), 2u);
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
+  EXPECT_EQ(nlohmann::json::parse(content_of(folder / "result/summary.json"))["status"], "stopped");
+}
+
+TEST(Run, ThatIsKilledLeavesAValidRecord) {
+  const TemporaryFolder folder;
+  const std::string record = (folder / "result/record.csv").string();
+  shell("\"$CLI\" run corners-shear --set duration=100000 " + out(folder) +
+        " &\n"
+        "run=$!\n"
+        "until [ \"$(wc -l < '" +
+        record +
+        "' 2> /dev/null || echo 0)\" -gt 3 ]; do sleep 0.05; done\n"
+        "kill -KILL $run\n"
+        "wait $run");
+  const std::string text = content_of(record);
+  EXPECT_EQ(text.back(), '\n');
+  for (const auto& row : parse_csv(text).rows) EXPECT_EQ(row.size(), parse_csv(text).header.size());
+}
+
+TEST(Run, AcceptsThreadsAndGivesTheSameBits) {
+  const TemporaryFolder folder;
+  cli(short_run + "--threads 1 " + out(folder, "one"));
+  cli(short_run + "--threads 4 " + out(folder, "four"));
+  EXPECT_EQ(content_of(folder / "one/final_state.csv"), content_of(folder / "four/final_state.csv"));
+}
+
+}  // namespace
+}  // namespace cloth::test

@@ -1,0 +1,154 @@
+// A parameter is declared once; everything else follows from the declaration.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "scene/builtin_scenes.h"
+#include "scene/reference_page.h"
+#include "scene/scene_checks.h"
+#include "scene/scene_json.h"
+#include "scene/scene_parameters.h"
+#include "support/files.h"
+
+namespace cloth::test {
+namespace {
+
+/// A scene that has every block.
+Scene full_scene() {
+  Scene scene;
+  scene.springs.emplace();
+  scene.damping = 0.5;
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.air.emplace().gust.emplace();
+  scene.deformation.emplace();
+  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
+    scene.obstacles.emplace_back().shape = shape;
+  return scene;
+}
+
+/// A value that the declaration allows and that is not `now`.
+ParameterValue another_value(const ParameterInfo& info, const ParameterValue& now) {
+  switch (info.kind) {
+    case Kind::number:
+      return ParameterValue(0.5) == now ? 0.75 : 0.5;
+    case Kind::integer:
+      return std::get<std::int64_t>(now) + 1;
+    case Kind::vector:
+      return Vec3(0.25, 0.5, 0.125);
+    case Kind::choice:
+      return info.choices[info.choices[0] == std::get<std::string>(now) ? 1 : 0];
+    case Kind::text:
+      return std::string("another");
+    case Kind::words:
+      return info.word_sets[info.word_sets[0] == std::get<Words>(now) ? 1 : 0];
+  }
+  return 0.0;
+}
+
+std::string as_json(const ParameterValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return std::to_string(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* v = std::get_if<Vec3>(&value))
+    return "[" + std::to_string(v->x()) + "," + std::to_string(v->y()) + "," + std::to_string(v->z()) + "]";
+  std::string list;
+  for (const std::string& word : std::get<Words>(value)) list += (list.empty() ? "\"" : ", \"") + word + "\"";
+  return "[" + list + "]";
+}
+
+TEST(EveryParameter, CanBeSetByItsPathAndReadBack) {
+  const Scene scene = full_scene();
+  const std::string text = write_scene(scene);
+  for (const Parameter& parameter : parameters_of(scene)) {
+    const ParameterValue wanted = another_value(parameter.info, parameter.get(scene));
+    const SceneReading reading = read_scene(text, "name", {{parameter.path, as_json(wanted)}});
+    ASSERT_TRUE(reading.scene) << parameter.path << ": " << reading.problems.front().text();
+    EXPECT_TRUE(parameter.get(*reading.scene) == wanted) << parameter.path;
+
+    Scene set = scene;
+    parameter.set(set, wanted);
+    EXPECT_EQ(set, *reading.scene) << parameter.path;
+  }
+}
+
+TEST(EveryParameter, HasLabelMeaningAndASliderInsideItsRange) {
+  for (const Parameter& parameter : parameters_of(full_scene())) {
+    const ParameterInfo& info = parameter.info;
+    EXPECT_FALSE(info.label.empty()) << parameter.path;
+    EXPECT_FALSE(info.doc.empty()) << parameter.path;
+    if (info.kind != Kind::number && info.kind != Kind::integer) continue;
+    EXPECT_LT(info.slider_minimum, info.slider_maximum) << parameter.path;
+    EXPECT_GE(info.slider_minimum, info.minimum) << parameter.path;
+    EXPECT_LE(info.slider_maximum, info.maximum) << parameter.path;
+  }
+}
+
+TEST(EveryParameter, HasAPathOfItsOwnThatFindsIt) {
+  const Scene scene = full_scene();
+  std::set<std::string> paths;
+  for (const Parameter& parameter : parameters_of(scene)) {
+    EXPECT_TRUE(paths.insert(parameter.path).second) << parameter.path;
+    ASSERT_TRUE(find_parameter(scene, parameter.path));
+    EXPECT_TRUE(find_parameter(scene, parameter.path)->get(scene) == parameter.get(scene));
+  }
+  EXPECT_FALSE(find_parameter(scene, "springs.bend"));
+  EXPECT_FALSE(find_parameter(scene, ""));
+}
+
+TEST(EveryParameter, HasADefaultThatKeepsItsOwnRule) {
+  const Scene scene = full_scene();
+  for (const Parameter& parameter : parameters_of(scene)) {
+    const auto value = default_of(scene, parameter.path);
+    ASSERT_TRUE(value) << parameter.path;
+    EXPECT_EQ(broken_rule(parameter.info, *value), std::nullopt) << parameter.path;
+  }
+}
+
+TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
+  Scene scene;
+  std::set<std::string> offered;
+  for (const BlockOffer& offer : offers_for(scene)) {
+    offered.insert(offer.path);
+    Scene with = scene;
+    offer.add(with);
+    EXPECT_NE(with, scene) << offer.path;
+    EXPECT_TRUE(find_problems(with).empty()) << offer.path;
+    const bool obstacle = with.obstacles.size() > scene.obstacles.size();
+    remove_block(with, obstacle ? "obstacles.0" : offer.path);
+    EXPECT_EQ(with, scene) << offer.path;
+  }
+  EXPECT_EQ(offered, std::set<std::string>(
+                         {"springs", "deformation", "damping", "gravity", "air", "sphere", "box", "plane"}));
+  for (const BlockOffer& offer : offers_for(full_scene()))
+    EXPECT_TRUE(offer.path == "sphere" || offer.path == "box" || offer.path == "plane") << offer.path;
+}
+
+TEST(RemovingABlock, ThatIsNotThereChangesNothing) {
+  Scene scene = full_scene();
+  for (const char* path : {"obstacles.3", "obstacles.x", "obstacles.", "cloth", "nothing", ""}) {
+    remove_block(scene, path);
+    EXPECT_EQ(scene, full_scene()) << path;
+  }
+}
+
+TEST(Blocks, AreOnlyThoseThatTheSceneHas) {
+  std::vector<std::string> paths;
+  for (const Block& block : blocks_of(builtin_scene("free-fall"))) paths.push_back(block.path);
+  EXPECT_EQ(paths, std::vector<std::string>({"integrator", "springs", "gravity", "cloth", "run"}));
+}
+
+TEST(ReferencePage, IsTheOneInDocs) {
+  EXPECT_EQ(content_of(std::string(CLOTHLAB_SOURCE_DIR) + "/docs/parameters.md"), reference_page())
+      << "make it again: clothlab-cli parameters > docs/parameters.md";
+}
+
+TEST(ReferencePage, NamesEveryParameter) {
+  const std::string page = reference_page();
+  Scene scene = full_scene();
+  scene.obstacles.clear();
+  for (const Parameter& parameter : parameters_of(scene))
+    EXPECT_NE(page.find("`" + parameter.path + "`"), std::string::npos) << parameter.path;
+}
+
+}  // namespace
+}  // namespace cloth::test

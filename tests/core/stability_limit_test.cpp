@@ -1,0 +1,225 @@
+#include "measure/stability_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "cloth/grid.h"
+#include "support/reference.h"
+#include "support/scenes.h"
+#include "support/states.h"
+
+namespace cloth::test {
+namespace {
+
+constexpr std::array<double, 7> ratios{0, 0.01, 0.1, 0.5, 1, 2, 5};  // damping ratios zeta
+
+/// Largest omega h of every method at each of the ratios: the table of numerics.md 3.1.
+const std::map<std::string, std::array<double, 7>> table{
+    {"explicit-euler", {0, 0.02, 0.2, 1, 2, 0.5359, 0.2020}},
+    {"semi-implicit-euler", {2, 1.9801, 1.8100, 1.2361, 0.8284, 0.4721, 0.1980}},
+    {"verlet", {2, 2, 2, 2, 2, 2, 2}},
+    {"rk4", {2.8284, 2.8486, 2.9509, 2.6225, 2.7853, 0.7463, 0.2814}}};
+
+TEST(OscillatorLimit, IsTheTablesForEveryMethodAndDampingRatio) {
+  for (const auto& [method, limits] : table)
+    for (std::size_t k = 0; k < ratios.size(); ++k)
+      EXPECT_NEAR(oscillator_limit(method, 1, 2 * ratios[k]), limits[k], 0.51e-4)
+          << method << " " << ratios[k];
+}
+
+TEST(OscillatorLimit, ScalesWithTheFrequency) {
+  for (const auto& [method, limits] : table)
+    for (const double ratio : {0.1, 2.0}) {
+      const double unit = oscillator_limit(method, 1, 2 * ratio);
+      EXPECT_NEAR(1000 * oscillator_limit(method, 1000, 2000 * ratio), unit, 1e-9 * unit) << method;
+    }
+}
+
+/// The spectral radius of one step of each method for x'' = -x - 2 zeta x', as matrices written out here.
+Eigen::Matrix2d step_matrix(const std::string& method, double h, double zeta) {
+  Eigen::Matrix2d slope;
+  slope << 0, 1, -1, -2 * zeta;
+  const Eigen::Matrix2d one = Eigen::Matrix2d::Identity(), z = h * slope;
+  if (method == "explicit-euler") return one + z;
+  if (method == "rk4") return one + z + z * z / 2 + z * z * z / 6 + z * z * z * z / 24;
+  Eigen::Matrix2d matrix;
+  if (method == "semi-implicit-euler") {
+    matrix.row(1) << -h, 1 - 2 * zeta * h;
+    matrix.row(0) = Eigen::RowVector2d(1, 0) + h * matrix.row(1);
+    return matrix;
+  }
+  const Eigen::RowVector2d half(-h / 2, 1 - zeta * h);  // verlet: v_half of (x, v)
+  matrix.row(0) = Eigen::RowVector2d(1, 0) + h * half;
+  matrix.row(1) = (half - h / 2 * matrix.row(0)) / (1 + zeta * h);
+  return matrix;
+}
+
+double spectral_radius(const Eigen::Matrix2d& m) {
+  const double half_trace = 0.5 * m.trace(), determinant = m.determinant();
+  const double discriminant = half_trace * half_trace - determinant;
+  return discriminant < 0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(discriminant);
+}
+
+TEST(OscillatorLimit, IsWhereTheSpectralRadiusPassesOne) {
+  for (const auto& [method, limits] : table)
+    for (const double zeta : ratios) {
+      const double limit = oscillator_limit(method, 1, 2 * zeta);
+      if (limit == 0) continue;
+      EXPECT_LE(spectral_radius(step_matrix(method, 0.999 * limit, zeta)), 1 + 1e-12) << method << zeta;
+      EXPECT_GT(spectral_radius(step_matrix(method, 1.001 * limit, zeta)), 1 + 1e-9) << method << zeta;
+    }
+}
+
+TEST(StableStep, IsNoneForExplicitEulerWithoutDampingOfEveryMotion) {
+  Scene scene = smooth_scene(6, 6);
+  EXPECT_TRUE(stable_step("explicit-euler", scene));
+  scene.damping.reset();
+  EXPECT_FALSE(stable_step("explicit-euler", scene));  // air damps the normal motion alone
+  scene.springs->damping = 0.1;
+  EXPECT_FALSE(stable_step("explicit-euler", scene));
+}
+
+TEST(StableStep, IsAnyLengthWhereNothingOscillates) {
+  for (const auto& [method, limits] : table)
+    EXPECT_EQ(stable_step(method, bare_sheet(5, 5)), infinity) << method;
+}
+
+TEST(StableStep, HoldsForEverySlowerMotionToo) {
+  const DampingRates rates{5, 80};
+  for (const auto& [method, limits] : table) {
+    const double limit = stable_step(method, 100, rates).value();
+    for (double omega = 100; omega > 0.01; omega /= 1.07)
+      for (double c = 5; c <= 80; c += 3)
+        EXPECT_LE(spectral_radius(step_matrix(method, limit * omega, c / (2 * omega))), 1 + 2e-4)
+            << method << " omega " << omega << " c " << c;
+  }
+}
+
+struct Ratio {
+  double structural, shear, flexion;
+  double five, ten, infinite, guaranteed;  // omega sqrt(m/k_s), numerics.md 3.2
+};
+constexpr std::array<Ratio, 5> frequencies{{{1, 1, 1, 2.8740, 3.0967, 3.1820, 4.8990},
+                                            {1, 1, 0.1, 2.6473, 2.7823, 2.8284, 4.0988},
+                                            {1, 0.5, 0.25, 2.3247, 2.4248, 2.4495, 3.7417},
+                                            {1, 0.1, 0.01, 1.9878, 2.0701, 2.0976, 2.9799},
+                                            {1, 0, 0, 1.9021, 1.9754, 2.0000, 2.8284}}};
+
+SpringMaterial material_of(const Ratio& r) {
+  return {.structural = r.structural, .shear = r.shear, .flexion = r.flexion, .damping = 0};
+}
+
+ClothSheet unit_sheet(int size) {  // mass 1 per particle, spacing 1
+  return bare_sheet(size, size, 1, 1).cloth;
+}
+
+TEST(LargestFrequency, IsTheTablesForTheInfiniteGrid) {
+  for (const Ratio& r : frequencies) {
+    EXPECT_NEAR(largest_frequency(unit_sheet(20), material_of(r)), r.infinite, 0.51e-4);
+    EXPECT_NEAR(guaranteed_frequency(unit_sheet(20), material_of(r)), r.guaranteed, 0.51e-4);
+  }
+}
+
+TEST(LargestFrequency, OfFiniteGridsIsTheTablesAndStaysBelow) {
+  for (const Ratio& r : frequencies)
+    for (const auto& [size, expected] : {std::pair(5, r.five), std::pair(10, r.ten)}) {
+      const ClothSystem system = make_grid(unit_sheet(size), material_of(r));
+      const double frequency = largest_eigenfrequency(system, system.start);
+      EXPECT_NEAR(frequency, expected, 0.51e-4);
+      EXPECT_LE(frequency, largest_frequency(unit_sheet(size), material_of(r)));
+    }
+}
+
+TEST(LargestFrequency, OfPinnedGridsStaysBelowTheClosedForm) {
+  ClothSheet sheet = unit_sheet(8);
+  sheet.pins = {NamedPin::top_edge, PinnedParticle{4, 4}};
+  for (const Ratio& r : frequencies) {
+    const ClothSystem system = make_grid(sheet, material_of(r));
+    EXPECT_LE(largest_eigenfrequency(system, system.start), largest_frequency(sheet, material_of(r)));
+  }
+}
+
+TEST(LargestFrequency, ScannedEqualsTheClosedForm) {
+  Random random;
+  ClothSheet almost_square = unit_sheet(10);
+  almost_square.width *= 1 + 1e-9;  // square no longer, as far as the closed form is concerned
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto stiffness = [&] {
+      return random.integer(0, 3) == 0 ? 0.0 : std::pow(10, random.uniform(-2, 2));
+    };
+    const SpringMaterial material{
+        .structural = 1, .shear = stiffness(), .flexion = stiffness(), .damping = 0};
+    const double closed = largest_frequency(unit_sheet(10), material);
+    EXPECT_NEAR(largest_frequency(almost_square, material), closed, 5e-6 * closed)
+        << material.shear << " " << material.flexion;
+  }
+}
+
+TEST(LargestFrequency, OfRectangularCellsBoundsTheFiniteGrid) {
+  ClothSheet sheet = unit_sheet(10);
+  sheet.width *= 2;
+  for (const Ratio& r : frequencies) {
+    const ClothSystem system = make_grid(sheet, material_of(r));
+    const double finite = largest_eigenfrequency(system, system.start);
+    const double infinite = largest_frequency(sheet, material_of(r));
+    EXPECT_LE(finite, infinite);
+    EXPECT_GE(finite, 0.93 * infinite);
+  }
+}
+
+TEST(GuaranteedFrequency, BoundsEveryCrumpledConfiguration) {
+  Random random;
+  const ClothSheet sheet = unit_sheet(6);
+  for (const Ratio& r : frequencies) {
+    const ClothSystem system = make_grid(sheet, material_of(r));
+    for (const double deviation : {0.05, 0.3, 1.0, 5.0}) {
+      const ClothState state = crumpled_state(system, deviation, 0, random);
+      EXPECT_LE(largest_eigenfrequency(system, state.position), guaranteed_frequency(sheet, material_of(r)));
+    }
+  }
+}
+
+TEST(DampingRates, AreThoseOfTheSlowestAndTheFastestDamped) {
+  Scene scene = bare_sheet(5, 5, 1, 0.5);
+  EXPECT_EQ(damping_rates(scene).most, 0);
+  scene.damping = 0.1;
+  EXPECT_DOUBLE_EQ(damping_rates(scene).least, 0.2);
+  EXPECT_DOUBLE_EQ(damping_rates(scene).most, 0.2);
+  scene.air = Air{.drag = 0.3, .wind = Vec3::Zero(), .gust = std::nullopt};
+  EXPECT_DOUBLE_EQ(damping_rates(scene).least, 0.2);
+  EXPECT_DOUBLE_EQ(damping_rates(scene).most, 0.8);
+}
+
+TEST(DampingRates, OfSpringsBoundThoseOfTheGrid) {
+  Scene scene = bare_sheet(8, 8, 1, 1);
+  scene.springs = SpringMaterial{.structural = 3, .shear = 2, .flexion = 1, .damping = 0.7};
+  ClothSystem dampers = make_grid(scene.cloth, {.structural = 0.7, .shear = 0.7, .flexion = 0.7});
+  const double rate = std::pow(largest_eigenfrequency(dampers, dampers.start), 2);
+  EXPECT_LE(rate, damping_rates(scene).most);
+  EXPECT_GE(rate, 0.8 * damping_rates(scene).most);
+}
+
+TEST(ProvotStep, IsTooLongForAGrid) {  // numerics.md 3.2: 5.00, and 3.14 for structural springs alone
+  Scene scene;
+  scene.cloth = unit_sheet(10);
+  scene.springs = material_of(frequencies[0]);
+  EXPECT_NEAR(provot_step(scene) / *stable_step("semi-implicit-euler", scene), 5.00, 0.005);
+  scene.springs = material_of(frequencies[4]);
+  EXPECT_NEAR(provot_step(scene) / *stable_step("semi-implicit-euler", scene), std::numbers::pi, 1e-9);
+}
+
+TEST(StableStep, OfTheWorkedExampleIsThePrintedOne) {  // numerics.md 3.2: 1 m^2, N = 30, 0.2 kg, 1:.5:.1
+  Scene scene = bare_sheet(30, 30, 1.0 / 29, 0.2 / 900);
+  scene.springs = SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0};
+  EXPECT_NEAR(largest_frequency(scene.cloth, *scene.springs), 3674, 0.5);
+  EXPECT_NEAR(*stable_step("verlet", scene), 0.544e-3, 0.5e-6);
+  EXPECT_NEAR(*stable_step("rk4", scene), 0.770e-3, 0.5e-6);
+  EXPECT_NEAR(provot_step(scene), 2.09e-3, 0.5e-5);
+}
+
+}  // namespace
+}  // namespace cloth::test

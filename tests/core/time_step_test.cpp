@@ -1,0 +1,74 @@
+#include "simulation/time_step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "scene/builtin_scenes.h"
+#include "support/scenes.h"
+
+namespace cloth::test {
+namespace {
+
+TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysAtEightyPercent) {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    for (const std::string& method : integrator_names()) {
+      Scene scene = builtin_scene(builtin.name);
+      scene.integrator = {method, std::nullopt};
+      const auto step = resolved_time_step(scene);
+      const auto limit = stable_step(method, scene);
+      ASSERT_EQ(step.has_value(), limit.has_value());
+      if (!step) continue;
+      const double parts = scene.record.interval / *step;
+      EXPECT_NEAR(parts, std::round(parts), 1e-9 * parts);
+      EXPECT_LE(*step, 0.8 * *limit * (1 + 1e-12));
+      // and no longer step does both
+      if (parts > 1.5) EXPECT_GT(scene.record.interval / (std::round(parts) - 1), 0.8 * *limit);
+    }
+  }
+}
+
+TEST(AutomaticTimeStep, IsTheRecordIntervalWhereEveryStepIsStable) {
+  Scene scene = bare_sheet(3, 3);
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.record.interval = 0.02;
+  for (const std::string& method : integrator_names()) {
+    scene.integrator.method = method;
+    EXPECT_EQ(resolved_time_step(scene), 0.02);
+  }
+}
+
+TEST(AutomaticTimeStep, IsNoneWhereTheMethodHasNoStableStep) {
+  Scene scene = bare_sheet(3, 3);
+  scene.springs = only(SpringFamily::structural, 10);
+  scene.integrator.method = "explicit-euler";
+  EXPECT_EQ(resolved_time_step(scene), std::nullopt);
+  const std::string text = no_stable_step_text(scene);
+  for (const char* word : {"explicit-euler", "no stable time step", "damping"})
+    EXPECT_NE(text.find(word), std::string::npos) << text;
+}
+
+TEST(GivenTimeStep, IsTakenAsItIs) {
+  Scene scene = smooth_scene(4, 4);
+  scene.integrator.time_step = 0.123;
+  EXPECT_EQ(resolved_time_step(scene), 0.123);
+}
+
+TEST(StepsToCover, RoundsQuotientsThatAreWholeButForRounding) {
+  EXPECT_EQ(steps_to_cover(0.1, 0.001), 100);  // 0.1 / 0.001 is 100.00000000000001 or less
+  EXPECT_EQ(steps_to_cover(0.3, 0.1), 3);
+  EXPECT_EQ(steps_to_cover(1, 0.3), 4);
+  EXPECT_EQ(steps_to_cover(1e-9, 1), 1);
+  for (int n = 1; n < 5000; ++n) EXPECT_EQ(steps_to_cover(n * 0.001, 0.001), n);
+}
+
+TEST(StepsPerRow, IsTheIntervalInWholeStepsAndAtLeastOne) {
+  EXPECT_EQ(steps_per_row(0.01, 0.001), 10);
+  EXPECT_EQ(steps_per_row(0.01, 0.003), 3);
+  EXPECT_EQ(steps_per_row(0.01, 0.5), 1);
+}
+
+}  // namespace
+}  // namespace cloth::test

@@ -1,0 +1,60 @@
+// Every built-in scene runs to its end with every method at the step that auto picks; where a method has no
+// stable step, auto says so.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "integrators/registry.h"
+#include "scene/builtin_scenes.h"
+#include "simulation/recorder.h"
+#include "simulation/time_step.h"
+#include "support/states.h"
+
+namespace cloth::test {
+namespace {
+
+using Case = std::tuple<std::string, std::string>;  // scene, method
+
+class EveryScene : public ::testing::TestWithParam<Case> {};
+
+TEST_P(EveryScene, RunsToItsEndAtTheAutomaticStepOrIsToldThatThereIsNone) {
+  const auto& [name, method] = GetParam();
+  Scene scene = builtin_scene(name);
+  scene.integrator = {method, std::nullopt};
+  if (!resolved_time_step(scene)) {
+    EXPECT_EQ(method, "explicit-euler");
+    EXPECT_NE(no_stable_step_text(scene).find("no stable time step"), std::string::npos);
+    return;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const RunResult result = run_scene(scene, {.folder = {}, .progress = {}});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("%s with %s: %lld steps, %.2f s\n", name.c_str(), method.c_str(),
+              static_cast<long long>(result.summary.steps), seconds);
+  EXPECT_EQ(result.summary.status, Status::finished);
+  if (result.summary.divergence) ADD_FAILURE() << describe(*result.summary.divergence);
+  EXPECT_TRUE(all_finite(result.final_state));
+  EXPECT_NEAR(result.summary.simulated, scene.duration, 1e-9);
+  EXPECT_TRUE(std::isfinite(result.summary.energy_drift));
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
+  return names;
+}
+
+std::string test_name(const ::testing::TestParamInfo<Case>& info) {
+  std::string name = std::get<0>(info.param) + "_with_" + std::get<1>(info.param);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
+                         ::testing::Combine(::testing::ValuesIn(scene_names()),
+                                            ::testing::ValuesIn(integrator_names())),
+                         test_name);
+
+}  // namespace
+}  // namespace cloth::test

@@ -1,0 +1,116 @@
+// What a free cloth keeps. numerics.md A10.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/registry.h"
+#include "measure/energy.h"
+#include "measure/stability_limit.h"
+#include "support/direct_run.h"
+#include "support/scenes.h"
+#include "support/states.h"
+
+namespace cloth::test {
+namespace {
+
+constexpr double horizon = 2;  // s
+
+Scene free_sheet() {
+  Scene scene = bare_sheet(6, 6, 0.2, 0.01);
+  scene.springs = SpringMaterial{.structural = 20, .shear = 10, .flexion = 5, .damping = 0};
+  return scene;
+}
+
+/// A free sheet run for the horizon at omega h = w.
+struct FreeRun {
+  FreeRun(const std::string& method, double w, double spring_damping = 0) {
+    Scene scene = free_sheet();
+    scene.springs->damping = spring_damping;
+    DirectRun run(scene, method);
+    run.state = waving_state(run.system, 0.05, 0.3);
+    const double omega = largest_frequency(scene.cloth, *scene.springs);
+    const int steps = static_cast<int>(std::ceil(horizon * omega / w));
+    const auto energy = [&] { return measure_energy(run.system, Vec3::Zero(), run.state).total(); };
+    const double first_energy = energy();
+    const Vec3 first_momentum = momentum(run.system, run.state);
+    const Vec3 first_angular = angular_momentum(run.system, run.state);
+    for (int n = 0; n < steps; ++n) {
+      run.advance(1, horizon / steps);
+      const double error = energy() / first_energy - 1;
+      largest_energy_error = std::max(largest_energy_error, std::abs(error));
+      if (n < steps / 2) early_energy_error = largest_energy_error;
+      last_energy_error = error;
+    }
+    momentum_error = (momentum(run.system, run.state) - first_momentum).norm() / first_momentum.norm();
+    angular_error = (angular_momentum(run.system, run.state) - first_angular).norm() / first_angular.norm();
+  }
+  double momentum_error = 0, angular_error = 0;
+  double largest_energy_error = 0, early_energy_error = 0, last_energy_error = 0;
+};
+
+TEST(Momentum, IsKeptByEveryMethodWithAndWithoutSpringDamping) {
+  for (const std::string& method : integrator_names())
+    for (const double damping : {0.0, 0.005})
+      EXPECT_LE(FreeRun(method, 0.1, damping).momentum_error, 1e-12) << method;
+}
+
+TEST(AngularMomentum, IsKeptExactlyBySemiImplicitEulerAndVerlet) {
+  for (const char* method : {"semi-implicit-euler", "verlet"})
+    for (const double w : {0.5, 0.25}) EXPECT_LE(FreeRun(method, w).angular_error, 1e-12) << method;
+}
+
+TEST(AngularMomentum, OfRk4IsKeptBetterTheShorterTheStep) {
+  const double coarse = FreeRun("rk4", 0.5).angular_error, middle = FreeRun("rk4", 0.25).angular_error;
+  const double fine = FreeRun("rk4", 0.125).angular_error;
+  std::printf("rk4 dL/L: %.2e %.2e %.2e\n", coarse, middle, fine);
+  EXPECT_LE(coarse, 1e-4);
+  EXPECT_GE(std::log2(coarse / middle), 3.5);
+  EXPECT_GE(std::log2(middle / fine), 3.5);
+}
+
+TEST(AngularMomentum, IsKeptBySpringDampingAtTheMethodsOrder) {
+  EXPECT_LE(FreeRun("verlet", 0.1, 0.005).angular_error, 1e-3);
+  EXPECT_LE(FreeRun("rk4", 0.1, 0.005).angular_error, 1e-8);
+}
+
+/// The energy swings at the method's order and does not drift: the second half is no worse than the first.
+void expect_energy_swings(const std::string& method, int order) {
+  const FreeRun coarse(method, 0.5), middle(method, 0.25), fine(method, 0.125);
+  std::printf("%s energy: %.2e %.2e %.2e\n", method.c_str(), coarse.largest_energy_error,
+              middle.largest_energy_error, fine.largest_energy_error);
+  EXPECT_NEAR(std::log2(middle.largest_energy_error / fine.largest_energy_error), order, 0.3) << method;
+  for (const FreeRun* run : {&coarse, &middle, &fine})
+    EXPECT_LE(run->largest_energy_error, 1.5 * run->early_energy_error) << method;
+}
+
+TEST(Energy, OfSemiImplicitEulerSwingsAtOrderOneWithoutDrift) {
+  expect_energy_swings("semi-implicit-euler", 1);
+}
+
+TEST(Energy, OfVerletSwingsAtOrderTwoWithoutDrift) {
+  expect_energy_swings("verlet", 2);
+}
+
+TEST(Energy, OfRk4FallsAtOrderFive) {
+  const double middle = FreeRun("rk4", 0.5).last_energy_error, fine = FreeRun("rk4", 0.25).last_energy_error;
+  std::printf("rk4 energy: %.2e %.2e\n", middle, fine);
+  EXPECT_LT(middle, 0);
+  EXPECT_LT(fine, 0);
+  EXPECT_NEAR(std::log2(middle / fine), 5, 0.5);
+}
+
+TEST(Energy, OfExplicitEulerGrows) {
+  EXPECT_GT(FreeRun("explicit-euler", 0.02).last_energy_error, 0.01);
+}
+
+TEST(SpringDamping, OnlyTakesEnergy) {
+  for (const char* method : {"semi-implicit-euler", "verlet", "rk4"}) {
+    const double last = FreeRun(method, 0.05, 0.01).last_energy_error;
+    EXPECT_LT(last, -0.01) << method;
+    EXPECT_GT(last, -1) << method;
+  }
+}
+
+}  // namespace
+}  // namespace cloth::test

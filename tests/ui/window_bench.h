@@ -1,0 +1,78 @@
+// A window on the display with a hand on it.
+#pragma once
+
+#include <QAction>
+#include <QApplication>
+#include <QSignalSpy>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+#include <QToolButton>
+#include <QtTest>
+
+#include "main_window/main_window.h"
+#include "theme/theme.h"
+
+namespace clothlab::test {
+
+class WindowBench {
+ public:
+  explicit WindowBench(const QString& scene = "corners-shear") {
+    window.setAsksToSave(false);
+    window.view().setAnimated(false);
+    window.show();
+    if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
+    window.openScene(scene);
+    settle();
+    if (!window.view().frame()) qFatal("no frame came");
+    window.view().frameAll();
+    QTest::qWait(50);
+  }
+
+  /// Until every command so far is in force and its frames, samples and status have arrived.
+  void settle() { window.simulation().settle(); }
+
+  QAction* action(const char* name) { return window.findChild<QAction*>(QLatin1String(name)); }
+  const WorkerStatus& status() { return window.simulation().status(); }
+
+  void click(const char* button_name) {
+    auto* button = window.findChild<QToolButton*>(QLatin1String(button_name));
+    QVERIFY2(button, button_name);
+    QTest::mouseClick(button, Qt::LeftButton);
+  }
+
+  QWidget* editor(const char* path, const char* part) {
+    auto* editor = window.findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
+    return editor ? editor->findChild<QWidget*>(QLatin1String(part)) : nullptr;
+  }
+
+  void play_until(double time) {
+    settle();
+    if (!status().playing) action("play")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(status().time > time, 60000);
+  }
+
+  void pause() {
+    settle();
+    if (action("play")->isChecked()) action("play")->trigger();
+    settle();
+  }
+
+  /// Where a particle is on the view, in px.
+  QPoint pixel_of(int particle) {
+    const auto& at = window.view().frame()->positions;
+    const auto i = static_cast<std::size_t>(3 * particle);
+    const Eigen::Vector4d clip =
+        window.view().camera().world_to_screen() * Eigen::Vector4d(at[i], at[i + 1], at[i + 2], 1);
+    return {qRound(clip.x() / clip.w()), qRound(clip.y() / clip.w())};
+  }
+
+  Eigen::Vector3f position_of(int particle) {
+    const auto& at = window.view().frame()->positions;
+    const auto i = static_cast<std::size_t>(3 * particle);
+    return {at[i], at[i + 1], at[i + 2]};
+  }
+
+  MainWindow window;
+};
+
+}  // namespace clothlab::test

@@ -1,5 +1,5 @@
-// clothlab-window-bench: how long the window's events and pictures take with a cloth running. Prints figures; judges
-// nothing. Needs a display.
+// clothlab-window-bench: how long the window's events and pictures take with a cloth running. Prints figures;
+// judges nothing. Needs a display.
 //
 //     clothlab-window-bench [PARTICLES PER SIDE] [SECONDS]
 #include <QApplication>
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "main_window/main_window.h"
@@ -25,6 +26,7 @@ class TimedApplication : public QApplication {
   bool notify(QObject* receiver, QEvent* event) override {
     if (depth_ > 0 || !watching) return QApplication::notify(receiver, event);
     const int type = event->type();
+    const char* const name = receiver->metaObject()->className();  // it may not outlive the event
     QElapsedTimer timer;
     timer.start();
     ++depth_;
@@ -32,11 +34,20 @@ class TimedApplication : public QApplication {
     --depth_;
     const double taken = static_cast<double>(timer.nsecsElapsed()) * 1e-6;
     ++events;
-    if (taken > longest) longest = taken, longest_type = type, longest_receiver = receiver->metaObject()->className();
+    auto& kind = kinds[{name, type}];
+    kind.total += taken;
+    ++kind.count;
+    if (taken > longest) longest = taken, longest_type = type, longest_receiver = name;
     return handled;
   }
 
+  struct Kind {
+    double total = 0;  // ms
+    long count = 0;
+  };
+
   bool watching = false;
+  std::map<std::pair<std::string, int>, Kind> kinds;  // by receiver and QEvent::Type
   long events = 0;
   double longest = 0;  // ms
   int longest_type = 0;
@@ -50,6 +61,22 @@ double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+void print_busiest(const TimedApplication& application, double seconds) {
+  std::vector<std::pair<double, std::string>> busiest;
+  for (const auto& [key, kind] : application.kinds) {
+    char line[160];
+    std::snprintf(line, sizeof line, "  %6.1f ms each, %5.1f a second, type %d to %s",
+                  kind.total / static_cast<double>(kind.count), static_cast<double>(kind.count) / seconds,
+                  key.second, key.first.c_str());
+    busiest.emplace_back(kind.total, line);
+  }
+  std::sort(busiest.rbegin(), busiest.rend());
+  constexpr std::size_t shown = 6;
+  std::printf("busiest events of the window's thread\n");
+  for (std::size_t i = 0; i < std::min(shown, busiest.size()); ++i)
+    std::printf("%5.1f %%%s\n", 0.1 * busiest[i].first / seconds, busiest[i].second.c_str());
 }
 
 }  // namespace
@@ -82,12 +109,15 @@ int main(int argc, char** argv) {
   application.watching = false;
 
   const clothlab::WorkerStatus status = window.simulation().status();
-  std::printf("cloth %d x %d, view %d x %d px, %.0f s\n", side, side, window.view().width(), window.view().height(), seconds);
+  std::printf("cloth %d x %d, view %d x %d px, %.0f s\n", side, side, window.view().width(),
+              window.view().height(), seconds);
   std::printf("drawings per second   %8.1f\n", static_cast<double>(drawings.size()) / seconds);
-  std::printf("drawing, ms           %8.2f median, %.2f lower and %.2f upper quartile\n", quantile(drawings, 0.5),
-              quantile(drawings, 0.25), quantile(drawings, 0.75));
+  std::printf("drawing, ms           %8.2f median, %.2f lower and %.2f upper quartile\n",
+              quantile(drawings, 0.5), quantile(drawings, 0.25), quantile(drawings, 0.75));
   std::printf("longest event, ms     %8.1f of %ld (type %d to %s)\n", application.longest, application.events,
               application.longest_type, application.longest_receiver);
-  std::printf("simulation            %8.0f steps/s, %.3f x real time\n", status.steps_per_second, status.real_time_factor);
+  std::printf("simulation            %8.0f steps/s, %.3f x real time\n", status.steps_per_second,
+              status.real_time_factor);
+  print_busiest(application, seconds);
   return 0;
 }

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "worker_helpers.h"
 #include "scene/scene_json.h"
 #include "simulation/recorder.h"
+#include "worker_helpers.h"
 
 namespace clothlab::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "worker_helpers.h"
 #include "simulation/time_step.h"
+#include "worker_helpers.h"
 
 namespace clothlab::test {
 namespace {

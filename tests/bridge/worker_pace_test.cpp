@@ -39,7 +39,7 @@ TEST(WorkerPace, ADebtIsDroppedInsteadOfChased) {
   const Clock::time_point start{};
   pace.set_speed(1, 0, start);
   const auto late = start + milliseconds(5000);
-  EXPECT_TRUE(pace.is_due(0.001, late));          // five seconds behind: time restarts here
+  EXPECT_TRUE(pace.is_due(0.001, late));  // five seconds behind: time restarts here
   EXPECT_FALSE(pace.is_due(0.020, late + milliseconds(1)));
 }
 

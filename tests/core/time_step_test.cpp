@@ -25,7 +25,9 @@ TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysAtEightyPercent) {
       EXPECT_NEAR(parts, std::round(parts), 1e-9 * parts);
       EXPECT_LE(*step, 0.8 * *limit * (1 + 1e-12));
       // and no longer step does both
-      if (parts > 1.5) EXPECT_GT(scene.record.interval / (std::round(parts) - 1), 0.8 * *limit);
+      if (parts > 1.5) {
+        EXPECT_GT(scene.record.interval / (std::round(parts) - 1), 0.8 * *limit);
+      }
     }
   }
 }

@@ -43,7 +43,7 @@ struct Bench {
     if (!QTest::qWaitForWindowExposed(&panel)) qFatal("the panel was never exposed");
   }
   LiveChart& chart(const char* key) { return *panel.findChild<LiveChart*>(QLatin1String(key)); }
-  QWidget* canvas(const char* key) { return chart(key).view().viewport(); }
+  QWidget* canvas(const char* key) { return &chart(key).view(); }
   const PlotFrame& frame(const char* key) { return chart(key).scene().frame(); }
   const PlotMap& map(const char* key) { return chart(key).scene().map(); }
   QPoint middle(const char* key) { return map(key).plot.center().toPoint(); }

@@ -1,5 +1,5 @@
-// The worker as the window sees it: a QObject that fetches what is new at the screen's pace while there is anything to
-// fetch, and does nothing at all while there is not.
+// The worker as the window sees it: a QObject that fetches what is new at the screen's pace while there is
+// anything to fetch, and does nothing at all while there is not.
 #pragma once
 
 #include <QObject>

@@ -29,8 +29,8 @@ std::string refusal_of(const cloth::Scene& scene) {
   return "";
 }
 
-/// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big cloth
-/// assembles.
+/// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big
+/// cloth assembles.
 bool is_overtaken_by(const Command& command, const Command& next) {
   return (std::holds_alternative<command::Load>(command) || std::holds_alternative<command::Edit>(command)) &&
          command.index() == next.index();

@@ -2,6 +2,7 @@
 
 #include <QApplication>
 #include <QMouseEvent>
+#include <QPainter>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
@@ -23,22 +24,18 @@ double notches(const QWheelEvent& event, bool sideways) {
 
 }  // namespace
 
-PlotView::PlotView(PlotScene* scene, QWidget* parent) : QGraphicsView(scene, parent), scene_(scene) {
-  setFrameShape(QFrame::NoFrame);
-  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  setAlignment(Qt::AlignLeft | Qt::AlignTop);
-  setBackgroundBrush(Qt::NoBrush);
-  viewport()->setAutoFillBackground(false);
-  setRenderHint(QPainter::Antialiasing);
-  setViewportUpdateMode(QGraphicsView::FullViewportUpdate);
+PlotView::PlotView(PlotScene* scene, QWidget* parent) : QWidget(parent), scene_(scene) {
   setFocusPolicy(Qt::NoFocus);
   setMouseTracking(true);
   setContextMenuPolicy(Qt::PreventContextMenu);  // the right button draws the zoom box
+  connect(scene, &QGraphicsScene::changed, this, [this] { update(); });
 }
 
-void PlotView::fit(QSize size) {
-  resize(size);
+void PlotView::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const QRectF whole(QPointF(0, 0), QSizeF(size()));
+  scene_->render(&painter, whole, whole, Qt::IgnoreAspectRatio);
 }
 
 QString PlotView::help() {
@@ -145,7 +142,7 @@ void PlotView::mouseDoubleClickEvent(QMouseEvent* event) {
 
 void PlotView::leaveEvent(QEvent* event) {
   Q_EMIT hovered(std::nullopt);
-  QGraphicsView::leaveEvent(event);
+  QWidget::leaveEvent(event);
 }
 
 }  // namespace clothlab

@@ -1,22 +1,25 @@
 // The window onto a chart's picture: turns wheel, drags and double-clicks into wishes in the axes' own
 // coordinates.
+//
+// It paints the scene like any widget paints itself. A QGraphicsView would flush the whole window at once for
+// every scene that changes, and beside an OpenGL view each flush composes the window anew.
 #pragma once
 
-#include <QGraphicsView>
+#include <QWidget>
 #include <optional>
 
 #include "charts/plot_scene.h"
 
 namespace clothlab {
 
-class PlotView : public QGraphicsView {
+class PlotView : public QWidget {
   Q_OBJECT
  public:
   explicit PlotView(PlotScene* scene, QWidget* parent = nullptr);
-  void fit(QSize size);
   /// Left-drag pulls a zoom box instead of panning.
   void set_box_mode(bool on) { box_mode_ = on; }
   static QString help();
+  QSize sizeHint() const override { return scene_->sceneRect().size().toSize(); }
 
  Q_SIGNALS:
   void hovered(std::optional<double> time_s);
@@ -30,6 +33,7 @@ class PlotView : public QGraphicsView {
   void y_reset_wanted();
 
  protected:
+  void paintEvent(QPaintEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;

@@ -71,7 +71,8 @@ void MainWindow::makeLayout() {
   bottom->addWidget(transport_);
   addToolBar(Qt::BottomToolBarArea, bottom);
 
-  const auto dock = [this](const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area) {
+  const auto dock = [this](const QString& title, const char* name, QWidget* content,
+                           Qt::DockWidgetArea area) {
     auto* widget = new QDockWidget(title, this);
     widget->setObjectName(name);
     widget->setTitleBarWidget(new QWidget(widget));  // the panels have heads of their own
@@ -96,7 +97,8 @@ void MainWindow::connectDocument() {
 }
 
 void MainWindow::connectView() {
-  connect(view_, &ClothView::pullChanged, this, [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
+  connect(view_, &ClothView::pullChanged, this,
+          [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
   connect(view_, &ClothView::pullEnded, this, [this] { link_.send(command::Pull{}); });
   connect(view_, &ClothView::brushChanged, this, &MainWindow::brush);
   connect(view_, &ClothView::brushEnded, this, [this] { link_.send(command::Brush{}); });
@@ -105,8 +107,10 @@ void MainWindow::connectView() {
     document_.togglePin(particle / columns, particle % columns);
   });
   connect(view_, &ClothView::openGlFailed, this, [this](const QString& reason) {
-    notice_->show("opengl", NoticeBar::Level::warning,
-                  tr("The view needs OpenGL 3.3, which this machine does not give (%1). Everything else works.").arg(reason));
+    notice_->show(
+        "opengl", NoticeBar::Level::warning,
+        tr("The view needs OpenGL 3.3, which this machine does not give (%1). Everything else works.")
+            .arg(reason));
   });
   connect(view_, &ClothView::frameDrawn, this, [this](double milliseconds) {
     if (shown_status_.playing) charts_->appendDrawTime(shown_status_.time, milliseconds);
@@ -118,10 +122,10 @@ void MainWindow::connectSimulation() {
   connect(&link_, &SimulationLink::samplesReady, this,
           [this](const std::vector<ChartSample>& samples) { charts_->append(samples); });
   connect(&link_, &SimulationLink::statusChanged, this, &MainWindow::followStatus);
-  connect(transport_, &TransportBar::speedChosen, this, [this](double factor) { link_.send(command::Speed{factor}); });
-  connect(play_, &QAction::triggered, this, [this](bool play) {
-    play ? link_.send(command::Play{}) : link_.send(command::Pause{});
-  });
+  connect(transport_, &TransportBar::speedChosen, this,
+          [this](double factor) { link_.send(command::Speed{factor}); });
+  connect(play_, &QAction::triggered, this,
+          [this](bool play) { play ? link_.send(command::Play{}) : link_.send(command::Pause{}); });
   connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
   connect(reset_, &QAction::triggered, this, [this] { link_.send(command::Restart{}); });
   connect(record_, &QAction::triggered, this, &MainWindow::toggleRecording);
@@ -162,7 +166,8 @@ void MainWindow::readStability() {
   const StabilityReading reading = read_stability(document_.scene());
   transport_->gauge().setReading(reading);
   const bool has_step = reading.time_step > 0;
-  parameters_->setAutoValue("integrator.time_step", has_step ? std::optional(reading.time_step) : std::nullopt);
+  parameters_->setAutoValue("integrator.time_step",
+                            has_step ? std::optional(reading.time_step) : std::nullopt);
 
   const auto& deformation = document_.scene().deformation;
   charts_->setDeformationRate(deformation && !deformation->springs.empty() ? std::optional(deformation->rate)
@@ -175,7 +180,9 @@ void MainWindow::readStability() {
     notice_->withdraw("stability");
 }
 
-void MainWindow::takeStableStep() { document_.setParameter("integrator.time_step", std::string("auto")); }
+void MainWindow::takeStableStep() {
+  document_.setParameter("integrator.time_step", std::string("auto"));
+}
 
 void MainWindow::followStatus(const WorkerStatus& status) {
   play_->setChecked(status.playing);
@@ -253,7 +260,9 @@ void MainWindow::addStillAir() {
   document_.undoStack().endMacro();
 }
 
-void MainWindow::startRecording(const QString& folder) { link_.send(command::StartRecording{folder.toStdString()}); }
+void MainWindow::startRecording(const QString& folder) {
+  link_.send(command::StartRecording{folder.toStdString()});
+}
 
 void MainWindow::updateTitle() {
   setWindowTitle(QStringLiteral("%1[*] – Clothlab").arg(document_.title()));

@@ -1,5 +1,5 @@
-// The window: the view in the middle, parameters and charts beside it, the worker behind it. It connects the rooms and
-// decides nothing that one of them could.
+// The window: the view in the middle, parameters and charts beside it, the worker behind it. It connects the
+// rooms and decides nothing that one of them could.
 #pragma once
 
 #include <QMainWindow>
@@ -27,7 +27,8 @@ class MainWindow : public QMainWindow {
   explicit MainWindow(QWidget* parent = nullptr);
   ~MainWindow() override;
 
-  /// A file or the name of a built-in scene. What cannot be opened is said in the window, and the scene before stays.
+  /// A file or the name of a built-in scene. What cannot be opened is said in the window, and the scene
+  /// before stays.
   void openScene(const QString& name);
 
   /// Records into `folder` until the record action is switched off.

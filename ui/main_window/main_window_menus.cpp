@@ -28,8 +28,8 @@ QString with_ending(const QString& path, const QString& ending) {
 }  // namespace
 
 void MainWindow::makeActions() {
-  const auto action = [this](const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
-                             const char* name) {
+  const auto action = [this](const char* icon_name, const QString& text, const QString& tip,
+                             const QKeySequence& key, const char* name) {
     auto* made = new QAction(icon(icon_name), text, this);
     made->setObjectName(name);
     made->setShortcut(key);
@@ -55,7 +55,8 @@ void MainWindow::makeActions() {
 
 void MainWindow::makeMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
-  QAction* open = file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &MainWindow::openWithDialog);
+  QAction* open =
+      file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &MainWindow::openWithDialog);
   open->setToolTip(tr("Open a scene (Ctrl+O)"));
   QMenu* builtin = file->addMenu(tr("Built-in scenes"));
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
@@ -67,7 +68,8 @@ void MainWindow::makeMenus() {
   recent_menu_ = file->addMenu(tr("Recent"));
   connect(recent_menu_, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
   file->addSeparator();
-  QAction* save_action = file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
+  QAction* save_action =
+      file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   save_action->setToolTip(tr("Save the scene (Ctrl+S)"));
   file->addAction(tr("Save as…"), QKeySequence::SaveAs, this, [this] { saveAs(); });
   file->addSeparator();
@@ -127,7 +129,8 @@ void MainWindow::fillRecentMenu() {
 }
 
 void MainWindow::openWithDialog() {
-  const QString path = QFileDialog::getOpenFileName(this, tr("Open a scene"), document_.path(), tr(scene_filter));
+  const QString path =
+      QFileDialog::getOpenFileName(this, tr("Open a scene"), document_.path(), tr(scene_filter));
   if (!path.isEmpty()) openScene(path);
 }
 
@@ -145,7 +148,8 @@ bool MainWindow::save() {
 
 bool MainWindow::saveAs() {
   const QString path = with_ending(
-      QFileDialog::getSaveFileName(this, tr("Save the scene"), document_.path(), tr(scene_filter)), ".scene.json");
+      QFileDialog::getSaveFileName(this, tr("Save the scene"), document_.path(), tr(scene_filter)),
+      ".scene.json");
   if (path.isEmpty()) return false;
   const QString problem = save_scene_file(document_.scene(), path);
   if (!problem.isEmpty()) {
@@ -160,7 +164,8 @@ bool MainWindow::saveAs() {
 void MainWindow::savePicture() {
   const QImage picture = view_->grabPicture();
   const QString path = with_ending(
-      QFileDialog::getSaveFileName(this, tr("Save a picture of the view"), {}, tr("Pictures (*.png *.jpg)")), ".png");
+      QFileDialog::getSaveFileName(this, tr("Save a picture of the view"), {}, tr("Pictures (*.png *.jpg)")),
+      ".png");
   if (path.isEmpty()) return;
   if (!picture.save(path))
     notice_->show("picture", NoticeBar::Level::error, tr("%1: the picture could not be written.").arg(path));
@@ -174,11 +179,12 @@ void MainWindow::toggleRecording(bool on) {
 }
 
 void MainWindow::showAbout() {
-  QMessageBox::about(this, tr("About Clothlab"),
-                     tr("<h3>Clothlab %1</h3><p>A lab for cloth simulation after Provot (1995): mass and springs, "
-                        "deformation rate, integrators to compare.</p><p>Source under the MIT licence. This program uses "
-                        "Qt Charts, so as a distributed binary it is under the GPL, version 3.</p>")
-                         .arg(QString::fromStdString(cloth::version())));
+  QMessageBox::about(
+      this, tr("About Clothlab"),
+      tr("<h3>Clothlab %1</h3><p>A lab for cloth simulation after Provot (1995): mass and springs, "
+         "deformation rate, integrators to compare.</p><p>Source under the MIT licence. This program uses "
+         "Qt Charts, so as a distributed binary it is under the GPL, version 3.</p>")
+          .arg(QString::fromStdString(cloth::version())));
 }
 
 }  // namespace clothlab

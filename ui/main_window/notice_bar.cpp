@@ -59,7 +59,9 @@ void NoticeBar::withdraw(const QString& cause) {
   if (cause_ == cause) hide();
 }
 
-QString NoticeBar::text() const { return isHidden() ? QString() : label_->text(); }
+QString NoticeBar::text() const {
+  return isHidden() ? QString() : label_->text();
+}
 
 void NoticeBar::changeEvent(QEvent* event) {
   if (event->type() == QEvent::PaletteChange) dress();
@@ -67,7 +69,9 @@ void NoticeBar::changeEvent(QEvent* event) {
 }
 
 void NoticeBar::dress() {
-  const QColor colour = level_ == Level::error ? theme().error : level_ == Level::warning ? theme().warning : theme().accent;
+  const QColor colour = level_ == Level::error     ? theme().error
+                        : level_ == Level::warning ? theme().warning
+                                                   : theme().accent;
   symbol_->setPixmap(icon(level_ == Level::info ? "info" : "warning").pixmap(18, 18));
   const QString sheet = QStringLiteral("#noticeBar { background: %1; border: 0; border-left: 3px solid %2; }")
                             .arg(theme().panel.name(), colour.name());

@@ -1,5 +1,5 @@
-// One message above the view: what happened, what would help, a button that does it. Messages replace each other by cause,
-// so that a failure that repeats does not pile up.
+// One message above the view: what happened, what would help, a button that does it. Messages replace each
+// other by cause, so that a failure that repeats does not pile up.
 #pragma once
 
 #include <QFrame>

@@ -37,7 +37,8 @@ OpenedScene open_scene(const QString& name) {
   if (QFileInfo::exists(name)) return open_scene_file(name);
   if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name.toStdString()))
     return read_text(builtin->text, builtin->name, {});
-  return {std::nullopt, name, QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
+  return {std::nullopt, name,
+          QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
 }
 
 QString save_scene_file(const cloth::Scene& scene, const QString& path) {

@@ -23,10 +23,13 @@ QString step_text(double seconds) {
 QColor level_colour(StabilityReading::Level level) {
   switch (level) {
     case StabilityReading::Level::unlimited:
-    case StabilityReading::Level::stable: return theme().good;
-    case StabilityReading::Level::near: return theme().warning;
+    case StabilityReading::Level::stable:
+      return theme().good;
+    case StabilityReading::Level::near:
+      return theme().warning;
     case StabilityReading::Level::unstable:
-    case StabilityReading::Level::impossible: return theme().error;
+    case StabilityReading::Level::impossible:
+      return theme().error;
   }
   return theme().good;
 }
@@ -70,8 +73,10 @@ QString StabilityGauge::text() const {
     case Level::impossible:
       return reading_.time_step > 0 ? tr("%1, no step is stable").arg(step_text(reading_.time_step))
                                     : tr("No step is stable");
-    case Level::unlimited: return tr("%1, any step is stable").arg(step_text(reading_.time_step));
-    default: break;
+    case Level::unlimited:
+      return tr("%1, any step is stable").arg(step_text(reading_.time_step));
+    default:
+      break;
   }
   const int percent = static_cast<int>(std::lround(100 * reading_.fraction()));
   return tr("%1, %2 % of the limit").arg(step_text(reading_.time_step)).arg(std::min(percent, 9999));
@@ -80,23 +85,29 @@ QString StabilityGauge::text() const {
 QString StabilityGauge::explanation() const {
   using Level = StabilityReading::Level;
   const QString step = reading_.automatic ? tr("Time step %1, chosen by auto.") : tr("Time step %1.");
-  QString text = reading_.time_step > 0 ? step.arg(step_text(reading_.time_step)) + QStringLiteral(" ") : QString();
+  QString text =
+      reading_.time_step > 0 ? step.arg(step_text(reading_.time_step)) + QStringLiteral(" ") : QString();
   switch (reading_.level) {
     case Level::impossible:
-      text += tr("This method amplifies every motion that is not damped, and the scene has no viscous damping: it "
-                 "diverges at any step.");
+      text += tr(
+          "This method amplifies every motion that is not damped, and the scene has no viscous damping: it "
+          "diverges at any step.");
       break;
-    case Level::unlimited: text += tr("Nothing in this scene limits the step."); break;
+    case Level::unlimited:
+      text += tr("Nothing in this scene limits the step.");
+      break;
     case Level::stable:
       text += tr("The method is stable for this scene up to %1.").arg(step_text(reading_.stable_step));
       break;
     case Level::near:
-      text += tr("The limit of the method for this scene is %1. Stretching the cloth lowers it by a few percent, so this "
+      text += tr("The limit of the method for this scene is %1. Stretching the cloth lowers it by a few "
+                 "percent, so this "
                  "step may diverge.")
                   .arg(step_text(reading_.stable_step));
       break;
     case Level::unstable:
-      text += tr("The limit of the method for this scene is %1: the run will diverge.").arg(step_text(reading_.stable_step));
+      text += tr("The limit of the method for this scene is %1: the run will diverge.")
+                  .arg(step_text(reading_.stable_step));
       break;
   }
   return text;
@@ -104,10 +115,13 @@ QString StabilityGauge::explanation() const {
 
 QSize StabilityGauge::sizeHint() const {
   const int widest = fontMetrics().horizontalAdvance(tr("0.000 ms, 100 % of the limit"));
-  return {bar_width + spacing + std::max(widest, fontMetrics().horizontalAdvance(text())), fontMetrics().height() + spacing};
+  return {bar_width + spacing + std::max(widest, fontMetrics().horizontalAdvance(text())),
+          fontMetrics().height() + spacing};
 }
 
-QSize StabilityGauge::minimumSizeHint() const { return {bar_width, sizeHint().height()}; }
+QSize StabilityGauge::minimumSizeHint() const {
+  return {bar_width, sizeHint().height()};
+}
 
 void StabilityGauge::paintEvent(QPaintEvent*) {
   QPainter painter(this);
@@ -130,8 +144,9 @@ void StabilityGauge::paintEvent(QPaintEvent*) {
 
   const QRect text_rect = rect().adjusted(bar_width + spacing, 0, 0, 0);
   const bool alarming = reading_.level == StabilityReading::Level::unstable || over;
-  painter.setPen(alarming ? theme().error
-                          : reading_.level == StabilityReading::Level::near ? theme().warning : theme().text);
+  painter.setPen(alarming                                          ? theme().error
+                 : reading_.level == StabilityReading::Level::near ? theme().warning
+                                                                   : theme().text);
   painter.drawText(text_rect, Qt::AlignVCenter | Qt::AlignLeft,
                    fontMetrics().elidedText(text(), Qt::ElideRight, text_rect.width()));
 }

@@ -99,7 +99,9 @@ void TransportBar::showStatus(const WorkerStatus& status) {
   if (status.divergence)
     rate_->setText(tr("Stopped: diverged"));
   else if (!status.playing)
-    rate_->setText(status.step > 0 ? tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step))) : tr("Ready"));
+    rate_->setText(status.step > 0
+                       ? tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step)))
+                       : tr("Ready"));
   else if (status.steps_per_second > 0)
     rate_->setText(tr("%1 steps/s, %2x real time")
                        .arg(grouped(status.steps_per_second))

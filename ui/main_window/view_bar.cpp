@@ -21,12 +21,18 @@ QToolButton* button_for(QAction* action, QWidget* parent) {
   return button;
 }
 
-QString with_shortcut(const QString& tip, const QString& shortcut) { return QStringLiteral("%1 (%2)").arg(tip, shortcut); }
+QString with_shortcut(const QString& tip, const QString& shortcut) {
+  return QStringLiteral("%1 (%2)").arg(tip, shortcut);
+}
 
 }  // namespace
 
 ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
-    : QFrame(parent), view_(view), tools_(new QActionGroup(this)), modes_(new QActionGroup(this)), frame_all_(nullptr) {
+    : QFrame(parent),
+      view_(view),
+      tools_(new QActionGroup(this)),
+      modes_(new QActionGroup(this)),
+      frame_all_(nullptr) {
   setObjectName("viewBar");
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
@@ -39,8 +45,8 @@ ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
   row->addWidget(button_for(save_picture, this));
 }
 
-QAction* ViewBar::addChoice(QActionGroup* group, const char* icon_name, const QString& text, const QString& tip,
-                            const QString& shortcut, const QString& name) {
+QAction* ViewBar::addChoice(QActionGroup* group, const char* icon_name, const QString& text,
+                            const QString& tip, const QString& shortcut, const QString& name) {
   auto* action = new QAction(icon(icon_name), text, group);
   action->setCheckable(true);
   action->setShortcut(shortcut);
@@ -55,9 +61,11 @@ void ViewBar::addTools(QHBoxLayout& row) {
     const char* icon;
     QString text, tip, shortcut, name;
   } tools[] = {
-      {Tool::pull, "pull", tr("Pull"), tr("Drag the cloth to pull a particle; drag beside it to orbit"), "1", "toolPull"},
+      {Tool::pull, "pull", tr("Pull"), tr("Drag the cloth to pull a particle; drag beside it to orbit"), "1",
+       "toolPull"},
       {Tool::brush, "brush", tr("Wind brush"),
-       tr("Drag to blow where the cursor is; also with Shift held. Wheel while blowing: radius"), "2", "toolBrush"},
+       tr("Drag to blow where the cursor is; also with Shift held. Wheel while blowing: radius"), "2",
+       "toolBrush"},
       {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"},
   };
   for (const auto& entry : tools) {
@@ -76,10 +84,12 @@ void ViewBar::addModes(QHBoxLayout& row) {
     const char* icon;
     QString text, tip, shortcut, name;
   } modes[] = {
-      {ViewMode::textured, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T", "modeTextured"},
-      {ViewMode::wireframe, "view-wireframe", tr("Wireframe"), tr("The grid of structural springs"), "W", "modeWireframe"},
-      {ViewMode::strain, "view-strain", tr("Strain"), tr("Colours for the strain of structural and shear springs"), "S",
-       "modeStrain"},
+      {ViewMode::textured, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T",
+       "modeTextured"},
+      {ViewMode::wireframe, "view-wireframe", tr("Wireframe"), tr("The grid of structural springs"), "W",
+       "modeWireframe"},
+      {ViewMode::strain, "view-strain", tr("Strain"),
+       tr("Colours for the strain of structural and shear springs"), "S", "modeStrain"},
   };
   for (const auto& entry : modes) {
     QAction* action = addChoice(modes_, entry.icon, entry.text, entry.tip, entry.shortcut, entry.name);
@@ -96,9 +106,9 @@ void ViewBar::addCamera(QHBoxLayout& row) {
     CameraPreset preset;
     QString text, shortcut;
   } presets[] = {
-      {CameraPreset::front, tr("Front"), "F1"},       {CameraPreset::back, tr("Back"), "F2"},
-      {CameraPreset::left, tr("Left"), "F3"},         {CameraPreset::right, tr("Right"), "F4"},
-      {CameraPreset::top, tr("Top"), "F5"},           {CameraPreset::isometric, tr("Isometric"), "F6"},
+      {CameraPreset::front, tr("Front"), "F1"}, {CameraPreset::back, tr("Back"), "F2"},
+      {CameraPreset::left, tr("Left"), "F3"},   {CameraPreset::right, tr("Right"), "F4"},
+      {CameraPreset::top, tr("Top"), "F5"},     {CameraPreset::isometric, tr("Isometric"), "F6"},
   };
   auto* menu = new QMenu(this);
   for (const auto& entry : presets) {

@@ -12,7 +12,9 @@ namespace {
 namespace cli = clothlab::cli;
 
 const char* const scene_help = "A scene file or the name of a built-in scene";
-const char* const set_help = "Set a parameter, PATH=VALUE, e.g. springs.structural=500; may be repeated";
+const char* const set_help =
+    "Set a parameter, PATH=VALUE, e.g. springs.structural=500; null takes a block out, e.g. air=null; may be "
+    "repeated";
 const char* const json_help = "Give the result as one JSON object";
 
 const char* const exit_codes =

@@ -26,7 +26,7 @@ const std::vector<Entry>& registry() {
       {{"explicit-euler", "Explicit Euler", 1, 1, "Euler 1768"}, made<ExplicitEuler>},
       {{"semi-implicit-euler", "Semi-implicit Euler", 1, 1, "Provot 1995; report, Eqs. (5)-(7)"},
        made<SemiImplicitEuler>},
-      {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)"}, made<Verlet>},
+      {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)", true}, made<Verlet>},
       {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
   };
   return entries;

@@ -18,6 +18,7 @@ struct MethodFacts {
   int order = 1;      ///< of the position error, for smooth scenes
   int evaluations_per_step = 1;
   std::string source;
+  bool keeps_force = false;  ///< over to the next step: one more evaluation if something else moved the cloth
 };
 
 const std::vector<MethodFacts>& integrator_facts();

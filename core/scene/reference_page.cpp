@@ -49,13 +49,20 @@ std::string general_path(const std::string& path) {
   return list + "N" + path.substr(path.find('.', list.size()));
 }
 
+/// A bar inside a table cell would end the cell.
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  return escaped;
+}
+
 std::string row(const Scene& scene, const Parameter& parameter) {
   const ParameterInfo& info = parameter.info;
   const auto initial = default_of(scene, parameter.path);
   return fmt::format("| `{}` | {} | {} | {} | {} | {}{} | {} |\n", general_path(parameter.path), info.label,
                      info.unit.empty() ? "1" : info.unit, allowed(info),
                      initial ? value_text(info, *initial) : "", info.doc,
-                     info.formula.empty() ? "" : " `" + info.formula + "`",
+                     info.formula.empty() ? "" : " `" + cell(info.formula) + "`",
                      info.cost == EditCost::live ? "at the next step" : "restarts");
 }
 

@@ -273,7 +273,7 @@ json parse_value(const std::string& text) {
   return value.is_discarded() ? json(text) : value;
 }
 
-/// Walks to the parent of `path`, making objects on the way, and sets its last key.
+/// Walks to the parent of `path`, making objects on the way, and sets its last key; null takes it out.
 bool set_at(json& root, const std::string& path, const json& value) {
   json* at = &root;
   std::size_t begin = 0;
@@ -291,7 +291,10 @@ bool set_at(json& root, const std::string& path, const json& value) {
       return false;
     }
     if (end == path.size()) {
-      *next = value;
+      if (value.is_null() && at->is_object())
+        at->erase(key);
+      else
+        *next = value;
       return true;
     }
     if (next->is_null()) *next = json::object();
@@ -308,7 +311,10 @@ class Placer {
 
   void operator()(Problem& problem) const {
     for (const Override& override_ : overrides_) {
-      if (problem.path == override_.path || problem.path.rfind(override_.path + ".", 0) == 0) {
+      const bool set = problem.path == override_.path || problem.path.rfind(override_.path + ".", 0) == 0;
+      const bool brought_in =
+          override_.path.rfind(problem.path + ".", 0) == 0 && !locations_.values.count(problem.path);
+      if (set || brought_in) {
         problem.place = "--set";
         return;
       }

@@ -185,8 +185,8 @@ Measurement Simulation::measure() const {
           .contacts = last_contact_.contacts};
 }
 
-/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full wind, what the
-/// hand did, what there was at the start.
+/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
+/// wind, what the hand did, what there was at the start.
 double Simulation::energy_scale(double fallen) const {
   const double mass = system_.particle_mass * system_.size();
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
@@ -199,7 +199,8 @@ double Simulation::energy_scale(double fallen) const {
 bool Simulation::has_run_away(double kinetic) const {
   if (!std::isfinite(kinetic)) return true;
   if (kinetic <= runaway_factor * energy_scale(0)) return false;
-  return !(kinetic <= runaway_factor * energy_scale(-gravity_energy(system_, gravity_of(scene_), state_.position)));
+  return !(kinetic <=
+           runaway_factor * energy_scale(-gravity_energy(system_, gravity_of(scene_), state_.position)));
 }
 
 std::optional<Divergence> Simulation::find_divergence() const {

@@ -64,6 +64,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
   const ClothSystem system = make_grid(scene.cloth, material);
   const MethodFacts& method = facts_of(scene.integrator.method);
+  const bool moved_later = contact_stage(scene).present || limiter_stage(scene, system).present;
   std::vector<StageInfo> stages;
   for (const SpringFamily family : spring_families) stages.push_back(spring_stage(scene, system, family));
   stages.push_back(positive_stage("spring damping", scene.springs.has_value(), "springs", material.damping,
@@ -74,9 +75,12 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   stages.push_back(positive_stage("air drag", scene.air.has_value(), "air", scene.air.value_or(Air{}).drag,
                                   "air.drag", "N s/m"));
   stages.push_back(wind_stage(scene));
-  stages.push_back({"integrate", true,
-                    fmt::format("{}: order {}, {} force evaluation{} a step", method.title, method.order,
-                                method.evaluations_per_step, method.evaluations_per_step == 1 ? "" : "s")});
+  stages.push_back(
+      {"integrate", true,
+       fmt::format("{}: order {}, {} force evaluation{} a step", method.title, method.order,
+                   method.evaluations_per_step, method.evaluations_per_step == 1 ? "" : "s") +
+           (method.keeps_force && moved_later ? ", one more after a step that the stages below changed"
+                                              : "")});
   stages.push_back(limiter_stage(scene, system));
   stages.push_back(contact_stage(scene));
   return stages;

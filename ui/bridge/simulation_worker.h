@@ -91,6 +91,7 @@ class SimulationWorker {
   void play_for_a_moment();
   bool advance();
   void take_sample();
+  void deliver(const ChartSample& sample);
   void diverge(const cloth::Divergence& divergence);
   void note_record(const std::optional<cloth::IoError>& error);
   void end_recording();
@@ -116,7 +117,8 @@ class SimulationWorker {
   WorkerPace pace_;
   RateMeter meter_;
   std::uint64_t topology_ = 0;
-  double wall_since_row_ = 0;  ///< s
+  std::optional<ChartSample> first_sample_;  ///< held back until there is a second one: one point is no curve
+  double wall_since_row_ = 0;                ///< s
   std::int64_t steps_since_row_ = 0;
   WorkerPace::Clock::time_point last_frame_{};
 

@@ -107,6 +107,7 @@ void PlotScene::set_geometry(QSizeF size, const QRectF& plot) {
   setSceneRect(QRectF(QPointF(), size));
   chart_->resize(size);
   chart_->setPlotArea(plot);
+  chart_->layout()->invalidate();  // else axes whose ticks stay the same keep their old place
   map_.plot = plot;
   curves_->set_plot(plot);
   overlay_->set_area(QRectF(QPointF(), size));

@@ -101,16 +101,16 @@ void MainWindow::connectView() {
           [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
   connect(view_, &ClothView::pullEnded, this, [this] { link_.send(command::Pull{}); });
   connect(view_, &ClothView::brushChanged, this, &MainWindow::brush);
-  connect(view_, &ClothView::brushEnded, this, [this] { link_.send(command::Brush{}); });
+  connect(view_, &ClothView::brushEnded, this, [this] {
+    if (hasAir()) link_.send(command::Brush{});
+  });
   connect(view_, &ClothView::pinToggled, this, [this](int particle) {
     const int columns = document_.scene().cloth.columns;
     document_.togglePin(particle / columns, particle % columns);
   });
-  connect(view_, &ClothView::openGlFailed, this, [this](const QString& reason) {
-    notice_->show(
-        "opengl", NoticeBar::Level::warning,
-        tr("The view needs OpenGL 3.3, which this machine does not give (%1). Everything else works.")
-            .arg(reason));
+  connect(view_, &ClothView::openGlFailed, this, [this] {
+    notice_->show("opengl", NoticeBar::Level::warning,
+                  tr("The view needs OpenGL 3.3, which this machine does not give. Everything else works."));
   });
   connect(view_, &ClothView::frameDrawn, this, [this](double milliseconds) {
     if (shown_status_.playing) charts_->appendDrawTime(shown_status_.time, milliseconds);
@@ -127,7 +127,7 @@ void MainWindow::connectSimulation() {
   connect(play_, &QAction::triggered, this,
           [this](bool play) { play ? link_.send(command::Play{}) : link_.send(command::Pause{}); });
   connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
-  connect(reset_, &QAction::triggered, this, [this] { link_.send(command::Restart{}); });
+  connect(reset_, &QAction::triggered, this, &MainWindow::restart);
   connect(record_, &QAction::triggered, this, &MainWindow::toggleRecording);
 }
 
@@ -149,6 +149,11 @@ void MainWindow::startSimulation() {
   charts_->clear();
   link_.send(command::Load{document_.scene()});
   readStability();
+}
+
+void MainWindow::restart() {
+  charts_->clear();
+  link_.send(command::Restart{});
 }
 
 void MainWindow::followChange(const SceneChange& change) {
@@ -218,7 +223,7 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
   if (status.divergence->stable_step > 0)
     notice_->show("divergence", NoticeBar::Level::error, text, tr("Use auto and restart"), [this] {
       takeStableStep();
-      link_.send(command::Restart{});
+      restart();
     });
   else
     notice_->show("divergence", NoticeBar::Level::error, text);
@@ -239,9 +244,13 @@ void MainWindow::followRecording(const WorkerStatus& status) {
   }
 }
 
-void MainWindow::brush(const cloth::BrushGust& gust) {
+bool MainWindow::hasAir() const {
   const auto& air = document_.scene().air;
-  if (!air || !(air->drag > 0)) {
+  return air && air->drag > 0;
+}
+
+void MainWindow::brush(const cloth::BrushGust& gust) {
+  if (!hasAir()) {
     notice_->show("brush", NoticeBar::Level::info, tr("The wind brush needs air, and this scene has none."),
                   tr("Add still air"), [this] { addStillAir(); });
     return;

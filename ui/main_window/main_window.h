@@ -58,6 +58,7 @@ class MainWindow : public QMainWindow {
   void takeScene(const OpenedScene& opened);
   void followChange(const SceneChange& change);
   void startSimulation();
+  void restart();
   void followStatus(const WorkerStatus& status);
   void followRecording(const WorkerStatus& status);
   void followDivergence(const WorkerStatus& status);
@@ -65,6 +66,7 @@ class MainWindow : public QMainWindow {
   void takeStableStep();
   void brush(const cloth::BrushGust& gust);
   void addStillAir();
+  bool hasAir() const;
   void updateTitle();
   bool mayLoseChanges();
 

@@ -71,7 +71,7 @@ void MainWindow::makeMenus() {
   QAction* save_action =
       file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   save_action->setToolTip(tr("Save the scene (Ctrl+S)"));
-  file->addAction(tr("Save as…"), QKeySequence::SaveAs, this, [this] { saveAs(); });
+  file->addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
   file->addSeparator();
   file->addActions({save_picture_, save_plots_});
   file->addSeparator();

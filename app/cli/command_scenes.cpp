@@ -14,7 +14,7 @@ int print_one(const ScenesArguments& arguments) {
   if (scene) return print(scene->text);
   say(fmt::format("{}: there is no built-in scene of this name; 'clothlab-cli scenes' lists them",
                   arguments.name));
-  return io_failed;  // as for a scene that `run` cannot find
+  return bad_input;
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ class Run {
 
   void finish(std::int64_t last) {
     RunSummary& summary = result_.summary;
-    summary.steps = result_.final_state.step;  // those whose state is on disk; a rejected one does not count
+    summary.steps = simulation_.count().steps;
     summary.force_evaluations = simulation_.count().force_evaluations;
     summary.simulated = result_.final_state.time;
     summary.status = summary.divergence                ? Status::diverged

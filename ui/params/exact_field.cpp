@@ -114,7 +114,7 @@ bool ExactField::event(QEvent* event) {
 void ExactField::keyPressEvent(QKeyEvent* event) {
   if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) {
     commit();
-    if (!invalid_) selectAll();
+    if (!invalid_) clearFocus();  // done here: keys belong to the window again, Space plays
     return;
   }
   if (event->key() == Qt::Key_Escape && hasPendingText()) {

@@ -6,6 +6,7 @@
 #include <QFile>
 #include <QLabel>
 #include <QMimeData>
+#include <QProcess>
 #include <QPushButton>
 
 #include "io/csv.h"
@@ -314,6 +315,18 @@ class WindowTest : public QObject {
     QVERIFY(table.rows.size() > 5);
     for (const auto& row : table.rows) QCOMPARE(row.size(), table.header.size());
     QVERIFY(content_of(folder.filePath("closed/summary.json")).contains("stopped"));
+  }
+
+  void a_display_without_opengl_gets_the_rest_of_the_window() {
+    QProcess program;
+    auto environment = QProcessEnvironment::systemEnvironment();
+    environment.insert("QT_QPA_PLATFORM", "offscreen");
+    program.setProcessEnvironment(environment);
+    program.start(CLOTHLAB_PROGRAM, {"pendulum"});
+    QVERIFY(program.waitForStarted());
+    QVERIFY2(!program.waitForFinished(2500), "it ended by itself");
+    program.kill();
+    program.waitForFinished();
   }
 
   void an_idle_window_fetches_nothing() {

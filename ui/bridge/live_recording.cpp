@@ -85,10 +85,10 @@ std::optional<cloth::IoError> LiveRecording::log(const EditLogEntry& entry) {
                                 entry.time, json(entry.path).dump(), entry.value));
 }
 
-std::optional<cloth::IoError> LiveRecording::keep_current() {
-  const auto now = std::chrono::steady_clock::now();
-  if (now - last_flush_ < flush_interval) return std::nullopt;
-  last_flush_ = now;
+std::optional<cloth::IoError> LiveRecording::keep_current(bool now) {
+  const auto time = std::chrono::steady_clock::now();
+  if (!now && time - last_flush_ < flush_interval) return std::nullopt;
+  last_flush_ = time;
   if (auto error = record_.flush()) return error;
   return edits_.flush();
 }

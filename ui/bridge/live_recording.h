@@ -49,8 +49,8 @@ class LiveRecording {
 
   std::optional<cloth::IoError> log(const EditLogEntry& entry);
 
-  /// Puts everything on disk if the last time was more than half a second ago.
-  std::optional<cloth::IoError> keep_current();
+  /// Puts everything on disk if the last time was more than half a second ago, or `now`.
+  std::optional<cloth::IoError> keep_current(bool now);
 
   /// Ends with final_state.csv (of `last_good`) and summary.json.
   std::optional<cloth::IoError> end(const cloth::Simulation& simulation, const cloth::ClothState& last_good,

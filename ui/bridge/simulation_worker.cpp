@@ -92,7 +92,7 @@ void SimulationWorker::run(const std::stop_token& stop) {
       if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1]))
         std::visit([this](const auto& c) { handle(c); }, commands[i]);
     if (status_.playing) play_for_a_moment();
-    if (recording_.is_active()) note_record(recording_.keep_current());
+    if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
     publish_status();
   }
   if (recording_.is_active()) end_recording();

@@ -2,9 +2,11 @@
 
 #include <QHBoxLayout>
 #include <QToolButton>
+#include <QVBoxLayout>
 
 #include "params/exact_field.h"
 #include "params/number_text.h"
+#include "params/value_slider.h"
 #include "params/wording.h"
 #include "theme/theme.h"
 
@@ -23,8 +25,15 @@ VectorEditor::VectorEditor(LabDocument& document, const cloth::Parameter& parame
     fields_[i] = new ExactField(this);
     name(*fields_[i], QString("field_%1").arg(axes[i]), axes[i]);
     fields_[i]->setPrefix(axes[i]);
-    controlRow().addWidget(fields_[i], 1);
+    sliders_[i] = new ValueSlider(this);
+    name(*sliders_[i], QString("slider_%1").arg(axes[i]), axes[i]);
+    auto* column = new QVBoxLayout;
+    column->setSpacing(spacing / 2);
+    column->addWidget(fields_[i]);
+    column->addWidget(sliders_[i]);
+    controlRow().addLayout(column, 1);
     connectField(axis);
+    connectSlider(axis);
   }
   refresh();
 }
@@ -48,8 +57,28 @@ void VectorEditor::connectField(int axis) {
   });
 }
 
+void VectorEditor::connectSlider(int axis) {
+  ValueSlider* slider = sliders_[static_cast<std::size_t>(axis)];
+  connect(slider, &ValueSlider::dragBegan, &document(), &LabDocument::beginDrag);
+  connect(slider, &ValueSlider::moved, this,
+          [this, axis](double position) { commitComponent(axis, scale_.value_at(position)); });
+  connect(slider, &ValueSlider::stepped, this, [this, axis](int steps) { step(axis, steps); });
+  connect(slider, &ValueSlider::dragEnded, this, [this] {
+    document().endDrag();
+    refresh();
+  });
+}
+
+void VectorEditor::commitComponent(int axis, double number) {
+  const auto present = value();
+  if (!present) return;
+  cloth::Vec3 vector = std::get<cloth::Vec3>(*present);
+  vector[axis] = number;
+  commit(vector);
+}
+
 QList<QWidget*> VectorEditor::tabStops() const {
-  return {fields_[0], fields_[1], fields_[2], &resetButton()};
+  return {fields_[0], fields_[1], fields_[2], &resetButton(), sliders_[0], sliders_[1], sliders_[2]};
 }
 
 void VectorEditor::abandonEdits() {
@@ -64,7 +93,17 @@ void VectorEditor::showValue(const cloth::ParameterValue& value) {
   const auto* vector = std::get_if<cloth::Vec3>(&value);
   if (!vector) return;
   edited_ = {};
-  for (int axis = 0; axis < 3; ++axis) fields_[static_cast<std::size_t>(axis)]->showValue((*vector)[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    fields_[i]->showValue((*vector)[axis]);
+    if (!sliders_[i]->isSliderDown()) sliders_[i]->setPosition(scale_.position_of((*vector)[axis]));
+  }
+}
+
+void VectorEditor::showDefault(const std::optional<cloth::ParameterValue>& fallback) {
+  const auto* vector = fallback ? std::get_if<cloth::Vec3>(&*fallback) : nullptr;
+  for (int axis = 0; axis < 3; ++axis)
+    sliders_[static_cast<std::size_t>(axis)]->setMark(vector ? scale_.position_of((*vector)[axis]) : -1);
 }
 
 void VectorEditor::markInvalid(bool invalid) {
@@ -90,11 +129,8 @@ void VectorEditor::commitTexts(int edited_axis) {
 }
 
 void VectorEditor::step(int axis, int steps) {
-  const auto present = value();
-  if (!present) return;
-  cloth::Vec3 vector = std::get<cloth::Vec3>(*present);
-  vector[axis] = scale_.stepped(vector[axis], steps);
-  commit(vector);
+  if (const auto present = value())
+    commitComponent(axis, scale_.stepped(std::get<cloth::Vec3>(*present)[axis], steps));
 }
 
 }  // namespace clothlab

@@ -1,5 +1,5 @@
-// Three numbers of one vector, each exact. A direction may be typed one part at a time: parts that are
-// refused because the others are not there yet wait in their fields.
+// Three numbers of one vector, each with an exact field and a slider. A direction may be typed one part at a
+// time: parts that are refused because the others are not there yet wait in their fields.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 namespace clothlab {
 
 class ExactField;
+class ValueSlider;
 
 class VectorEditor : public ParameterEditor {
   Q_OBJECT
@@ -22,15 +23,19 @@ class VectorEditor : public ParameterEditor {
 
  protected:
   void showValue(const cloth::ParameterValue& value) override;
+  void showDefault(const std::optional<cloth::ParameterValue>& fallback) override;
   void markInvalid(bool invalid) override;
 
  private:
   void connectField(int axis);
+  void connectSlider(int axis);
+  void commitComponent(int axis, double number);
   void commitTexts(int edited_axis);
   void step(int axis, int steps);
 
   SliderScale scale_;
   std::array<ExactField*, 3> fields_;
+  std::array<ValueSlider*, 3> sliders_;
   std::array<bool, 3> edited_{};  ///< typed and not accepted yet
   bool stepping_ = false;
 };

@@ -1,9 +1,11 @@
 #include "viewport/gl/gl_probe.h"
 
 #include <QCoreApplication>
+#include <QGuiApplication>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
 #include <QOpenGLFunctions>
+#include <QStringList>
 #include <QSurfaceFormat>
 
 namespace clothlab {
@@ -13,8 +15,18 @@ QString words(const char* text) {
   return QCoreApplication::translate("ClothView", text);
 }
 
+/// These platforms may give a context that works and yet never show what it draws: widgets drawn by OpenGL
+/// crash there.
+bool platform_shows_no_opengl() {
+  return QStringList{"offscreen", "minimal", "vnc", "linuxfb"}.contains(QGuiApplication::platformName());
+}
+
 GlAbilities probe() {
   GlAbilities found;
+  if (platform_shows_no_opengl()) {
+    found.problem = words("This display offers no OpenGL.");
+    return found;
+  }
   QSurfaceFormat wanted;
   wanted.setRenderableType(QSurfaceFormat::OpenGL);
   wanted.setVersion(3, 3);

@@ -8,6 +8,7 @@
 #include <QToolButton>
 #include <limits>
 
+#include "main_window/action_button.h"
 #include "theme/theme.h"
 
 namespace clothlab {
@@ -46,12 +47,12 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
   row->setSpacing(spacing / 2);
-  QToolButton* play = makeButton(actions.play);
+  QToolButton* play = make_action_button(actions.play, this);
   play->setIconSize({24, 24});
   row->addWidget(play);
-  row->addWidget(makeButton(actions.step));
-  row->addWidget(makeButton(actions.reset));
-  row->addWidget(makeButton(actions.record));
+  row->addWidget(make_action_button(actions.step, this));
+  row->addWidget(make_action_button(actions.reset, this));
+  row->addWidget(make_action_button(actions.record, this));
   row->addSpacing(spacing);
   row->addWidget(speed_);
   row->addSpacing(spacing);
@@ -70,16 +71,6 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
 
   fillSpeeds();
   showStatus({});
-}
-
-QToolButton* TransportBar::makeButton(QAction* action) {
-  auto* button = new QToolButton(this);
-  button->setDefaultAction(action);
-  button->setAutoRaise(true);
-  button->setIconSize({20, 20});
-  button->setObjectName(action->objectName() + "Button");
-  button->setAccessibleName(action->text());
-  return button;
 }
 
 void TransportBar::fillSpeeds() {

@@ -9,7 +9,6 @@
 class QAction;
 class QComboBox;
 class QLabel;
-class QToolButton;
 
 namespace clothlab {
 
@@ -34,7 +33,6 @@ class TransportBar : public QFrame {
   void speedChosen(double factor);  ///< simulated seconds per second; infinity: as fast as it goes
 
  private:
-  QToolButton* makeButton(QAction* action);
   void fillSpeeds();
 
   QComboBox* speed_;

@@ -6,20 +6,11 @@
 #include <QMenu>
 #include <QToolButton>
 
+#include "main_window/action_button.h"
 #include "theme/theme.h"
 
 namespace clothlab {
 namespace {
-
-QToolButton* button_for(QAction* action, QWidget* parent) {
-  auto* button = new QToolButton(parent);
-  button->setDefaultAction(action);
-  button->setAutoRaise(true);
-  button->setIconSize({20, 20});
-  button->setObjectName(action->objectName() + "Button");
-  button->setAccessibleName(action->text());
-  return button;
-}
 
 QString with_shortcut(const QString& tip, const QString& shortcut) {
   return QStringLiteral("%1 (%2)").arg(tip, shortcut);
@@ -42,7 +33,7 @@ ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
   addModes(*row);
   row->addStretch(1);
   addCamera(*row);
-  row->addWidget(button_for(save_picture, this));
+  row->addWidget(make_action_button(save_picture, this));
 }
 
 QAction* ViewBar::addChoice(QActionGroup* group, const char* icon_name, const QString& text,
@@ -74,7 +65,7 @@ void ViewBar::addTools(QHBoxLayout& row) {
     connect(action, &QAction::triggered, this, [this, tool = entry.tool] { view_.setTool(tool); });
     connect(&view_, &ClothView::toolChanged, action,
             [action, tool = entry.tool](Tool chosen) { action->setChecked(tool == chosen); });
-    row.addWidget(button_for(action, this));
+    row.addWidget(make_action_button(action, this));
   }
 }
 
@@ -97,7 +88,7 @@ void ViewBar::addModes(QHBoxLayout& row) {
     connect(action, &QAction::triggered, this, [this, mode = entry.mode] { view_.setMode(mode); });
     connect(&view_, &ClothView::modeChanged, action,
             [action, mode = entry.mode](ViewMode chosen) { action->setChecked(mode == chosen); });
-    row.addWidget(button_for(action, this));
+    row.addWidget(make_action_button(action, this));
   }
 }
 
@@ -133,7 +124,7 @@ void ViewBar::addCamera(QHBoxLayout& row) {
   frame_all_->setShortcut(QStringLiteral("F"));
   frame_all_->setToolTip(with_shortcut(tr("Fit the cloth and the obstacles into the view"), "F"));
   connect(frame_all_, &QAction::triggered, &view_, &ClothView::frameAll);
-  row.addWidget(button_for(frame_all_, this));
+  row.addWidget(make_action_button(frame_all_, this));
 }
 
 void ViewBar::fillMenu(QMenu& menu) const {

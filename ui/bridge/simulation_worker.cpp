@@ -58,6 +58,7 @@ void SimulationWorker::send(Command command) {
   {
     const std::lock_guard lock(mutex_);
     inbox_.push_back(std::move(command));
+    ++sent_;
     busy_ = true;
   }
   wake_.notify_one();
@@ -75,7 +76,7 @@ WorkerStatus SimulationWorker::status() const {
 
 void SimulationWorker::wait_until_idle() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [this] { return inbox_.empty() && !handling_; });
+  idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
 }
 
 void SimulationWorker::run(const std::stop_token& stop) {
@@ -86,7 +87,6 @@ void SimulationWorker::run(const std::stop_token& stop) {
       std::unique_lock lock(mutex_);
       wait_for_work(lock, stop);
       commands.swap(inbox_);
-      handling_ = true;
     }
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1]))
@@ -94,17 +94,19 @@ void SimulationWorker::run(const std::stop_token& stop) {
     if (status_.playing) play_for_a_moment();
     if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
     publish_status();
+    if (!commands.empty()) {
+      const std::lock_guard lock(mutex_);
+      done_ += commands.size();
+      busy_ = status_.playing || !inbox_.empty();
+      idle_.notify_all();
+    }
   }
   if (recording_.is_active()) end_recording();
 }
 
 /// Until there is a command, or the next step is due.
 void SimulationWorker::wait_for_work(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
-  handling_ = false;
-  if (inbox_.empty()) {
-    busy_ = status_.playing;
-    idle_.notify_all();
-  }
+  if (inbox_.empty()) busy_ = status_.playing;
   const auto has_command = [this] { return !inbox_.empty(); };
   if (!status_.playing)
     wake_.wait(lock, stop, has_command);

@@ -104,7 +104,7 @@ class SimulationWorker {
   std::vector<Command> inbox_;
   std::vector<ChartSample> samples_;
   WorkerStatus shared_status_;
-  bool handling_ = false;
+  std::uint64_t sent_ = 0, done_ = 0;  ///< commands
   std::atomic<bool> busy_{false};
   FrameExchange frames_;
 

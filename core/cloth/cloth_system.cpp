@@ -1,5 +1,7 @@
 #include "cloth/cloth_system.h"
 
+#include <numeric>
+
 namespace cloth {
 
 const char* name_of(SpringFamily family) {
@@ -19,6 +21,10 @@ std::int64_t ClothSystem::spring_count(SpringFamily family) const {
   for (const SpringRun& run : springs)
     if (run.family == family) count += run.count;
   return count;
+}
+
+double ClothSystem::total_mass() const {
+  return std::accumulate(mass.begin(), mass.end(), 0.0);
 }
 
 }  // namespace cloth

@@ -28,7 +28,7 @@ struct SpringRun {
 struct ClothSystem {
   int rows = 0, columns = 0;
   std::vector<SpringRun> springs;    ///< in the order structural, shear, flexion
-  double particle_mass = 0;          ///< kg, the same for all
+  std::vector<double> mass;          ///< kg, one of each particle
   std::vector<double> inverse_mass;  ///< 1/kg; 0 where pinned
   std::vector<std::uint8_t> pinned;  ///< 1 where pinned
   Vec3Field start;                   ///< m, positions at t = 0
@@ -36,6 +36,7 @@ struct ClothSystem {
 
   int size() const { return rows * columns; }
   int index(int row, int column) const { return row * columns + column; }
+  double total_mass() const;  ///< kg
   std::int64_t spring_count(SpringFamily family) const;
 };
 

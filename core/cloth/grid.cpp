@@ -59,8 +59,9 @@ ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
   system.rows = sheet.rows;
   system.columns = sheet.columns;
   const auto size = static_cast<std::size_t>(system.size());
-  system.particle_mass = sheet.mass / static_cast<double>(size);
-  system.inverse_mass.assign(size, 1 / system.particle_mass);
+  const double mass = sheet.mass / static_cast<double>(size);
+  system.mass.assign(size, mass);
+  system.inverse_mass.assign(size, 1 / mass);
   system.pinned.assign(size, 0);
   system.start = Vec3Field(size);
 

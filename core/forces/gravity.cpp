@@ -5,11 +5,13 @@
 namespace cloth {
 
 void Gravity::update(const ClothSystem& system, const Vec3Field&, double, Vec3Field& force) {
-  const Vec3 weight = system.particle_mass * acceleration_;
+  const double* mass = system.mass.data();
   double* components[] = {force.x(), force.y(), force.z()};
-  for (int axis = 0; axis < 3; ++axis)
-    if (weight[axis] != 0)
-      for (std::size_t i = 0; i < force.size(); ++i) components[axis][i] += weight[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double g = acceleration_[axis];
+    if (g != 0)
+      for (std::size_t i = 0; i < force.size(); ++i) components[axis][i] += mass[i] * g;
+  }
 }
 
 double gravity_energy(const ClothSystem& system, const Vec3& acceleration, const Vec3Field& position) {
@@ -19,9 +21,9 @@ double gravity_energy(const ClothSystem& system, const Vec3& acceleration, const
   for (int axis = 0; axis < 3; ++axis)
     if (acceleration[axis] != 0)
       energy -= acceleration[axis] *
-                ordered_sum(position.size(),
-                            [x = now[axis], x0 = then[axis]](std::size_t i) { return x[i] - x0[i]; });
-  return system.particle_mass * energy;
+                ordered_sum(position.size(), [m = system.mass.data(), x = now[axis], x0 = then[axis]](
+                                                 std::size_t i) { return m[i] * (x[i] - x0[i]); });
+  return energy;
 }
 
 }  // namespace cloth

@@ -27,6 +27,15 @@ void clear_pinned(const ClothSystem& system, Vec3Field& field) {
     if (system.pinned[i]) field.set(i, Vec3::Zero());
 }
 
+/// visit(k, mass of the particle that component k of a field belongs to)
+template <class Visit>
+void for_each_component(const ClothSystem& system, Visit visit) {
+  const double* mass = system.mass.data();
+  const std::size_t size = system.mass.size();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < size; ++i) visit(axis * size + i, mass[i]);
+}
+
 }  // namespace
 
 int ForceModel::centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity) {
@@ -34,7 +43,7 @@ int ForceModel::centred_velocity(double weight, const Vec3Field& known, Vec3Fiel
   const auto rhs = rhs_.flat();
   const auto v = known.flat();
   const auto p = position_force_.flat();
-  for (std::size_t k = 0; k < rhs.size(); ++k) rhs[k] = system_->particle_mass * v[k] + weight * p[k];
+  for_each_component(*system_, [&](std::size_t k, double mass) { rhs[k] = mass * v[k] + weight * p[k]; });
   clear_pinned(*system_, rhs_);
 
   NodeDamping damping;
@@ -49,18 +58,18 @@ int ForceModel::centred_velocity(double weight, const Vec3Field& known, Vec3Fiel
 /// ((m + w a) I + w b n n^T) v = r, inverted after Sherman and Morrison (1950): n is of length one or zero.
 void ForceModel::solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
                                 Vec3Field& velocity) const {
-  const double diagonal = system_->particle_mass + weight * damping.isotropic;
-  const double inverse = 1 / diagonal;
+  const double isotropic = weight * damping.isotropic;
   const auto r = rhs.flat();
   const auto v = velocity.flat();
-  for (std::size_t k = 0; k < r.size(); ++k) v[k] = inverse * r[k];
+  for_each_component(*system_, [&](std::size_t k, double mass) { v[k] = r[k] / (mass + isotropic); });
 
   if (damping.normal) {
     const double along = weight * damping.along_normal;
-    const double scale = along / (diagonal + along);
+    const double* mass = system_->mass.data();
     const double *nx = damping.normal->x(), *ny = damping.normal->y(), *nz = damping.normal->z();
     double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
     for (std::size_t i = 0; i < velocity.size(); ++i) {
+      const double scale = along / (mass[i] + isotropic + along);
       const double correction = scale * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
       vx[i] -= correction * nx[i], vy[i] -= correction * ny[i], vz[i] -= correction * nz[i];
     }
@@ -68,7 +77,7 @@ void ForceModel::solve_per_node(double weight, const NodeDamping& damping, const
   if (damping.held_particle >= 0) {
     const auto held = static_cast<std::size_t>(damping.held_particle);
     const Vec3 n = damping.normal ? (*damping.normal)[held] : Vec3::Zero();
-    const double held_diagonal = diagonal + weight * damping.held_isotropic;
+    const double held_diagonal = system_->mass[held] + isotropic + weight * damping.held_isotropic;
     const double along = weight * damping.along_normal;
     const Vec3 r_held = rhs[held];
     velocity.set(held, (r_held - along / (held_diagonal + along) * n.dot(r_held) * n) / held_diagonal);
@@ -85,7 +94,8 @@ int ForceModel::solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& ve
     damping_product(v, result);
     const auto out = result.flat();
     const auto in = v.flat();
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = system_->particle_mass * in[k] + weight * out[k];
+    for_each_component(*system_,
+                       [&](std::size_t k, double mass) { out[k] = mass * in[k] + weight * out[k]; });
     clear_pinned(*system_, result);
   };
 

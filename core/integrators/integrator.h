@@ -2,6 +2,9 @@
 // what comes after it (limiter, contact); the loop owns time.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "forces/force_model.h"
 
 namespace cloth {
@@ -11,10 +14,27 @@ struct StepTimes {
   double begin = 0, end = 0, step = 0;  ///< s
 };
 
+/// Why a step could not be solved: bad numerics are data.
+struct SolverFailure {
+  int particle = 0;  ///< where the trouble is largest
+  std::string cause;
+};
+
 struct IntegratorReport {
   int force_evaluations = 0;
   int velocity_iterations = 0;  ///< of the solve for centred damping
+  int inner_steps = 1;          ///< accepted ones, of methods that divide the step
+  int rejected_steps = 0;       ///< of error control
+  int iterations = 0;           ///< of Newton's method, or local and global, or over all constraints
+  int linear_iterations = 0;    ///< of conjugate gradients or another Krylov method
+  int factorisations = 0;
+  double residual =
+      0;  ///< what the last iteration still changed: largest speed, relative to the largest of all
+  std::optional<SolverFailure> failure = {};
 };
+
+/// What has changed behind an integrator's back.
+enum class Change { forces, state };
 
 class Integrator {
  public:
@@ -25,8 +45,8 @@ class Integrator {
   virtual IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                 ClothState& state, Work& work) = 0;
 
-  /// Something else has changed the state or the forces: nothing remembered from the last step holds.
-  virtual void forget() {}
+  /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
+  virtual void forget(Change) {}
 };
 
 /// to += scale * inverse_mass * force

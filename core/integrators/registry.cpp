@@ -7,17 +7,18 @@
 #include "integrators/euler.h"
 #include "integrators/rk4.h"
 #include "integrators/verlet.h"
+#include "scene/scene.h"
 
 namespace cloth {
 namespace {
 
 struct Entry {
   MethodFacts facts;
-  std::function<std::unique_ptr<Integrator>()> make;
+  std::function<std::unique_ptr<Integrator>(const IntegratorChoice&)> make;
 };
 
 template <class Method>
-std::unique_ptr<Integrator> made() {
+std::unique_ptr<Integrator> made(const IntegratorChoice&) {
   return std::make_unique<Method>();
 }
 
@@ -62,8 +63,8 @@ const MethodFacts& facts_of(const std::string& name) {
   return entry_of(name).facts;
 }
 
-std::unique_ptr<Integrator> make_integrator(const std::string& name) {
-  return entry_of(name).make();
+std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice) {
+  return entry_of(choice.method).make(choice);
 }
 
 }  // namespace cloth

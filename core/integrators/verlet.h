@@ -17,7 +17,7 @@ class Verlet : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  void forget() override { holds_force_ = false; }
+  void forget(Change) override { holds_force_ = false; }
 
  private:
   Vec3Field force_, half_velocity_;

@@ -7,7 +7,10 @@
 namespace cloth {
 
 double kinetic_energy(const ClothSystem& system, const Vec3Field& velocity) {
-  return 0.5 * system.particle_mass * dot(velocity.flat(), velocity.flat());
+  const double *m = system.mass.data(), *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+  return 0.5 * ordered_sum(velocity.size(), [=](std::size_t i) {
+           return m[i] * (vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
+         });
 }
 
 Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleration, const ClothState& state) {

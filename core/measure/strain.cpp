@@ -28,6 +28,7 @@ Strain measure_strain(const ClothSystem& system, const Vec3Field& position) {
   constexpr double none = -std::numeric_limits<double>::infinity();
   std::array<double, 3> largest{none, none, none};
   for (const SpringRun& run : system.springs) {
+    if (!(run.rest_length > 0)) continue;  // a spring without length has no strain
     double longest = 0;
     for_each_spring(run, position, [&](int, int, double squared) { longest = std::max(longest, squared); });
     double& family = largest[static_cast<std::size_t>(run.family)];
@@ -43,7 +44,7 @@ void particle_strain(const ClothSystem& system, const Vec3Field& position, std::
   constexpr float none = -2;  // below every strain: |d|/L - 1 >= -1
   std::fill(strain.begin(), strain.end(), none);
   for (const SpringRun& run : system.springs) {
-    if (run.family == SpringFamily::flexion) continue;
+    if (run.family == SpringFamily::flexion || !(run.rest_length > 0)) continue;
     for_each_spring(run, position, [&](int i, int j, double squared) {
       const auto value = static_cast<float>(std::sqrt(squared) / run.rest_length - 1);
       for (const int end : {i, j}) {

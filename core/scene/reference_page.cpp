@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
+#include "integrators/registry.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -56,14 +59,30 @@ std::string cell(const std::string& text) {
   return escaped;
 }
 
-std::string row(const Scene& scene, const Parameter& parameter) {
+std::string row(const Scene& scene, const Parameter& parameter, const std::string& only_for = "") {
   const ParameterInfo& info = parameter.info;
   const auto initial = default_of(scene, parameter.path);
-  return fmt::format("| `{}` | {} | {} | {} | {} | {}{} | {} |\n", general_path(parameter.path), info.label,
-                     info.unit.empty() ? "1" : info.unit, allowed(info),
+  return fmt::format("| `{}`{} | {} | {} | {} | {} | {}{} | {} |\n", general_path(parameter.path), only_for,
+                     info.label, info.unit.empty() ? "1" : info.unit, allowed(info),
                      initial ? value_text(info, *initial) : "", info.doc,
                      info.formula.empty() ? "" : " `" + cell(info.formula) + "`",
                      info.cost == EditCost::live ? "at the next step" : "restarts");
+}
+
+/// What some methods have beside the settings of all: one row for the methods that share it.
+std::string method_settings() {
+  std::map<MethodSettings, std::vector<std::string>> methods;
+  for (const MethodFacts& facts : integrator_facts()) methods[facts.settings].push_back(facts.name);
+  methods.erase(MethodSettings::none);
+  std::string rows;
+  for (const auto& [settings, names] : methods) {
+    Scene scene;
+    scene.integrator.method = names.front();
+    for (const Parameter& parameter : blocks_of(scene).front().parameters)
+      if (parameter.path != "integrator.method" && parameter.path != "integrator.time_step")
+        rows += row(scene, parameter, fmt::format(" of `{}`", fmt::join(names, "`, `")));
+  }
+  return rows;
 }
 
 }  // namespace
@@ -82,6 +101,7 @@ std::string reference_page() {
         "|---|---|---|---|---|---|---|\n",
         block.title, block.doc);
     for (const Parameter& parameter : block.parameters) page += row(scene, parameter);
+    if (block.path == "integrator") page += method_settings();
   }
   return page;
 }

@@ -87,6 +87,7 @@ Scene starter_scene(const Scene& like) {
   scene.air = starter_air;
   scene.air->gust = Gust{};
   scene.deformation = Deformation{};
+  scene.integrator.method = like.integrator.method;
   for (const Obstacle& obstacle : like.obstacles)
     scene.obstacles.push_back(starter_obstacle(obstacle.shape, like.cloth));
   return scene;
@@ -107,7 +108,7 @@ std::optional<std::size_t> obstacle_index(const std::string& path) {
 std::vector<Block> blocks_of(const Scene& scene) {
   std::vector<Block> blocks;
   blocks.push_back({"integrator", "Integrator", "How time advances.", false,
-                    bound<IntegratorChoice>("integrator", integrator_fields(),
+                    bound<IntegratorChoice>("integrator", integrator_fields(scene.integrator.method),
                                             [](Scene& s) -> IntegratorChoice& { return s.integrator; })});
   if (scene.springs)
     blocks.push_back({"springs", "Springs", "What holds the cloth together.", true,

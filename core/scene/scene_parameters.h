@@ -19,7 +19,7 @@ const Fields<Gust>& gust_fields();
 const Fields<Air>& air_fields();
 const Fields<Deformation>& deformation_fields();
 const Fields<Obstacle>& obstacle_fields(Shape shape);
-const Fields<IntegratorChoice>& integrator_fields();
+const Fields<IntegratorChoice>& integrator_fields(const std::string& method);  ///< with its own settings
 const Fields<Recording>& recording_fields();
 const Fields<Scene>& scene_fields();  ///< title, damping, gravity, duration: the keys of the root
 

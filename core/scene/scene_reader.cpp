@@ -53,7 +53,7 @@ class SceneReader {
     block(root, "deformation", deformation_fields(), scene.deformation);
     if (const json* air = member(root, "air")) read_air(*air, scene.air.emplace());
     if (const json* obstacles = member(root, "obstacles")) read_obstacles(*obstacles, scene.obstacles);
-    required_block(root, "integrator", integrator_fields(), scene.integrator);
+    if (const json* integrator = member(root, "integrator")) read_integrator(*integrator, scene.integrator);
     required_block(root, "record", recording_fields(), scene.record);
     return scene;
   }
@@ -153,6 +153,15 @@ class SceneReader {
       known_keys(*gust, "air.gust", keys_of(gust_fields()));
       fields(*gust, "air.gust", gust_fields(), air.gust.emplace());
     }
+  }
+
+  /// Which settings are known depends on the method.
+  void read_integrator(const json& value, IntegratorChoice& integrator) {
+    if (!object(value, "integrator")) return;
+    const json* method = member(value, "method");
+    const std::string name = method && method->is_string() ? method->get<std::string>() : integrator.method;
+    known_keys(value, "integrator", keys_of(integrator_fields(name)));
+    fields(value, "integrator", integrator_fields(name), integrator);
   }
 
   void read_obstacles(const json& value, std::vector<Obstacle>& obstacles) {

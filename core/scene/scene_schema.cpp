@@ -1,5 +1,7 @@
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "integrators/registry.h"
 #include "scene/scene_json.h"
 #include "scene/scene_parameters.h"
 
@@ -72,6 +74,26 @@ json obstacles_schema() {
   return {{"type", "array"}, {"items", {{"anyOf", std::move(shapes)}}}};
 }
 
+/// An alternative for every set of methods with the same settings.
+json integrator_schema() {
+  std::map<MethodSettings, json> alternatives;
+  const std::string unnamed = IntegratorChoice{}.method;
+  for (const MethodFacts& facts : integrator_facts()) {
+    json& entry = alternatives[facts.settings];
+    if (entry.is_null()) {
+      entry = object_schema(integrator_fields(facts.name));
+      entry["properties"]["method"]["enum"] = json::array();
+    }
+    entry["properties"]["method"]["enum"].push_back(facts.name);
+  }
+  json list = json::array();
+  for (auto& [settings, entry] : alternatives) {
+    if (settings != facts_of(unnamed).settings) entry["required"] = {"method"};
+    list.push_back(std::move(entry));
+  }
+  return {{"type", "object"}, {"anyOf", std::move(list)}};
+}
+
 }  // namespace
 
 std::string scene_schema() {
@@ -85,7 +107,7 @@ std::string scene_schema() {
   properties["air"] = std::move(air);
   properties["deformation"] = object_schema(deformation_fields());
   properties["obstacles"] = obstacles_schema();
-  properties["integrator"] = object_schema(integrator_fields());
+  properties["integrator"] = integrator_schema();
   properties["record"] = object_schema(recording_fields());
 
   json schema = object_schema(scene_fields(), std::move(properties));

@@ -64,7 +64,7 @@ json scene_json(const Scene& scene) {
       root["obstacles"].push_back(std::move(entry));
     }
   }
-  root["integrator"] = block(integrator_fields(), scene.integrator);
+  root["integrator"] = block(integrator_fields(scene.integrator.method), scene.integrator);
   root["duration"] = scene.duration;
   root["record"] = block(recording_fields(), scene.record);
   return root;

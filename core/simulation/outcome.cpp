@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace cloth {
 
 const char* name_of(Status status) {
@@ -18,13 +20,19 @@ const char* name_of(Status status) {
 
 std::string describe(const Divergence& d) {
   std::string advice;
-  if (d.stable_step <= 0)
+  if (d.solver_failed)
+    advice = fmt::format("the time step is {:.4g} s; a shorter one makes the equations easier", d.time_step);
+  else if (std::isinf(d.stable_step))
+    advice = fmt::format("the time step is {:.4g} s, any is stable for a linear scene, but not for this one",
+                         d.time_step);
+  else if (d.stable_step <= 0)
     advice = "this method has no stable time step for this scene";
   else
     advice = fmt::format("the time step is {:.4g} s, stable for this scene is up to {:.4g} s", d.time_step,
                          d.stable_step);
-  return fmt::format("diverged in step {} (t = {:.6g} s) at particle {} (row {}, column {}): {}; {}", d.step,
-                     d.time, d.particle, d.row, d.column, d.cause, advice);
+  return fmt::format("{} in step {} (t = {:.6g} s) at particle {} (row {}, column {}): {}; {}",
+                     d.solver_failed ? "stopped" : "diverged", d.step, d.time, d.particle, d.row, d.column,
+                     d.cause, advice);
 }
 
 }  // namespace cloth

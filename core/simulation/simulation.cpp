@@ -36,11 +36,13 @@ SpringMaterial material_of(const Scene& scene) {
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene) : scene_(scene) {
+Simulation::Simulation(const Scene& scene, Preparation prepare)
+    : scene_(scene), prepare_(std::move(prepare)) {
   system_ = make_grid(scene_.cloth, material_of(scene_));
   state_ = starting_state(system_);
+  if (prepare_) prepare_(system_, state_);
   time_step_ = resolved_time_step(scene_).value();
-  integrator_ = make_integrator(scene_.integrator.method);
+  integrator_ = make_integrator(scene_.integrator);
   assemble();
   ledger_.initial = total_energy();
 }
@@ -77,7 +79,7 @@ void Simulation::assemble() {
 
 /// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit.
 void Simulation::choose_pull_stiffness() {
-  const double mass = system_.particle_mass;
+  const double mass = *std::min_element(system_.mass.begin(), system_.mass.end());
   const SpringMaterial material = material_of(scene_);
   const double omega = largest_frequency(scene_.cloth, material);
   const double limit = stable_step(scene_.integrator.method, scene_).value_or(0);
@@ -93,16 +95,29 @@ std::optional<Divergence> Simulation::step() {
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
-  if (limiter_) limit_deformation();
-  if (contact_) resolve_contact();
+  if (limiter_ && !report.failure) limit_deformation();
+  if (contact_ && !report.failure) resolve_contact();
   state_.time = times.end;
   state_.step = next;
+  count_step(report);
 
+  if (!report.failure) return find_divergence();
+  Divergence stop = stop_at(report.failure->particle, report.failure->cause);
+  stop.solver_failed = true;
+  return stop;
+}
+
+void Simulation::count_step(const IntegratorReport& report) {
   ++count_.steps;
   count_.force_evaluations += report.force_evaluations;
   count_.velocity_iterations += report.velocity_iterations;
   count_.limiter_sweeps += last_limit_.sweeps;
-  return find_divergence();
+  count_.inner_steps += report.inner_steps;
+  count_.rejected_steps += report.rejected_steps;
+  count_.iterations += report.iterations;
+  count_.linear_iterations += report.linear_iterations;
+  count_.factorisations += report.factorisations;
+  count_.largest_residual = std::max(count_.largest_residual, report.residual);
 }
 
 void Simulation::limit_deformation() {
@@ -111,7 +126,7 @@ void Simulation::limit_deformation() {
   const double before = total_energy();
   last_limit_ = limiter_->apply(system_, time_step_, state_);
   ledger_.limiter += total_energy() - before;
-  integrator_->forget();
+  integrator_->forget(Change::state);
 }
 
 void Simulation::resolve_contact() {
@@ -120,15 +135,21 @@ void Simulation::resolve_contact() {
   const double before = total_energy();
   last_contact_ = contact_->apply(system_, state_);
   ledger_.contact += total_energy() - before;
-  integrator_->forget();
+  integrator_->forget(Change::state);
 }
 
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
-  const bool new_method = scene.integrator.method != scene_.integrator.method;
+  IntegratorChoice same_step = scene.integrator;
+  same_step.time_step = scene_.integrator.time_step;
+  const bool new_method = same_step != scene_.integrator;
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_grid(scene_.cloth, material_of(scene_));
+  if (prepare_) {
+    ClothState unused = starting_state(system_);
+    prepare_(system_, unused);
+  }
   system_.start = start;
   for (std::size_t i = 0; i < state_.velocity.size(); ++i)
     if (system_.pinned[i]) state_.velocity.set(i, Vec3::Zero());
@@ -139,9 +160,9 @@ void Simulation::edit(const Scene& scene) {
     first_step_ = state_.step;
     time_step_ = time_step;
   }
-  if (new_method) integrator_ = make_integrator(scene_.integrator.method);
+  if (new_method) integrator_ = make_integrator(scene_.integrator);
   assemble();
-  integrator_->forget();
+  integrator_->forget(Change::state);
   ledger_.initial += total_energy() - before;
 }
 
@@ -153,21 +174,21 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = {};
   last_contact_ = {};
-  integrator_->forget();
+  integrator_->forget(Change::state);
 }
 
 void Simulation::set_brush(const std::optional<BrushGust>& brush) {
   brush_ = brush;
   if (brush && quantities_.air) quantities_.brush = true;
   forces_->set_brush(brush);
-  integrator_->forget();
+  integrator_->forget(Change::forces);
 }
 
 void Simulation::set_pull(const std::optional<Pull>& pull) {
   pull_ = pull;
   if (pull) quantities_.pull = true;
   forces_->set_pull(pull, pull_stiffness_, pull_damping_);
-  integrator_->forget();
+  integrator_->forget(Change::forces);
 }
 
 double Simulation::total_energy() const {
@@ -188,7 +209,7 @@ Measurement Simulation::measure() const {
 /// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
 /// wind, what the hand did, what there was at the start.
 double Simulation::energy_scale(double fallen) const {
-  const double mass = system_.particle_mass * system_.size();
+  const double mass = system_.total_mass();
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
   double wind = 0;
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
@@ -206,25 +227,27 @@ bool Simulation::has_run_away(double kinetic) const {
 std::optional<Divergence> Simulation::find_divergence() const {
   if (!has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
 
+  int fastest = 0;
+  double highest_speed = -1;
+  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
+    const Vec3 v = state_.velocity[i];
+    if (!v.allFinite()) return stop_at(static_cast<int>(i), "its velocity is not finite");
+    if (const double speed = v.stableNorm(); speed > highest_speed) {
+      highest_speed = speed;
+      fastest = static_cast<int>(i);
+    }
+  }
+  return stop_at(fastest, "its speed has run away");
+}
+
+Divergence Simulation::stop_at(int particle, std::string cause) const {
   Divergence divergence;
   divergence.step = state_.step;
   divergence.time = state_.time;
+  divergence.particle = particle;
+  divergence.cause = std::move(cause);
   divergence.time_step = time_step_;
   divergence.stable_step = stable_step(scene_.integrator.method, scene_).value_or(0);
-  double fastest = -1;
-  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
-    const Vec3 v = state_.velocity[i];
-    if (!v.allFinite()) {
-      divergence.particle = static_cast<int>(i);
-      divergence.cause = "its velocity is not finite";
-      break;
-    }
-    if (const double speed = v.stableNorm(); speed > fastest) {
-      fastest = speed;
-      divergence.particle = static_cast<int>(i);
-      divergence.cause = "its speed has run away";
-    }
-  }
   divergence.row = divergence.particle / system_.columns;
   divergence.column = divergence.particle % system_.columns;
   return divergence;

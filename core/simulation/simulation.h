@@ -5,6 +5,7 @@
 //       if (auto divergence = simulation.step()) break;
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -59,14 +60,21 @@ struct Checkpoint {
   std::int64_t first_step = 0;
 };
 
+/// What the steps so far have cost.
 struct StepCount {
   std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
+  std::int64_t inner_steps = 0, rejected_steps = 0;
+  std::int64_t iterations = 0, linear_iterations = 0, factorisations = 0;  ///< of implicit methods
+  double largest_residual = 0;  ///< of a step's last iteration, see IntegratorReport
 };
+
+/// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
+using Preparation = std::function<void(ClothSystem&, ClothState&)>;
 
 class Simulation {
  public:
   /// Precondition: find_problems(scene) is empty and resolved_time_step(scene) has a value.
-  explicit Simulation(const Scene& scene);
+  explicit Simulation(const Scene& scene, Preparation prepare = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -100,15 +108,18 @@ class Simulation {
 
  private:
   void assemble();
+  void count_step(const IntegratorReport& report);
   void choose_pull_stiffness();
   void limit_deformation();
   void resolve_contact();
   double total_energy() const;
   std::optional<Divergence> find_divergence() const;
+  Divergence stop_at(int particle, std::string cause) const;
   double energy_scale(double fallen) const;
   bool has_run_away(double kinetic) const;
 
   Scene scene_;
+  Preparation prepare_;
   ClothSystem system_;
   ClothState state_;
   std::unique_ptr<ForceModel> forces_;

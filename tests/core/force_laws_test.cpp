@@ -172,7 +172,7 @@ double residual_of(DirectRun& run, double weight, const Vec3Field& known, const 
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!run.system.pinned[i])
       largest =
-          std::max(largest, (run.system.particle_mass * (velocity[i] - known[i]) - weight * force[i]).norm());
+          std::max(largest, (run.system.mass.front() * (velocity[i] - known[i]) - weight * force[i]).norm());
   return largest;
 }
 
@@ -187,7 +187,7 @@ TEST(CentredVelocity, SolvesItsEquationForEveryCombinationWithPins) {
       Vec3Field velocity = run.state.velocity;  // the guess
       const double weight = 0.02;
       const int iterations = run.forces.centred_velocity(weight, run.state.velocity, velocity);
-      const double scale = run.system.particle_mass * largest_norm(run.state.velocity);
+      const double scale = run.system.mass.front() * largest_norm(run.state.velocity);
       EXPECT_LE(residual_of(run, weight, run.state.velocity, velocity), 1e-11 * scale);
       EXPECT_EQ(iterations > 0, scene.springs->damping > 0);
       for (std::size_t i = 0; i < velocity.size(); ++i)

@@ -79,7 +79,7 @@ TEST(Grid, SharesTheMassEqually) {
   scene.cloth.mass = 3;
   scene.cloth.pins = {NamedPin::top_left};
   const ClothSystem system = make_grid(scene.cloth, {});
-  EXPECT_DOUBLE_EQ(system.particle_mass, 3.0 / 20);
+  EXPECT_DOUBLE_EQ(system.mass.front(), 3.0 / 20);
   EXPECT_EQ(system.inverse_mass[0], 0);
   for (std::size_t i = 1; i < 20; ++i) EXPECT_DOUBLE_EQ(system.inverse_mass[i], 20.0 / 3);
 }

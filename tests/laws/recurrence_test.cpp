@@ -29,7 +29,7 @@ class Accelerations {
     Vec3Field acceleration = spring_forces(springs_, position);
     for (std::size_t i = 0; i < position.size(); ++i)
       acceleration.set(
-          i, system.pinned[i] ? Vec3(0, 0, 0) : Vec3(acceleration[i] / system.particle_mass + gravity));
+          i, system.pinned[i] ? Vec3(0, 0, 0) : Vec3(acceleration[i] / system.mass.front() + gravity));
     return acceleration;
   }
 

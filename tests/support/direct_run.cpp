@@ -5,11 +5,11 @@
 
 namespace cloth::test {
 
-DirectRun::DirectRun(const Scene& scene, const std::string& method)
+DirectRun::DirectRun(const Scene& scene, const IntegratorChoice& choice)
     : system(make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
       state(starting_state(system)),
       forces(scene, system),
-      integrator_(make_integrator(method)) {}
+      integrator_(make_integrator(choice)) {}
 
 void DirectRun::advance(int steps, double step) {
   for (int n = 0; n < steps; ++n) {

@@ -10,7 +10,8 @@ namespace cloth::test {
 
 class DirectRun {
  public:
-  DirectRun(const Scene& scene, const std::string& method);
+  DirectRun(const Scene& scene, const IntegratorChoice& choice);
+  DirectRun(const Scene& scene, const std::string& method) : DirectRun(scene, IntegratorChoice{method}) {}
   DirectRun(const DirectRun&) = delete;
   DirectRun& operator=(const DirectRun&) = delete;
 

@@ -99,7 +99,7 @@ double largest_eigenfrequency(const ClothSystem& system, const Vec3Field& positi
     hessian.middleCols(3 * i, 3).setZero();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(hessian, Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues().maxCoeff() / system.particle_mass);
+  return std::sqrt(solver.eigenvalues().maxCoeff() / system.mass.front());
 }
 
 Eigen::MatrixXd damping_matrix(const ForceModel& forces, std::size_t particles) {

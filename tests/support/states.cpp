@@ -39,13 +39,13 @@ ClothState waving_state(const ClothSystem& system, double strain, double speed) 
 Vec3 momentum(const ClothSystem& system, const ClothState& state) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < state.velocity.size(); ++i) sum += state.velocity[i];
-  return system.particle_mass * sum;
+  return system.mass.front() * sum;
 }
 
 Vec3 angular_momentum(const ClothSystem& system, const ClothState& state) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < state.velocity.size(); ++i) sum += state.position[i].cross(state.velocity[i]);
-  return system.particle_mass * sum;
+  return system.mass.front() * sum;
 }
 
 double rms_distance(const Vec3Field& a, const Vec3Field& b) {

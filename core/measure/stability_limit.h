@@ -25,8 +25,13 @@ struct DampingRates {
 };
 DampingRates damping_rates(const Scene& scene);
 
+/// Whether `method` is stable for every oscillator at every step (A-stable). Linear only: of a cloth that
+/// bends and buckles it says that small motions about a stable shape do not grow, no more.
+bool stable_at_every_step(const std::string& method);
+
 /// The largest stable step in s of `method` for the one oscillator x'' = -omega^2 x - c x'; 0 if none is
-/// stable, infinity if all are.
+/// stable, infinity if all are. Closed forms (Jury's test on the matrices of amplification.h) for Verlet,
+/// semi-implicit and explicit Euler; scanned_limit() for Runge-Kutta 4 and Dormand-Prince.
 double oscillator_limit(const std::string& method, double omega, double c);
 
 /// The largest step in s at which `method` is stable for x'' = -omega^2 x - c x' for every omega in [0,
@@ -34,8 +39,11 @@ double oscillator_limit(const std::string& method, double omega, double c);
 /// infinity: no step is too long.
 std::optional<double> stable_step(const std::string& method, double largest_omega, const DampingRates& rates);
 
-/// The limit of `method` for this scene.
+/// The limit of `method` for this scene: stable_step() at the frequency of the flat grid.
 std::optional<double> stable_step(const std::string& method, const Scene& scene);
+
+/// The same at the bounds that hold for any shape: what stretching cannot make unstable.
+std::optional<double> guaranteed_step(const std::string& method, const Scene& scene);
 
 /// Provot's criterion (1995): pi sqrt(m/k), k the largest stiffness; 3 to 5 times too long for a grid.
 /// infinity without springs.

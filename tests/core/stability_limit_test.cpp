@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "cloth/grid.h"
+#include "integrators/registry.h"
+#include "measure/amplification.h"
 #include "support/reference.h"
 #include "support/scenes.h"
 #include "support/states.h"
@@ -22,7 +25,11 @@ const std::map<std::string, std::array<double, 7>> table{
     {"explicit-euler", {0, 0.02, 0.2, 1, 2, 0.5359, 0.2020}},
     {"semi-implicit-euler", {2, 1.9801, 1.8100, 1.2361, 0.8284, 0.4721, 0.1980}},
     {"verlet", {2, 2, 2, 2, 2, 2, 2}},
-    {"rk4", {2.8284, 2.8486, 2.9509, 2.6225, 2.7853, 0.7463, 0.2814}}};
+    {"rk4", {2.8284, 2.8486, 2.9509, 2.6225, 2.7853, 0.7463, 0.2814}},
+    {"dormand-prince", {0.9972, 1.8721, 2.6814, 3.3990, 3.3066, 0.8860, 0.3340}}};
+
+const std::array<std::string, 5> implicit_methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
+                                                  "xpbd"};
 
 TEST(OscillatorLimit, IsTheTablesForEveryMethodAndDampingRatio) {
   for (const auto& [method, limits] : table)
@@ -45,7 +52,12 @@ Eigen::Matrix2d step_matrix(const std::string& method, double h, double zeta) {
   slope << 0, 1, -1, -2 * zeta;
   const Eigen::Matrix2d one = Eigen::Matrix2d::Identity(), z = h * slope;
   if (method == "explicit-euler") return one + z;
-  if (method == "rk4") return one + z + z * z / 2 + z * z * z / 6 + z * z * z * z / 24;
+  const Eigen::Matrix2d fourth = one + z + z * z / 2 + z * z * z / 6 + z * z * z * z / 24;
+  if (method == "rk4") return fourth;
+  if (method == "dormand-prince") {
+    const Eigen::Matrix2d fifth = z * z * z * z * z;
+    return fourth + fifth / 120 + fifth * z / 600;
+  }
   Eigen::Matrix2d matrix;
   if (method == "semi-implicit-euler") {
     matrix.row(1) << -h, 1 - 2 * zeta * h;
@@ -72,6 +84,63 @@ TEST(OscillatorLimit, IsWhereTheSpectralRadiusPassesOne) {
       EXPECT_LE(spectral_radius(step_matrix(method, 0.999 * limit, zeta)), 1 + 1e-12) << method << zeta;
       EXPECT_GT(spectral_radius(step_matrix(method, 1.001 * limit, zeta)), 1 + 1e-9) << method << zeta;
     }
+}
+
+TEST(OscillatorLimit, IsWhereTheScanMeetsTheClosedForm) {
+  for (const auto& [method, limits] : table)
+    for (const double zeta : {0.0, 0.003, 0.01, 0.1, 0.7, 1.0, 1.3, 5.0}) {
+      const double closed = oscillator_limit(method, 3, 6 * zeta);
+      // Growth as (omega h)^2 / 2 (explicit Euler undamped) passes the scan's threshold at some 1e-7.
+      EXPECT_NEAR(scanned_limit(method, 3, 6 * zeta), closed, 1e-7) << method << " " << zeta;
+    }
+}
+
+TEST(OscillatorLimit, OfRungeKuttaMethodsHasClosedForms) {  // numerics.md 3.1
+  EXPECT_NEAR(oscillator_limit("rk4", 1, 0), 2 * std::numbers::sqrt2, 1e-9);
+  for (const double zeta : {1.0, 1.5, 2.0, 5.0}) {
+    const double fastest = zeta + std::sqrt(zeta * zeta - 1);
+    EXPECT_NEAR(oscillator_limit("rk4", 1, 2 * zeta) * fastest, 2.78529, 0.51e-5) << zeta;
+    EXPECT_NEAR(oscillator_limit("dormand-prince", 1, 2 * zeta) * fastest, 3.30657, 0.51e-5) << zeta;
+  }
+}
+
+TEST(OscillatorLimit, OfDormandPrinceUndampedIsTheRootOfItsGrowth) {
+  const double y = oscillator_limit("dormand-prince", 1, 0);
+  EXPECT_NEAR(-1 / 1800.0 + y * y / 1600 - std::pow(y, 4) / 14400 + std::pow(y, 6) / 360000, 0, 1e-11);
+}
+
+TEST(ImplicitMethods, HaveNoLimit) {
+  for (const std::string& method : implicit_methods) {
+    EXPECT_TRUE(stable_at_every_step(method)) << method;
+    for (const double ratio : ratios) {
+      EXPECT_EQ(oscillator_limit(method, 1, 2 * ratio), infinity) << method;
+      EXPECT_EQ(scanned_limit(method, 1, 2 * ratio), infinity) << method << " " << ratio;
+    }
+    EXPECT_EQ(stable_step(method, smooth_scene(6, 6)), infinity) << method;
+    EXPECT_EQ(guaranteed_step(method, smooth_scene(6, 6)), infinity) << method;
+  }
+  for (const auto& [method, limits] : table) EXPECT_FALSE(stable_at_every_step(method)) << method;
+}
+
+TEST(StableStep, KnowsEveryMethodOfTheRegistry) {
+  const auto& known = amplified_methods();
+  for (const std::string& method : integrator_names())
+    EXPECT_NE(std::find(known.begin(), known.end(), method), known.end()) << method;
+}
+
+TEST(GuaranteedStep, IsShorterByTheRatioOfTheFrequencies) {
+  Scene scene;
+  scene.cloth = bare_sheet(10, 10, 1, 1).cloth;
+  scene.springs = SpringMaterial{.structural = 1, .shear = 1, .flexion = 1, .damping = 0};
+  EXPECT_NEAR(guaranteed_step("verlet", scene).value(), 0.4082, 0.51e-4);  // numerics.md 3.2
+  EXPECT_NEAR(stable_step("verlet", scene).value(), 0.6285, 0.51e-4);
+  EXPECT_NEAR(stable_step("rk4", scene).value(), 0.8889, 0.51e-4);
+  EXPECT_NEAR(stable_step("dormand-prince", scene).value(), 0.3134, 0.51e-4);
+  scene.springs->damping = 0.3;
+  scene.damping = 0.1;
+  for (const auto& [method, limits] : table)
+    EXPECT_LT(guaranteed_step(method, scene).value(), stable_step(method, scene).value() * (1 + 1e-12))
+        << method;
 }
 
 TEST(StableStep, IsNoneForExplicitEulerWithoutDampingOfEveryMotion) {

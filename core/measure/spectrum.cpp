@@ -1,0 +1,142 @@
+#include "measure/spectrum.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace cloth {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// u -> M^-1/2 K M^-1/2 u, symmetric, with the eigenvalues of M^-1 K. Vectors lie as Vec3Field does: x, y, z
+/// runs.
+class ScaledStiffness {
+ public:
+  ScaledStiffness(const ClothSystem& system, const Vec3Field& position)
+      : system_(system), position_(position), scale_(3 * Index(system.size())) {
+    const auto n = static_cast<std::size_t>(system.size());
+    for (std::size_t i = 0; i < 3 * n; ++i)
+      scale_[static_cast<Index>(i)] = std::sqrt(system.inverse_mass[i % n]);
+  }
+
+  const VectorXd& scale() const { return scale_; }  ///< 1/sqrt(kg); 0 where pinned
+
+  VectorXd operator*(const VectorXd& vector) const {
+    const VectorXd u = scale_.cwiseProduct(vector);
+    VectorXd product = VectorXd::Zero(u.size());
+    for (const SpringRun& run : system_.springs)
+      for (int i = run.first; i < run.first + run.count; ++i) add_spring(run, i, i + run.offset, u, product);
+    return scale_.cwiseProduct(product);
+  }
+
+ private:
+  /// k (n n^T + (1 - L/|d|) (I - n n^T)) (u_i - u_j) on i, its opposite on j
+  void add_spring(const SpringRun& run, int i, int j, const VectorXd& u, VectorXd& product) const {
+    const Vec3 d = position_[static_cast<std::size_t>(j)] - position_[static_cast<std::size_t>(i)];
+    const double length = d.norm();
+    const Index n = system_.size();
+    const Vec3 difference(u[i] - u[j], u[n + i] - u[n + j], u[2 * n + i] - u[2 * n + j]);
+    Vec3 force = run.stiffness * difference;
+    if (length > 0) {
+      const Vec3 across = difference - d * (d.dot(difference) / (length * length));
+      force -= run.stiffness * run.rest_length / length * across;
+    }
+    for (Index axis = 0; axis < 3; ++axis) {
+      product[axis * n + i] += force[axis];
+      product[axis * n + j] -= force[axis];
+    }
+  }
+
+  const ClothSystem& system_;
+  const Vec3Field& position_;
+  VectorXd scale_;
+};
+
+/// Numbers in [-1, 1] that are the same everywhere (splitmix64, Steele et al. 2014), 0 on pins.
+VectorXd start_vector(const VectorXd& scale) {
+  std::uint64_t state = 0;
+  VectorXd start(scale.size());
+  for (double& value : start) {
+    std::uint64_t bits = (state += 0x9e3779b97f4a7c15u);
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    value = static_cast<double>(bits >> 11) * 0x1p-52 - 1;
+  }
+  return (scale.array() > 0).select(start, 0);
+}
+
+/// Ritz values and their residuals after the steps whose coefficients are given; `next` is the last coupling.
+Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<double>& coupling,
+                       double next) {
+  const auto size = static_cast<Index>(diagonal.size());
+  const Eigen::Map<const VectorXd> main(diagonal.data(), size), beside(coupling.data(), size - 1);
+  Eigen::SelfAdjointEigenSolver<MatrixXd> solver;
+  solver.computeFromTridiagonal(main, beside);
+  Spectrum spectrum;
+  spectrum.largest = solver.eigenvalues()[size - 1];
+  spectrum.smallest = solver.eigenvalues()[0];
+  spectrum.largest_residual = next * std::abs(solver.eigenvectors()(size - 1, size - 1));
+  spectrum.smallest_residual = next * std::abs(solver.eigenvectors()(size - 1, 0));
+  spectrum.iterations = static_cast<int>(size);
+  return spectrum;
+}
+
+}  // namespace
+
+double Spectrum::largest_frequency() const {
+  return std::sqrt(std::max(0.0, largest));
+}
+
+double Spectrum::buckling_rate() const {
+  return std::sqrt(std::max(0.0, -smallest));
+}
+
+Spectrum measure_spectrum(const ClothSystem& system, const Vec3Field& position, const LanczosLimits& limits) {
+  constexpr double exhausted = 1e-12;  // a coupling this small, relative: the vectors span all there is
+  const ScaledStiffness stiffness(system, position);
+  const VectorXd start = start_vector(stiffness.scale());
+  const auto free = static_cast<Index>((stiffness.scale().array() > 0).count());
+  const Index most = std::min<Index>(limits.iterations, free);
+  if (most == 0) return {};
+
+  MatrixXd basis(start.size(), most);
+  basis.col(0) = start.normalized();
+  std::vector<double> diagonal, coupling;
+  Spectrum spectrum;
+  for (Index k = 0; k < most; ++k) {
+    VectorXd next = stiffness * basis.col(k);
+    diagonal.push_back(basis.col(k).dot(next));
+    const auto so_far = basis.leftCols(k + 1);
+    for (int pass = 0; pass < 2; ++pass) next -= so_far * (so_far.transpose() * next).eval();
+    const double length = next.norm();
+    spectrum = ritz_extremes(diagonal, coupling, length);
+    const double scale = std::max(spectrum.largest, -spectrum.smallest);
+    if (length <= exhausted * scale || spectrum.largest_residual <= limits.tolerance * spectrum.largest)
+      break;
+    if (k + 1 == most) break;
+    coupling.push_back(length);
+    basis.col(k + 1) = next / length;
+  }
+  return spectrum;
+}
+
+double guaranteed_frequency(const ClothSystem& system) {
+  std::vector<double> stiffness(static_cast<std::size_t>(system.size()), 0.0);
+  for (const SpringRun& run : system.springs)
+    for (int s = run.first; s < run.first + run.count; ++s) {
+      const auto i = static_cast<std::size_t>(s), j = static_cast<std::size_t>(s + run.offset);
+      stiffness[i] += (system.pinned[j] ? 1 : 2) * run.stiffness;
+      stiffness[j] += (system.pinned[i] ? 1 : 2) * run.stiffness;
+    }
+  double largest = 0;
+  for (std::size_t i = 0; i < stiffness.size(); ++i)
+    largest = std::max(largest, system.inverse_mass[i] * stiffness[i]);
+  return std::sqrt(largest);
+}
+
+}  // namespace cloth

@@ -128,7 +128,8 @@ bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) 
 
 void DeformationLimiter::solve_directly(const ClothSystem& system, LimiterReport& report,
                                         Vec3Field& position) {
-  report.direct_iterations = nearest_.find(system, deformation_.tolerance, position).iterations;
+  report.direct_iterations =
+      nearest_.find(system, deformation_.tolerance, position, !unreachable_).iterations;
 }
 
 LimiterReport DeformationLimiter::apply(const ClothSystem& system, double time_step, ClothState& state) {

@@ -8,9 +8,16 @@
 namespace cloth {
 namespace {
 
-/// Against weights of about 1. A chain of taut springs adds up multipliers of at most some hundred metres:
-/// their violation multiplier/rho stays below a hundred millionth of a cell.
-constexpr double rho = 1e11;
+/// A chain of taut springs adds up multipliers of at most some hundred metres: their violation,
+/// multiplier/rho, stays below a millionth of a cell.
+constexpr double forbidding = 1e11;
+
+/// Where the rate is out of reach: the compromise is then one of excesses alone to within a thousandth.
+constexpr double dear = 1e4;
+
+/// Times the largest violation at the start: multipliers that no reachable rate needs. A chain of 65
+/// particles that is 20 % too long asks for a thousand times.
+constexpr double beyond_need = 1e6;
 
 /// The part of the way to the boundary that a step may take.
 constexpr double to_boundary = 0.995;
@@ -89,7 +96,7 @@ void InteriorPoint::start() {
   slack_.resize(count), multiplier_.resize(count), gap_.resize(count), stiffness_.resize(count);
   direction_.resize(springs_.size());
   length_.resize(springs_.size());
-  double largest = 0;
+  double& largest = largest_violation_ = 0;
   for (std::size_t s = 0; s < springs_.size(); ++s)
     largest = std::max(largest, rest_[s].norm() - springs_[s].limit);
   for (std::size_t s = 0; s < springs_.size(); ++s) {
@@ -110,7 +117,7 @@ void InteriorPoint::evaluate() {
     length_[s] = d.norm();
     direction_[s] = length_[s] > 0 ? Vec3(d / length_[s]) : Vec3(Vec3::Zero());
     const double over = length_[s] - springs_[s].limit;
-    gap_[k] = over + slack_[k] - multiplier_[k] / rho;
+    gap_[k] = over + slack_[k] - multiplier_[k] / rho_;
     excess_ = std::max(excess_, over / springs_[s].rest_length);
     add_pair(gradient_, s, multiplier_[k] * direction_[s]);
   }
@@ -138,7 +145,7 @@ bool InteriorPoint::factorise() {
   for (int k = 0; k < weight_.size(); ++k) add(k, k, weight_[k] * Eigen::Matrix3d::Identity());
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const auto k = static_cast<Eigen::Index>(s);
-    stiffness_[k] = 1 / (slack_[k] / multiplier_[k] + 1 / rho);
+    stiffness_[k] = 1 / (slack_[k] / multiplier_[k] + 1 / rho_);
     const double across = multiplier_[k] / std::max(length_[s], 0.1 * springs_[s].limit);
     const Vec3& a = direction_[s];
     const Eigen::Matrix3d block =
@@ -199,10 +206,26 @@ void InteriorPoint::take_step() {
   multiplier_ += length * multiplier_step_;
 }
 
-NearestShapeReport InteriorPoint::solve(double tolerance, int most) {
+bool InteriorPoint::has_no_shape(double tolerance) const {
+  return multiplier_.maxCoeff() > std::max(rho_ * tolerance * shortest_, beyond_need * largest_violation_);
+}
+
+NearestShapeReport InteriorPoint::solve(double tolerance, bool reachable) {
+  NearestShapeReport report;
+  if (reachable) {
+    rho_ = forbidding;
+    report = iterate(tolerance, NearestShape::most_iterations);
+    if (report.converged || !has_no_shape(tolerance)) return report;
+  }
+  rho_ = dear;
+  const NearestShapeReport compromise = iterate(tolerance, NearestShape::most_iterations - report.iterations);
+  return {report.iterations + compromise.iterations, compromise.excess, compromise.converged};
+}
+
+NearestShapeReport InteriorPoint::iterate(double tolerance, int most) {
   start();
   evaluate();
-  NearestShapeReport report{.iterations = 0, .excess = excess_, .converged = is_minimum(tolerance)};
+  NearestShapeReport report{0, excess_, is_minimum(tolerance)};
   Vector best = displacement_, best_multiplier = multiplier_;
   while (!report.converged && report.iterations < most) {
     ++report.iterations;
@@ -210,6 +233,7 @@ NearestShapeReport InteriorPoint::solve(double tolerance, int most) {
     take_step();
     evaluate();
     if (!displacement_.allFinite() || !multiplier_.allFinite()) break;
+    if (rho_ == forbidding && has_no_shape(tolerance)) return report;
     report.converged = is_minimum(tolerance);
     if (!report.converged && excess_ > report.excess) continue;
     report.excess = excess_;

@@ -12,8 +12,10 @@ class InteriorPoint {
  public:
   InteriorPoint(const ClothSystem& system, std::vector<LimitedSpring> springs, const Vec3Field& start);
 
-  /// Iterates to the minimum, at most `most` times. The shape is then `start` plus the displacements.
-  NearestShapeReport solve(double tolerance, int most);
+  /// Iterates to the minimum, at most NearestShape::most_iterations times. The shape is then `start` plus the
+  /// displacements. With `reachable`, excesses are as good as forbidden; without, or where the multipliers
+  /// grow beyond all that a reachable rate can need, they are only dear, and the shape is a compromise.
+  NearestShapeReport solve(double tolerance, bool reachable);
 
   void displace(Vec3Field& position) const;
   double multiplier(std::size_t spring) const { return multiplier_[static_cast<Eigen::Index>(spring)]; }
@@ -26,6 +28,8 @@ class InteriorPoint {
   void start();
   void evaluate();
   bool is_minimum(double tolerance) const;
+  bool has_no_shape(double tolerance) const;
+  NearestShapeReport iterate(double tolerance, int most);
   bool factorise();
   void find_direction(const Vector& complementarity);
   void take_step();
@@ -39,6 +43,8 @@ class InteriorPoint {
   std::vector<std::size_t> particle_;  ///< of each unknown, in the order of elimination
   Vector weight_;                      ///< of each unknown
   double shortest_ = 0;                ///< rest length, m
+  double largest_violation_ = 0;       ///< |d| - limit at the start, m
+  double rho_ = 0;                     ///< price of an excess, against weights of about 1
 
   Vector displacement_;          ///< x - x0, three components per unknown
   Vector slack_, multiplier_;    ///< both > 0

@@ -42,7 +42,8 @@ std::size_t NearestShape::working_count(const Vec3Field& position) const {
                     [&](const LimitedSpring& spring) { return excess_of(spring, position) > near; }));
 }
 
-NearestShapeReport NearestShape::find(const ClothSystem& system, double tolerance, Vec3Field& position) {
+NearestShapeReport NearestShape::find(const ClothSystem& system, double tolerance, Vec3Field& position,
+                                      bool reachable) {
   NearestShapeReport report;
   multipliers_.assign(springs_.size(), 0.0);
   const double before = largest_excess(position);
@@ -63,7 +64,7 @@ NearestShapeReport NearestShape::find(const ClothSystem& system, double toleranc
       which.push_back(s);
     }
     InteriorPoint problem(system, std::move(chosen), start);
-    const NearestShapeReport part = problem.solve(tolerance, most_iterations);
+    const NearestShapeReport part = problem.solve(tolerance, reachable);
     found = start;
     problem.displace(found);
     const double excess = largest_excess(found);

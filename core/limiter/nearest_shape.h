@@ -3,9 +3,9 @@
 //
 //     minimise 1/2 sum w_i |x_i - x0_i|^2 + rho/2 sum e_s^2   where   |x_j - x_i| - (1 + rate) L_s <= e_s,
 //
-// w_i the particle's mass over the common one, pinned particles fixed. The e_s are there for pins that make
-// the rate unreachable (the answer is then a compromise of least violation) and for springs that say the same
-// thing twice; rho is so large that they are lost in the tolerance otherwise. Solved by Mehrotra's
+// w_i the particle's mass over the common one, pinned particles fixed. rho is so large that the e_s are lost
+// in the tolerance; they are there for springs that say the same thing twice. Where the pins make the rate
+// unreachable, a smaller rho gives the compromise of least violation. Solved by Mehrotra's
 // predictor-corrector interior point method (Nocedal and Wright, Numerical Optimization, 2006, 16.6 and 19),
 // one sparse Cholesky factorisation per iteration.
 #pragma once
@@ -37,8 +37,10 @@ class NearestShape {
   NearestShape(const ClothSystem& system, const std::vector<SpringRun>& limited, double rate);
 
   /// Moves `position` to the nearest shape. Without convergence, to the best found: never a larger excess
-  /// than before. Depends on nothing but its arguments.
-  NearestShapeReport find(const ClothSystem& system, double tolerance, Vec3Field& position);
+  /// than before. Depends on nothing but its arguments; `reachable` false saves looking for what is known
+  /// not to be there.
+  NearestShapeReport find(const ClothSystem& system, double tolerance, Vec3Field& position,
+                          bool reachable = true);
 
   /// Springs with an end that is free, and their multipliers in the last `find`, in m: every free particle
   /// has w (x - x0) = sum of multiplier * direction toward the spring's other end.

@@ -12,7 +12,10 @@ namespace {
 
 /// What the direct solver takes, in sweeps: factor * (springs it works on)^1.5 / (limited springs). The power
 /// is that of a plane graph's factorisation. Measured on hung cloths of 33x33 to 129x129 particles.
-constexpr double direct_cost_factor = 140;
+constexpr double direct_cost_factor = 60;
+
+/// Times `max_sweeps`: what "auto" may spend at most on the direct solver.
+constexpr double direct_budget = 5;
 
 /// Sweeps before the first guess of how many more are needed: the first ones are not yet typical.
 constexpr int sweeps_before_guess = 4;
@@ -92,7 +95,8 @@ double DeformationLimiter::excess(const ClothSystem& system, const Vec3Field& po
   return largest;
 }
 
-/// True when the tolerance is reached; false when the sweeps are used up, or given up for the direct solver.
+/// False when the direct solver is to do it instead; otherwise the tolerance is reached or the sweeps are
+/// used up.
 bool DeformationLimiter::sweep_all(const ClothSystem& system, LimiterReport& report, Vec3Field& position) {
   const bool may_give_up = deformation_.solver == "auto" && !unreachable_;
   direct_cost_ = 0;
@@ -111,10 +115,11 @@ bool DeformationLimiter::sweep_all(const ClothSystem& system, LimiterReport& rep
     two_ago = one_ago;
     one_ago = found;
   }
-  return false;
+  return true;
 }
 
-/// Also true where the sweeps left would not do, and where as many have gone by as the direct solver costs.
+/// Also true where the sweeps left would not do, and where as many have gone by as the direct solver costs;
+/// never where that costs more than its budget.
 bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) {
   if (direct_cost_ == 0) {
     double springs = 0;
@@ -122,7 +127,9 @@ bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) 
     direct_cost_ =
         direct_cost_factor * std::pow(static_cast<double>(nearest_.working_count(before_)), 1.5) / springs;
   }
-  return sweeps + remaining_sweeps > static_cast<double>(deformation_.max_sweeps) ||
+  const double most = static_cast<double>(deformation_.max_sweeps);
+  if (direct_cost_ > direct_budget * most) return false;
+  return sweeps + remaining_sweeps > most ||
          std::max(remaining_sweeps, static_cast<double>(sweeps)) > direct_cost_;
 }
 
@@ -135,8 +142,8 @@ void DeformationLimiter::solve_directly(const ClothSystem& system, LimiterReport
 LimiterReport DeformationLimiter::apply(const ClothSystem& system, double time_step, ClothState& state) {
   LimiterReport report;
   before_ = state.position;
-  const bool arrived = deformation_.solver != "direct" && sweep_all(system, report, state.position);
-  if (!arrived && deformation_.solver != "sweeps" && !(deformation_.solver == "auto" && unreachable_)) {
+  const bool swept = deformation_.solver != "direct" && sweep_all(system, report, state.position);
+  if (!swept) {
     state.position = before_;
     solve_directly(system, report, state.position);
   }

@@ -255,6 +255,7 @@ TEST(AutoSolver, SweepsWhereThatIsEnoughAndSolvesDirectlyWhereItIsNot) {
   Random random;
   Scene scene = limited_sheet(17, 17, 0.1, 1e-4);
   scene.deformation->solver = "auto";
+  scene.deformation->max_sweeps = 500;
   scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
 
@@ -270,6 +271,14 @@ TEST(AutoSolver, SweepsWhereThatIsEnoughAndSolvesDirectlyWhereItIsNot) {
   EXPECT_GT(solved.direct_iterations, 0);
   EXPECT_LT(solved.sweeps, scene.deformation->max_sweeps);  // it did not wait for them to run out
   EXPECT_LE(solved.excess, 1e-4);
+
+  scene.deformation->max_sweeps = 5;  // the direct solver costs more than five times as much
+  ClothState dear = overstretched(system, random);
+  const LimiterReport stopped = DeformationLimiter(*scene.deformation, system).apply(system, step, dear);
+  EXPECT_EQ(stopped.sweeps, 5);
+  EXPECT_EQ(stopped.direct_iterations, 0);
+  EXPECT_GT(stopped.excess, 1e-4);
+  scene.deformation->max_sweeps = 500;
 
   scene.deformation->solver = "sweeps";
   ClothState left = overstretched(system, random);

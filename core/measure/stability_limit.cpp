@@ -69,8 +69,8 @@ bool is_square(const GridCell& cell) {
 
 /// Whether `method` chooses its own steps in this scene, so that none that is given is too long. None does
 /// yet: the one place that decides it.
-bool adapts_its_steps(const std::string& /*method*/, const Scene& /*scene*/) {
-  return false;
+bool adapts_its_steps(const std::string& method, const Scene& scene) {
+  return method == "dormand-prince" && scene.integrator.tolerance > 0;
 }
 
 }  // namespace

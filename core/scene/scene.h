@@ -68,6 +68,7 @@ struct Deformation {
   Words springs{"structural", "shear"};
   double tolerance = 1e-4;  ///< relative to the rest length
   std::int64_t max_sweeps = 200;
+  std::string solver = "auto";
   bool operator==(const Deformation&) const = default;
 };
 

@@ -179,7 +179,7 @@ const Fields<Deformation>& deformation_fields() {
       number(&D::tolerance,
              {.key = "tolerance",
               .label = "Tolerance",
-              .doc = "Excess over the deformation rate at which sweeps stop, relative to the rest length.",
+              .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
               .scale = Scale::logarithmic,
               .minimum = 0,
               .minimum_excluded = true,
@@ -194,6 +194,12 @@ const Fields<Deformation>& deformation_fields() {
                .maximum = 1000000,
                .slider_minimum = 1,
                .slider_maximum = 1000}),
+      choice(&D::solver,
+             {.key = "solver",
+              .label = "Solver",
+              .doc = "How the rate is kept: sweeps as Provot's, the nearest shape that obeys it by "
+                     "a direct method, or sweeps while they are expected to arrive first.",
+              .choices = {"auto", "sweeps", "direct"}}),
   };
   return fields;
 }

@@ -121,9 +121,10 @@ void Simulation::count_step(const IntegratorReport& report) {
 }
 
 void Simulation::limit_deformation() {
-  last_limit_ = {.sweeps = 0, .excess = limiter_->excess(system_, state_.position)};
+  last_limit_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_->excess(system_, state_.position)};
   if (limiter_->accepts(last_limit_.excess)) return;
   const double before = total_energy();
+  limiter_->set_unreachable(unreachable_.has_value());
   last_limit_ = limiter_->apply(system_, time_step_, state_);
   ledger_.limiter += total_energy() - before;
   integrator_->forget(Change::state);
@@ -174,6 +175,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = {};
   last_contact_ = {};
+  unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   integrator_->forget(Change::state);
 }
 

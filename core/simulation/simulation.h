@@ -102,6 +102,7 @@ class Simulation {
   double time_step() const { return time_step_; }
   const Quantities& quantities() const { return quantities_; }
   const StepCount& count() const { return count_; }
+  const LimiterReport& last_limit() const { return last_limit_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
   Measurement measure() const;

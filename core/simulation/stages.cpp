@@ -46,10 +46,13 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
   if (!scene.deformation) return {name, false, "the scene has no \"deformation\""};
   if (!DeformationLimiter::is_needed(*scene.deformation, system))
     return {name, false, "no spring of the families in deformation.springs exists"};
+  const Deformation& deformation = *scene.deformation;
+  std::string how = fmt::format("at most {} sweeps a step", deformation.max_sweeps);
+  if (deformation.solver == "direct") how = "the nearest shape, by the direct solver";
+  if (deformation.solver == "auto") how += ", the direct solver where they would not do or would take longer";
   return {name, true,
-          fmt::format("{} springs to {} %, at most {} sweeps a step",
-                      fmt::join(scene.deformation->springs, " and "), 100 * scene.deformation->rate,
-                      scene.deformation->max_sweeps)};
+          fmt::format("{} springs to {} %, {}", fmt::join(deformation.springs, " and "),
+                      100 * deformation.rate, how)};
 }
 
 StageInfo contact_stage(const Scene& scene) {

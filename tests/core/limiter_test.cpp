@@ -23,6 +23,7 @@ struct Stretched {
     scene.cloth.pins = std::move(pins);
     scene.deformation = Deformation{};
     scene.deformation->rate = rate;
+    scene.deformation->solver = "sweeps";
     system = make_grid(scene.cloth, *scene.springs);
     state = starting_state(system);
     for (const std::size_t right : {1u, 3u}) state.position.add(right, {shift, 0, 0});
@@ -92,6 +93,7 @@ Scene crumpled_scene() {
   Scene scene = bare_sheet(8, 7, spacing);
   scene.springs = SpringMaterial{.structural = 100, .shear = 50, .flexion = 10, .damping = 0};
   scene.deformation = Deformation{};
+  scene.deformation->solver = "sweeps";
   return scene;
 }
 

@@ -104,6 +104,7 @@ Deformation any_deformation(Random& random) {
   deformation.rate = random.uniform(0, 1), deformation.tolerance = positive(random);
   deformation.springs = sets[static_cast<std::size_t>(random.integer(0, 2))];
   deformation.max_sweeps = random.integer(1, 1000000);
+  deformation.solver = random.coin() ? "direct" : "sweeps";
   return deformation;
 }
 

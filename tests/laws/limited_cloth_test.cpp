@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
@@ -66,6 +67,47 @@ INSTANTIATE_TEST_SUITE_P(Of, LimitedCloth, ::testing::Values("corners-shear", "c
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+/// The cloth of figure 2 with another rate and a tolerance that sweeps need hundreds of sweeps for.
+Scene tightly_limited(double rate, const char* solver) {
+  Scene scene = builtin_scene("corners-shear");
+  scene.deformation->rate = rate;
+  scene.deformation->tolerance = 1e-6;
+  scene.deformation->solver = solver;
+  return scene;
+}
+
+TEST(ADirectlyLimitedCloth, KeepsTenAndOnePercentWithinAMillionthWhileItFalls) {
+  for (const auto& [rate, end] : {std::pair{0.1, 0.2}, std::pair{0.01, 0.1}}) {  // both taut by then
+    Simulation simulation(tightly_limited(rate, "direct"));
+    std::int64_t iterations = 0;
+    while (simulation.time() < end) {
+      ASSERT_FALSE(simulation.step());
+      const LimiterReport& report = simulation.last_limit();
+      EXPECT_LE(report.excess, 1e-6) << "t = " << simulation.time();
+      EXPECT_LE(report.direct_iterations, 25) << "t = " << simulation.time();
+      EXPECT_EQ(report.sweeps, 0);
+      iterations += report.direct_iterations;
+    }
+    EXPECT_GT(iterations, 0) << rate;
+    EXPECT_LE(simulation.measure().strain.maximum(), rate + 1e-6 + 1e-12);
+  }
+}
+
+TEST(ADirectlyLimitedCloth, MovesAsOneThatSweepsHaveLimitedToTheSameTolerance) {
+  Simulation direct(tightly_limited(0.01, "direct"));
+  Scene patient = tightly_limited(0.01, "sweeps");
+  patient.deformation->max_sweeps = 100000;
+  Simulation swept(patient);
+  while (direct.time() < 0.05) {
+    ASSERT_FALSE(direct.step());
+    ASSERT_FALSE(swept.step());
+  }
+  const double travelled = largest_distance(direct.system().start, direct.state().position);
+  EXPECT_GT(direct.measure().ledger.limiter, 0);
+  EXPECT_GT(travelled, 5e-3);
+  EXPECT_LE(largest_distance(direct.state().position, swept.state().position), 0.01 * travelled);
+}
 
 TEST(AnUnlimitedCloth, StretchesBeyondTenPercentAtItsCorners) {  // why Provot limits: report, figure 2 (a)
   Scene scene = builtin_scene("corners-free");

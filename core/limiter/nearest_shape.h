@@ -1,0 +1,61 @@
+// The nearest shape that obeys the deformation rate. The shapes x with |x_j - x_i| <= (1 + rate) L for every
+// limited spring are a convex set, so that one of them is nearest to a given x0:
+//
+//     minimise 1/2 sum w_i |x_i - x0_i|^2 + rho/2 sum e_s^2   where   |x_j - x_i| - (1 + rate) L_s <= e_s,
+//
+// w_i the particle's mass over the common one, pinned particles fixed. rho is so large that the e_s are lost
+// in the tolerance; they are there for springs that say the same thing twice. Where the pins make the rate
+// unreachable, a smaller rho gives the compromise of least violation. Solved by Mehrotra's
+// predictor-corrector interior point method (Nocedal and Wright, Numerical Optimization, 2006, 16.6 and 19),
+// one sparse Cholesky factorisation per iteration.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+struct LimitedSpring {
+  std::size_t i = 0, j = 0;
+  double limit = 0;        ///< m
+  double rest_length = 0;  ///< m
+};
+
+struct NearestShapeReport {
+  int iterations = 0;      ///< one factorisation each
+  double excess = 0;       ///< largest (|d| - limit)/rest length that is left, 0 if none is over
+  bool converged = false;  ///< the conditions of a minimum hold; with unreachable pins beside an excess
+};
+
+class NearestShape {
+ public:
+  static constexpr int most_iterations = 60;  ///< in each of at most `most_rounds` rounds
+  static constexpr int most_rounds = 4;
+
+  NearestShape(const ClothSystem& system, const std::vector<SpringRun>& limited, double rate);
+
+  /// Moves `position` to the nearest shape. Without convergence, to the best found: never a larger excess
+  /// than before. Depends on nothing but its arguments; `reachable` false saves looking for what is known
+  /// not to be there.
+  NearestShapeReport find(const ClothSystem& system, double tolerance, Vec3Field& position,
+                          bool reachable = true);
+
+  /// Springs with an end that is free, and their multipliers in the last `find`, in m: every free particle
+  /// has w (x - x0) = sum of multiplier * direction toward the spring's other end.
+  const std::vector<LimitedSpring>& springs() const { return springs_; }
+  const std::vector<double>& multipliers() const { return multipliers_; }
+
+  /// How many springs `find` would start to work on.
+  std::size_t working_count(const Vec3Field& position) const;
+
+ private:
+  double excess_of(const LimitedSpring& spring, const Vec3Field& position) const;
+  double largest_excess(const Vec3Field& position) const;
+
+  std::vector<LimitedSpring> springs_;
+  std::vector<double> multipliers_;
+};
+
+}  // namespace cloth

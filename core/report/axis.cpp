@@ -121,7 +121,8 @@ std::vector<Tick> AxisMap::logarithmic_ticks(double spacing) const {
       const double value = factor * std::pow(10, n);
       if (value < low_ * (1 - 1e-9) || value > high_ * (1 + 1e-9)) continue;
       const bool major = factor == 1 ? n % stride == 0 : few && (factor == 2 || factor == 5);
-      if (factor > 1 && !major && density() < 22) continue;
+      if (factor > 1 && !major && (density() < 28 || (density() < 70 && factor != 2 && factor != 5)))
+        continue;
       Tick tick{std::clamp(value, low_, high_), major, "", ""};
       if (major) {
         tick.text = factor == 1 ? "10" : fmt::format("{}×10", factor);

@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-constexpr double panel_gap = 18, panel_title = 24, axis_space = 34, title_space = 22;
+constexpr double panel_gap = 18, panel_title = 24, axis_space = 34, title_space = 16;
 constexpr double legend_row = 22, legend_swatch = 16;
 
 /// The cells' edges: halfway between middles, in decades where logarithmic. Empty for values that cannot be
@@ -59,7 +59,7 @@ std::string mark_path(CellMark mark, SvgPoint c, double r) {
 SvgStyle mark_style(const ClassStyle& style, double width) {
   const bool dark_cell = contrast(style.colour.light, "#ffffff") > contrast(style.colour.light, "#000000");
   const Colour colour = dark_cell ? page_colours().surface : page_colours().ink;
-  return {.stroke = colour, .stroke_width = width, .opacity = 0.55};
+  return {.stroke = colour, .stroke_width = width, .opacity = 0.65};
 }
 
 struct LegendItem {
@@ -121,6 +121,14 @@ Drawing::Drawing(const HeatMap& map)
 
 void Drawing::lay_out_legend() {
   for (const ClassStyle& style : map_.classes) legend_.push_back({.text = style.name, .cell = &style});
+  static const ClassStyle empty{"not computed", page_colours().surface, CellMark::none};
+  const auto is_empty = [&](const HeatCell& cell) {
+    return cell.class_index < 0 || cell.class_index >= int(map_.classes.size());
+  };
+  if (std::any_of(map_.panels.begin(), map_.panels.end(), [&](const HeatPanel& panel) {
+        return std::any_of(panel.cells.begin(), panel.cells.end(), is_empty);
+      }))
+    legend_.push_back({.text = empty.name, .cell = &empty});
   const auto known = [&](const std::string& label) {
     return std::any_of(legend_.begin(), legend_.end(),
                        [&](const LegendItem& item) { return item.curve && item.text == label; });
@@ -155,7 +163,7 @@ void Drawing::draw_cells(SvgWriter& svg, const HeatPanel& panel) const {
   assert(panel.cells.size() == nx * ny);
   for (int c = 0; c < int(map_.classes.size()); ++c) {
     const ClassStyle& style = map_.classes[std::size_t(c)];
-    svg.begin_group("class", {.fill = style.colour});
+    svg.begin_group("class", {.fill = style.colour}, false, true);
     for (std::size_t i = 0; i < std::min(panel.cells.size(), nx * ny); ++i) {
       const HeatCell& cell = panel.cells[i];
       if (cell.class_index != c) continue;
@@ -190,47 +198,20 @@ void Drawing::draw_marks(SvgWriter& svg, const HeatPanel& panel, int class_index
   svg.end_group();
 }
 
-/// Where the segment enters and leaves the box, as shares of its length; first > second: it misses the box.
-std::pair<double, double> inside(SvgPoint a, SvgPoint b, const Box& box) {
-  double enter = 0, leave = 1;
-  const auto cut = [&](double from, double to, double low, double high) {
-    if (from == to) {
-      if (from < low || from > high) enter = 2;
-      return;
-    }
-    const double one = (low - from) / (to - from), other = (high - from) / (to - from);
-    enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
-  };
-  cut(a.x, b.x, box.left, box.right);
-  cut(a.y, b.y, box.top, box.bottom);
-  return {enter, leave};
-}
-
 void Drawing::draw_curves(SvgWriter& svg, const HeatPanel& panel, const Box& frame) const {
   svg.begin_group("curves", {}, true);
   for (const OverlayCurve& curve : panel.curves) {
     std::string data;
-    const SvgPoint none{-1e9, -1e9};
-    SvgPoint before = none, pen = none;
+    std::vector<SvgPoint> stroke;
     for (const auto& [x, y] : curve.points) {
-      if (!can_show(map_.x.scale, x) || !can_show(map_.y.scale, y)) {
-        before = none;
-        continue;
+      if (can_show(map_.x.scale, x) && can_show(map_.y.scale, y)) {
+        stroke.push_back({x_.place(x), y_.place(y)});
+      } else {
+        data += clipped_path(stroke, frame);
+        stroke.clear();
       }
-      const SvgPoint now{x_.place(x), y_.place(y)};
-      const SvgPoint last = before;
-      before = now;
-      if (last.x == none.x) continue;
-      const auto [enter, leave] = inside(last, now, frame);
-      if (enter > leave) continue;
-      const auto at = [&](double s) {
-        return SvgPoint{last.x + s * (now.x - last.x), last.y + s * (now.y - last.y)};
-      };
-      const SvgPoint from = at(enter), to = at(leave);
-      data += from.x == pen.x && from.y == pen.y ? "L" + svg_number(to.x) + " " + svg_number(to.y)
-                                                 : path_through({from, to});
-      pen = to;
     }
+    data += clipped_path(stroke, frame);
     svg.path(data, {.stroke = page_colours().surface, .stroke_width = 4.6, .opacity = 0.8});
     svg.path(data, {.stroke = curve.colour, .stroke_width = 2.1, .dash = curve.dash}, curve.label);
   }

@@ -27,7 +27,7 @@ body {
   font: 16px/1.6 -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, "Liberation Sans", sans-serif;
 }
 main { max-width: 1024px; margin: 0 auto; padding: 40px 32px 80px; }
-p, ul, .notice, h1, h2, h3, nav, summary { max-width: 46em; }
+p, ul, .notice, h1, h2, h3, nav, summary { max-width: 46rem; }
 h1 { font-size: 2rem; line-height: 1.2; margin: 0 0 .5rem; letter-spacing: -.01em; }
 h2 { font-size: 1.4rem; line-height: 1.3; margin: 3rem 0 .75rem; padding-top: .9rem; border-top: 1px solid var(--line); max-width: none; }
 h3 { font-size: 1.1rem; line-height: 1.35; margin: 2rem 0 .5rem; }
@@ -35,12 +35,13 @@ p, ul { margin: 0 0 1rem; }
 ul { padding-left: 1.4rem; }
 li { margin: .25rem 0; }
 .lead { font-size: 1.1rem; color: var(--muted); }
+sup { font-size: .75em; line-height: 0; }
 a { color: var(--accent); text-underline-offset: .15em; }
 nav { margin: 1.75rem 0 0; padding: .9rem 1.2rem; background: var(--soft); border-radius: 8px; font-size: .94rem; }
 nav ol { list-style: none; margin: 0; padding: 0; }
 nav .level-3 { padding-left: 1.2rem; }
 code, pre { font-family: ui-monospace, "SF Mono", Consolas, "Liberation Mono", "DejaVu Sans Mono", monospace; font-size: .88em; }
-code { background: var(--soft); padding: .1em .32em; border-radius: 4px; overflow-wrap: anywhere; }
+code { background: var(--soft); padding: .1em .32em; border-radius: 4px; overflow-wrap: anywhere; box-decoration-break: clone; -webkit-box-decoration-break: clone; }
 pre { background: var(--soft); padding: .8rem 1rem; border-radius: 8px; overflow-x: auto; line-height: 1.45; margin: 0 0 1rem; }
 pre code { background: none; padding: 0; overflow-wrap: normal; }
 .notice { margin: 0 0 1rem; padding: .7rem 1rem; border-left: 4px solid var(--muted); background: var(--soft); border-radius: 0 8px 8px 0; }
@@ -57,8 +58,8 @@ thead th { border-bottom: 2px solid var(--muted); vertical-align: bottom; }
 .facts td { overflow-wrap: anywhere; }
 figure { margin: 1.5rem 0 2rem; }
 figure svg, figure img { display: block; max-width: 100%; height: auto; }
-figure .drawing { overflow-x: auto; }
-figcaption { max-width: 52em; margin-top: .6rem; font-size: .92rem; color: var(--muted); }
+figure .drawing { overflow-x: auto; margin: 0 -16px; }
+figcaption { max-width: 46rem; margin-top: .6rem; font-size: .92rem; color: var(--muted); }
 figcaption b { color: var(--ink); }
 .command { display: block; margin-top: .3rem; }
 details { margin: 0 0 1rem; border: 1px solid var(--line); border-radius: 8px; padding: .5rem 1rem; }

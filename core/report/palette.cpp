@@ -30,8 +30,8 @@ double luminance(const std::string& colour) {
 
 SeriesStyle style_of_series(int index) {
   constexpr std::array markers = {Marker::circle,        Marker::square, Marker::triangle_up, Marker::diamond,
-                                  Marker::triangle_down, Marker::cross,  Marker::pentagon,    Marker::plus,
-                                  Marker::star,          Marker::hexagon};
+                                  Marker::triangle_down, Marker::cross,  Marker::pentagon,    Marker::hexagon,
+                                  Marker::star,          Marker::plus};
   constexpr std::array dashes = {Dash::solid, Dash::dashed, Dash::dotted, Dash::dash_dotted};
   const std::vector<Colour>& colours = series_colours();
   const auto i = std::size_t(std::max(index, 0));

@@ -16,7 +16,45 @@ double inner(double width) {
   return width - 2 * plot_margin;
 }
 
+/// Where the segment enters and leaves the box, as shares of its length; first > second: it misses the box.
+std::pair<double, double> inside(SvgPoint a, SvgPoint b, const Box& box) {
+  double enter = 0, leave = 1;
+  const auto cut = [&](double from, double to, double low, double high) {
+    if (from == to) {
+      if (from < low || from > high) enter = 2;
+      return;
+    }
+    const double one = (low - from) / (to - from), other = (high - from) / (to - from);
+    enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
+  };
+  cut(a.x, b.x, box.left, box.right);
+  cut(a.y, b.y, box.top, box.bottom);
+  return {enter, leave};
+}
+
 }  // namespace
+
+int covered(const Box& box, const std::vector<Box>& others) {
+  return int(
+      std::count_if(others.begin(), others.end(), [&](const Box& other) { return box.overlaps(other); }));
+}
+
+std::string clipped_path(const std::vector<SvgPoint>& points, const Box& box) {
+  std::string data;
+  std::vector<SvgPoint> piece;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const SvgPoint a = points[i - 1], b = points[i];
+    const auto [enter, leave] = inside(a, b, box);
+    if (enter > leave) continue;
+    const auto at = [&](double s) { return SvgPoint{a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)}; };
+    if (piece.empty()) piece.push_back(at(enter));
+    piece.push_back(leave < 1 ? at(leave) : b);
+    if (leave == 1) continue;
+    data += path_through(piece);
+    piece.clear();
+  }
+  return data + path_through(piece);
+}
 
 double titles_height(const std::string& title, const std::string& subtitle, double width) {
   double height = plot_margin;
@@ -83,7 +121,7 @@ void draw_x_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, c
                                                       .superscript = tick.superscript});
   }
   if (!title.empty())
-    svg.text({(frame.left + frame.right) / 2, frame.bottom + 42},
+    svg.text({(frame.left + frame.right) / 2, frame.bottom + 39},
              {.text = title, .size = label_size, .anchor = Anchor::middle});
   svg.end_group();
 }

@@ -19,6 +19,12 @@ struct Box {
   }
 };
 
+/// How many of them the box overlaps.
+int covered(const Box& box, const std::vector<Box>& others);
+
+/// The line through the points as far as it is in the box.
+std::string clipped_path(const std::vector<SvgPoint>& points, const Box& box);
+
 constexpr double tick_size = 11.5, label_size = 13, small_size = 11.5;  // of text [px]
 constexpr double plot_margin = 16;                                      // around a drawing [px]
 
@@ -40,6 +46,6 @@ void draw_y_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, c
 /// "run time: 0.0123 s"
 std::string value_line(const Axis& axis, double value);
 
-constexpr double x_tick_spacing = 64, y_tick_spacing = 34;  // between labels [px]
+constexpr double x_tick_spacing = 64, y_tick_spacing = 26;  // between labels [px]
 
 }  // namespace cloth

@@ -7,83 +7,119 @@
 namespace cloth {
 namespace {
 
-constexpr double widest = 56, tallest = 76, gap = 6;  // [px]
-constexpr double grid = 8;                            // between two tried places [px]
+constexpr double widest = 56, tallest = 76, gap = 8;  // [px]
+constexpr double raster = 8;                          // between two tried places [px]
 
 struct Shape {
+  std::string text;
   double width = 0, height = 0, label_width = 0;
   bool falling = false;
+  double whole_width() const { return width + label_width + gap; }
 };
 
-Shape shape_of(const SlopeTriangle& triangle, const std::string& text, const AxisMap& x, const AxisMap& y) {
-  const double steepness = std::abs(triangle.slope) * y.density() / x.density();
-  Shape shape{widest, widest * steepness, text_width(text, small_size), triangle.slope < 0};
-  if (shape.height > tallest) shape.width = tallest / steepness, shape.height = tallest;
-  return shape;
-}
-
-double covered(const Box& box, const std::vector<Box>& occupied) {
-  double count = 0;
-  for (const Box& other : occupied) count += box.overlaps(other) ? 1 : 0;
-  return count;
+std::vector<Shape> shapes_of(const std::vector<SlopeTriangle>& triangles, const AxisMap& x,
+                             const AxisMap& y) {
+  std::vector<Shape> shapes;
+  for (const SlopeTriangle& triangle : triangles) {
+    if (!std::isfinite(triangle.slope) || triangle.slope == 0) continue;
+    const std::string text = triangle.label.empty() ? short_number(std::abs(triangle.slope)) : triangle.label;
+    const double steepness = std::abs(triangle.slope) * y.density() / x.density();
+    Shape shape{text, widest, widest * steepness, text_width(text, small_size), triangle.slope < 0};
+    if (shape.height > tallest) shape.width = tallest / steepness, shape.height = tallest;
+    shapes.push_back(shape);
+  }
+  return shapes;
 }
 
 /// The corner of the frame that the data leaves most room in.
 SvgPoint emptiest_corner(const Box& frame, const std::vector<Box>& occupied) {
   SvgPoint best{frame.left, frame.bottom};
-  double fewest = std::numeric_limits<double>::infinity();
+  int fewest = std::numeric_limits<int>::max();
   for (const SvgPoint corner : {SvgPoint{frame.left, frame.bottom}, SvgPoint{frame.right, frame.top},
                                 SvgPoint{frame.right, frame.bottom}, SvgPoint{frame.left, frame.top}}) {
     const double w = 0.4 * frame.width(), h = 0.4 * frame.height();
-    const double count = covered({corner.x - w, corner.y - h, corner.x + w, corner.y + h}, occupied);
+    const int count = covered({corner.x - w, corner.y - h, corner.x + w, corner.y + h}, occupied);
     if (count < fewest) fewest = count, best = corner;
   }
   return best;
 }
 
-/// The box of triangle and label with its least crowded, then nearest place to the corner.
-Box best_box(const Shape& shape, const Box& frame, const std::vector<Box>& occupied, SvgPoint corner) {
-  const double width = shape.width + shape.label_width + 2 * gap, height = shape.height + gap;
-  Box best{frame.left + gap, frame.top + gap, frame.left + gap + width, frame.top + gap + height};
+struct Place {
+  SvgPoint at;  // upper left corner
+  int overlaps = 0;
+};
+
+/// The least crowded, then nearest place to the corner for a box of this size.
+Place best_place(double width, double height, const Box& frame, const std::vector<Box>& occupied,
+                 SvgPoint corner) {
+  Place best{{frame.left + gap, frame.top + gap}, std::numeric_limits<int>::max()};
   double least = std::numeric_limits<double>::infinity();
-  for (double left = frame.left + gap; left + width + gap <= frame.right; left += grid)
-    for (double top = frame.top + gap; top + height + gap <= frame.bottom; top += grid) {
-      const Box box{left, top, left + width, top + height};
+  for (double left = frame.left + gap; left + width + gap <= frame.right; left += raster)
+    for (double top = frame.top + gap; top + height + gap <= frame.bottom; top += raster) {
+      const int overlaps = covered({left - gap, top - gap, left + width + gap, top + height + gap}, occupied);
       const double distance = std::hypot((left + width / 2 - corner.x) / frame.width(),
                                          (top + height / 2 - corner.y) / frame.height());
-      const double cost =
-          10 * covered({box.left - gap, box.top - gap, box.right + gap, box.bottom + gap}, occupied) +
-          distance;
-      if (cost < least) least = cost, best = box;
+      if (10 * overlaps + distance < least) least = 10 * overlaps + distance, best = {{left, top}, overlaps};
     }
   return best;
+}
+
+/// In a box whose upper left corner this is, with `label_width` for the labels on a falling triangle's left.
+PlacedTriangle placed(const Shape& shape, SvgPoint at, double label_width) {
+  const double left = shape.falling ? at.x + gap + label_width : at.x;
+  const double right = left + shape.width, bottom = at.y + shape.height;
+  // The legs meet below the line where it rises, and left below it where it falls.
+  PlacedTriangle triangle;
+  triangle.text = shape.text;
+  triangle.corner = {shape.falling ? left : right, bottom};
+  triangle.along = {shape.falling ? right : left, bottom};
+  triangle.up = {triangle.corner.x, at.y};
+  triangle.label = {shape.falling ? left - gap - shape.label_width : right + gap, (at.y + bottom) / 2 + 4};
+  return triangle;
 }
 
 }  // namespace
 
 std::vector<PlacedTriangle> place_triangles(const std::vector<SlopeTriangle>& triangles, const AxisMap& x,
                                             const AxisMap& y, const Box& frame, std::vector<Box> occupied) {
-  std::vector<PlacedTriangle> placed;
-  if (x.scale() != AxisScale::logarithmic || y.scale() != AxisScale::logarithmic) return placed;
+  std::vector<PlacedTriangle> result;
+  if (x.scale() != AxisScale::logarithmic || y.scale() != AxisScale::logarithmic) return result;
+  const std::vector<Shape> shapes = shapes_of(triangles, x, y);
+  if (shapes.empty()) return result;
   const SvgPoint corner = emptiest_corner(frame, occupied);
-  for (const SlopeTriangle& triangle : triangles) {
-    if (!std::isfinite(triangle.slope) || triangle.slope == 0) continue;
-    const std::string text = triangle.label.empty() ? short_number(std::abs(triangle.slope)) : triangle.label;
-    const Shape shape = shape_of(triangle, text, x, y);
-    const Box box = best_box(shape, frame, occupied, corner);
-    occupied.push_back(box);
-    // The legs meet below the line where it rises and left below it where it falls.
-    const double left = shape.falling ? box.left + gap + shape.label_width : box.left;
-    const double right = left + shape.width, top = box.top, bottom = box.top + shape.height;
-    PlacedTriangle one;
-    one.text = text;
-    one.corner = {shape.falling ? left : right, bottom};
-    one.along = {shape.falling ? right : left, bottom};
-    one.up = {one.corner.x, top};
-    one.label = {shape.falling ? box.left : right + gap, (top + bottom) / 2 + 4};
-    placed.push_back(one);
+
+  // Together if there is room: above each other, else side by side.
+  double column_width = 0, column_height = -2 * gap, row_width = -2 * gap, row_height = 0, labels = 0;
+  for (const Shape& shape : shapes) {
+    labels = std::max(labels, shape.label_width);
+    column_width = std::max(column_width, shape.width);
+    column_height += shape.height + 2 * gap, row_height = std::max(row_height, shape.height);
+    row_width += shape.whole_width() + 2 * gap;
   }
-  return placed;
+  const Place column = best_place(column_width + gap + labels, column_height, frame, occupied, corner);
+  if (column.overlaps == 0) {
+    double top = column.at.y;
+    for (const Shape& shape : shapes) {
+      result.push_back(placed(shape, {column.at.x, top}, labels));
+      top += shape.height + 2 * gap;
+    }
+    return result;
+  }
+  const Place row = best_place(row_width, row_height, frame, occupied, corner);
+  if (row.overlaps == 0) {
+    double left = row.at.x;
+    for (const Shape& shape : shapes) {
+      result.push_back(placed(shape, {left, row.at.y + row_height - shape.height}, shape.label_width));
+      left += shape.whole_width() + 2 * gap;
+    }
+    return result;
+  }
+  for (const Shape& shape : shapes) {
+    const SvgPoint at = best_place(shape.whole_width(), shape.height, frame, occupied, corner).at;
+    occupied.push_back({at.x, at.y, at.x + shape.whole_width(), at.y + shape.height});
+    result.push_back(placed(shape, at, shape.label_width));
+  }
+  return result;
 }
 
 }  // namespace cloth

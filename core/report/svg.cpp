@@ -263,10 +263,11 @@ void SvgWriter::marker(Marker marker, SvgPoint centre, double radius, const SvgS
   path(marker_path(marker, centre, radius), style, tooltip);
 }
 
-void SvgWriter::begin_group(const std::string& name, const SvgStyle& style, bool untouchable) {
+void SvgWriter::begin_group(const std::string& name, const SvgStyle& style, bool untouchable, bool crisp) {
   ++depth_;
   out_ += "<g" + (name.empty() ? "" : attribute("data-part", name)) + attributes_of(style) +
-          (untouchable ? " pointer-events=\"none\"" : "") + ">\n";
+          (untouchable ? " pointer-events=\"none\"" : "") + (crisp ? " shape-rendering=\"crispEdges\"" : "") +
+          ">\n";
 }
 
 void SvgWriter::end_group() {

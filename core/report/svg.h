@@ -70,7 +70,9 @@ class SvgWriter {
               const std::string& tooltip = {});
 
   /// The style holds for what is inside unless that has its own. `untouchable`: the pointer goes through it.
-  void begin_group(const std::string& name, const SvgStyle& style = {}, bool untouchable = false);
+  /// `crisp`: no soft edges, so that neighbours join without a seam.
+  void begin_group(const std::string& name, const SvgStyle& style = {}, bool untouchable = false,
+                   bool crisp = false);
   void end_group();
 
   /// The document. Groups must be closed.

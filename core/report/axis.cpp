@@ -69,6 +69,7 @@ void AxisMap::settle(std::span<const double> values, const Axis& axis) {
                                 : 0.1 * std::abs(a);
   if (!fixed_low || narrow) a -= wider;
   if (!fixed_high || narrow) b += wider;
+  if (logs) a = std::max(a, -305.0), b = std::min(b, 305.0);  // room must not leave the doubles
   // Energy and time do not begin below zero only because there is room.
   if (!logs && !fixed_low && low >= 0 && a < 0 && high > 0) a = 0;
   low_ = logs ? std::pow(10, a) : a, high_ = logs ? std::pow(10, b) : b;
@@ -89,7 +90,9 @@ std::vector<Tick> AxisMap::ticks(double spacing) const {
 
 int AxisMap::tick_exponent() const {
   if (scale_ == AxisScale::logarithmic) return 0;
-  const int exponent = int(std::floor(std::log10(std::max(std::abs(low_), std::abs(high_)))));
+  const double size = std::max(std::abs(low_), std::abs(high_));
+  if (size < 1e9 && size > 1 && high_ - low_ < 1e-3 * size) return 0;  // 1000002 says more than 1.000002
+  const int exponent = int(std::floor(std::log10(size)));
   return exponent > 4 || exponent < -3 ? exponent : 0;
 }
 

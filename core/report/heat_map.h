@@ -26,8 +26,8 @@ struct OverlayCurve {
 
 struct HeatPanel {
   std::string title{};
-  std::vector<HeatCell>
-      cells;  // row after row of x, beginning with the lowest y: index = iy * x_values.size() + ix
+  /// Row after row of x, beginning with the lowest y: index = iy * x_values.size() + ix
+  std::vector<HeatCell> cells{};
   std::vector<OverlayCurve> curves{};
 };
 

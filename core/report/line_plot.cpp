@@ -231,6 +231,13 @@ std::string to_svg(const LinePlot& plot) {
   draw_reference_lines(svg, layout);
   draw_floor_label(svg, layout);
   for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, layout, i);
+  if (layout.is_empty())
+    svg.text({(layout.frame.left + layout.frame.right) / 2, (layout.frame.top + layout.frame.bottom) / 2},
+             {.text = "no data",
+              .size = label_size,
+              .anchor = Anchor::middle,
+              .colour = page_colours().muted,
+              .halo = true});
   draw_failures(svg, layout);
   draw_legend(svg, layout);
   draw_caption(svg, layout.caption, layout.height - caption_height(layout.caption, plot.width) - 4,

@@ -43,13 +43,38 @@ std::vector<double> y_values(const LinePlot& plot) {
   return values;
 }
 
+/// Curves without markers use the whole width: they need no room beside them.
+Axis x_axis_of(const LinePlot& plot, const std::vector<double>& values) {
+  Axis axis = plot.x;
+  if (axis.scale == AxisScale::logarithmic) return axis;
+  if (std::any_of(plot.series.begin(), plot.series.end(), [](const PlotSeries& s) { return s.markers; }))
+    return axis;
+  std::optional<double> low, high;
+  for (const double value : values) {
+    if (!can_show(axis.scale, value)) continue;
+    low = std::min(low.value_or(value), value), high = std::max(high.value_or(value), value);
+  }
+  if (!axis.low) axis.low = low;
+  if (!axis.high) axis.high = high;
+  return axis;
+}
+
 }  // namespace
 
 LineLayout::LineLayout(const LinePlot& line_plot)
-    : plot(line_plot), x(plot.x, x_values(plot), 0, 1), y(plot.y, y_values(plot), 1, 0) {
+    : plot(line_plot),
+      x(x_axis_of(plot, x_values(plot)), x_values(plot), 0, 1),
+      y(plot.y, y_values(plot), 1, 0) {
   collect_legend();
   collect_caption();
   lay_out();
+}
+
+bool LineLayout::is_empty() const {
+  return std::all_of(plot.series.begin(), plot.series.end(), [&](const PlotSeries& series) {
+    return std::none_of(series.points.begin(), series.points.end(),
+                        [&](const PlotPoint& point) { return shows(point); });
+  });
 }
 
 SeriesStyle LineLayout::style_of(std::size_t series) const {

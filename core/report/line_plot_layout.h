@@ -45,6 +45,8 @@ struct LineLayout {
     return can_show(plot.x.scale, point.x) && can_show(plot.y.scale, point.y);
   }
   bool has_floor() const { return plot.floor && can_show(plot.y.scale, plot.floor->y); }
+  /// No point that the axes can show.
+  bool is_empty() const;
   SeriesStyle style_of(std::size_t series) const;
 
   /// A value that can be shown, moved to the edge where it lies outside.

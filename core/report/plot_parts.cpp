@@ -109,7 +109,10 @@ double widest_tick(const std::vector<Tick>& ticks) {
 
 void draw_x_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid) {
   svg.begin_group("x-axis");
-  for (const Tick& tick : map.ticks(x_tick_spacing)) {
+  std::vector<Tick> ticks = map.ticks(x_tick_spacing);
+  const double needed = widest_tick(ticks) + 14;
+  if (needed > x_tick_spacing) ticks = map.ticks(needed);
+  for (const Tick& tick : ticks) {
     const double x = map.place(tick.value);
     if (grid && tick.major) svg.line({x, frame.top}, {x, frame.bottom}, {.stroke = page_colours().grid});
     svg.line({x, frame.bottom}, {x, frame.bottom + (tick.major ? tick_length : minor_length)}, axis_style());

@@ -139,9 +139,17 @@ TEST(Axis, TickTextsOfALinearAxisDiffer) {
 }
 
 TEST(Axis, HasARangeWhateverTheData) {
-  const std::vector<std::vector<double>> cases = {
-      {},      {0},           {5}, {-5, -5}, {nan, inf, -inf}, {0, -1}, {1e-320, 1e-310}, {1e308, -1e308},
-      {1e299}, {1, 1 + 1e-15}};
+  const std::vector<std::vector<double>> cases = {{},
+                                                  {0},
+                                                  {5},
+                                                  {-5, -5},
+                                                  {nan, inf, -inf},
+                                                  {0, -1},
+                                                  {1e-320, 1e-310},
+                                                  {1e308, -1e308},
+                                                  {1e299},
+                                                  {1e-300, 1e300},
+                                                  {1, 1 + 1e-15}};
   for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic})
     for (const std::vector<double>& values : cases) {
       const AxisMap map({.scale = scale}, values, 0, 400);
@@ -203,6 +211,34 @@ TEST(LinePlot, SaysHowManyPointsItsAxesCannotShow) {
   EXPECT_NE(all_text(root).find("4 points are left out"), std::string::npos);
   plot.series[0].points = {{1, 1}};
   EXPECT_EQ(to_svg(plot).find("left out"), std::string::npos);
+}
+
+TEST(LinePlot, SaysThatItHasNoData) {
+  LinePlot plot = log_plot();
+  plot.series = {{.name = "a", .points = {{0, 1}}}};
+  EXPECT_NE(to_svg(plot).find(">no data<"), std::string::npos);
+  plot.series[0].points = {{1, 1}};
+  EXPECT_EQ(to_svg(plot).find(">no data<"), std::string::npos);
+}
+
+TEST(LinePlot, TheBestLineNeverRisesAndEndsAtTheFloor) {
+  LinePlot plot = log_plot();
+  plot.best_line = "best";
+  plot.floor = PlotFloor{1e-6, "floor"};
+  plot.series = {{.name = "a", .points = {{1, 1e-2}, {2, 1e-1}, {4, 1e-4}, {8, 1e-9}}},
+                 {.name = "b", .points = {{3, 1e-3}, {16, 1e-8}}}};
+  const XmlElement root = checked(to_svg(plot));
+  std::string data = part(root, "best").at(0)->children.at(0).attributes.at("d");
+  for (char& c : data)
+    if (c == 'M' || c == 'L') c = ' ';
+  std::istringstream in(data);
+  const double floor = middle(part(root, "floor").at(0)->children.at(1).attributes.at("d")).y;
+  double last_x = -inf, last_y = -inf;
+  for (double x, y; in >> x >> y; last_x = x, last_y = y) {
+    EXPECT_TRUE(x >= last_x && y >= last_y);
+    EXPECT_TRUE(x == last_x || y == last_y || last_x == -inf);  // a staircase
+  }
+  EXPECT_NEAR(last_y, floor, 0.01);
 }
 
 TEST(LinePlot, IsValidWhateverTheData) {

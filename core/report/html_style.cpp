@@ -71,7 +71,8 @@ details[open] > summary { margin-bottom: .6rem; }
   main { max-width: none; padding: 0; }
   figure, tr, .notice { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
-  .scroll, pre { overflow: visible; }
+  .scroll, pre, figure .drawing { overflow: visible; }
+  figure .drawing { margin: 0; }
   pre { white-space: pre-wrap; }
   .good, .warn, .bad, svg * { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
 }

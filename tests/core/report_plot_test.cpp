@@ -363,6 +363,7 @@ TEST(HeatMap, TheFirstCellIsLowestAndCellsTouch) {
   const auto& cells = part(root, "class").at(0)->children;
   const auto number = [&](std::size_t i, const char* key) { return std::stod(cells[i].attributes.at(key)); };
   EXPECT_GT(number(0, "y"), number(4, "y"));
+  EXPECT_GT(number(4, "y"), number(8, "y"));
   EXPECT_LT(number(0, "x"), number(1, "x"));
   EXPECT_GE(number(0, "x") + number(0, "width"), number(1, "x"));
   EXPECT_GE(number(4, "y") + number(4, "height"), number(0, "y"));

@@ -1,0 +1,88 @@
+// Writes SVG: numbers without locale, text escaped, colours that a page can turn dark.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/palette.h"
+
+namespace cloth {
+
+/// At most two decimals, no exponent, no "-0"; 0 for what is not finite, so that a drawing is always valid.
+std::string svg_number(double value);
+
+/// A number for people: `digits` significant ones, "2.5e-06"; "not finite" for infinity and NaN.
+std::string short_number(double value, int digits = 4);
+
+/// & < > " ' escaped; bytes that are no UTF-8 and characters that XML forbids become U+FFFD.
+std::string xml_escaped(std::string_view text);
+
+/// Width of a text in a face with the measures of Helvetica [px]. An estimate, somewhat generous.
+double text_width(std::string_view text, double size, bool bold = false);
+
+/// Lines no wider than `width`, broken at spaces; a longer word keeps a line of its own.
+std::vector<std::string> wrapped(const std::string& text, double size, double width);
+
+struct SvgPoint {
+  double x = 0, y = 0;
+};
+
+struct SvgStyle {
+  std::optional<Colour> fill{}, stroke{};
+  double stroke_width = 1;
+  Dash dash = Dash::solid;
+  double opacity = 1;
+};
+
+enum class Anchor { start, middle, end };
+
+struct SvgText {
+  std::string text{};
+  double size = 12;
+  Anchor anchor = Anchor::start;
+  bool bold = false;
+  Colour colour = page_colours().ink;
+  double turn = 0;            // degrees, clockwise
+  std::string superscript{};  // behind the text
+  bool halo = false;          // a rim of the paper's colour, for text over lines
+};
+
+/// "M1 2L3 4", with "Z" where closed.
+std::string path_through(const std::vector<SvgPoint>& points, bool closed = false);
+
+/// Outline of a marker that fills about the circle of this radius; plus and cross are strokes only.
+std::string marker_path(Marker marker, SvgPoint centre, double radius);
+bool is_stroke_only(Marker marker);
+
+class SvgWriter {
+ public:
+  /// `description` tells what the drawing shows to who cannot see it.
+  SvgWriter(double width, double height, const std::string& description);
+
+  void line(SvgPoint from, SvgPoint to, const SvgStyle& style);
+  void path(const std::string& data, const SvgStyle& style, const std::string& tooltip = {});
+  void rect(SvgPoint corner, double width, double height, const SvgStyle& style,
+            const std::string& tooltip = {});
+  void text(SvgPoint baseline, const SvgText& text);
+  void marker(Marker marker, SvgPoint centre, double radius, const SvgStyle& style,
+              const std::string& tooltip = {});
+
+  /// The style holds for what is inside unless that has its own. `untouchable`: the pointer goes through it.
+  /// `crisp`: no soft edges, so that neighbours join without a seam.
+  void begin_group(const std::string& name, const SvgStyle& style = {}, bool untouchable = false,
+                   bool crisp = false);
+  void end_group();
+
+  /// The document. Groups must be closed.
+  std::string finish();
+
+ private:
+  void element(std::string_view name, const std::string& attributes, const std::string& tooltip);
+
+  std::string out_;
+  int depth_ = 0;
+};
+
+}  // namespace cloth

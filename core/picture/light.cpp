@@ -79,8 +79,8 @@ Colour Light::lit(const Colour& albedo, const SurfacePoint& point, float wrap, f
   const float key = std::max((facing + wrap) / (1 + wrap), 0.0F) + through * std::max(-facing, 0.0F);
   const float fill = std::max(n.dot(fill_), 0.0F);
   const float sky = 0.5F + 0.5F * n.y();
-  const Colour ambient = (1 - sky) * Colour(0.13F, 0.125F, 0.12F) + sky * Colour(0.27F, 0.28F, 0.30F);
-  const Colour light = ambient + 0.86F * key * key_colour + 0.16F * fill * fill_colour;
+  const Colour ambient = (1 - sky) * Colour(0.34F, 0.335F, 0.33F) + sky * Colour(0.27F, 0.28F, 0.30F);
+  const Colour light = ambient + 0.78F * key * key_colour + 0.24F * fill * fill_colour;
   const float half_way = std::max(n.dot((to_eye + key_).normalized()), 0.0F);
   const float squared = half_way * half_way, fourth = squared * squared, eighth = fourth * fourth;
   const float highlight = gloss * eighth * eighth * std::clamp(5 * facing, 0.0F, 1.0F);
@@ -94,7 +94,7 @@ Colour Light::shade(const Surface& surface, const SurfacePoint& point) const {
     case Look::matte:
       return lit(surface.front, point, 0.3F, 0, 0.06F);
     case Look::woven:
-      return lit(woven_colour(surface, point), point, 0.15F, 0.20F, 0.05F);
+      return lit(woven_colour(surface, point), point, 0.15F, 0.42F, 0.05F);
     case Look::strain: {
       // Form is told by a little shading only: colours must stay readable against the legend.
       const float fraction = std::clamp(point.strain, 0.0F, 1.0F);

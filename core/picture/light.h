@@ -1,4 +1,5 @@
-// Light and surfaces of a picture: Blinn-Phong in linear light, as the window's shaders have it.
+// Light and surfaces of a picture: Blinn-Phong in linear light, as the window's shaders have it, with more
+// light thrown back by the floor: a picture cannot be turned to see a dark side.
 #pragma once
 
 #include <Eigen/Core>

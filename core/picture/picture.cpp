@@ -9,10 +9,11 @@
 namespace cloth {
 namespace {
 
-constexpr int most_pixels = 8192;        // either way
-constexpr double bands_along_cloth = 9;  // of the pattern, over the longer side
+constexpr int most_pixels = 8192;         // either way
+constexpr double bands_along_cloth = 12;  // of the pattern, over the longer side
+constexpr double edge_cut = 0.6;          // of a cell, off a box's size
 constexpr Rgb pale_sheet{0xf4, 0xf6, 0xf8}, pale_back{0xd2, 0xda, 0xe4};
-constexpr Rgb warp{0xee, 0xdf, 0xd0}, weft{0xc4, 0x8a, 0x78}, body{0xb9, 0xbe, 0xc5},
+constexpr Rgb warp{0xea, 0xd6, 0xc8}, weft{0xd0, 0x9f, 0x8e}, body{0xb9, 0xbe, 0xc5},
     accent{0x34, 0x57, 0xd5}, white{0xff, 0xff, 0xff};
 const Colour back_tint(0.56F, 0.70F, 0.86F);  // the back of the cloth is duller and cooler
 
@@ -71,8 +72,9 @@ double Painter::cell_pixels() const {
 }
 
 void Painter::add_obstacles() {
-  // Cloth rests on the obstacles' surface with its particles, and its flat triangles cut below: bodies are
-  // drawn a little farther away, and a ball smaller by the height of the arc over a cell's diagonal.
+  // Cloth rests on the obstacles' surface with its particles, and its flat cells cut below. So that they stay
+  // seen, bodies are drawn a little farther away and smaller: a ball by the height of the arc over a cell's
+  // diagonal, a box by what a cell across its edge cuts off, its edges rounded.
   Surface surface;
   surface.look = Look::matte;
   surface.front = surface.back = linear_light(body);
@@ -84,9 +86,10 @@ void Painter::add_obstacles() {
     const bool ball = o.shape == Shape::sphere;
     const Vec3 size = ball ? Vec3(Vec3::Constant(2 * o.radius)) : o.size;
     if (!o.center.allFinite() || !size.allFinite()) continue;
-    const double arc = ball && o.radius > 0 ? cell * cell / (4 * o.radius) : 0;
-    meshes_.push_back(ball ? sphere_mesh(o.center, o.radius - std::min(arc, 0.05 * o.radius))
-                           : box_mesh(o.center, 0.995 * size));
+    const double arc = ball && o.radius > 0 ? std::min(cell * cell / (4 * o.radius), 0.05 * o.radius) : 0;
+    const Vec3 cut = (0.2 * size).cwiseMin(edge_cut * cell);
+    meshes_.push_back(ball ? sphere_mesh(o.center, o.radius - arc)
+                           : box_mesh(o.center, size - cut, cut.minCoeff()));
     canvas_.add_mesh(meshes_.back().vertices, meshes_.back().triangles, matte);
     extent_.extend(Vec3(o.center - size / 2));
     extent_.extend(Vec3(o.center + size / 2));
@@ -121,8 +124,8 @@ void Painter::add_springs() {
     thread.front = linear_light(spring_colour(run.family));
     thread.nearer = run.family == SpringFamily::structural ? 0.005F : 0.004F;
     const int surface = canvas_.add_surface(thread);
-    const double share = run.family == SpringFamily::structural ? 0.11 : 0.075;
-    const double width = std::clamp(share * cell, run.family == SpringFamily::structural ? 0.9 : 0.6, 2.5);
+    const bool structural = run.family == SpringFamily::structural;
+    const double width = structural ? std::clamp(0.1 * cell, 0.9, 2.5) : std::clamp(0.06 * cell, 0.4, 1.8);
     for (int i = run.first; i < run.first + run.count; ++i) add_spring(run, i, width, surface);
   }
 }
@@ -158,8 +161,15 @@ void Painter::add_pins() {
   const int surface = canvas_.add_surface(marker);
   const double scale = std::max(1.0, height_ / 480.0);
   // Smaller where a whole edge is pinned, so that the markers stay a row of dots.
-  const double diameter = std::clamp(0.85 * cell_pixels(), 4 * scale, 10 * scale);
-  for (std::size_t i = 0; i < system_.pinned.size() && i < position_.size(); ++i)
+  const auto held = [this](int i) { return system_.pinned[static_cast<std::size_t>(i)] != 0; };
+  bool in_a_row = false;
+  for (int i = 0; i + 1 < system_.size(); ++i)
+    in_a_row =
+        in_a_row ||
+        (held(i) && (held(i + 1) || (i + system_.columns < system_.size() && held(i + system_.columns))));
+  const double largest = 10 * scale;
+  const double diameter = in_a_row ? std::clamp(0.85 * cell_pixels(), 3 * scale, largest) : largest;
+  for (std::size_t i = 0; i < position_.size(); ++i)
     if (system_.pinned[i] != 0) canvas_.add_disc(position_[i], diameter, surface);
 }
 
@@ -219,6 +229,27 @@ Image Painter::paint() {
 }
 
 }  // namespace
+
+std::vector<PictureArrow> wind_arrows(const Scene& scene, const Vec3Field& position) {
+  constexpr double most_distance = 1e4;  // m
+  if (!scene.air || !scene.air->wind.allFinite() || !(scene.air->wind.norm() > 0)) return {};
+  Eigen::AlignedBox3d cloth;
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (position[i].allFinite() && position[i].norm() < most_distance) cloth.extend(position[i]);
+  if (cloth.isEmpty()) return {};
+  const Vec3 along = scene.air->wind.normalized();
+  const Vec3 level = along.cross(Vec3::UnitY());
+  const Vec3 side = level.norm() > 1e-3 ? Vec3(level.normalized()) : Vec3::UnitX();
+  const double size = cloth.diagonal().norm();
+  // Side by side on the windward side, with a little air between their tips and the cloth.
+  const double reach = 0.5 * cloth.sizes().dot(along.cwiseAbs()) + 0.08 * size;
+  std::vector<PictureArrow> arrows;
+  for (const double place : {-0.2, 0.0, 0.2}) {
+    const Vec3 tip = cloth.center() + place * size * side - reach * along;
+    arrows.push_back({tip - 0.25 * size * along, tip});
+  }
+  return arrows;
+}
 
 Rgb spring_colour(SpringFamily family) {
   switch (family) {

@@ -12,12 +12,6 @@
 
 namespace cloth {
 
-/// Drawn over everything, for instance the wind.
-struct PictureArrow {
-  Vec3 from, to;  ///< m
-  Rgb colour{0x34, 0x57, 0xd5};
-};
-
 enum class ClothColouring { plain, strain };
 enum class ClothPattern { none, checks, stripes };
 
@@ -27,15 +21,18 @@ struct PictureOptions {
   ClothPattern pattern = ClothPattern::checks;          ///< of a plain cloth
   double strain_scale = 0.1;                            ///< the strain of the last colour
   bool wireframe = false;                               ///< springs as lines on a pale sheet
-  std::array<bool, 3> springs_shown{true, true, true};  ///< by SpringFamily
+  std::array<bool, 3> springs_shown{true, true, true};  ///< by SpringFamily; fewer read better on a fine grid
   bool ground = true;  ///< a floor below everything where the scene has no level plane
   bool shadow = true;  ///< on the floor
   Rgb background_top{0xd9, 0xe0, 0xea}, background_bottom{0xf6, 0xf8, 0xfa};
-  std::vector<PictureArrow> arrows;
+  std::vector<PictureArrow> arrows;  ///< over everything else
 };
 
 /// The colours of the three families of springs in a wireframe, for a legend.
 Rgb spring_colour(SpringFamily family);
+
+/// Three arrows along the scene's steady wind, on the windward side of the cloth; none without wind.
+std::vector<PictureArrow> wind_arrows(const Scene& scene, const Vec3Field& position);
 
 /// The cloth at `position` (m, one per particle of `system`) with the scene's obstacles. The same bytes for
 /// the same input. Triangles with a corner that is not finite are left out.

@@ -71,11 +71,14 @@ std::optional<Eigen::Vector2d> pixel_of(const PictureCamera& camera, int width, 
 }
 
 PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, const Vec3& direction,
-                             double aspect) {
+                             double aspect, std::span<const PictureArrow> arrows) {
   PictureCamera camera;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < position.size(); ++i)
     if (position[i].allFinite() && position[i].norm() < most_distance) points.push_back(position[i]);
+  for (const PictureArrow& arrow : arrows)
+    for (const Vec3& end : {arrow.from, arrow.to})
+      if (end.allFinite() && end.norm() < most_distance) points.push_back(end);
   for (const Obstacle& obstacle : scene.obstacles) {
     const Eigen::AlignedBox3d box = bounds_of(obstacle);
     if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) continue;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "cloth/cloth_system.h"
+#include "picture/image.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -16,14 +18,20 @@ struct PictureCamera {
   bool operator==(const PictureCamera&) const = default;
 };
 
-/// Half way round to the right and a little from above, as the window opens.
-inline const Vec3 usual_direction{0.48, 0.24, 0.84};
+struct PictureArrow {
+  Vec3 from, to;  ///< m
+  Rgb colour{0x34, 0x57, 0xd5};
+};
+
+/// From the right and somewhat above: a hanging cloth shows its folds, and a body its top.
+inline const Vec3 usual_direction{0.46, 0.40, 0.80};
 
 /// A camera that looks along -`direction` (from what is seen towards the eye; any length) at the cloth and
 /// the obstacles (planes apart), near enough to fill a picture of `aspect` (width / height) with a little air
 /// around. Particles that are not finite are left out; the usual camera where nothing is left.
 PictureCamera camera_showing(const Scene& scene, const Vec3Field& position,
-                             const Vec3& direction = usual_direction, double aspect = 4.0 / 3.0);
+                             const Vec3& direction = usual_direction, double aspect = 4.0 / 3.0,
+                             std::span<const PictureArrow> arrows = {});
 
 /// What moves the eye to the origin: x right, y up, z into the picture. Finite whatever the camera is.
 struct EyeFrame {

@@ -1,5 +1,6 @@
 #include "picture/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,16 +56,37 @@ PictureMesh sphere_mesh(const Vec3& center, double radius) {
   return mesh;
 }
 
-PictureMesh box_mesh(const Vec3& center, const Vec3& size) {
+PictureMesh box_mesh(const Vec3& center, const Vec3& size, double rounding) {
+  // A ball of that radius, cut into eight along the axes' planes, its pieces moved to the box's corners; what
+  // comes to lie between them are the rounded edges and the flat faces.
+  constexpr int steps = 6, around = 4 * (steps + 1), down = 2 * (steps + 1);
+  constexpr double quarter = std::numbers::pi / 2;
+  const double r = std::clamp(rounding, 0.0, 0.5 * size.minCoeff());
+  const Vec3 corner = size / 2 - Vec3::Constant(r);
   PictureMesh mesh;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      const int first = static_cast<int>(mesh.vertices.size());
-      const Vec3 n = side * Vec3::Unit(axis), u = Vec3::Unit((axis + 1) % 3), v = n.cross(u);
-      for (const auto& [s, t] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
-        mesh.vertices.push_back({center + size.cwiseProduct(n + s * u + t * v) / 2, n.cast<float>()});
-      for (const int k : {0, 1, 2, 0, 2, 3}) mesh.triangles.push_back(first + k);
+  for (int i = 0; i < down; ++i) {
+    for (int k = 0; k < around; ++k) {
+      const int half = i / (steps + 1), part = k / (steps + 1);
+      const double polar = quarter * (half + static_cast<double>(i % (steps + 1)) / steps);
+      const double turn = quarter * (part + static_cast<double>(k % (steps + 1)) / steps);
+      const Vec3 n(std::sin(polar) * std::sin(turn), std::cos(polar), std::sin(polar) * std::cos(turn));
+      const Vec3 side(part < 2 ? 1 : -1, half == 0 ? 1 : -1, part == 0 || part == 3 ? 1 : -1);
+      mesh.vertices.push_back({center + corner.cwiseProduct(side) + r * n, n.cast<float>()});
     }
+  }
+  for (int i = 0; i + 1 < down; ++i) {
+    for (int k = 0; k < around; ++k) {
+      const int a = i * around + k, next = i * around + (k + 1) % around, b = a + around,
+                next_b = next + around;
+      mesh.triangles.insert(mesh.triangles.end(), {a, b, next_b, a, next_b, next});
+    }
+  }
+  for (const bool top : {true, false}) {
+    const int first = top ? 0 : (down - 1) * around, part = steps + 1;
+    const std::array<int, 4> cap{first, first + part, first + 2 * part, first + 3 * part};
+    const auto add = [&](int a, int b, int c) { mesh.triangles.insert(mesh.triangles.end(), {a, b, c}); };
+    top ? add(cap[0], cap[1], cap[2]) : add(cap[0], cap[2], cap[1]);
+    top ? add(cap[0], cap[2], cap[3]) : add(cap[0], cap[3], cap[2]);
   }
   return mesh;
 }

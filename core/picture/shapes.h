@@ -14,6 +14,7 @@ struct PictureMesh {
 /// The cells of a grid; `strain_scale` is the strain at which a vertex has strain 1.
 PictureMesh sheet_mesh(const ClothSystem& system, const Vec3Field& position, double strain_scale);
 PictureMesh sphere_mesh(const Vec3& center, double radius);
-PictureMesh box_mesh(const Vec3& center, const Vec3& size);
+/// Its edges rounded by that radius, all in metres.
+PictureMesh box_mesh(const Vec3& center, const Vec3& size, double rounding);
 
 }  // namespace cloth

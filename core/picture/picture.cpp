@@ -35,7 +35,8 @@ class Painter {
         frame_(camera, width_, height_),
         light_(frame_),
         canvas_(frame_, light_, width_, height_),
-        has_cloth_(system.size() > 0 && position.size() == static_cast<std::size_t>(system.size())) {}
+        has_cloth_(system.size() > 0 && position.size() == static_cast<std::size_t>(system.size()) &&
+                   system.pinned.size() == position.size()) {}
 
   Image paint();
 

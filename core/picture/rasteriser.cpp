@@ -47,6 +47,10 @@ int Rasteriser::add_surface(const Surface& surface) {
   return static_cast<int>(surfaces_.size()) - 1;
 }
 
+double Rasteriser::nearness_of(double depth, int surface) const {
+  return 1 / (std::max(depth, frame_.near) * (1 - surfaces_[static_cast<std::size_t>(surface)].nearer));
+}
+
 void Rasteriser::add_mesh(std::span<const PictureVertex> vertices, std::span<const int> triangles,
                           int surface) {
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
@@ -78,14 +82,13 @@ void Rasteriser::add_triangle(const std::array<PictureVertex, 3>& vertices, int 
   for (std::size_t k = 1; k + 1 < count; ++k) {
     Triangle triangle;
     triangle.surface = surface;
-    const double nearer = 1.0 / (1.0 - surfaces_[static_cast<std::size_t>(surface)].nearer);
     const std::array<const PictureVertex*, 3> corner{&cut[0], &cut[k], &cut[k + 1]};
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 in_eye = frame_.to_eye(corner[c]->position);
       const Eigen::Vector3f& n = corner[c]->normal;
       const bool smooth = n.allFinite() && n.squaredNorm() > 0.01F;
       triangle.corner[c] = {frame_.to_pixel(in_eye),
-                            nearer / std::max(in_eye.z(), frame_.near),
+                            nearness_of(in_eye.z(), surface),
                             {corner[c]->position.cast<float>(), smooth ? n : own_normal, corner[c]->u,
                              corner[c]->v, corner[c]->strain, true}};
     }
@@ -122,8 +125,7 @@ void Rasteriser::add_line(const Vec3& from, const Vec3& to, double width, int su
   const double length = (q - p).norm();
   if (!(length > 1e-9)) return;
   const Pixel along = (q - p) / length, half = 0.5 * width * Pixel(-along.y(), along.x());
-  const double nearer = 1.0 / (1.0 - surfaces_[static_cast<std::size_t>(surface)].nearer);
-  const double at_p = nearer / std::max(a.z(), frame_.near), at_q = nearer / std::max(b.z(), frame_.near);
+  const double at_p = nearness_of(a.z(), surface), at_q = nearness_of(b.z(), surface);
   add_flat({p - half, q - half, q + half}, {at_p, at_q, at_q}, surface);
   add_flat({p - half, q + half, p + half}, {at_p, at_q, at_p}, surface);
 }
@@ -136,8 +138,7 @@ void Rasteriser::add_arrow(const Vec3& from, const Vec3& to, double width, doubl
   if (!(length > 1e-9)) return;
   const double tip = std::min(head, 0.7 * length);
   const Pixel along = (q - p) / length, side = 0.4 * tip * Pixel(-along.y(), along.x());
-  const double nearer = 1.0 / (1.0 - surfaces_[static_cast<std::size_t>(surface)].nearer);
-  const double nearness = nearer / std::min(a.z(), b.z());
+  const double nearness = nearness_of(std::min(a.z(), b.z()), surface);
   const Pixel neck = q - tip * along, half = 0.5 * width * Pixel(-along.y(), along.x());
   add_flat({neck - side, q, neck + side}, {nearness, nearness, nearness}, surface);
   add_flat({p - half, neck - half, neck + half}, {nearness, nearness, nearness}, surface);
@@ -147,8 +148,7 @@ void Rasteriser::add_arrow(const Vec3& from, const Vec3& to, double width, doubl
 void Rasteriser::add_disc(const Vec3& middle, double diameter, int surface) {
   const Vec3 in_eye = frame_.to_eye(middle);
   if (!drawable(in_eye) || in_eye.z() < frame_.near) return;
-  const double nearer = 1.0 / (1.0 - surfaces_[static_cast<std::size_t>(surface)].nearer);
-  discs_.push_back({frame_.to_pixel(in_eye), nearer / in_eye.z(), diameter / 2, surface});
+  discs_.push_back({frame_.to_pixel(in_eye), nearness_of(in_eye.z(), surface), diameter / 2, surface});
 }
 
 void Rasteriser::draw_triangle(const Triangle& triangle, SampleBand& band) const {

@@ -67,6 +67,7 @@ class Rasteriser {
     int surface;
   };
 
+  double nearness_of(double depth, int surface) const;  ///< 1/m
   void add_triangle(const std::array<PictureVertex, 3>& vertices, int surface);
   void add_flat(const std::array<Eigen::Vector2d, 3>& pixels, const std::array<double, 3>& nearness,
                 int surface);

@@ -10,6 +10,7 @@ namespace {
 
 const Colour key_colour(1.00F, 0.97F, 0.92F), fill_colour(0.88F, 0.94F, 1.00F);
 constexpr float exposure = 1.05F;
+constexpr float hidden_darkness = 0.75F;  // of the key light, lost in a shadow
 
 float decoded(std::uint8_t channel) {
   const double c = channel / 255.0;
@@ -76,14 +77,19 @@ Colour Light::lit(const Colour& albedo, const SurfacePoint& point, float wrap, f
   const Eigen::Vector3f& n = point.normal;
   const Eigen::Vector3f to_eye = (eye_ - point.position).normalized();
   const float facing = n.dot(key_);
-  const float key = std::max((facing + wrap) / (1 + wrap), 0.0F) + through * std::max(-facing, 0.0F);
+  // Nothing is told of shadows in light that grazes the surface: there each point would lie in its
+  // neighbour's.
+  const float told = hidden_darkness * std::min(4 * std::abs(facing), 1.0F);
+  const float reached = hidden_ == nullptr ? 1 : 1 - told * hidden_->at(point.position);
+  const float key =
+      reached * (std::max((facing + wrap) / (1 + wrap), 0.0F) + through * std::max(-facing, 0.0F));
   const float fill = std::max(n.dot(fill_), 0.0F);
   const float sky = 0.5F + 0.5F * n.y();
   const Colour ambient = (1 - sky) * Colour(0.34F, 0.335F, 0.33F) + sky * Colour(0.27F, 0.28F, 0.30F);
   const Colour light = ambient + 0.78F * key * key_colour + 0.24F * fill * fill_colour;
   const float half_way = std::max(n.dot((to_eye + key_).normalized()), 0.0F);
   const float squared = half_way * half_way, fourth = squared * squared, eighth = fourth * fourth;
-  const float highlight = gloss * eighth * eighth * std::clamp(5 * facing, 0.0F, 1.0F);
+  const float highlight = reached * gloss * eighth * eighth * std::clamp(5 * facing, 0.0F, 1.0F);
   return (exposure * (albedo.cwiseProduct(light) + highlight * key_colour)).unaryExpr(&soft_clip);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "picture/image.h"
+#include "picture/key_shadow.h"
 #include "picture/picture_camera.h"
 
 namespace cloth {
@@ -46,8 +47,12 @@ class Light {
   /// The key light goes half way with the eye, so that folds read alike from every side.
   explicit Light(const EyeFrame& frame);
 
+  /// Nothing is hidden from the key light until then. `shadow` must outlive the light.
+  void set_key_shadow(const KeyShadow* shadow) { hidden_ = shadow; }
+  Vec3 key_direction() const { return key_.cast<double>(); }  ///< unit vector, towards the light
+
   Colour shade(const Surface& surface, const SurfacePoint& point) const;
-  /// Towards the light that casts shadows: the key light, raised.
+  /// Towards the light that casts shadows on the floor: the key light, raised.
   Vec3 shadow_direction() const { return shadow_; }
 
  private:
@@ -55,6 +60,7 @@ class Light {
 
   Eigen::Vector3f eye_, key_, fill_;
   Vec3 shadow_;
+  const KeyShadow* hidden_ = nullptr;
 };
 
 }  // namespace cloth

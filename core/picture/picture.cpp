@@ -47,6 +47,7 @@ class Painter {
   void add_spring(const SpringRun& run, int particle, double width, int surface);
   void add_pins();
   void add_arrows();
+  void cast_on_bodies();
   void add_floors();
   double cell_pixels() const;
 
@@ -63,6 +64,7 @@ class Painter {
   std::vector<PictureMesh> meshes_;  // what throws shadows
   std::vector<Floor> floors_;
   FloorShadow shadow_;
+  KeyShadow key_shadow_;
 };
 
 /// px, of the rest length of a structural spring at the middle of the cloth.
@@ -185,6 +187,20 @@ void Painter::add_arrows() {
   }
 }
 
+void Painter::cast_on_bodies() {
+  key_shadow_ = KeyShadow(light_.key_direction(), extent_);
+  for (const PictureMesh& mesh : meshes_) {
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+      std::array<Vec3, 3> corner;
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[k] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t + k])].position;
+      if (extent_.contains(corner[0]) && extent_.contains(corner[1]) && extent_.contains(corner[2]))
+        key_shadow_.add_triangle(corner);
+    }
+  }
+  light_.set_key_shadow(&key_shadow_);
+}
+
 void Painter::add_floors() {
   std::optional<double> level;
   for (const Obstacle& o : scene_.obstacles) {
@@ -197,7 +213,9 @@ void Painter::add_floors() {
     level = extent_.min().y() - 0.06 * extent_.diagonal().norm();
     floors_.emplace_back(Vec3(0, *level, 0), Vec3::UnitY(), extent_);
   }
-  if (!level || !options_.shadow) return;
+  if (!options_.shadow) return;
+  cast_on_bodies();
+  if (!level) return;
   shadow_ = FloorShadow(*level, light_.shadow_direction(), extent_);
   for (const PictureMesh& mesh : meshes_) shadow_.add(mesh.vertices, mesh.triangles);
   shadow_.blur();

@@ -23,7 +23,7 @@ struct PictureOptions {
   bool wireframe = false;                               ///< springs as lines on a pale sheet
   std::array<bool, 3> springs_shown{true, true, true};  ///< by SpringFamily; fewer read better on a fine grid
   bool ground = true;  ///< a floor below everything where the scene has no level plane
-  bool shadow = true;  ///< on the floor
+  bool shadow = true;  ///< on the floor, and of cloth and bodies on each other
   Rgb background_top{0xd9, 0xe0, 0xea}, background_bottom{0xf6, 0xf8, 0xfa};
   std::vector<PictureArrow> arrows;  ///< over everything else
 };

@@ -32,6 +32,7 @@ struct SampleBand {
 
 class Rasteriser {
  public:
+  /// `light` must outlive it.
   Rasteriser(const EyeFrame& frame, const Light& light, int width, int height)
       : frame_(frame), light_(light), width_(width), height_(height) {}
 
@@ -75,7 +76,7 @@ class Rasteriser {
   void draw_disc(const Disc& disc, SampleBand& band) const;
 
   EyeFrame frame_;
-  Light light_;
+  const Light& light_;
   int width_, height_;
   std::vector<Surface> surfaces_;
   std::vector<Triangle> triangles_;

@@ -174,6 +174,28 @@ TEST(Picture, OfASpringHasTheColourOfItsFamily) {
   EXPECT_GT(at_spring(sheet.image(options)).green, shown.green + 60);
 }
 
+TEST(Picture, OfABodyBehindAClothIsDarkerInItsShadow) {
+  Sheet sheet;
+  Obstacle wall;
+  wall.shape = Shape::box;
+  wall.center = sheet.middle - Vec3(0, 0, 1.3);
+  wall.size = {2, 2, 2};
+  sheet.scene.obstacles = {wall};
+  PictureOptions options = bare_options();
+  const Image lit = sheet.image(options);
+  options.shadow = true;
+  const Image shaded = sheet.image(options);
+  int darker = 0, lighter = 0;
+  for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
+    darker += shaded.pixels[i].green + 10 < lit.pixels[i].green ? 1 : 0;
+    lighter += shaded.pixels[i].green > lit.pixels[i].green ? 1 : 0;
+  }
+  EXPECT_GT(darker, 200);
+  EXPECT_EQ(lighter, 0);
+  // No part of the cloth lies in its own shadow.
+  EXPECT_EQ(shaded.at(width / 2, height / 2), lit.at(width / 2, height / 2));
+}
+
 TEST(Picture, HasTheSameBytesForTheSameInput) {
   Sheet sheet;
   sheet.scene.obstacles = {sheet.ball_at(-0.2)};

@@ -1,6 +1,6 @@
 // Pictures of a cloth and its obstacles without a window: a small renderer of its own, so that a report has
-// pictures on a machine without display, graphics card or Qt. Colours and light are those of the window's
-// light theme.
+// pictures on a machine without display, graphics card or Qt. Colours are those of the window's light
+// theme.
 //
 //     const PictureCamera camera = camera_showing(scene, state.position);
 //     write_file("cloth.png", png_file(cloth_image(scene, system, state.position, camera)));
@@ -35,7 +35,9 @@ Rgb spring_colour(SpringFamily family);
 std::vector<PictureArrow> wind_arrows(const Scene& scene, const Vec3Field& position);
 
 /// The cloth at `position` (m, one per particle of `system`) with the scene's obstacles. The same bytes for
-/// the same input. Triangles with a corner that is not finite are left out.
+/// the same input. Triangles with a corner that is not finite are left out. Balls and boxes are drawn smaller
+/// by what flat cells cut off them (a box by 0.6 of a cell, at most a fifth of its size), or they would show
+/// through the cloth that rests on them; so a picture does not show how deep a cell cuts.
 Image cloth_image(const Scene& scene, const ClothSystem& system, const Vec3Field& position,
                   const PictureCamera& camera, const PictureOptions& options = {});
 

@@ -65,11 +65,12 @@ void InteriorPoint::order_particles(const ClothSystem& system) {
 
   particle_.resize(found.size());
   weight_.resize(count);
+  const double mean_mass = system.total_mass() / system.size();
   for (int k = 0; k < count; ++k) {
     const std::size_t particle = found[static_cast<std::size_t>(order.indices()[k])];
     particle_[static_cast<std::size_t>(k)] = particle;
     unknown[particle] = k;
-    weight_[k] = 1 / (system.inverse_mass[particle] * system.particle_mass);
+    weight_[k] = system.mass[particle] / mean_mass;
   }
   for (const LimitedSpring& spring : springs_) {
     first_.push_back(unknown[spring.i]);

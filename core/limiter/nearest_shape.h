@@ -3,7 +3,7 @@
 //
 //     minimise 1/2 sum w_i |x_i - x0_i|^2 + rho/2 sum e_s^2   where   |x_j - x_i| - (1 + rate) L_s <= e_s,
 //
-// w_i the particle's mass over the common one, pinned particles fixed. rho is so large that the e_s are lost
+// w_i the particle's mass over the mean one, pinned particles fixed. rho is so large that the e_s are lost
 // in the tolerance; they are there for springs that say the same thing twice. Where the pins make the rate
 // unreachable, a smaller rho gives the compromise of least violation. Solved by Mehrotra's
 // predictor-corrector interior point method (Nocedal and Wright, Numerical Optimization, 2006, 16.6 and 19),

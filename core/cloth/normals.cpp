@@ -47,4 +47,36 @@ void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Fiel
   normalise(normal);
 }
 
+void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
+                             Vec3Field& change) {
+  Vec3Field sum(position.size());  // of the cross products, before they are normalised
+  change.fill(0);
+  const auto add = [&](int i, const Vec3& n, const Vec3& dn) {
+    sum.add(static_cast<std::size_t>(i), n);
+    change.add(static_cast<std::size_t>(i), dn);
+  };
+  for (int row = 0; row + 1 < rows; ++row) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      const int a = row * columns + column, b = a + 1, d = a + columns, c = d + 1;
+      const auto side = [&](const Vec3Field& of, int to) -> Vec3 {
+        return of[static_cast<std::size_t>(to)] - of[static_cast<std::size_t>(a)];
+      };
+      const Vec3 to_b = side(position, b), to_c = side(position, c), to_d = side(position, d);
+      const Vec3 db = side(direction, b), dc = side(direction, c), dd = side(direction, d);
+      const Vec3 lower = to_d.cross(to_c), upper = to_c.cross(to_b);
+      const Vec3 lower_change = dd.cross(to_c) + to_d.cross(dc),
+                 upper_change = dc.cross(to_b) + to_c.cross(db);
+      add(a, lower + upper, lower_change + upper_change);
+      add(b, upper, upper_change);
+      add(c, lower + upper, lower_change + upper_change);
+      add(d, lower, lower_change);
+    }
+  }
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double length = sum[i].norm();
+    const Vec3 n = length > 0 ? Vec3(sum[i] / length) : Vec3(0, 0, 0);
+    change.set(i, length > 0 ? Vec3((change[i] - n.dot(change[i]) * n) / length) : Vec3(0, 0, 0));
+  }
+}
+
 }  // namespace cloth

@@ -58,6 +58,43 @@ void AirForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const 
   }
 }
 
+void AirForce::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                                 Linearisation& to) const {
+  const double along = weights.velocity * air_.drag;
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += block_along(0, along, normal_[i]);
+}
+
+/// How much the falloff changes where a particle moves by `shift`.
+double brush_falloff_change(const BrushGust& brush, const Vec3& position, const Vec3& shift) {
+  const Eigen::Vector4d clip =
+      brush.world_to_screen * Eigen::Vector4d(position.x(), position.y(), position.z(), 1);
+  if (!(clip.w() > 0)) return 0;
+  const Eigen::Vector2d screen = clip.head<2>() / clip.w(), arm = screen - brush.cursor;
+  const double distance = arm.norm();
+  if (!(distance < brush.radius) || !(distance > 0)) return 0;
+  const Eigen::Vector4d moved = brush.world_to_screen * Eigen::Vector4d(shift.x(), shift.y(), shift.z(), 0);
+  const Eigen::Vector2d screen_change = (moved.head<2>() - screen * moved.w()) / clip.w();
+  const double rate = 0.5 * std::numbers::pi / brush.radius;
+  return -rate * std::sin(rate * distance) * arm.dot(screen_change) / distance;
+}
+
+/// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
+void AirForce::add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
+                                      const Vec3Field& velocity, const Vec3Field& direction,
+                                      Vec3Field& product) const {
+  Vec3Field turned(position.size());
+  particle_normal_changes(system.rows, system.columns, position, direction, turned);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Vec3 n = normal_[i], dn = turned[i];
+    Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();
+    if (brush_) {
+      w += brush_falloff(*brush_, position[i]) * brush_->velocity;
+      dw = brush_falloff_change(*brush_, position[i], direction[i]) * brush_->velocity;
+    }
+    product.add(i, -air_.drag * ((dn.dot(w) + n.dot(dw)) * n + n.dot(w) * dn));
+  }
+}
+
 bool AirForce::add_node_damping(NodeDamping& damping) const {
   damping.along_normal += air_.drag;
   damping.normal = &normal_;

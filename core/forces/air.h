@@ -20,6 +20,11 @@ class AirForce : public Force {
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
   void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
+  bool has_asymmetric_part() const override { return true; }
+  void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
+                              const Vec3Field& direction, Vec3Field& product) const override;
 
  private:
   void add_brush(const Vec3Field& position, Vec3Field& force);
@@ -36,5 +41,8 @@ Vec3 wind_at(const Air& air, double time);
 
 /// How much of the gust a particle at `position` feels: cos(pi/2 * r/radius) within the radius, else 0.
 double brush_falloff(const BrushGust& brush, const Vec3& position);
+
+/// The change of brush_falloff where a particle at `position` moves by `shift`, to first order.
+double brush_falloff_change(const BrushGust& brush, const Vec3& position, const Vec3& shift);
 
 }  // namespace cloth

@@ -23,5 +23,9 @@ bool Force::add_node_damping(NodeDamping&) const {
   return true;
 }
 void Force::add_power(const Vec3Field&, Work&) const {}
+void Force::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights&,
+                              Linearisation&) const {}
+void Force::add_asymmetric_product(const ClothSystem&, const Vec3Field&, const Vec3Field&, const Vec3Field&,
+                                   Vec3Field&) const {}
 
 }  // namespace cloth

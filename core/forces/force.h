@@ -6,6 +6,7 @@
 #pragma once
 
 #include "cloth/cloth_system.h"
+#include "forces/linearisation.h"
 
 namespace cloth {
 
@@ -47,6 +48,17 @@ class Force {
 
   /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
   virtual void add_power(const Vec3Field& velocity, Work& power) const;
+
+  /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx, to
+  /// `to`. `position` is that of the last update.
+  virtual void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                                 const LinearisationWeights& weights, Linearisation& to) const;
+
+  /// The rest of -df/dx at `velocity`: product += (-df/dx - K) direction. Only where has_asymmetric_part().
+  virtual bool has_asymmetric_part() const { return false; }
+  virtual void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
+                                      const Vec3Field& velocity, const Vec3Field& direction,
+                                      Vec3Field& product) const;
 };
 
 }  // namespace cloth

@@ -1,5 +1,7 @@
 #include "forces/force_model.h"
 
+#include <algorithm>
+
 #include "forces/air.h"
 #include "forces/gravity.h"
 #include "forces/pull_force.h"
@@ -67,6 +69,34 @@ Work ForceModel::power(const Vec3Field& velocity) const {
   for (const auto& force : forces_) force->add_power(velocity, power);
   if (pull_) pull_->add_power(velocity, power);
   return power;
+}
+
+void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights& weights,
+                           Linearisation& result) const {
+  std::size_t springs = 0;
+  for (const SpringRun& run : system_->springs) springs += static_cast<std::size_t>(run.count);
+  result.nodes.resize(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double m = system_->mass[i];
+    result.nodes[i] = {m, 0, 0, m, 0, m};
+  }
+  result.springs.assign(springs, {});
+  result.has_compressed = false;
+  for (const auto& force : forces_) force->add_linearisation(*system_, position, weights, result);
+  if (pull_) pull_->add_linearisation(*system_, position, weights, result);
+}
+
+bool ForceModel::has_asymmetric_part() const {
+  return std::any_of(forces_.begin(), forces_.end(),
+                     [](const auto& force) { return force->has_asymmetric_part(); });
+}
+
+void ForceModel::asymmetric_product(const Vec3Field& position, const Vec3Field& velocity,
+                                    const Vec3Field& direction, Vec3Field& product) const {
+  product.fill(0);
+  for (const auto& force : forces_)
+    if (force->has_asymmetric_part())
+      force->add_asymmetric_product(*system_, position, velocity, direction, product);
 }
 
 void ForceModel::set_brush(const std::optional<BrushGust>& brush) {

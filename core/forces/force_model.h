@@ -34,6 +34,14 @@ class ForceModel {
   bool has_damping() const { return has_damping_; }
   bool has_power() const { return has_power_; }
 
+  /// A = M + weights.velocity D + weights.position K at the last update, whose positions are `position`.
+  void linearise(const Vec3Field& position, const LinearisationWeights& weights, Linearisation& result) const;
+
+  /// product = (-df/dx - K) direction at `velocity`, the part of the exact Jacobian that K leaves out.
+  bool has_asymmetric_part() const;
+  void asymmetric_product(const Vec3Field& position, const Vec3Field& velocity, const Vec3Field& direction,
+                          Vec3Field& product) const;
+
   /// Solves (m + weight D) v = m known + weight p for the velocity of the free particles: the damping centred
   /// in time. `velocity` holds the guess and becomes the answer; pinned particles keep 0. Returns the
   /// iterations of conjugate gradients that were needed; 0 where D does not couple particles and the solution

@@ -18,6 +18,8 @@ class PullForce : public Force {
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
   void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
 
  private:
   std::size_t held() const { return static_cast<std::size_t>(pull_.particle); }

@@ -66,6 +66,31 @@ void SpringForce::update(const ClothSystem& system, const Vec3Field& position, d
   });
 }
 
+/// -dp_i/dx_i = k (a a^T + (1 - L/|d|) (I - a a^T)) with a = d/|d|. A spring without direction has no slope
+/// of its own; k I bounds it.
+void SpringForce::add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                                    const LinearisationWeights& weights, Linearisation& to) const {
+  std::size_t spring = 0;
+  for (const SpringRun& run : system.springs) {
+    const double k = weights.position * run.stiffness;
+    for (int s = 0; s < run.count; ++s, ++spring) {
+      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
+      const Vec3 d = position[j] - position[i];
+      const double length = d.norm();
+      if (!(length > 0)) {
+        to.springs[spring] += {k, 0, 0, k, 0, k};
+        continue;
+      }
+      double transverse = 1 - run.rest_length / length;
+      if (transverse < 0) {
+        to.has_compressed = true;
+        if (weights.clamped) transverse = 0;
+      }
+      to.springs[spring] += block_along(k * transverse, k * (1 - transverse), d / length);
+    }
+  }
+}
+
 std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position) {
   std::array<double, 3> energy{};
   for (const SpringRun& run : system.springs)
@@ -110,6 +135,31 @@ void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) c
     add_to_ends(g, first, run.offset, count, product);
     spring += static_cast<std::size_t>(count);
   });
+}
+
+void SpringDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
+                                      const LinearisationWeights& weights, Linearisation& to) const {
+  const double along = weights.velocity * damping_;
+  for (std::size_t s = 0; s < to.springs.size(); ++s) to.springs[s] += block_along(0, along, direction_[s]);
+}
+
+/// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
+void SpringDamping::add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
+                                           const Vec3Field& velocity, const Vec3Field& direction,
+                                           Vec3Field& product) const {
+  std::size_t spring = 0;
+  for (const SpringRun& run : system.springs) {
+    for (int s = 0; s < run.count; ++s, ++spring) {
+      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
+      const double length = (position[j] - position[i]).norm();
+      if (!(length > 0)) continue;
+      const Vec3 e = direction_[spring], u = velocity[j] - velocity[i], dd = direction[j] - direction[i];
+      const Vec3 de = (dd - e.dot(dd) * e) / length;
+      const Vec3 change = damping_ * (u.dot(de) * e + u.dot(e) * de);  // of F_i
+      product.add(i, -change);
+      product.add(j, change);
+    }
+  }
 }
 
 bool SpringDamping::add_node_damping(NodeDamping&) const {

@@ -10,6 +10,8 @@ namespace cloth {
 class SpringForce : public Force {
  public:
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
 };
 
 /// sum 1/2 k (|d| - L)^2 per family, in J, indexed by SpringFamily.
@@ -24,6 +26,11 @@ class SpringDamping : public Force {
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
   void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
+  bool has_asymmetric_part() const override { return true; }
+  void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
+                              const Vec3Field& direction, Vec3Field& product) const override;
 
  private:
   double damping_;  ///< N s/m

@@ -21,4 +21,10 @@ void ViscousDamping::add_power(const Vec3Field& velocity, Work& power) const {
   power.damping_loss += coefficient_ * dot(velocity.flat(), velocity.flat());
 }
 
+void ViscousDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
+                                       const LinearisationWeights& weights, Linearisation& to) const {
+  const double diagonal = weights.velocity * coefficient_;
+  for (SymmetricBlock& node : to.nodes) node += {diagonal, 0, 0, diagonal, 0, diagonal};
+}
+
 }  // namespace cloth

@@ -13,6 +13,8 @@ class ViscousDamping : public Force {
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
   void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
 
  private:
   double coefficient_;  ///< N s/m

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "integrators/euler.h"
+#include "integrators/implicit_methods.h"
 #include "integrators/rk4.h"
 #include "integrators/verlet.h"
 #include "scene/scene.h"
@@ -22,6 +23,11 @@ std::unique_ptr<Integrator> made(const IntegratorChoice&) {
   return std::make_unique<Method>();
 }
 
+template <class Method>
+std::unique_ptr<Integrator> made_with_newton(const IntegratorChoice& choice) {
+  return std::make_unique<Method>(choice.tolerance, static_cast<int>(choice.newton_iterations));
+}
+
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
       {{"explicit-euler", "Explicit Euler", 1, 1, "Euler 1768"}, made<ExplicitEuler>},
@@ -29,6 +35,14 @@ const std::vector<Entry>& registry() {
        made<SemiImplicitEuler>},
       {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)", true}, made<Verlet>},
       {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
+      {{"implicit-euler", "Implicit Euler", 1, 0, "Baraff and Witkin 1998", false, MethodSettings::newton},
+       made_with_newton<ImplicitEuler>},
+      {{"implicit-midpoint", "Implicit midpoint", 2, 0, "Volino and Magnenat-Thalmann 2005", false,
+        MethodSettings::newton},
+       made_with_newton<ImplicitMidpoint>},
+      {{"bdf2", "BDF2", 2, 0, "Curtiss and Hirschfelder 1952; Choi and Ko 2002", false,
+        MethodSettings::newton},
+       made_with_newton<Bdf2>},
   };
   return entries;
 }

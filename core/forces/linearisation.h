@@ -1,0 +1,55 @@
+// The symmetric part of a linearised step, A = M + weight_velocity D + weight_position K with K = -dp/dx, as
+// one 3x3 block for every particle and one for every spring: A = diag(node) + sum over springs of
+// (e_i - e_j) B (e_i - e_j)^T. What of -df/dx is not symmetric (a drag whose normal turns, a damper that
+// turns) is a product only: Force::add_asymmetric_product.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+/// A symmetric 3x3 block.
+struct SymmetricBlock {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  SymmetricBlock& operator+=(const SymmetricBlock& other) {
+    xx += other.xx, xy += other.xy, xz += other.xz, yy += other.yy, yz += other.yz, zz += other.zz;
+    return *this;
+  }
+  Vec3 operator*(const Vec3& v) const {
+    return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
+            xz * v.x() + yz * v.y() + zz * v.z()};
+  }
+  Eigen::Matrix3d matrix() const {
+    Eigen::Matrix3d m;
+    m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return m;
+  }
+};
+
+/// isotropic * I + along * n n^T
+inline SymmetricBlock block_along(double isotropic, double along, const Vec3& n) {
+  return {isotropic + along * n.x() * n.x(), along * n.x() * n.y(), along * n.x() * n.z(),
+          isotropic + along * n.y() * n.y(), along * n.y() * n.z(), isotropic + along * n.z() * n.z()};
+}
+
+/// What the parts of A are weighted with, and whether the transverse stiffness of compressed springs counts.
+struct LinearisationWeights {
+  double position = 1;   ///< of K, s^2 in a step
+  double velocity = 1;   ///< of D, s in a step
+  bool clamped = false;  ///< leaves out k (1 - L/|d|) where it is negative: A is then positive definite
+};
+
+struct Linearisation {
+  std::vector<SymmetricBlock> nodes;    ///< one of each particle
+  std::vector<SymmetricBlock> springs;  ///< run after run, in the order of ClothSystem::springs
+  bool has_compressed = false;          ///< a spring is shorter than its rest length: clamping would matter
+
+  /// product = A direction; pinned particles get 0.
+  void multiply(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
+};
+
+}  // namespace cloth

@@ -1,0 +1,172 @@
+#include "integrators/implicit/implicit_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cloth/sums.h"
+
+namespace cloth {
+namespace {
+
+constexpr double linear_tolerance = 1e-4;  // of an iterative solve within an iteration of Newton's method
+constexpr double accepted_work = 0.9;      // of the residual along a step that is long enough
+constexpr int most_halvings = 12;
+constexpr double good_enough = 1e-3;  // relative change after the last iteration that is still taken
+
+double largest_component(const Vec3Field& field) {
+  double largest = 0;
+  for (const double value : field.flat()) {
+    if (!(std::abs(value) <= std::numeric_limits<double>::max()))
+      return value;  // not finite: seen by callers
+    largest = std::max(largest, std::abs(value));
+  }
+  return largest;
+}
+
+int place_of_largest(const Vec3Field& field) {
+  int at = 0;
+  double largest = -1;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double size = field[i].norm();
+    if (!std::isfinite(size)) return static_cast<int>(i);
+    if (size > largest) largest = size, at = static_cast<int>(i);
+  }
+  return at;
+}
+
+void clear_pinned(const ClothSystem& system, Vec3Field& field) {
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (system.pinned[i]) field.set(i, Vec3::Zero());
+}
+
+double work_along(const Vec3Field& direction, const Vec3Field& residual) {
+  return dot(direction.flat(), residual.flat());
+}
+
+}  // namespace
+
+void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                             const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
+  position = *equation.position;
+  add_scaled(equation.weight, velocity, position);
+  forces.update(position, equation.time);
+  forces.force(velocity, force_);
+  ++report.force_evaluations;
+  const std::span<const double> v = velocity.flat(), v0 = equation.velocity->flat(), f = force_.flat();
+  const auto r = residual_.flat();
+  const std::size_t size = velocity.size();
+  for (std::size_t k = 0; k < r.size(); ++k)
+    r[k] = system.mass[k % size] * (v[k] - v0[k]) - equation.weight * f[k];
+  clear_pinned(system, residual_);
+}
+
+/// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite.
+bool ImplicitStage::solve_symmetric(const ClothSystem& system, const LinearisationWeights& weights,
+                                    IntegratorReport& report) {
+  linear_method_ = choose_linear_method(system, weights);
+  Vec3Field right_hand_side = residual_;
+  for (double& value : right_hand_side.flat()) value = -value;
+  if (linear_method_ == LinearMethod::cholesky) {
+    ++report.factorisations;
+    if (!factors_.factorise(system, linearisation_)) return false;
+    factors_.solve(right_hand_side, downhill_);
+    return true;
+  }
+  jacobi_.prepare(system, linearisation_);
+  const KrylovReport krylov = conjugate_gradients(
+      [&](const Vec3Field& in, Vec3Field& out) { linearisation_.multiply(system, in, out); },
+      [&](const Vec3Field& in, Vec3Field& out) { jacobi_.solve(in, out); }, right_hand_side, linear_tolerance,
+      downhill_);
+  report.linear_iterations += krylov.iterations;
+  return !krylov.indefinite;
+}
+
+void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces,
+                                   const StageEquation& equation, const Vec3Field& velocity,
+                                   const Vec3Field& position, IntegratorReport& report) {
+  const double h = equation.weight;
+  LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
+  forces.linearise(position, weights, linearisation_);
+  if (!solve_symmetric(system, weights, report)) {
+    weights.clamped = true;
+    forces.linearise(position, weights, linearisation_);
+    solve_symmetric(system, weights, report);
+  }
+  direction_ = downhill_;
+  if (!forces.has_asymmetric_part()) return;
+
+  Vec3Field turned(velocity.size()), right_hand_side = residual_;
+  for (double& value : right_hand_side.flat()) value = -value;
+  const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
+    linearisation_.multiply(system, in, out);
+    forces.asymmetric_product(position, velocity, in, turned);
+    add_scaled(h * h, turned, out);
+    clear_pinned(system, out);
+  };
+  const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
+    linear_method_ == LinearMethod::cholesky ? factors_.solve(in, out) : jacobi_.solve(in, out);
+  };
+  report.linear_iterations +=
+      minimal_residuals(jacobian, preconditioner, right_hand_side, linear_tolerance, direction_).iterations;
+  if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
+}
+
+/// Goes along the direction, less far where the residual's work along it has grown. Returns the largest
+/// change.
+double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                                Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
+  start_ = velocity;
+  const double before = work_along(direction_, residual_);
+  const double reach = largest_component(direction_);
+  double length = 1;
+  for (int halving = 0;; ++halving) {
+    velocity = start_;
+    add_scaled(length, direction_, velocity);
+    evaluate(system, forces, equation, velocity, position, report);
+    const double after = work_along(direction_, residual_);
+    if (std::abs(after) <= accepted_work * std::abs(before) || after <= 0 || halving == most_halvings) break;
+    const double secant = std::isfinite(after) ? before / (before - after) : 0;
+    length *= std::clamp(secant, 0.1, 0.5);
+  }
+  return length * reach;
+}
+
+void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                          Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
+  const std::size_t size = velocity.size();
+  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = start_ = Vec3Field(size);
+  evaluate(system, forces, equation, velocity, position, report);
+
+  // Positions are rounded to eps |x|: velocities that differ by eps |x| / h are the same.
+  const double rounding =
+      64 * std::numeric_limits<double>::epsilon() * largest_component(position) / equation.weight;
+  double scale = std::max(largest_component(velocity), largest_component(*equation.velocity));
+  double relative = 0;
+  for (int n = 0; n < most_iterations_; ++n) {
+    find_direction(system, forces, equation, velocity, position, report);
+    const double change = take_step(system, forces, equation, velocity, position, report);
+    ++report.iterations;
+    if (!std::isfinite(change) || !std::isfinite(largest_component(residual_))) {
+      report.failure = {place_of_largest(residual_),
+                        "the forces of an iteration of Newton's method are not finite"};
+      return;
+    }
+    scale = std::max(scale, largest_component(velocity));
+    relative = change > 0 ? change / scale : 0;
+    if (change <= tolerance_ * scale + rounding) {
+      report.residual = std::max(report.residual, relative);
+      return;
+    }
+  }
+  report.residual = std::max(report.residual, relative);
+  if (relative <= good_enough) return;
+  report.failure = {place_of_largest(residual_),
+                    fmt::format("Newton's method did not converge: after {} iterations the velocities still "
+                                "change by {:.2g} of the largest",
+                                most_iterations_, relative)};
+}
+
+}  // namespace cloth

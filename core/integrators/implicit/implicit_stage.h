@@ -1,0 +1,55 @@
+// One implicit stage, the same for every implicit method: the velocity v with
+//
+//     M (v - v0) = weight f(x0 + weight v, v, time)
+//
+// by Newton's method in v. Implicit Euler takes weight = h, the midpoint rule h/2, BDF2 2h/3.
+//
+// Each iteration solves with the exact Jacobian; the transverse stiffness of compressed springs, which makes
+// it indefinite, is left out only when it is (Choi and Ko 2002), so that Newton goes downhill and does not
+// end at a saddle. A line search on the work of the residual along the direction (Matthies and Strang 1979)
+// needs no energy, which drag and dampers do not have.
+#pragma once
+
+#include "integrators/implicit/linear_solver.h"
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+struct StageEquation {
+  double weight = 0;                    ///< s
+  double time = 0;                      ///< s, at which the forces are taken
+  const Vec3Field* position = nullptr;  ///< x0, m
+  const Vec3Field* velocity = nullptr;  ///< v0, m/s
+};
+
+class ImplicitStage {
+ public:
+  /// `tolerance`: change of the velocities at which iterations end, relative to the largest speed.
+  ImplicitStage(double tolerance, int most_iterations)
+      : tolerance_(tolerance), most_iterations_(most_iterations) {}
+
+  /// `velocity` holds the guess and becomes the solution, `position` becomes x0 + weight v; the force model
+  /// stands there afterwards. Adds its cost to `report`, and the failure if there is one.
+  void solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+             Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
+
+ private:
+  void evaluate(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
+  void find_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                      const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
+  bool solve_symmetric(const ClothSystem& system, const LinearisationWeights& weights,
+                       IntegratorReport& report);
+  double take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                   Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
+
+  double tolerance_;
+  int most_iterations_;
+  CholeskyFactors factors_;
+  BlockJacobi jacobi_;
+  LinearMethod linear_method_ = LinearMethod::cholesky;
+  Linearisation linearisation_;
+  Vec3Field force_, residual_, downhill_, direction_, start_;
+};
+
+}  // namespace cloth

@@ -1,0 +1,87 @@
+#include "integrators/implicit_methods.h"
+
+#include <utility>
+
+namespace cloth {
+
+IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                                     ClothState& state, Work& work) {
+  IntegratorReport report;
+  velocity_ = state.velocity;
+  stage_.solve(
+      system, forces,
+      {.weight = times.step, .time = times.end, .position = &state.position, .velocity = &state.velocity},
+      velocity_, position_, report);
+  std::swap(state.position, position_);
+  std::swap(state.velocity, velocity_);
+  if (forces.has_power()) work += times.step * forces.power(state.velocity);
+  return report;
+}
+
+IntegratorReport ImplicitMidpoint::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                                        ClothState& state, Work& work) {
+  IntegratorReport report;
+  const double half = 0.5 * times.step;
+  velocity_ = state.velocity;
+  stage_.solve(
+      system, forces,
+      {.weight = half, .time = times.begin + half, .position = &state.position, .velocity = &state.velocity},
+      velocity_, position_, report);
+  if (forces.has_power()) work += times.step * forces.power(velocity_);
+  add_scaled(times.step, velocity_, state.position);
+  const auto v = state.velocity.flat();
+  const auto middle = velocity_.flat();
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] = 2 * middle[k] - v[k];
+  return report;
+}
+
+IntegratorReport Bdf2::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                            ClothState& state, Work& work) {
+  if (history_ == History::held && times.step != step_before_) history_ = History::broken;
+  Work of_step;
+  IntegratorReport report;
+  if (history_ == History::held) {
+    report = multistep(system, forces, times, state, of_step);
+  } else {
+    before_ = state;
+    report = history_ == History::none ? midpoint_.step(system, forces, times, state, of_step)
+                                       : euler_.step(system, forces, times, state, of_step);
+  }
+  history_ = History::held;
+  step_before_ = times.step;
+  work_before_ = of_step;
+  work += of_step;
+  return report;
+}
+
+IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                                 ClothState& state, Work& work) {
+  IntegratorReport report;
+  const double weight = 2.0 / 3 * times.step;
+  const auto extrapolate = [](const Vec3Field& now, const Vec3Field& before, Vec3Field& known) {
+    known = now;
+    const auto from = before.flat();
+    const auto to = known.flat();
+    for (std::size_t k = 0; k < to.size(); ++k) to[k] += (to[k] - from[k]) / 3;
+  };
+  extrapolate(state.position, before_.position, known_position_);
+  extrapolate(state.velocity, before_.velocity, known_velocity_);
+  velocity_ = state.velocity;
+  stage_.solve(
+      system, forces,
+      {.weight = weight, .time = times.end, .position = &known_position_, .velocity = &known_velocity_},
+      velocity_, position_, report);
+  before_.position = std::move(state.position);
+  before_.velocity = std::move(state.velocity);
+  state.position = position_;
+  state.velocity = velocity_;
+  work += (1.0 / 3) * work_before_;
+  if (forces.has_power()) work += weight * forces.power(state.velocity);
+  return report;
+}
+
+void Bdf2::forget(Change change) {
+  if (change == Change::state && history_ == History::held) history_ = History::broken;
+}
+
+}  // namespace cloth

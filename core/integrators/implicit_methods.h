@@ -1,0 +1,60 @@
+// The three implicit methods. Each is one ImplicitStage and what surrounds it.
+#pragma once
+
+#include "integrators/implicit/implicit_stage.h"
+
+namespace cloth {
+
+/// v' = v + h a(x', v', t'), x' = x + h v': order 1, damps every oscillation by omega h/2.
+class ImplicitEuler : public Integrator {
+ public:
+  ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  ImplicitStage stage_;
+  Vec3Field velocity_, position_;
+};
+
+/// v' = v + h a((x + x')/2, (v + v')/2, t + h/2): order 2, keeps the energy of linear oscillations.
+class ImplicitMidpoint : public Integrator {
+ public:
+  ImplicitMidpoint(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  ImplicitStage stage_;
+  Vec3Field velocity_, position_;
+};
+
+/// y' = 4/3 y(n) - 1/3 y(n-1) + 2/3 h f(y', t') for y = (x, v, work) (Curtiss and Hirschfelder 1952): order
+/// 2, damps what it cannot resolve. The very first step is a midpoint step; one after the limiter, a contact
+/// or an edit has changed the state is a step of implicit Euler, since the history then bends.
+class Bdf2 : public Integrator {
+ public:
+  Bdf2(double tolerance, int most_iterations)
+      : stage_(tolerance, most_iterations),
+        midpoint_(tolerance, most_iterations),
+        euler_(tolerance, most_iterations) {}
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+  void forget(Change change) override;
+
+ private:
+  IntegratorReport multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                             ClothState& state, Work& work);
+
+  enum class History { none, broken, held };
+  History history_ = History::none;
+  ImplicitStage stage_;
+  ImplicitMidpoint midpoint_;
+  ImplicitEuler euler_;
+  ClothState before_;       ///< y(n-1), in use where the history is held
+  double step_before_ = 0;  ///< s
+  Work work_before_;        ///< J, of the last step
+  Vec3Field known_position_, known_velocity_, velocity_, position_;
+};
+
+}  // namespace cloth

@@ -1,5 +1,5 @@
-// The linearised forces against finite differences: A = M + b D + a K and the asymmetric rest together are the
-// exact Jacobian M - b df/dv - a df/dx of every force that a scene can have.
+// The linearised forces against finite differences: A = M + b D + a K and the asymmetric rest together are
+// the exact Jacobian M - b df/dv - a df/dx of every force that a scene can have.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace cloth::test {
 namespace {
 
-constexpr double a = 0.3, b = 0.7;  // weights of -df/dx and -df/dv
+constexpr double of_positions = 0.3, of_velocities = 0.7;  // weights of -df/dx and -df/dv
 
 Vec3Field force_at(DirectRun& run, const Vec3Field& position, const Vec3Field& velocity) {
   Vec3Field force(position.size());
@@ -28,12 +28,14 @@ Vec3Field moved(const Vec3Field& from, double by, const Vec3Field& along) {
   return to;
 }
 
-/// M u - b df/dv u - a df/dx u by central differences; zero on pins.
+/// M u - of_velocities df/dv u - of_positions df/dx u by central differences; zero on pins.
 Vec3Field difference_product(DirectRun& run, const Vec3Field& u) {
   constexpr double shift = 1e-6;
   const ClothState& s = run.state;
-  const Vec3Field ahead = force_at(run, moved(s.position, a * shift, u), moved(s.velocity, b * shift, u));
-  const Vec3Field behind = force_at(run, moved(s.position, -a * shift, u), moved(s.velocity, -b * shift, u));
+  const Vec3Field ahead =
+      force_at(run, moved(s.position, of_positions * shift, u), moved(s.velocity, of_velocities * shift, u));
+  const Vec3Field behind = force_at(run, moved(s.position, -of_positions * shift, u),
+                                    moved(s.velocity, -of_velocities * shift, u));
   Vec3Field product(u.size());
   for (std::size_t i = 0; i < u.size(); ++i)
     if (!run.system.pinned[i])
@@ -45,11 +47,13 @@ Vec3Field exact_product(DirectRun& run, const Vec3Field& u) {
   Linearisation linearisation;
   Vec3Field product(u.size()), rest(u.size());
   force_at(run, run.state.position, run.state.velocity);
-  run.forces.linearise(run.state.position, {.position = a, .velocity = b, .clamped = false}, linearisation);
+  run.forces.linearise(run.state.position,
+                       {.position = of_positions, .velocity = of_velocities, .clamped = false},
+                       linearisation);
   linearisation.multiply(run.system, u, product);
   run.forces.asymmetric_product(run.state.position, run.state.velocity, u, rest);
   for (std::size_t i = 0; i < u.size(); ++i)
-    if (!run.system.pinned[i]) product.add(i, a * rest[i]);
+    if (!run.system.pinned[i]) product.add(i, of_positions * rest[i]);
   return product;
 }
 
@@ -134,7 +138,8 @@ TEST(LinearSolvers, AllFindTheSameSolution) {
   run.state = crumpled_state(run.system, 0.003, 0, random);
   run.forces.update(run.state.position, 0);
   Linearisation linearisation;
-  run.forces.linearise(run.state.position, {.position = 1e-4, .velocity = 1e-2, .clamped = true}, linearisation);
+  run.forces.linearise(run.state.position, {.position = 1e-4, .velocity = 1e-2, .clamped = true},
+                       linearisation);
   Vec3Field b = random.field(run.state.position.size(), 1);
   for (std::size_t i = 0; i < b.size(); ++i)
     if (run.system.pinned[i]) b.set(i, Vec3::Zero());

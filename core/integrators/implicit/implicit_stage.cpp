@@ -63,10 +63,11 @@ void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, cons
   clear_pinned(system, residual_);
 }
 
-/// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite.
-bool ImplicitStage::solve_symmetric(const ClothSystem& system, const LinearisationWeights& weights,
+/// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite, or where
+/// conjugate gradients did not get there.
+bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod method,
                                     IntegratorReport& report) {
-  linear_method_ = choose_linear_method(system, weights);
+  linear_method_ = method;
   Vec3Field right_hand_side = residual_;
   for (double& value : right_hand_side.flat()) value = -value;
   if (linear_method_ == LinearMethod::cholesky) {
@@ -81,7 +82,7 @@ bool ImplicitStage::solve_symmetric(const ClothSystem& system, const Linearisati
       [&](const Vec3Field& in, Vec3Field& out) { jacobi_.solve(in, out); }, right_hand_side, linear_tolerance,
       downhill_);
   report.linear_iterations += krylov.iterations;
-  return !krylov.indefinite;
+  return krylov.converged;
 }
 
 void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces,
@@ -90,10 +91,11 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   const double h = equation.weight;
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
   forces.linearise(position, weights, linearisation_);
-  if (!solve_symmetric(system, weights, report)) {
+  const LinearMethod method = choose_linear_method(system, weights);
+  if (!solve_symmetric(system, method, report)) {
     weights.clamped = true;
     forces.linearise(position, weights, linearisation_);
-    solve_symmetric(system, weights, report);
+    if (!solve_symmetric(system, method, report)) solve_symmetric(system, LinearMethod::cholesky, report);
   }
   direction_ = downhill_;
   if (!forces.has_asymmetric_part()) return;

@@ -38,8 +38,7 @@ class ImplicitStage {
                 const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
   void find_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                       const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
-  bool solve_symmetric(const ClothSystem& system, const LinearisationWeights& weights,
-                       IntegratorReport& report);
+  bool solve_symmetric(const ClothSystem& system, LinearMethod method, IntegratorReport& report);
   double take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                    Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
 

@@ -52,6 +52,7 @@ KrylovReport conjugate_gradients(const LinearMap& matrix, const LinearMap& preco
     slope = next;
     ++report.iterations;
   }
+  report.converged = !report.indefinite && slope <= goal && slope >= 0;
   return report;
 }
 
@@ -147,6 +148,7 @@ KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& precond
     residual = right_hand_side;
     add_scaled(-1, image, residual);
   }
+  report.converged = std::sqrt(dot(residual, residual)) <= goal;
   return report;
 }
 

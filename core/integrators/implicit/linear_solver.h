@@ -48,6 +48,7 @@ class BlockJacobi {
 struct KrylovReport {
   int iterations = 0;
   bool indefinite = false;  ///< a direction of negative curvature was met
+  bool converged = false;
 };
 
 /// Preconditioned conjugate gradients from zero, to `tolerance` relative to the right-hand side in the

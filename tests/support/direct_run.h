@@ -21,6 +21,8 @@ class DirectRun {
   /// The acceleration of every particle at the present state, in m/s^2; zero on pins.
   Vec3Field acceleration();
 
+  Integrator& integrator() { return *integrator_; }
+
   ClothSystem system;
   ClothState state;
   ForceModel forces;

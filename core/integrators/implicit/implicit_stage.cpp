@@ -12,7 +12,7 @@ namespace cloth {
 namespace {
 
 constexpr double linear_tolerance = 1e-4;  // of an iterative solve within an iteration of Newton's method
-constexpr double accepted_work = 0.9;      // of the residual along a step that is long enough
+constexpr double accepted_work = 0.5;      // of the residual along a step that is long enough
 constexpr int most_halvings = 12;
 constexpr double good_enough = 1e-3;  // relative change after the last iteration that is still taken
 

@@ -1,0 +1,191 @@
+// The implicit methods solve their own equations, keep what they must keep, and say so where they cannot.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrators/implicit_methods.h"
+#include "measure/energy.h"
+#include "scene/builtin_scenes.h"
+#include "simulation/simulation.h"
+#include "support/direct_run.h"
+#include "support/scenes.h"
+#include "support/states.h"
+
+namespace cloth::test {
+namespace {
+
+IntegratorChoice tight(const std::string& method) {
+  IntegratorChoice choice{method};
+  choice.tolerance = 1e-12;
+  return choice;
+}
+
+/// Everything that a scene can have that acts on velocities or turns with the cloth.
+Scene windy_scene() {
+  Scene scene = smooth_scene(6, 6);
+  scene.springs->damping = 0.05;
+  return scene;
+}
+
+/// M (v - v0) - weight f(x, v, t), the largest component in N s.
+double equation_residual(DirectRun& run, const Vec3Field& before, double weight, const Vec3Field& position,
+                         const Vec3Field& velocity, double time) {
+  Vec3Field force(position.size());
+  run.forces.update(position, time);
+  run.forces.force(velocity, force);
+  double largest = 0;
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (!run.system.pinned[i])
+      largest = std::max(
+          largest,
+          (run.system.mass[i] * (velocity[i] - before[i]) - weight * force[i]).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+Vec3Field combination(double a, const Vec3Field& x, double b, const Vec3Field& y) {
+  Vec3Field sum(x.size());
+  add_scaled(a, x, sum);
+  add_scaled(b, y, sum);
+  return sum;
+}
+
+constexpr double long_step = 0.02;  // s, omega h = 13 in the windy scene
+
+TEST(ImplicitEuler, SolvesItsEquationWithEveryForce) {
+  DirectRun run(windy_scene(), tight("implicit-euler"));
+  for (int n = 0; n < 10; ++n) {
+    const ClothState before = run.state;
+    run.advance(1, long_step);
+    const ClothState after = run.state;
+    EXPECT_LE(equation_residual(run, before.velocity, long_step, after.position, after.velocity, after.time),
+              1e-11);
+    EXPECT_LE(largest_distance(after.position, combination(1, before.position, long_step, after.velocity)),
+              1e-15);
+  }
+}
+
+TEST(ImplicitMidpoint, SolvesItsEquationWithEveryForce) {
+  DirectRun run(windy_scene(), tight("implicit-midpoint"));
+  for (int n = 0; n < 10; ++n) {
+    const ClothState before = run.state;
+    run.advance(1, long_step);
+    const ClothState after = run.state;
+    const Vec3Field middle = combination(0.5, before.position, 0.5, after.position);
+    const Vec3Field velocity = combination(0.5, before.velocity, 0.5, after.velocity);
+    EXPECT_LE(equation_residual(run, before.velocity, 0.5 * long_step, middle, velocity,
+                                before.time + 0.5 * long_step),
+              1e-11);
+    EXPECT_LE(largest_distance(after.position, combination(1, before.position, long_step, velocity)), 1e-15);
+  }
+}
+
+TEST(Bdf2, SolvesItsEquationWithEveryForceFromTheSecondStepOn) {
+  DirectRun run(windy_scene(), tight("bdf2"));
+  ClothState older = run.state;
+  run.advance(1, long_step);
+  for (int n = 1; n < 10; ++n) {
+    const ClothState before = run.state;
+    run.advance(1, long_step);
+    const ClothState after = run.state;
+    const Vec3Field known = combination(4.0 / 3, before.velocity, -1.0 / 3, older.velocity);
+    EXPECT_LE(equation_residual(run, known, 2.0 / 3 * long_step, after.position, after.velocity, after.time),
+              1e-11);
+    Vec3Field position = combination(4.0 / 3, before.position, -1.0 / 3, older.position);
+    add_scaled(2.0 / 3 * long_step, after.velocity, position);
+    EXPECT_LE(largest_distance(after.position, position), 1e-14);
+    older = before;
+  }
+}
+
+TEST(ImplicitMidpoint, KeepsMomentumAndAngularMomentumOfAFreeCloth) {
+  Scene scene = bare_sheet(7, 7);
+  scene.springs = SpringMaterial{.structural = 500, .shear = 200, .flexion = 50};
+  DirectRun run(scene, tight("implicit-midpoint"));
+  run.state = waving_state(run.system, 0.1, 1);
+  const Vec3 before = momentum(run.system, run.state), turning = angular_momentum(run.system, run.state);
+  run.advance(100, 0.005);
+  EXPECT_LE((momentum(run.system, run.state) - before).norm(), 1e-12 * before.norm());
+  EXPECT_LE((angular_momentum(run.system, run.state) - turning).norm(), 1e-9 * turning.norm());
+}
+
+TEST(NewtonsMethod, IsQuadraticOnAStretchedCloth) {
+  DirectRun run(smooth_scene(6, 6), tight("implicit-euler"));
+  Integrator& integrator = run.integrator();
+  int iterations = 0;
+  for (int n = 0; n < 20; ++n) {
+    const IntegratorReport report =
+        integrator.step(run.system, run.forces, {n * 0.01, (n + 1) * 0.01, 0.01}, run.state, run.work);
+    ASSERT_FALSE(report.failure);
+    iterations = std::max(iterations, report.iterations);
+    EXPECT_LE(report.residual, 1e-12 + 1e-10);
+  }
+  EXPECT_LE(iterations, 12);  // of a tolerance of 1e-12: a linear rate would take some forty
+}
+
+TEST(NewtonsMethod, ThatMayNotIterateEnoughStopsWithParticleAndCause) {
+  Scene scene = builtin_scene("wind");
+  scene.deformation.reset();
+  scene.springs->structural = scene.springs->shear = 1e7;
+  scene.integrator = {"implicit-euler", 0.1};
+  scene.integrator.newton_iterations = 1;
+  Simulation simulation(scene);
+  std::optional<Divergence> stop;
+  for (int n = 0; n < 20 && !stop; ++n) stop = simulation.step();
+  ASSERT_TRUE(stop);
+  EXPECT_TRUE(stop->solver_failed);
+  EXPECT_NE(stop->cause.find("Newton's method did not converge"), std::string::npos);
+  EXPECT_NE(describe(*stop).find("stopped in step"), std::string::npos);
+  EXPECT_GE(stop->particle, 0);
+}
+
+class Implicit : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Implicit, FinishesEveryStiffnessAtASixtiethOfASecond) {
+  for (double stiffness = 1; stiffness <= 1e9; stiffness *= 10) {
+    Scene scene = builtin_scene("corners-free");
+    scene.cloth.rows = scene.cloth.columns = 9;
+    scene.springs =
+        SpringMaterial{.structural = stiffness, .shear = 0.5 * stiffness, .flexion = 0.1 * stiffness};
+    scene.integrator = {GetParam(), 1.0 / 60};
+    Simulation simulation(scene);
+    for (int n = 0; n < 30; ++n) {
+      const auto stop = simulation.step();
+      ASSERT_FALSE(stop) << "k = " << stiffness << ": " << describe(*stop);
+    }
+    EXPECT_TRUE(all_finite(simulation.state())) << stiffness;
+  }
+}
+
+TEST_P(Implicit, GivesTheSameBitsTwice) {
+  Scene scene = windy_scene();
+  scene.integrator = {GetParam(), long_step};
+  const auto run = [&] {
+    Simulation simulation(scene);
+    for (int n = 0; n < 20; ++n) simulation.step();
+    return simulation.state();
+  };
+  EXPECT_EQ(run(), run());
+}
+
+TEST_P(Implicit, CountsItsIterationsAndSolves) {
+  Scene scene = windy_scene();
+  scene.integrator = {GetParam(), long_step};
+  Simulation simulation(scene);
+  for (int n = 0; n < 10; ++n) ASSERT_FALSE(simulation.step());
+  EXPECT_GE(simulation.count().iterations, 10);
+  EXPECT_GT(simulation.count().factorisations + simulation.count().linear_iterations, 0);
+  EXPECT_GE(simulation.count().force_evaluations, simulation.count().iterations + 10);
+  EXPECT_LE(simulation.count().largest_residual, scene.integrator.tolerance);
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
+  std::string name = method.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Method, Implicit, ::testing::Values("implicit-euler", "implicit-midpoint", "bdf2"),
+                         test_name);
+
+}  // namespace
+}  // namespace cloth::test

@@ -102,6 +102,14 @@ void DormandPrince::accept(double step, ClothState& state, Work& work) {
   std::swap(power_[0], power_[last]);
 }
 
+/// Within a step what is not finite spreads from spring to spring: the particle where it began.
+int DormandPrince::first_without_slope() const {
+  for (int s = 0; s < stages; ++s)
+    for (int i = 0; i < static_cast<int>(position_.size()); ++i)
+      if (!speed_[s][i].allFinite() || !acceleration_[s][i].allFinite()) return i;
+  return 0;
+}
+
 /// Of the displacement, or of the velocity times the step where that is larger.
 DormandPrince::LargestError DormandPrince::estimated_error(const ClothSystem& system, double step) const {
   const double allowed = tolerance_ * system.diagonal;
@@ -113,7 +121,8 @@ DormandPrince::LargestError DormandPrince::estimated_error(const ClothSystem& sy
       sped += error_weight[s] * acceleration_[s][i];
     }
     const double error = step * std::max(moved.norm(), step * sped.norm()) / allowed;
-    if (!std::isfinite(moved.sum() + sped.sum() + error)) return {std::numeric_limits<double>::infinity(), i};
+    if (!std::isfinite(moved.sum() + sped.sum() + error))
+      return {std::numeric_limits<double>::infinity(), first_without_slope()};
     if (error > largest.value) largest = {error, i};
   }
   return largest;

@@ -53,6 +53,7 @@ class DormandPrince : public Integrator {
   void attempt(const ClothSystem& system, ForceModel& forces, const ClothState& from, const StepTimes& inner,
                IntegratorReport& report);
   void accept(double step, ClothState& state, Work& work);
+  int first_without_slope() const;
   LargestError estimated_error(const ClothSystem& system, double step) const;
   void control(const ClothSystem& system, ForceModel& forces, const StepTimes& times, ClothState& state,
                Work& work, IntegratorReport& report);

@@ -49,6 +49,10 @@ std::string step_text(const std::optional<double>& step) {
   return std::isfinite(*step) ? fmt::format("{:.6g} s", *step) : "any";
 }
 
+std::string evaluations_text(const cloth::MethodFacts& facts) {
+  return facts.evaluations_per_step > 0 ? fmt::format("{}", facts.evaluations_per_step) : "as needed";
+}
+
 std::string to_text(const Explanation& e) {
   std::string text =
       fmt::format("{}\n{} particles ({} rows x {} columns), {} pinned\n\nStages of a step\n", e.scene.title,
@@ -67,7 +71,7 @@ std::string to_text(const Explanation& e) {
   for (const MethodLimit& method : e.methods)
     text += fmt::format("{} {:<22} {:>5} {:>12} {:>16} {:>16}\n",
                         method.facts.name == e.scene.integrator.method ? "*" : " ", method.facts.name,
-                        method.facts.order, method.facts.evaluations_per_step, step_text(method.stable_step),
+                        method.facts.order, evaluations_text(method.facts), step_text(method.stable_step),
                         step_text(method.auto_step));
   const auto step = cloth::resolved_time_step(e.scene);
   text += step ? fmt::format("\nRun with {} at {:.6g} s{}\n", e.scene.integrator.method, *step,
@@ -79,6 +83,10 @@ std::string to_text(const Explanation& e) {
 json finite(const std::optional<double>& value) {
   if (!value) return nullptr;
   return std::isfinite(*value) ? json(*value) : json("infinity");
+}
+
+json evaluations_json(const cloth::MethodFacts& facts) {
+  return facts.evaluations_per_step > 0 ? json(facts.evaluations_per_step) : json(nullptr);
 }
 
 std::string to_json(const Explanation& e) {
@@ -98,7 +106,7 @@ std::string to_json(const Explanation& e) {
   for (const MethodLimit& method : e.methods)
     root["methods"].push_back({{"name", method.facts.name},
                                {"order", method.facts.order},
-                               {"evaluations_per_step", method.facts.evaluations_per_step},
+                               {"evaluations_per_step", evaluations_json(method.facts)},
                                {"stable_step_s", finite(method.stable_step)},
                                {"auto_step_s", finite(method.auto_step)}});
   root["method"] = e.scene.integrator.method;

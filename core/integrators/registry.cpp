@@ -4,6 +4,7 @@
 #include <cassert>
 #include <functional>
 
+#include "integrators/dormand_prince.h"
 #include "integrators/euler.h"
 #include "integrators/implicit_methods.h"
 #include "integrators/rk4.h"
@@ -35,6 +36,9 @@ const std::vector<Entry>& registry() {
        made<SemiImplicitEuler>},
       {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)", true}, made<Verlet>},
       {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
+      {{"dormand-prince", "Dormand-Prince 5(4)", 5, 0, "Dormand and Prince 1980", true,
+        MethodSettings::error_control},
+       [](const IntegratorChoice& choice) { return std::make_unique<DormandPrince>(choice.tolerance); }},
       {{"implicit-euler", "Implicit Euler", 1, 0, "Baraff and Witkin 1998", false, MethodSettings::newton},
        made_with_newton<ImplicitEuler>},
       {{"implicit-midpoint", "Implicit midpoint", 2, 0, "Volino and Magnenat-Thalmann 2005", false,

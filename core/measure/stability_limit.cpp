@@ -67,8 +67,8 @@ bool is_square(const GridCell& cell) {
          std::abs(cell.across.dot(cell.down)) <= 1e-12 * across * down;
 }
 
-/// Whether `method` chooses its own steps in this scene, so that none that is given is too long. None does
-/// yet: the one place that decides it.
+/// Whether `method` chooses its own steps in this scene, so that none that is given is too long: the
+/// one place that decides it.
 bool adapts_its_steps(const std::string& method, const Scene& scene) {
   return method == "dormand-prince" && scene.integrator.tolerance > 0;
 }

@@ -61,6 +61,12 @@ StageInfo contact_stage(const Scene& scene) {
           fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s")};
 }
 
+std::string evaluations_text(const MethodFacts& method) {
+  const int count = method.evaluations_per_step;
+  if (count == 0) return "as many force evaluations a step as needed";
+  return fmt::format("{} force evaluation{} a step", count, count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 std::vector<StageInfo> explain_stages(const Scene& scene) {
@@ -80,8 +86,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   stages.push_back(wind_stage(scene));
   stages.push_back(
       {"integrate", true,
-       fmt::format("{}: order {}, {} force evaluation{} a step", method.title, method.order,
-                   method.evaluations_per_step, method.evaluations_per_step == 1 ? "" : "s") +
+       fmt::format("{}: order {}, {}", method.title, method.order, evaluations_text(method)) +
            (method.keeps_force && moved_later ? ", one more after a step that the stages below changed"
                                               : "")});
   stages.push_back(limiter_stage(scene, system));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,10 +12,12 @@
 namespace cloth::test {
 namespace {
 
-nlohmann::json explained(const std::string& arguments) {
+using Json = nlohmann::json;
+
+Json explained(const std::string& arguments) {
   const CommandResult result = cli("explain " + arguments + " --json");
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  return nlohmann::json::parse(result.output);
+  return Json::parse(result.output);
 }
 
 TEST(Explain, SaysWhichStagesAreInAndWhyTheRestIsLeftOut) {
@@ -52,9 +55,12 @@ TEST(Explain, GivesTheFrequencyItsBoundAndEveryMethodsStep) {
     for (const auto& method : json["methods"]) {
       const auto limit = stable_step(method["name"].get<std::string>(), scene);
       if (limit)
-        EXPECT_EQ(method["stable_step_s"], *limit) << builtin.name;
+        EXPECT_EQ(method["stable_step_s"], std::isfinite(*limit) ? Json(*limit) : Json("infinity"))
+            << builtin.name;
       else
         EXPECT_TRUE(method["stable_step_s"].is_null() && method["auto_step_s"].is_null()) << builtin.name;
+      const int evaluations = facts_of(method["name"].get<std::string>()).evaluations_per_step;
+      EXPECT_EQ(method["evaluations_per_step"], evaluations > 0 ? Json(evaluations) : Json()) << builtin.name;
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "integrators/registry.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
@@ -20,6 +21,12 @@ std::vector<std::string> problems_of(const std::string& text, const std::vector<
 }
 
 using Texts = std::vector<std::string>;
+
+std::string quoted(const Texts& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
+  return list;
+}
 
 TEST(SceneReader, GivesFileLineColumnKeyValueAndRule) {
   EXPECT_EQ(problems_of("{\n"
@@ -133,9 +140,7 @@ TEST(SceneReader, NamesValuesOfTheWrongType) {
           "29: integrator.time_step = \"quick\": must be a number or \"auto\"");
   refused("\"integrator\": {\"time_step\": 0}", "29: integrator.time_step = 0 s: must be > 0");
   refused("\"integrator\": {\"method\": \"euler\"}",
-          "26: integrator.method = \"euler\": must be one of \"explicit-euler\", \"semi-implicit-euler\", "
-          "\"verlet\", "
-          "\"rk4\"");
+          "26: integrator.method = \"euler\": must be one of " + quoted(integrator_names()));
   refused("\"deformation\": {\"springs\": [\"flexion\"]}",
           "28: deformation.springs = [\"flexion\"]: must be one of [], [\"structural\"], [\"structural\", "
           "\"shear\"]");

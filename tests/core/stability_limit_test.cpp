@@ -132,6 +132,7 @@ TEST(GuaranteedStep, IsShorterByTheRatioOfTheFrequencies) {
   Scene scene;
   scene.cloth = bare_sheet(10, 10, 1, 1).cloth;
   scene.springs = SpringMaterial{.structural = 1, .shear = 1, .flexion = 1, .damping = 0};
+  scene.integrator.tolerance = 0;  // no error control, which would need no limit
   EXPECT_NEAR(guaranteed_step("verlet", scene).value(), 0.4082, 0.51e-4);  // numerics.md 3.2
   EXPECT_NEAR(stable_step("verlet", scene).value(), 0.6285, 0.51e-4);
   EXPECT_NEAR(stable_step("rk4", scene).value(), 0.8889, 0.51e-4);
@@ -155,6 +156,13 @@ TEST(StableStep, IsNoneForExplicitEulerWithoutDampingOfEveryMotion) {
 TEST(StableStep, IsAnyLengthWhereNothingOscillates) {
   for (const auto& [method, limits] : table)
     EXPECT_EQ(stable_step(method, bare_sheet(5, 5)), infinity) << method;
+}
+
+TEST(StableStep, IsAnyLengthWhereErrorControlDividesTheStep) {
+  const Scene scene = smooth_scene(6, 6);
+  EXPECT_GT(scene.integrator.tolerance, 0);
+  EXPECT_EQ(stable_step("dormand-prince", scene), infinity);
+  EXPECT_EQ(guaranteed_step("dormand-prince", scene), infinity);
 }
 
 TEST(StableStep, HoldsForEverySlowerMotionToo) {

@@ -1,12 +1,25 @@
 #include "support/direct_run.h"
 
+#include <stdexcept>
+
 #include "cloth/grid.h"
 #include "integrators/registry.h"
 
 namespace cloth::test {
 
+IntegratorChoice exactly(const std::string& method, std::optional<double> time_step) {
+  IntegratorChoice choice{method, time_step};
+  choice.tolerance = facts_of(method).settings == MethodSettings::error_control ? 0 : 1e-12;
+  choice.projective_iterations = choice.xpbd_iterations = 200;
+  choice.substeps = 1;
+  return choice;
+}
+
 DirectRun::DirectRun(const Scene& scene, const IntegratorChoice& choice)
-    : system(make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
+    : DirectRun(make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{})), scene, choice) {}
+
+DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoice& choice)
+    : system(std::move(made)),
       state(starting_state(system)),
       forces(scene, system),
       integrator_(make_integrator(choice)) {}
@@ -15,7 +28,11 @@ void DirectRun::advance(int steps, double step) {
   for (int n = 0; n < steps; ++n) {
     const auto now = static_cast<double>(state.step);
     const StepTimes times{now * step, (now + 1) * step, step};
-    force_evaluations += integrator_->step(system, forces, times, state, work).force_evaluations;
+    const IntegratorReport report = integrator_->step(system, forces, times, state, work);
+    if (report.failure) throw std::runtime_error(report.failure->cause);
+    force_evaluations += report.force_evaluations;
+    inner_steps += report.inner_steps;
+    rejected_steps += report.rejected_steps;
     ++state.step;
     state.time = times.end;
   }

@@ -8,14 +8,20 @@
 
 namespace cloth::test {
 
+/// The method with settings that leave nothing but its step to decide the answer: iterations run to rounding,
+/// no error control, no substeps.
+IntegratorChoice exactly(const std::string& method, std::optional<double> time_step = {});
+
 class DirectRun {
  public:
   DirectRun(const Scene& scene, const IntegratorChoice& choice);
-  DirectRun(const Scene& scene, const std::string& method) : DirectRun(scene, IntegratorChoice{method}) {}
+  DirectRun(const Scene& scene, const std::string& method) : DirectRun(scene, exactly(method)) {}
+  /// A system made by hand; the scene gives the forces beside its springs.
+  DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoice& choice);
   DirectRun(const DirectRun&) = delete;
   DirectRun& operator=(const DirectRun&) = delete;
 
-  /// `steps` steps of length `step`; time goes on as n * step.
+  /// `steps` steps of length `step`; time goes on as n * step. Throws what an integrator gives up for.
   void advance(int steps, double step);
 
   /// The acceleration of every particle at the present state, in m/s^2; zero on pins.
@@ -27,7 +33,7 @@ class DirectRun {
   ClothState state;
   ForceModel forces;
   Work work;
-  int force_evaluations = 0;
+  int force_evaluations = 0, inner_steps = 0, rejected_steps = 0;
 
  private:
   std::unique_ptr<Integrator> integrator_;

@@ -1,0 +1,187 @@
+#include "integrators/dormand_prince.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace cloth {
+namespace {
+
+constexpr int stages = DormandPrince::stage_count;
+constexpr int last = stages - 1;
+
+constexpr std::array<double, stages> node{0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+// Row s leads to stage s; the last row is the solution of order 5.
+constexpr std::array<std::array<double, last>, stages> coupling{{
+    {},
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+}};
+// Weights of order 5 less those of order 4.
+constexpr std::array<double, stages> error_weight{71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
+                                                  -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+
+constexpr double safety = 0.9;
+constexpr double least_factor = 0.2, largest_factor = 10;
+constexpr double history_exponent = 0.04;
+constexpr double error_exponent = 0.2 - 0.75 * history_exponent;
+constexpr double least_remembered_error = 1e-4;
+
+constexpr int most_attempts = 100000;    // of inner steps in one outer step
+constexpr double smallest_step = 1e-14;  // of the outer step
+constexpr double stretch_to_end = 1.01;  // rather than leave a sliver for one more step
+
+}  // namespace
+
+void StepSizeControl::accept(double step, double error) {
+  const double wanted = safety * std::pow(error, -error_exponent) *
+                        std::pow(last_error_, history_exponent);  // error 0: infinity
+  const double factor = std::clamp(wanted, least_factor, rejected_ ? 1.0 : largest_factor);
+  // A step cut short to end on time says little about long ones where it would have grown beyond the bound.
+  const bool cut_short = step < size_ && wanted >= largest_factor && !rejected_;
+  if (!cut_short || step * factor > size_) size_ = step * factor;
+  last_error_ = std::max(error, least_remembered_error);
+  rejected_ = false;
+}
+
+void StepSizeControl::reject(double step, double error) {
+  const double wanted = safety * std::pow(error, -error_exponent);
+  size_ = step * (std::isfinite(error) ? std::clamp(wanted, least_factor, safety) : least_factor);
+  rejected_ = true;
+}
+
+void StepSizeControl::forget_history() {
+  last_error_ = 1;
+  rejected_ = false;
+}
+
+void DormandPrince::forget(Change change) {
+  holds_slope_ = false;
+  if (change == Change::state) control_.forget_history();
+}
+
+/// The slope at position_ and the stage's speed.
+void DormandPrince::evaluate(const ClothSystem& system, ForceModel& forces, int stage, double time,
+                             IntegratorReport& report) {
+  forces.update(position_, time);
+  forces.force(speed_[stage], force_);
+  acceleration_[stage].fill(0);
+  add_acceleration(system, 1, force_, acceleration_[stage]);
+  if (forces.has_power()) power_[stage] = forces.power(speed_[stage]);
+  ++report.force_evaluations;
+}
+
+/// All stages but the first. Leaves the new state in position_ and the last stage's speed.
+void DormandPrince::attempt(const ClothSystem& system, ForceModel& forces, const ClothState& from,
+                            const StepTimes& inner, IntegratorReport& report) {
+  for (int s = 1; s < stages; ++s) {
+    position_ = from.position;
+    speed_[s] = from.velocity;
+    for (int k = 0; k < s; ++k) {
+      if (coupling[s][k] == 0) continue;
+      add_scaled(inner.step * coupling[s][k], speed_[k], position_);
+      add_scaled(inner.step * coupling[s][k], acceleration_[k], speed_[s]);
+    }
+    evaluate(system, forces, s, node[s] == 1 ? inner.end : inner.begin + node[s] * inner.step, report);
+  }
+}
+
+void DormandPrince::accept(double step, ClothState& state, Work& work) {
+  for (int s = 0; s < last; ++s) work += step * coupling[last][s] * power_[s];
+  std::swap(state.position, position_);
+  state.velocity = speed_[last];
+  std::swap(speed_[0], speed_[last]);
+  std::swap(acceleration_[0], acceleration_[last]);
+  std::swap(power_[0], power_[last]);
+}
+
+/// Within a step what is not finite spreads from spring to spring: the particle where it began.
+int DormandPrince::first_without_slope() const {
+  for (int s = 0; s < stages; ++s)
+    for (int i = 0; i < static_cast<int>(position_.size()); ++i)
+      if (!speed_[s][i].allFinite() || !acceleration_[s][i].allFinite()) return i;
+  return 0;
+}
+
+/// Of the displacement, or of the velocity times the step where that is larger.
+DormandPrince::LargestError DormandPrince::estimated_error(const ClothSystem& system, double step) const {
+  const double allowed = tolerance_ * system.diagonal;
+  LargestError largest;
+  for (int i = 0; i < static_cast<int>(position_.size()); ++i) {
+    Vec3 moved = Vec3::Zero(), sped = Vec3::Zero();
+    for (int s = 0; s < stages; ++s) {
+      moved += error_weight[s] * speed_[s][i];
+      sped += error_weight[s] * acceleration_[s][i];
+    }
+    const double error = step * std::max(moved.norm(), step * sped.norm()) / allowed;
+    if (!std::isfinite(moved.sum() + sped.sum() + error))
+      return {std::numeric_limits<double>::infinity(), first_without_slope()};
+    if (error > largest.value) largest = {error, i};
+  }
+  return largest;
+}
+
+void DormandPrince::control(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                            ClothState& state, Work& work, IntegratorReport& report) {
+  report.inner_steps = 0;
+  double elapsed = 0;
+  LargestError error;
+  for (int attempts = 0; attempts < most_attempts; ++attempts) {
+    const double left = times.step - elapsed;
+    const bool ends = stretch_to_end * control_.size() >= left;
+    const double h = ends ? left : control_.size();
+    if (!ends && h < smallest_step * times.step) break;
+    const double begin = times.begin + elapsed;
+    attempt(system, forces, state, {begin, ends ? times.end : begin + h, h}, report);
+    error = estimated_error(system, h);
+    if (!(error.value <= 1)) {
+      ++report.rejected_steps;
+      control_.reject(h, error.value);
+      continue;
+    }
+    accept(h, state, work);
+    control_.accept(h, error.value);
+    ++report.inner_steps;
+    if (ends) return;
+    elapsed += h;
+  }
+  report.failure = SolverFailure{
+      error.particle,
+      fmt::format("error control stopped after {} inner steps and {} rejected ones, {:.3g} s into the step: "
+                  "the size is {:.3g} s, and the last error was {:.3g} of what the tolerance {} allows",
+                  report.inner_steps, report.rejected_steps, elapsed, control_.size(), error.value,
+                  tolerance_)};
+}
+
+IntegratorReport DormandPrince::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                                     ClothState& state, Work& work) {
+  IntegratorReport report;
+  const std::size_t size = state.position.size();
+  if (force_.size() != size) {
+    force_ = Vec3Field(size);
+    acceleration_.fill(Vec3Field(size));
+    holds_slope_ = false;
+  }
+  if (!holds_slope_) {
+    position_ = state.position;
+    speed_[0] = state.velocity;
+    evaluate(system, forces, 0, times.begin, report);
+  }
+  holds_slope_ = true;
+  if (tolerance_ > 0) {
+    control(system, forces, times, state, work, report);
+  } else {
+    attempt(system, forces, state, times, report);
+    accept(times.step, state, work);
+  }
+  return report;
+}
+
+}  // namespace cloth

@@ -1,0 +1,71 @@
+// The Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (1980) for y = (x, v, work): the step goes on
+// with the solution of order 5 (local extrapolation), the difference of the two is its error estimate, and
+// the last stage of a step is the first of the next one. With a tolerance, the method divides the step that
+// it is given: step sizes by the PI control of Gustafsson, as in Hairer, Norsett and Wanner, "Solving
+// Ordinary Differential Equations I", II.4.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+/// Chooses step sizes from error estimates in units of what is allowed, and remembers the last of both.
+class StepSizeControl {
+ public:
+  /// s; no limit before the first step
+  double size() const { return size_; }
+
+  /// A step of length `step` has been accepted, perhaps shorter than size().
+  void accept(double step, double error);
+  /// Or rejected. `error` may be infinite or NaN.
+  void reject(double step, double error);
+  void forget_history();
+
+ private:
+  double size_ = std::numeric_limits<double>::infinity();
+  double last_error_ = 1;
+  bool rejected_ = false;  ///< the last attempt
+};
+
+class DormandPrince : public Integrator {
+ public:
+  static constexpr int stage_count = 7;
+
+  /// `tolerance`: largest displacement error of a step, in diagonals of the sheet. 0: no error control, and
+  /// every step is one step of the method.
+  explicit DormandPrince(double tolerance) : tolerance_(tolerance) {}
+
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+  void forget(Change change) override;
+
+ private:
+  struct LargestError {
+    double value = 0;  ///< in units of what is allowed
+    int particle = 0;
+  };
+
+  void evaluate(const ClothSystem& system, ForceModel& forces, int stage, double time,
+                IntegratorReport& report);
+  void attempt(const ClothSystem& system, ForceModel& forces, const ClothState& from, const StepTimes& inner,
+               IntegratorReport& report);
+  void accept(double step, ClothState& state, Work& work);
+  int first_without_slope() const;
+  LargestError estimated_error(const ClothSystem& system, double step) const;
+  void control(const ClothSystem& system, ForceModel& forces, const StepTimes& times, ClothState& state,
+               Work& work, IntegratorReport& report);
+
+  double tolerance_;
+  StepSizeControl control_;
+  bool holds_slope_ = false;                         ///< the first stage is that of the present state
+  std::array<Vec3Field, stage_count> speed_;         ///< m/s, slope of the position at each stage
+  std::array<Vec3Field, stage_count> acceleration_;  ///< m/s^2
+  std::array<Work, stage_count> power_;              ///< W
+  Vec3Field position_;                               ///< m, of the stage; after the last one the new one
+  Vec3Field force_;                                  ///< N, scratch
+};
+
+}  // namespace cloth

@@ -112,7 +112,8 @@ void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) c
   });
 }
 
-bool SpringDamping::add_node_damping(NodeDamping&) const {
+bool SpringDamping::add_node_damping(NodeDamping& damping) const {
+  damping.along_springs += damping_;
   return false;
 }
 

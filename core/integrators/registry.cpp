@@ -5,8 +5,10 @@
 #include <functional>
 
 #include "integrators/euler.h"
+#include "integrators/projective.h"
 #include "integrators/rk4.h"
 #include "integrators/verlet.h"
+#include "integrators/xpbd.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -29,6 +31,17 @@ const std::vector<Entry>& registry() {
        made<SemiImplicitEuler>},
       {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)", true}, made<Verlet>},
       {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
+      {{"projective", "Projective dynamics", 1, 0, "Liu et al. 2013; Liu, Bouaziz, Kavan 2017", false,
+        MethodSettings::projective},
+       [](const IntegratorChoice& choice) {
+         return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations));
+       }},
+      {{"xpbd", "XPBD", 1, 0, "Macklin, Müller, Chentanez 2016; Macklin et al. 2019", false,
+        MethodSettings::xpbd},
+       [](const IntegratorChoice& choice) {
+         return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
+                                       static_cast<int>(choice.xpbd_iterations));
+       }},
   };
   return entries;
 }

@@ -23,6 +23,7 @@ struct SpringRun {
   int offset = 1;
   double rest_length = 0;  ///< m
   double stiffness = 0;    ///< N/m
+  bool operator==(const SpringRun&) const = default;
 };
 
 struct ClothSystem {

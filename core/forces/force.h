@@ -23,13 +23,15 @@ struct Work {
 };
 
 /// The part of D that does not couple particles: isotropic * I + along_normal * n n^T, and one particle held
-/// by hand.
+/// by hand; and the constants of what else methods bound or take apart.
 struct NodeDamping {
   double isotropic = 0;     ///< N s/m
   double along_normal = 0;  ///< N s/m
   const Vec3Field* normal = nullptr;
   int held_particle = -1;
   double held_isotropic = 0;  ///< N s/m, in addition
+  double held_stiffness = 0;  ///< N/m, of the spring to the hand
+  double along_springs = 0;   ///< N s/m of every spring; the part of D that couples particles
 };
 
 class Force {
@@ -39,6 +41,10 @@ class Force {
   /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
   virtual void update(const ClothSystem& system, const Vec3Field& position, double time,
                       Vec3Field& force) = 0;
+
+  /// Whether this force acts between the ends of springs: methods that treat springs as constraints leave it
+  /// out.
+  virtual bool is_internal() const { return false; }
 
   /// product += D v
   virtual void add_damping(const Vec3Field& velocity, Vec3Field& product) const;

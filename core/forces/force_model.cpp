@@ -47,6 +47,21 @@ void ForceModel::update(const Vec3Field& position, double time) {
   if (pull_) pull_->update(*system_, position, time, position_force_);
 }
 
+void ForceModel::update_external(const Vec3Field& position, double time) {
+  ++evaluations_;
+  position_force_.fill(0);
+  for (const auto& force : forces_)
+    if (!force->is_internal()) force->update(*system_, position, time, position_force_);
+  if (pull_) pull_->update(*system_, position, time, position_force_);
+}
+
+NodeDamping ForceModel::damping_parts() const {
+  NodeDamping parts;
+  for (const auto& force : forces_) force->add_node_damping(parts);
+  if (pull_) pull_->add_node_damping(parts);
+  return parts;
+}
+
 void ForceModel::damping_product(const Vec3Field& velocity, Vec3Field& product) const {
   product.fill(0);
   for (const auto& force : forces_) force->add_damping(velocity, product);

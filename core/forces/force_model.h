@@ -25,6 +25,15 @@ class ForceModel {
   /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it.
   void update(const Vec3Field& position, double time);
 
+  /// The same without springs and their damping. Only position_force() and damping_parts() may follow.
+  void update_external(const Vec3Field& position, double time);
+
+  /// p of the last update, in N.
+  const Vec3Field& position_force() const { return position_force_; }
+
+  /// What D and the pull consist of; the coefficients hold whatever the shape.
+  NodeDamping damping_parts() const;
+
   /// p - D v, in N. Pinned particles have a force too; their inverse mass is 0.
   void force(const Vec3Field& velocity, Vec3Field& result) const;
 

@@ -14,6 +14,7 @@ void PullForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const
 bool PullForce::add_node_damping(NodeDamping& damping) const {
   damping.held_particle = pull_.particle;
   damping.held_isotropic += damping_;
+  damping.held_stiffness += stiffness_;
   return true;
 }
 

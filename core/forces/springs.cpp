@@ -162,7 +162,8 @@ void SpringDamping::add_asymmetric_product(const ClothSystem& system, const Vec3
   }
 }
 
-bool SpringDamping::add_node_damping(NodeDamping&) const {
+bool SpringDamping::add_node_damping(NodeDamping& damping) const {
+  damping.along_springs += damping_;
   return false;
 }
 

@@ -12,6 +12,7 @@ class SpringForce : public Force {
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
+  bool is_internal() const override { return true; }
 };
 
 /// sum 1/2 k (|d| - L)^2 per family, in J, indexed by SpringFamily.
@@ -23,6 +24,7 @@ class SpringDamping : public Force {
   explicit SpringDamping(double damping) : damping_(damping) {}
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+  bool is_internal() const override { return true; }
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
   void add_power(const Vec3Field& velocity, Work& power) const override;

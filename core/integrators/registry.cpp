@@ -7,8 +7,10 @@
 #include "integrators/dormand_prince.h"
 #include "integrators/euler.h"
 #include "integrators/implicit_methods.h"
+#include "integrators/projective.h"
 #include "integrators/rk4.h"
 #include "integrators/verlet.h"
+#include "integrators/xpbd.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -47,6 +49,17 @@ const std::vector<Entry>& registry() {
       {{"bdf2", "BDF2", 2, 0, "Curtiss and Hirschfelder 1952; Choi and Ko 2002", false,
         MethodSettings::newton},
        made_with_newton<Bdf2>},
+      {{"projective", "Projective dynamics", 1, 0, "Liu et al. 2013; Liu, Bouaziz, Kavan 2017", false,
+        MethodSettings::projective},
+       [](const IntegratorChoice& choice) {
+         return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations));
+       }},
+      {{"xpbd", "XPBD", 1, 0, "Macklin, Müller, Chentanez 2016; Macklin et al. 2019", false,
+        MethodSettings::xpbd},
+       [](const IntegratorChoice& choice) {
+         return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
+                                       static_cast<int>(choice.xpbd_iterations));
+       }},
   };
   return entries;
 }

@@ -1,0 +1,64 @@
+// Implicit Euler by iterations with one constant matrix: projective dynamics (Liu et al., Fast Simulation of
+// Mass-Spring Systems, 2013) read as a quasi-Newton method (Liu, Bouaziz, Kavan 2017).
+//
+// A step is the solution v' of  r(v') = M (v' - v) - h f(x + h v', v', t + h) = 0,  x' = x + h v'.
+// From the inertial guess v' = v every iteration takes
+//
+//     v' <- v' - A^-1 r(v'),    A = M + h D_max + h^2 L
+//
+// L is the graph Laplacian of the springs weighted by their stiffness: N x N, the same for x, y and z. A
+// spring's force on its first end is k d - k L_0 d/|d|; with p = L_0 d/|d| held fixed (the local step: the
+// nearest vector of the rest length) the step equation is the linear system A x' = ... of Liu et al. (the
+// global step), and its solution is exactly the iteration above. D_max bounds D whatever the shape: viscous
+// damping and air on the diagonal (n n^T <= I), spring damping as the Laplacian weighted by it (d d^T <= I),
+// the hand's spring and damping on its particle.
+//
+// So A is never less than the derivative of r by springs and damping, and an iteration lowers the incremental
+// potential wherever it is one. Wind is left out of A: its force changes with the normals, but is bounded
+// whatever the shape, and the rest of the iteration contracts; iterates stay bounded in any wind.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+class Projective : public Integrator {
+ public:
+  explicit Projective(int iterations) : iterations_(iterations) {}
+
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  /// All that A consists of.
+  struct Coefficients {
+    double step = 0;
+    double node_damping = 0, spring_damping = 0;
+    int held_particle = -1;
+    double held_damping = 0, held_stiffness = 0;
+    std::vector<SpringRun> springs;
+    std::vector<double> mass;
+    std::vector<std::uint8_t> pinned;
+    bool operator==(const Coefficients&) const = default;
+  };
+
+  bool holds_for(const ClothSystem& system, const Coefficients& numbers) const;
+  bool factor(const ClothSystem& system, Coefficients numbers);
+  Matrix assemble() const;
+  double correct(const ClothSystem& system, const Vec3Field& start_velocity, double h, Vec3Field& velocity);
+
+  int iterations_;
+  Coefficients coefficients_;
+  bool factored_ = false;
+  std::vector<int> row_;   ///< of A, of each particle; -1 where pinned
+  std::vector<int> free_;  ///< the particle of each row
+  Eigen::SimplicialLLT<Matrix> factors_;
+  Vec3Field force_, start_position_, start_velocity_;
+  Eigen::MatrixX3d residual_;  ///< N s
+};
+
+}  // namespace cloth

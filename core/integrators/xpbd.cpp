@@ -1,0 +1,128 @@
+#include "integrators/xpbd.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+double largest_squared_speed(const Vec3Field& velocity) {
+  double largest = 0;
+  for (std::size_t i = 0; i < velocity.size(); ++i) largest = std::max(largest, velocity[i].squaredNorm());
+  return largest;
+}
+
+}  // namespace
+
+/// Inverted after Sherman and Morrison (1950): n is of length one or zero.
+void Xpbd::predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity) {
+  const NodeDamping parts = forces.damping_parts();
+  const Vec3Field& force = forces.position_force();
+  const double along = h * parts.along_normal;
+  spring_damping_ = parts.along_springs;
+  mobility_.assign(velocity.size(), {});
+  for (std::size_t i = 0; i < mobility_.size(); ++i) {
+    if (system.inverse_mass[i] == 0) continue;
+    double mass = system.mass[i] + h * parts.isotropic;
+    if (parts.held_particle == static_cast<int>(i))
+      mass += h * parts.held_isotropic + h * h * parts.held_stiffness;
+    Mobility& mobility = mobility_[i];
+    mobility.isotropic = 1 / mass;
+    if (parts.normal && along > 0) {
+      mobility.normal = (*parts.normal)[i];
+      mobility.along_normal = along / (mass * (mass + along));
+    }
+    velocity.set(i, mobility.times(system.mass[i] * velocity[i] + h * force[i]));
+  }
+}
+
+double Xpbd::visit(const SpringRun& run, std::size_t i, const Vec3Field& start, double h, Vec3& impulse,
+                   Vec3Field& velocity) const {
+  const std::size_t j = i + static_cast<std::size_t>(run.offset);
+  const Mobility &a = mobility_[i], &b = mobility_[j];
+  const double mobility = a.isotropic + b.isotropic;
+  if (mobility == 0) return 0;
+  const auto speed_by = [&](const Vec3& given) -> Vec3 { return a.times(given) + b.times(given); };
+
+  // The direction. A stretched spring pulls: without its impulse its ends lie further apart on the same line,
+  // which is the direction it has after the visit. A compressed one takes the direction as it is.
+  const Vec3 first = start[j] - start[i];
+  const Vec3 speed = velocity[j] - velocity[i];
+  const Vec3 between = first + h * speed;
+  const bool pulls = impulse.dot(between) <= 0;
+  const Vec3 line = pulls ? Vec3(between - h * mobility * impulse) : between;
+  const double length = line.norm();
+  if (!(length > 0)) return 0;
+  const Vec3 d = line / length;
+
+  // What of the impulse lies across. It goes; under compression at most as much at a time as turns the spring
+  // by half its length, because there turning it moves the ends further across.
+  Vec3 across = Vec3::Zero();
+  if (!pulls) {
+    const double reach = h * mobility * impulse.norm();
+    const double removed = 2 * reach > length ? length / (2 * reach) : 1;
+    across = (1 - removed) * (impulse - impulse.dot(d) * d);
+  }
+
+  // Along d, the speed after the visit is affine in lambda: rate + give * lambda.
+  const double give = d.dot(speed_by(d));
+  const double rate = d.dot(speed + speed_by(across - impulse));
+  const double stretch = d.dot(first) + h * rate - run.rest_length;
+  const double lambda = std::isinf(run.stiffness)
+                            ? -stretch / (h * give)
+                            : -h * (run.stiffness * stretch + spring_damping_ * rate) /
+                                  (1 + h * (h * run.stiffness + spring_damping_) * give);
+
+  const Vec3 next = lambda * d + across;
+  const Vec3 speed_i = a.times(next - impulse), speed_j = b.times(next - impulse);
+  impulse = next;
+  velocity.add(i, -speed_i);
+  velocity.add(j, speed_j);
+  return std::max(speed_i.squaredNorm(), speed_j.squaredNorm());
+}
+
+double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
+  double largest = 0;
+  std::size_t spring = 0;
+  for (const SpringRun& run : system.springs) {
+    for (int s = 0; s < run.count; ++s, ++spring) {
+      if (!(run.stiffness > 0)) continue;
+      const auto i = static_cast<std::size_t>(run.first + s);
+      largest = std::max(largest, visit(run, i, start, h, impulse_[spring], velocity));
+    }
+  }
+  return largest;
+}
+
+IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                            ClothState& state, Work& work) {
+  IntegratorReport report;
+  report.inner_steps = substeps_;
+  const double h = times.step / substeps_;
+  std::size_t springs = 0;
+  for (const SpringRun& run : system.springs) springs += static_cast<std::size_t>(run.count);
+
+  for (int n = 0; n < substeps_; ++n) {
+    const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
+    forces.update_external(state.position, end);
+    ++report.force_evaluations;
+    predict(system, forces, h, state.velocity);
+
+    impulse_.assign(springs, Vec3::Zero());
+    double changed = 0;
+    for (int k = 0; k < iterations_; ++k) changed = pass(system, state.position, h, state.velocity);
+    report.iterations += iterations_;
+    const double fastest = largest_squared_speed(state.velocity);
+    report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;
+
+    add_scaled(h, state.velocity, state.position);
+    if (forces.has_power()) {
+      forces.update(state.position, end);
+      ++report.force_evaluations;
+      work += h * forces.power(state.velocity);
+    }
+  }
+  return report;
+}
+
+}  // namespace cloth

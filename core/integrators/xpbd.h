@@ -1,0 +1,55 @@
+// Implicit Euler by Gauss-Seidel passes over the springs: extended position based dynamics (Macklin, Müller,
+// Chentanez, XPBD, 2016), taken in substeps (Macklin et al., Small Steps in Physics Simulation, 2019).
+//
+// A substep of h = time step / substeps first predicts with everything but the springs,
+//
+//     W_i^-1 v* = m_i v_i + h p_i,    W_i^-1 = (m_i + h c) I + h c_a n n^T
+//
+// (p gravity, wind and hand at x and t + h, n the normals at x; the hand adds its h c + h^2 k to W^-1), then
+// passes over the springs in a fixed order. The spring between i and j has gathered an impulse P (N s) on j
+// and -P on i, v = v* + W P, x' = x + h v; with l = |x'_j - x'_i| and d = (x'_j - x'_i)/l it is to become
+//
+//     P = lambda d,    lambda = -h (k (l - L) + k_d d . (v_j - v_i))
+//
+// which, times h, is the paper's constraint of compliance 1/k with its damping term, gamma = k_d / (k h),
+// multiplied by h^2 k. The paper moves positions and takes v = (x' - x)/h at the end; moving velocities
+// instead is the same and does not round off the momentum.
+//
+// The paper adds every change of lambda along the direction of that moment and leaves the earlier ones where
+// they were. Where springs turn within a substep its passes then converge to something beside the implicit
+// Euler step. Here a visit turns the whole of P into the present direction, so that the limit is that step
+// (with normals and wind at the start); on a straight line both are the same.
+#pragma once
+
+#include "integrators/integrator.h"
+
+namespace cloth {
+
+class Xpbd : public Integrator {
+ public:
+  Xpbd(int substeps, int iterations) : substeps_(substeps), iterations_(iterations) {}
+
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work& work) override;
+
+ private:
+  /// W = isotropic * I - along_normal * n n^T, in 1/kg; all 0 where pinned.
+  struct Mobility {
+    double isotropic = 0, along_normal = 0;
+    Vec3 normal{0, 0, 0};
+    Vec3 times(const Vec3& v) const { return isotropic * v - along_normal * normal.dot(v) * normal; }
+  };
+
+  void predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity);
+  /// Over all springs, once; returns the largest squared change of a particle's velocity by a visit.
+  double pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
+  double visit(const SpringRun& run, std::size_t i, const Vec3Field& start, double h, Vec3& impulse,
+               Vec3Field& velocity) const;
+
+  int substeps_, iterations_;
+  std::vector<Mobility> mobility_;
+  std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run
+  double spring_damping_ = 0;  ///< N s/m
+};
+
+}  // namespace cloth

@@ -22,11 +22,10 @@ Scene falling_sheet(double spring_damping) {
   return scene;
 }
 
-/// How far a method falls in n steps of h beyond -g t^2/2: the sum of its own quadrature.
+/// How far a method falls in n steps of h beyond -g t^2/2: the sum of its own quadrature. Order 2 has none.
 double extra_fall(const std::string& method, double t, double h) {
-  if (method == "explicit-euler") return +0.5 * g * t * h;
-  if (method == "semi-implicit-euler") return -0.5 * g * t * h;
-  return 0;
+  if (facts_of(method).order > 1) return 0;
+  return (method == "explicit-euler" ? 0.5 : -0.5) * g * t * h;  // the speed at the start, or at the end
 }
 
 /// Every particle has moved by the same vertical distance and nothing else.
@@ -42,11 +41,12 @@ void expect_parabola(const DirectRun& run, const std::string& method, double h, 
 TEST(FreeFall, IsTheParabolaWhateverTheSpringDamping) {
   for (const double damping : {0.0, 0.001, 0.01, 0.1}) {
     for (const std::string& method : integrator_names()) {
-      const Scene scene = falling_sheet(damping);
+      Scene scene = falling_sheet(damping);
+      scene.integrator = exactly(method);
       // Explicit Euler has no stable step here: rounding grows, so that it falls for a short time only.
       const bool euler = method == "explicit-euler";
-      const double h =
-          0.5 * stable_step(euler ? "semi-implicit-euler" : method, scene).value() * (euler ? 0.01 : 1);
+      const double limit = stable_step(euler ? "semi-implicit-euler" : method, scene).value();
+      const double h = std::min(0.5 * limit * (euler ? 0.01 : 1), 0.01);
       DirectRun run(scene, method);
       run.advance(euler ? 2000 : static_cast<int>(std::lround(0.5 / h)), h);
       expect_parabola(run, method, h, 1e-11);

@@ -43,15 +43,8 @@ Ladder ladder_of(const std::string& method) {
   return ladders.at(method);
 }
 
-/// At these steps local and global iterations gain several digits each: no need to run them to rounding.
-IntegratorChoice choice_of(const std::string& method, std::optional<double> step = {}) {
-  IntegratorChoice choice = exactly(method, step);
-  choice.projective_iterations = choice.xpbd_iterations = 20;
-  return choice;
-}
-
 ClothState solve(const Scene& scene, const std::string& method, int steps, double time) {
-  DirectRun run(scene, choice_of(method));
+  DirectRun run(scene, exactly(method));
   run.advance(steps, time / steps);
   return run.state;
 }
@@ -117,7 +110,7 @@ TEST_P(ObservedOrder, IsTheNominalOneWithSpringDampingToo) {
 
 /// The ledger's error at the horizon, in J, through the loop.
 double ledger_error(Scene scene, const std::string& method, int steps, double time) {
-  scene.integrator = choice_of(method, time / steps);
+  scene.integrator = exactly(method, time / steps);
   Simulation simulation(scene);
   for (int n = 0; n < steps; ++n) simulation.step();
   return std::abs(simulation.measure().energy_error());

@@ -78,7 +78,8 @@ std::string method_settings() {
   for (const auto& [settings, names] : methods) {
     Scene scene;
     scene.integrator.method = names.front();
-    for (const Parameter& parameter : blocks_of(scene).front().parameters)
+    const std::vector<Block> blocks = blocks_of(scene);  // the integrator's comes first
+    for (const Parameter& parameter : blocks.front().parameters)
       if (parameter.path != "integrator.method" && parameter.path != "integrator.time_step")
         rows += row(scene, parameter, fmt::format(" of `{}`", fmt::join(names, "`, `")));
   }

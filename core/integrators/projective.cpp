@@ -1,5 +1,6 @@
 #include "integrators/projective.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cloth {
@@ -65,19 +66,42 @@ bool Projective::factor(const ClothSystem& system, Coefficients numbers) {
   return factored_ = factors_.info() == Eigen::Success;
 }
 
+/// residual_ <- (L L^T)^-1 residual_, its rows in the order of the factors: x, y and z side by side, so that
+/// every entry of L is read once for the three.
+void Projective::solve() {
+  const Matrix& lower = factors_.matrixL().nestedExpression();  // column by column, the diagonal first
+  const int *begin = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
+  const double* value = lower.valuePtr();
+  double* r = residual_.data();
+  const int size = static_cast<int>(free_.size());
+  for (int j = 0; j < size; ++j) {
+    double* of_j = r + 3 * j;
+    for (int axis = 0; axis < 3; ++axis) of_j[axis] /= value[begin[j]];
+    for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
+      for (int axis = 0; axis < 3; ++axis) r[3 * row[k] + axis] -= value[k] * of_j[axis];
+  }
+  for (int j = size - 1; j >= 0; --j) {
+    double* of_j = r + 3 * j;
+    for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
+      for (int axis = 0; axis < 3; ++axis) of_j[axis] -= value[k] * r[3 * row[k] + axis];
+    for (int axis = 0; axis < 3; ++axis) of_j[axis] /= value[begin[j]];
+  }
+}
+
 /// velocity -= A^-1 r; returns the largest change of a particle's speed, relative to the largest speed.
 double Projective::correct(const ClothSystem& system, const Vec3Field& start_velocity, double h,
                            Vec3Field& velocity) {
+  const auto& order = factors_.permutationP().indices();
+  const auto place = [&](std::size_t row) { return order[static_cast<Eigen::Index>(row)]; };
   for (std::size_t row = 0; row < free_.size(); ++row) {
     const auto i = static_cast<std::size_t>(free_[row]);
-    residual_.row(static_cast<Eigen::Index>(row)) =
-        system.mass[i] * (velocity[i] - start_velocity[i]) - h * force_[i];
+    residual_.row(place(row)) = system.mass[i] * (velocity[i] - start_velocity[i]) - h * force_[i];
   }
-  residual_ = factors_.solve(residual_).eval();
+  solve();
   double change = 0, largest = 0;
   for (std::size_t row = 0; row < free_.size(); ++row) {
     const auto i = static_cast<std::size_t>(free_[row]);
-    const Vec3 correction = residual_.row(static_cast<Eigen::Index>(row));
+    const Vec3 correction = residual_.row(place(row));
     velocity.add(i, -correction);
     change = std::max(change, correction.squaredNorm());
     largest = std::max(largest, velocity[i].squaredNorm());

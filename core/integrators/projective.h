@@ -49,6 +49,7 @@ class Projective : public Integrator {
   bool holds_for(const ClothSystem& system, const Coefficients& numbers) const;
   bool factor(const ClothSystem& system, Coefficients numbers);
   Matrix assemble() const;
+  void solve();
   double correct(const ClothSystem& system, const Vec3Field& start_velocity, double h, Vec3Field& velocity);
 
   int iterations_;
@@ -58,7 +59,7 @@ class Projective : public Integrator {
   std::vector<int> free_;  ///< the particle of each row
   Eigen::SimplicialLLT<Matrix> factors_;
   Vec3Field force_, start_position_, start_velocity_;
-  Eigen::MatrixX3d residual_;  ///< N s
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> residual_;  ///< N s
 };
 
 }  // namespace cloth

@@ -77,7 +77,8 @@ void Simulation::assemble() {
   forces_->set_pull(pull_, pull_stiffness_, pull_damping_);
 }
 
-/// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit.
+/// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit. A
+/// method without a limit takes the strongest hand.
 void Simulation::choose_pull_stiffness() {
   const double mass = *std::min_element(system_.mass.begin(), system_.mass.end());
   const SpringMaterial material = material_of(scene_);
@@ -86,6 +87,11 @@ void Simulation::choose_pull_stiffness() {
   const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / time_step_ : 1 / time_step_;
   const double strongest =
       std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
+  if (stable_at_every_step(scene_.integrator.method)) {
+    pull_stiffness_ = strongest;
+    pull_damping_ = std::sqrt(strongest * mass);
+    return;
+  }
   pull_stiffness_ = std::clamp(0.5 * mass * (allowed * allowed - omega * omega), 0.0, strongest);
   pull_damping_ = std::min(std::sqrt(pull_stiffness_ * mass), 0.1 * mass / time_step_);
 }

@@ -11,6 +11,7 @@
 #include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
+#include <cmath>
 
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
@@ -220,7 +221,7 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
   if (shown_status_.divergence) return;
   const QString text = tr("The run %1. The view shows the last good state.")
                            .arg(QString::fromStdString(cloth::describe(*status.divergence)));
-  if (status.divergence->stable_step > 0)
+  if (status.divergence->stable_step > 0 && std::isfinite(status.divergence->stable_step))
     notice_->show("divergence", NoticeBar::Level::error, text, tr("Use auto and restart"), [this] {
       takeStableStep();
       restart();

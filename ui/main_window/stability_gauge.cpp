@@ -46,6 +46,7 @@ StabilityReading read_stability(const cloth::Scene& scene) {
     reading.level = Level::impossible;
   } else if (std::isinf(*limit)) {
     reading.level = Level::unlimited;
+    reading.by_method = scene.springs.has_value();
   } else {
     reading.stable_step = *limit;
     const double fraction = reading.fraction();
@@ -74,7 +75,8 @@ QString StabilityGauge::text() const {
       return reading_.time_step > 0 ? tr("%1, no step is stable").arg(step_text(reading_.time_step))
                                     : tr("No step is stable");
     case Level::unlimited:
-      return tr("%1, any step is stable").arg(step_text(reading_.time_step));
+      return (reading_.by_method ? tr("%1, no limit for small motions") : tr("%1, any step is stable"))
+          .arg(step_text(reading_.time_step));
     default:
       break;
   }
@@ -94,7 +96,10 @@ QString StabilityGauge::explanation() const {
           "diverges at any step.");
       break;
     case Level::unlimited:
-      text += tr("Nothing in this scene limits the step.");
+      text += reading_.by_method ? tr("The method is stable at any step while the motion is small, or "
+                                      "divides the step by itself. "
+                                      "A long step is still less accurate.")
+                                 : tr("Nothing in this scene limits the step.");
       break;
     case Level::stable:
       text += tr("The method is stable for this scene up to %1.").arg(step_text(reading_.stable_step));

@@ -13,6 +13,7 @@ struct StabilityReading {
   enum class Level { unlimited, stable, near, unstable, impossible } level = Level::stable;
   double time_step = 0;    ///< s; 0 where there is none
   double stable_step = 0;  ///< s; 0 where there is none
+  bool by_method = false;  ///< unlimited: the method's doing, not for want of springs
   bool automatic = false;  ///< the step was chosen by "auto"
   double fraction() const { return stable_step > 0 ? time_step / stable_step : 0; }
 };

@@ -18,7 +18,8 @@ namespace cloth {
 namespace {
 
 constexpr int samples_of_a_run = 400;
-constexpr int limit_halvings = 5;  // of the bracket between two cells
+constexpr int steps_between_questions = 64;  // whether to go on
+constexpr int limit_halvings = 5;            // of the bracket between two cells
 
 /// A number in [-1, 1] that is the same everywhere (splitmix64, Steele et al. 2014).
 double next_random(std::uint64_t& state) {
@@ -325,9 +326,9 @@ StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion,
   std::optional<Divergence> divergence;
   while (!divergence && run.state().step < steps) {
     divergence = run.step();
-    if (run.state().step % stride != 0 || divergence) continue;
-    samples.push_back({run.time(), run.measure().energy_error()});
-    if (keep_on && samples.size() % 16 == 0 && !keep_on()) return cell;
+    if (keep_on && run.state().step % steps_between_questions == 0 && !keep_on()) return cell;
+    if (run.state().step % stride == 0 && !divergence)
+      samples.push_back({run.time(), run.measure().energy_error()});
   }
   const EnergyVerdict verdict = judge_energy(samples, scale, criterion);
   cell.status = CellStatus::run;

@@ -26,12 +26,6 @@ std::string csv_limit(double limit) {
   return std::isinf(limit) ? "infinity" : csv_number(limit);
 }
 
-/// A limit for people: "none", "any", "1.23e-03 s".
-std::string limit_text(double limit) {
-  if (std::isinf(limit)) return "any";
-  return limit > 0 ? short_number(limit) + " s" : "none";
-}
-
 std::size_t cell_count(const StabilityMap& map) {
   return map.x_values.size() * map.y_values.size();
 }
@@ -128,6 +122,34 @@ std::size_t count_of(const MethodMap& method, RunClass run_class) {
       }));
 }
 
+std::ptrdiff_t cells_cut_short(const StabilityMap& map) {
+  std::ptrdiff_t count = 0;
+  for (const MethodMap& method : map.methods)
+    count += std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
+      return cell.status == CellStatus::run && cell.steps >= map.options.criterion.most_steps &&
+             cell.wanted_steps > cell.steps;
+    });
+  return count;
+}
+
+/// A sentence where a method's predicted limits do not lie on the map; empty where they do.
+std::string limits_outside(const StabilityMap& map, const MethodMap& method) {
+  const bool x_is_step = map.options.x.path == time_step_path;
+  if (!x_is_step && map.options.y.path != time_step_path) return {};
+  const std::vector<double>& steps = x_is_step ? map.x_values : map.y_values;
+  double shortest = infinity, longest = 0;
+  for (const StabilityCell& cell : method.cells) {
+    shortest = std::min(shortest, cell.limits.predicted);
+    longest = std::max(longest, cell.limits.predicted);
+  }
+  const std::string& title = facts_of(method.method).title;
+  if (std::isinf(shortest)) return title + ": for small motions every step is predicted to be stable.";
+  if (longest <= 0) return title + ": no step is predicted to be stable.";
+  if (longest >= steps.front() && shortest <= steps.back()) return {};
+  return fmt::format("{}: the predicted limit is outside of this map, {} to {} s.", title,
+                     short_number(shortest, 2), short_number(longest, 2));
+}
+
 std::string axis_text(const StudyAxis& axis) {
   return fmt::format("{}={}:{}:{}:{}", axis.path, short_number(axis.low, 6), short_number(axis.high, 6),
                      axis.count, axis.scale == AxisScale::logarithmic ? "log" : "lin");
@@ -146,21 +168,23 @@ HtmlTable agreement_table(const StabilityMap& map, const MethodMap& method) {
   const bool x_is_step = map.options.x.path == time_step_path;
   const StudyAxis& other = x_is_step ? map.options.y : map.options.x;
   HtmlTable table{.caption = method.method, .columns = {}, .rows = {}};
+  const Axis axis = plot_axis(other, map.scene);
+  const std::string unit = axis.unit.empty() ? "" : " (" + axis.unit + ")";
   for (const HtmlText& header :
-       {HtmlText(axis_title(plot_axis(other, map.scene))), HtmlText("measured (s)"),
-        HtmlText("predicted (s)"), HtmlText("measured / predicted"), HtmlText("this grid's spectrum (s)"),
-        HtmlText("measured / spectrum"), HtmlText("guaranteed (s)"), HtmlText("Provot (s)")})
+       {html_code(other.path) + unit, HtmlText("measured (s)"), HtmlText("predicted (s)"), HtmlText("ratio"),
+        HtmlText("spectrum (s)"), HtmlText("ratio"), HtmlText("guaranteed (s)"), HtmlText("Provot (s)")})
     table.columns.push_back({header, Align::right});
   for (const MeasuredLimit& limit : method.measured) {
     HtmlRow row{.cells = {HtmlCell(html_number(limit.other))}};
     if (limit.bracketed())
       row.cells.push_back(HtmlCell(
-          html_number(limit.middle()), Verdict::none,
+          html_number(limit.middle(), 4), Verdict::none,
           fmt::format("stable at {:.5g} s, not at {:.5g} s", limit.longest_stable, limit.shortest_unstable)));
     else
       row.cells.emplace_back(limit.longest_stable > 0 ? "beyond the range" : "below the range");
     const auto add = [&](double value, bool ratio) {
-      row.cells.emplace_back(limit_text(value));
+      row.cells.push_back(finite_positive(value) ? HtmlCell(html_number(value, 4))
+                                                 : HtmlCell(std::isinf(value) ? "any" : "none"));
       if (ratio) row.cells.push_back(limit.bracketed() ? ratio_cell(limit.middle(), value) : HtmlCell(""));
     };
     add(limit.limits.predicted, true);
@@ -188,13 +212,13 @@ void add_agreement(HtmlPage& page, const StabilityMap& map) {
   page.heading("Measured and predicted limits");
   page.paragraph(
       "The measured limit lies between the last stable cell of a row and the first one after it that is not; "
-      "their ratio was halved five more times by runs between them. Predicted is the limit of the method's "
-      "own "
-      "stability polynomial for the largest frequency of the flat unbounded grid at rest; the spectrum "
-      "column "
-      "takes that frequency from this very grid with its pins instead (Lanczos iteration). Where the cloth "
-      "is "
-      "soft it stretches, its frequency rises, and the measured limit falls below the prediction.");
+      "runs between the two have halved the gap five times more. Predicted: the limit of the method's own "
+      "stability polynomial, with the scene's damping, at the largest frequency of the flat unbounded grid "
+      "at "
+      "rest. Spectrum: the same at the largest frequency of this very grid with its pins (Lanczos "
+      "iteration). "
+      "A ratio is measured / the column before it. A finite grid oscillates more slowly than the unbounded "
+      "one, a stretched cloth faster.");
   for (const MethodMap& method : map.methods) {
     if (method.measured.empty()) continue;
     page.heading(facts_of(method.method).title, 3);
@@ -279,6 +303,11 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
         "unstable motion down; the predicted limits know neither.");
   if (map.options.x.path != time_step_path && map.options.y.path != time_step_path)
     text.push_back("Neither axis is the time step: a curve is where the step of the run equals the limit.");
+  if (const auto cut = cells_cut_short(map); cut > 0)
+    text.push_back(fmt::format("{} cells were cut short at {} steps.", cut, c.most_steps));
+  for (const MethodMap& method : map.methods)
+    if (std::string outside = limits_outside(map, method); !outside.empty())
+      text.push_back(std::move(outside));
   if (!map.complete) text.push_back("Interrupted: empty cells were not run.");
   return text;
 }

@@ -98,9 +98,7 @@ std::vector<double> values_of(const StudyAxis& axis) {
 
 Axis plot_axis(const StudyAxis& axis, const Scene& scene) {
   if (axis.path == all_stiffnesses_path)
-    return {.label = "Structural stiffness, shear and flexion in the scene's ratio",
-            .unit = "N/m",
-            .scale = axis.scale};
+    return {.label = "Structural stiffness, others in proportion", .unit = "N/m", .scale = axis.scale};
   const auto parameter = find_parameter(scene, axis.path);
   if (!parameter) return {.label = axis.path, .scale = axis.scale};
   return {.label = parameter->info.label, .unit = parameter->info.unit, .scale = axis.scale};

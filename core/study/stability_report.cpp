@@ -282,11 +282,12 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   text.push_back(fmt::format(
       "Diverged: not finite, or ten times the kinetic energy that the scene could give. Energy growth: the "
       "method created more than {:g} of the energy scale and what it created still grew steadily, {:g} times "
-      "or more over the second half of the run; or it created the whole scale. Stable but inaccurate: "
+      "or more over the second half of the run; or it created the whole scale (at {:g} scales the run "
+      "ends). Stable but inaccurate: "
       "neither, "
       "but the energy error passed {:g} % of the scale. Solver failed: the equations of a step were not "
       "solved. The energy error is the change of the total energy less all works and losses.",
-      c.growth, c.growth_factor, 100 * c.accuracy));
+      c.growth, c.growth_factor, c.hopeless, 100 * c.accuracy));
   text.push_back(
       "Energy scale: weight times diagonal, plus the cloth's kinetic energy at full wind, plus what it "
       "starts "

@@ -133,7 +133,8 @@ TEST(StabilityMap, AgreesWithItsPredictionInEveryRow) {
 
 TEST(StabilityMap, IsTheSameTwiceAndHasItsColumns) {
   const Scene scene = builtin_scene("corners-free");
-  const StabilityOptions options = small_map();
+  StabilityOptions options = small_map();
+  options.methods = {"verlet"};
   const std::string text = stability_csv(run_stability_map(scene, options));
   EXPECT_EQ(text, stability_csv(run_stability_map(scene, options)));
   const CsvTable table = parse_csv(text);
@@ -151,7 +152,7 @@ TEST(StabilityMap, IsTheSameTwiceAndHasItsColumns) {
                                          "steps",
                                          "detail"};
   EXPECT_EQ(table.header, columns);
-  EXPECT_EQ(table.rows.size(), 2u * 6 * 3);
+  EXPECT_EQ(table.rows.size(), 6u * 3);
   std::set<std::string> statuses;
   for (const auto& row : table.rows) {
     ASSERT_EQ(row.size(), columns.size());

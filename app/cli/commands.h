@@ -28,6 +28,19 @@ struct ExplainArguments {
 };
 int explain(const ExplainArguments& arguments);
 
+struct StabilityArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::string x, y;                  ///< PATH=LOW:HIGH:COUNT[:log]; empty: time step over stiffness
+  std::vector<std::string> methods;  ///< empty: those with a limit
+  double periods = 200;
+  int most_steps = 20000;
+  bool full_size = false;
+  std::string folder;
+  bool json = false;
+};
+int stability(const StabilityArguments& arguments);
+
 int schema();
 int parameters();
 

@@ -26,7 +26,42 @@ struct Arguments {
   cli::RunArguments run;
   cli::ScenesArguments scenes;
   cli::ExplainArguments explain;
+  cli::StabilityArguments stability;
 };
+
+void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
+  CLI::App* stability = app.add_subcommand(
+      "stability", "Map where each method is stable over two parameters, with the predicted limits over it");
+  stability->add_option("scene", arguments.scene, scene_help)->required();
+  stability->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
+  stability->add_option("--x", arguments.x,
+                        "PATH=LOW:HIGH:COUNT or PATH=LOW:HIGH:COUNT:log; without it the time step around the "
+                        "predicted limits");
+  stability->add_option("--y", arguments.y,
+                        "Likewise; without it springs.*, all stiffnesses together, a tenth to ten times the "
+                        "scene's. springs.* is the structural stiffness, shear and flexion in proportion");
+  stability
+      ->add_option("--methods", arguments.methods,
+                   "Methods, separated by commas; without it all that have a limit")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  stability->add_option("--periods", arguments.periods, "Length of a run in periods of the fastest motion")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  stability
+      ->add_option("--most-steps", arguments.most_steps,
+                   "After so many steps a run ends, however long it should last")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  stability->add_flag(
+      "--full-size", arguments.full_size,
+      "Run the whole grid; without it larger ones are run with 16 x 16 of the same particles");
+  stability
+      ->add_option("--out", arguments.folder,
+                   "Folder for stability.csv, stability.svg and report.html; made if missing")
+      ->required();
+  stability->add_flag("--json", arguments.json, json_help);
+}
 
 void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* run = app.add_subcommand("run", "Run a scene to its duration");
@@ -50,6 +85,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   explain->add_option("--set", arguments.explain.settings, set_help)->allow_extra_args(false);
   explain->add_flag("--json", arguments.explain.json, json_help);
 
+  add_stability(app, arguments.stability);
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
@@ -72,6 +108,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("run")) return cli::run(arguments.run);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
+  if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

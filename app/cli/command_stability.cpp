@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+
+#include "commands.h"
+#include "console.h"
+#include "integrators/registry.h"
+#include "io/run_folder.h"
+#include "study/stability_report.h"
+
+namespace clothlab::cli {
+namespace {
+
+std::atomic<bool> stability_stop_requested{false};
+extern "C" void request_stability_stop(int) {
+  stability_stop_requested = true;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Part done and time left on a terminal, nothing elsewhere.
+class StabilityProgress {
+ public:
+  StabilityProgress() : shown_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {}
+  ~StabilityProgress() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  void show(double part) {
+    const double elapsed = seconds_since(start_);
+    if (!shown_ || elapsed - last_ < 0.1) return;
+    last_ = elapsed;
+    const double left = part > 0.01 ? elapsed * (1 - part) / part : 0;
+    fmt::print(stderr, "\r{:3.0f} %  {}\033[K", 100 * part,
+               part > 0.01 ? fmt::format("{:.0f} s left", std::ceil(left)) : "");
+    std::fflush(stderr);
+  }
+
+ private:
+  bool shown_;
+  std::chrono::steady_clock::time_point start_;
+  double last_ = 0;
+};
+
+/// Fills in axes and methods, or says what is wrong with them.
+std::vector<cloth::Problem> read_options(const StabilityArguments& arguments, const cloth::Scene& scene,
+                                         cloth::StabilityOptions& options) {
+  options.methods = arguments.methods.empty() ? cloth::methods_with_a_limit() : arguments.methods;
+  options.criterion.periods = arguments.periods;
+  options.criterion.most_steps = arguments.most_steps;
+  options.full_size = arguments.full_size;
+  std::vector<cloth::Problem> problems;
+  std::vector<std::string> known;
+  for (const std::string& method : options.methods) {
+    const auto& names = cloth::integrator_names();
+    if (std::find(names.begin(), names.end(), method) == names.end())
+      problems.push_back({.path = {},
+                          .value = {},
+                          .rule = fmt::format("{}: must be one of {}", method, fmt::join(names, ", ")),
+                          .place = "--methods"});
+    else if (std::find(known.begin(), known.end(), method) == known.end())
+      known.push_back(method);
+  }
+  options.methods = known;
+  const auto read_axis = [&](const std::string& text, const char* option, cloth::StudyAxis& axis) {
+    const auto parsed = cloth::parse_axis(text, option);
+    if (const auto* problem = std::get_if<cloth::Problem>(&parsed))
+      problems.push_back(*problem);
+    else
+      axis = std::get<cloth::StudyAxis>(parsed);
+  };
+  options.x = cloth::default_time_axis(scene, options.methods);
+  options.y = cloth::default_stiffness_axis(scene);
+  if (!arguments.x.empty()) read_axis(arguments.x, "--x", options.x);
+  if (!arguments.y.empty()) read_axis(arguments.y, "--y", options.y);
+  return problems.empty() ? cloth::find_problems(scene, options) : problems;
+}
+
+std::string command_text(const StabilityArguments& arguments) {
+  std::string text = "clothlab-cli stability " + arguments.scene;
+  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  if (!arguments.x.empty()) text += " --x '" + arguments.x + "'";
+  if (!arguments.y.empty()) text += " --y '" + arguments.y + "'";
+  if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
+  if (arguments.periods != StabilityArguments{}.periods)
+    text += fmt::format(" --periods {}", arguments.periods);
+  if (arguments.most_steps != StabilityArguments{}.most_steps)
+    text += fmt::format(" --most-steps {}", arguments.most_steps);
+  if (arguments.full_size) text += " --full-size";
+  return text + " --out " + arguments.folder;
+}
+
+std::optional<cloth::IoError> write_files(const StabilityArguments& arguments, const cloth::StabilityMap& map,
+                                          double wall) {
+  const std::filesystem::path folder = arguments.folder;
+  const std::string svg = cloth::to_svg(cloth::stability_heat_map(map));
+  if (auto error = cloth::write_text_file(folder / "stability.csv", cloth::stability_csv(map))) return error;
+  if (auto error = cloth::write_text_file(folder / "stability.svg", svg)) return error;
+  return cloth::write_text_file(folder / "report.html",
+                                cloth::stability_page(map, svg, command_text(arguments), wall));
+}
+
+}  // namespace
+
+int stability(const StabilityArguments& arguments) {
+  const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
+  if (!loaded.scene) return loaded.exit_code;
+  cloth::StabilityOptions options;
+  const auto problems = read_options(arguments, *loaded.scene, options);
+  if (!problems.empty()) return report(problems);
+  if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
+
+  std::signal(SIGINT, request_stability_stop);
+  std::signal(SIGTERM, request_stability_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
+
+  const auto start = std::chrono::steady_clock::now();
+  cloth::StabilityMap map;
+  {
+    StabilityProgress progress;
+    options.progress = [&](double part) {
+      progress.show(part);
+      return !stability_stop_requested.load();
+    };
+    map = cloth::run_stability_map(*loaded.scene, options);
+  }
+  const double wall = seconds_since(start);
+  if (const auto error = write_files(arguments, map, wall)) return report(*error);
+  const int printed =
+      print(arguments.json ? cloth::stability_json(map)
+                           : cloth::stability_text(map) +
+                                 fmt::format("{:.3g} s; results in {}\n", wall, arguments.folder));
+  if (printed != done) return printed;
+  return map.complete ? done : interrupted;
+}
+
+}  // namespace clothlab::cli

@@ -1,0 +1,429 @@
+#include "study/stability_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "integrators/registry.h"
+#include "io/csv.h"
+#include "report/html_page.h"
+#include "report/machine.h"
+#include "report/svg.h"
+#include "scene/scene_json.h"
+
+namespace cloth {
+namespace {
+
+constexpr int points_of_a_curve = 4;  // between two rows of cells
+
+bool finite_positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+std::string csv_limit(double limit) {
+  return std::isinf(limit) ? "infinity" : csv_number(limit);
+}
+
+std::size_t cell_count(const StabilityMap& map) {
+  return map.x_values.size() * map.y_values.size();
+}
+
+/// A value of each row or column of cells, as a function of the values between and half a cell beyond them.
+std::vector<double> finer_values(const std::vector<double>& values, AxisScale scale) {
+  const bool logarithmic = scale == AxisScale::logarithmic;
+  const auto place = [&](double value) { return logarithmic ? std::log(value) : value; };
+  const double low = place(values.front()), high = place(values.back());
+  const double spacing = (high - low) / static_cast<double>(values.size() - 1);
+  const int count = static_cast<int>(values.size()) * points_of_a_curve;
+  std::vector<double> finer;
+  for (int k = 0; k <= count; ++k) {
+    const double value = low - 0.5 * spacing + (high - low + spacing) * k / count;
+    finer.push_back(logarithmic ? std::exp(value) : value);
+  }
+  return finer;
+}
+
+double interpolated(const std::vector<double>& at, const std::vector<double>& values, double where,
+                    AxisScale scale) {
+  const auto place = [&](double value) { return scale == AxisScale::logarithmic ? std::log(value) : value; };
+  std::size_t k = 1;
+  while (k + 1 < at.size() && where > at[k]) ++k;
+  const double t = (place(where) - place(at[k - 1])) / (place(at[k]) - place(at[k - 1]));
+  return std::exp(std::log(values[k - 1]) + t * std::log(values[k] / values[k - 1]));
+}
+
+using LimitOf = double PredictedLimits::*;
+
+/// Where the time step equals the limit.
+std::vector<std::pair<double, double>> limit_curve(const StabilityMap& map, const MethodMap& method,
+                                                   LimitOf limit) {
+  std::vector<std::pair<double, double>> curve;
+  if (method.cells.size() != cell_count(map)) return curve;
+  const std::size_t columns = map.x_values.size(), rows = map.y_values.size();
+  const bool x_is_step = map.options.x.path == time_step_path,
+             y_is_step = map.options.y.path == time_step_path;
+  if (x_is_step || y_is_step) {
+    const StudyAxis& other = x_is_step ? map.options.y : map.options.x;
+    const std::vector<double>& others = x_is_step ? map.y_values : map.x_values;
+    std::vector<double> limits;
+    for (std::size_t k = 0; k < others.size(); ++k)
+      limits.push_back(method.cells[x_is_step ? k * columns : k].limits.*limit);
+    if (!std::all_of(limits.begin(), limits.end(), finite_positive)) return curve;
+    for (const double value : finer_values(others, other.scale)) {
+      const double step = interpolated(others, limits, value, other.scale);
+      curve.emplace_back(x_is_step ? std::pair(step, value) : std::pair(value, step));
+    }
+    return curve;
+  }
+  // Neither: in each row the first place along x where step / limit passes 1.
+  for (std::size_t iy = 0; iy < rows; ++iy)
+    for (std::size_t ix = 0; ix + 1 < columns; ++ix) {
+      const StabilityCell& left = method.cells[iy * columns + ix];
+      const StabilityCell& right = method.cells[iy * columns + ix + 1];
+      if (!finite_positive(left.limits.*limit) || !finite_positive(right.limits.*limit)) continue;
+      if (!(left.time_step > 0) || !(right.time_step > 0)) continue;
+      const double a = std::log(left.time_step / (left.limits.*limit));
+      const double b = std::log(right.time_step / (right.limits.*limit));
+      if ((a <= 0) == (b <= 0)) continue;
+      const double t = a / (a - b);
+      const bool logarithmic = map.options.x.scale == AxisScale::logarithmic;
+      curve.emplace_back(
+          logarithmic ? left.x * std::pow(right.x / left.x, t) : left.x + t * (right.x - left.x), left.y);
+      break;
+    }
+  return curve;
+}
+
+HeatCell heat_cell(const StabilityCell& cell) {
+  if (cell.status != CellStatus::run) return {.class_index = -1, .note = cell.detail};
+  std::string note =
+      fmt::format("energy error {} of the scale, {} steps", short_number(cell.energy_ratio, 2), cell.steps);
+  if (!cell.detail.empty()) note += "; " + cell.detail;
+  return {.class_index = static_cast<int>(cell.run_class), .note = note};
+}
+
+const MeasuredLimit* worst_limit(const MethodMap& method) {
+  const MeasuredLimit* worst = nullptr;
+  double largest = -1;
+  for (const MeasuredLimit& limit : method.measured) {
+    if (!limit.bracketed() || !finite_positive(limit.limits.predicted)) continue;
+    const double deviation = std::abs(std::log(limit.middle() / limit.limits.predicted));
+    if (deviation > largest) largest = deviation, worst = &limit;
+  }
+  return worst;
+}
+
+std::size_t count_of(const MethodMap& method, RunClass run_class) {
+  return static_cast<std::size_t>(
+      std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
+        return cell.status == CellStatus::run && cell.run_class == run_class;
+      }));
+}
+
+std::ptrdiff_t cells_cut_short(const StabilityMap& map) {
+  std::ptrdiff_t count = 0;
+  for (const MethodMap& method : map.methods)
+    count += std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
+      return cell.status == CellStatus::run && cell.steps >= map.options.criterion.most_steps &&
+             cell.wanted_steps > cell.steps;
+    });
+  return count;
+}
+
+/// A sentence where a method's predicted limits do not lie on the map; empty where they do.
+std::string limits_outside(const StabilityMap& map, const MethodMap& method) {
+  const bool x_is_step = map.options.x.path == time_step_path;
+  if (!x_is_step && map.options.y.path != time_step_path) return {};
+  const std::vector<double>& steps = x_is_step ? map.x_values : map.y_values;
+  double shortest = infinity, longest = 0;
+  for (const StabilityCell& cell : method.cells) {
+    shortest = std::min(shortest, cell.limits.predicted);
+    longest = std::max(longest, cell.limits.predicted);
+  }
+  const std::string& title = facts_of(method.method).title;
+  if (std::isinf(shortest)) return title + ": for small motions every step is predicted to be stable.";
+  if (longest <= 0) return title + ": no step is predicted to be stable.";
+  if (longest >= steps.front() && shortest <= steps.back()) return {};
+  return fmt::format("{}: the predicted limit is outside of this map, {} to {} s.", title,
+                     short_number(shortest, 2), short_number(longest, 2));
+}
+
+std::string axis_text(const StudyAxis& axis) {
+  return fmt::format("{}={}:{}:{}:{}", axis.path, short_number(axis.low, 6), short_number(axis.high, 6),
+                     axis.count, axis.scale == AxisScale::logarithmic ? "log" : "lin");
+}
+
+HtmlCell ratio_cell(double measured, double predicted) {
+  if (!finite_positive(predicted)) return "";
+  const double ratio = measured / predicted;
+  const double away = std::abs(ratio - 1);
+  return HtmlCell(fmt::format("{:.3f}", ratio), away <= 0.03   ? Verdict::good
+                                                : away <= 0.15 ? Verdict::none
+                                                               : Verdict::warn);
+}
+
+HtmlTable agreement_table(const StabilityMap& map, const MethodMap& method) {
+  const bool x_is_step = map.options.x.path == time_step_path;
+  const StudyAxis& other = x_is_step ? map.options.y : map.options.x;
+  HtmlTable table{.caption = method.method, .columns = {}, .rows = {}};
+  const Axis axis = plot_axis(other, map.scene);
+  const std::string unit = axis.unit.empty() ? "" : " (" + axis.unit + ")";
+  for (const HtmlText& header :
+       {html_code(other.path) + unit, HtmlText("measured (s)"), HtmlText("predicted (s)"), HtmlText("ratio"),
+        HtmlText("spectrum (s)"), HtmlText("ratio"), HtmlText("guaranteed (s)"), HtmlText("Provot (s)")})
+    table.columns.push_back({header, Align::right});
+  for (const MeasuredLimit& limit : method.measured) {
+    HtmlRow row{.cells = {HtmlCell(html_number(limit.other))}};
+    if (limit.bracketed())
+      row.cells.push_back(HtmlCell(
+          html_number(limit.middle(), 4), Verdict::none,
+          fmt::format("stable at {:.5g} s, not at {:.5g} s", limit.longest_stable, limit.shortest_unstable)));
+    else
+      row.cells.emplace_back(limit.longest_stable > 0 ? "beyond the range" : "below the range");
+    const auto add = [&](double value, bool ratio) {
+      row.cells.push_back(finite_positive(value) ? HtmlCell(html_number(value, 4))
+                                                 : HtmlCell(std::isinf(value) ? "any" : "none"));
+      if (ratio) row.cells.push_back(limit.bracketed() ? ratio_cell(limit.middle(), value) : HtmlCell(""));
+    };
+    add(limit.limits.predicted, true);
+    add(limit.limits.spectrum, true);
+    add(limit.limits.guaranteed, false);
+    add(limit.limits.provot, false);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+HtmlTable class_table(const StabilityMap& map) {
+  HtmlTable table{.caption = "How many cells ended how", .columns = {{"method"}}, .rows = {}};
+  for (const ClassStyle& style : run_classes()) table.columns.push_back({style.name, Align::right});
+  for (const MethodMap& method : map.methods) {
+    HtmlRow row{.cells = {HtmlCell(html_code(method.method))}};
+    for (int k = 0; k < static_cast<int>(run_classes().size()); ++k)
+      row.cells.emplace_back(std::to_string(count_of(method, static_cast<RunClass>(k))));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+void add_agreement(HtmlPage& page, const StabilityMap& map) {
+  page.heading("Measured and predicted limits");
+  page.paragraph(
+      "The measured limit lies between the last stable cell of a row and the first one after it that is not; "
+      "runs between the two have halved the gap five times more. Predicted: the limit of the method's own "
+      "stability polynomial, with the scene's damping, at the largest frequency of the flat unbounded grid "
+      "at "
+      "rest. Spectrum: the same at the largest frequency of this very grid with its pins (Lanczos "
+      "iteration). "
+      "A ratio is measured / the column before it. A finite grid oscillates more slowly than the unbounded "
+      "one, a stretched cloth faster.");
+  for (const MethodMap& method : map.methods) {
+    if (method.measured.empty()) continue;
+    page.heading(facts_of(method.method).title, 3);
+    if (const MeasuredLimit* worst = worst_limit(method))
+      page.paragraph(fmt::format("Largest deviation: measured / predicted = {:.3f}.",
+                                 worst->middle() / worst->limits.predicted));
+    if (std::any_of(method.measured.begin(), method.measured.end(),
+                    [](const MeasuredLimit& limit) { return limit.stable_beyond; }))
+      page.notice(
+          "In some rows a longer step was stable again beyond the first unstable one: the table gives "
+          "the first change.",
+          Verdict::warn);
+    page.table(agreement_table(map, method));
+  }
+}
+
+}  // namespace
+
+std::string status_of(const StabilityCell& cell) {
+  if (cell.status == CellStatus::not_run) return "not-run";
+  if (cell.status == CellStatus::refused) return "refused";
+  switch (cell.run_class) {
+    case RunClass::accurate:
+      return "accurate";
+    case RunClass::stable_but_inaccurate:
+      return "stable-inaccurate";
+    case RunClass::energy_growth:
+      return "energy-growth";
+    case RunClass::diverged:
+      return "diverged";
+    case RunClass::solver_failed:
+      return "solver-failed";
+  }
+  return "";
+}
+
+std::string stability_csv(const StabilityMap& map) {
+  std::string text =
+      "method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,"
+      "time_step_s,growth_rate_per_s,steps,detail\r\n";
+  for (const MethodMap& method : map.methods)
+    for (const StabilityCell& cell : method.cells) {
+      const bool run = cell.status == CellStatus::run;
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_field(method.method),
+                          csv_number(cell.x), csv_number(cell.y), status_of(cell),
+                          run ? csv_limit(cell.energy_ratio) : "", csv_limit(cell.limits.predicted),
+                          csv_limit(cell.limits.guaranteed), csv_limit(cell.limits.provot),
+                          csv_limit(cell.limits.spectrum), csv_number(cell.time_step),
+                          run ? csv_number(cell.growth_rate) : "", cell.steps, csv_field(cell.detail));
+    }
+  return text;
+}
+
+std::vector<std::string> criterion_text(const StabilityMap& map) {
+  const StabilityCriterion& c = map.options.criterion;
+  std::vector<std::string> text;
+  text.push_back(fmt::format(
+      "Each cell is a run of {:g} periods of the fastest motion, at least {} steps and at most {}, from the "
+      "scene's start with every free particle moved at random by up to {:g} of a cell's length (seed {}).",
+      c.periods, c.least_steps, c.most_steps, c.perturbation, c.perturbation_seed));
+  text.push_back(fmt::format(
+      "Diverged: not finite, or ten times the kinetic energy that the scene could give. Energy growth: the "
+      "method created more than {:g} of the energy scale and what it created still grew steadily, {:g} times "
+      "or more over the second half of the run; or it created the whole scale (at {:g} scales the run "
+      "ends). Stable but inaccurate: "
+      "neither, "
+      "but the energy error passed {:g} % of the scale. Solver failed: the equations of a step were not "
+      "solved. The energy error is the change of the total energy less all works and losses.",
+      c.growth, c.growth_factor, c.hopeless, 100 * c.accuracy));
+  text.push_back(
+      "Energy scale: weight times diagonal, plus the cloth's kinetic energy at full wind, plus what it "
+      "starts "
+      "with, plus a millionth of all springs at twice their length.");
+  const ClothSheet& cloth = map.scene.cloth;
+  if (map.rows != cloth.rows || map.columns != cloth.columns)
+    text.push_back(
+        fmt::format("Run on {} x {} particles instead of {} x {}, with the same cells, particle mass "
+                    "and stiffness: the largest frequency is the same.",
+                    map.rows, map.columns, cloth.rows, cloth.columns));
+  if (map.scene.deformation || !map.scene.obstacles.empty())
+    text.push_back(
+        "The scene has deformation limiting or contact. Both take part in the runs and can hold an "
+        "unstable motion down; the predicted limits know neither.");
+  if (map.options.x.path != time_step_path && map.options.y.path != time_step_path)
+    text.push_back("Neither axis is the time step: a curve is where the step of the run equals the limit.");
+  if (const auto cut = cells_cut_short(map); cut > 0)
+    text.push_back(fmt::format("{} cells were cut short at {} steps.", cut, c.most_steps));
+  for (const MethodMap& method : map.methods)
+    if (std::string outside = limits_outside(map, method); !outside.empty())
+      text.push_back(std::move(outside));
+  if (!map.complete) text.push_back("Interrupted: empty cells were not run.");
+  return text;
+}
+
+HeatMap stability_heat_map(const StabilityMap& map) {
+  HeatMap heat;
+  heat.title = "Stability: " + map.scene.title;
+  heat.subtitle = fmt::format("{} x {} particles, {:g} periods of the fastest motion", map.rows, map.columns,
+                              map.options.criterion.periods);
+  heat.caption = criterion_text(map);
+  heat.x = plot_axis(map.options.x, map.scene);
+  heat.y = plot_axis(map.options.y, map.scene);
+  heat.x_values = map.x_values;
+  heat.y_values = map.y_values;
+  heat.columns = map.options.methods.size() == 4 || map.options.methods.size() < 3 ? 2 : 3;
+  for (const MethodMap& method : map.methods) {
+    HeatPanel panel{.title = facts_of(method.method).title, .cells = {}, .curves = {}};
+    for (const StabilityCell& cell : method.cells) panel.cells.push_back(heat_cell(cell));
+    panel.cells.resize(cell_count(map), HeatCell{.class_index = -1});
+    const auto add = [&](const char* label, Dash dash, LimitOf limit) {
+      auto points = limit_curve(map, method, limit);
+      if (!points.empty()) panel.curves.push_back({label, dash, page_colours().ink, std::move(points)});
+    };
+    add("predicted limit", Dash::solid, &PredictedLimits::predicted);
+    add("guaranteed for any shape", Dash::dashed, &PredictedLimits::guaranteed);
+    add("Provot's criterion", Dash::dotted, &PredictedLimits::provot);
+    heat.panels.push_back(std::move(panel));
+  }
+  return heat;
+}
+
+double largest_deviation(const MethodMap& method) {
+  const MeasuredLimit* worst = worst_limit(method);
+  return worst ? worst->middle() / worst->limits.predicted : 0;
+}
+
+std::string stability_page(const StabilityMap& map, const std::string& svg, const std::string& command,
+                           double wall) {
+  HtmlPage page(
+      "Stability: " + map.scene.title,
+      "Which steps each method can take, measured by running the scene and judged by its energy, with "
+      "the predicted limits over it.");
+  if (!map.complete)
+    page.notice("The study was interrupted. Cells that were not run are empty.", Verdict::warn);
+  page.figure(svg,
+              "Colours and marks are explained in the legend, thresholds below it. A cell's tooltip has its "
+              "energy error, its steps and why it ended.",
+              command);
+  page.table(class_table(map));
+  if (map.options.x.path == time_step_path || map.options.y.path == time_step_path) add_agreement(page, map);
+  page.heading("The criterion");
+  std::vector<HtmlText> items;
+  for (const std::string& paragraph : criterion_text(map)) items.emplace_back(paragraph);
+  page.list(items);
+  page.paragraph(
+      "A finite run finds no instability that grows more slowly than it lasts: Runge-Kutta methods just "
+      "beyond "
+      "their limit grow by some 1e-4 a step, and show as stable here a little beyond the line. A method "
+      "without "
+      "a predicted limit is stable at every step for linear motions only.");
+  page.heading("How it was made");
+  std::vector<std::pair<std::string, HtmlText>> facts{{"scene", map.scene.title},
+                                                      {"scene hash", html_code(scene_hash(map.scene))},
+                                                      {"x axis", html_code(axis_text(map.options.x))},
+                                                      {"y axis", html_code(axis_text(map.options.y))},
+                                                      {"time taken", fmt::format("{:.3g} s", wall)}};
+  for (const auto& [name, value] : fact_rows(machine_facts())) facts.emplace_back(name, value);
+  page.facts(facts);
+  page.begin_details("The scene as given");
+  page.preformatted(write_scene(map.scene));
+  page.end_details();
+  return page.to_html();
+}
+
+std::string stability_text(const StabilityMap& map) {
+  std::string text = fmt::format("{:<22} {:>9} {:>11} {:>9} {:>9} {:>7}   {}\n", "method", "accurate",
+                                 "inaccurate", "growth", "diverged", "failed", "measured / predicted limit");
+  for (const MethodMap& method : map.methods) {
+    text += fmt::format("{:<22}", method.method);
+    constexpr int widths[] = {9, 11, 9, 9, 7};
+    for (int k = 0; k < 5; ++k)
+      text += fmt::format(" {:>{}}", count_of(method, static_cast<RunClass>(k)), widths[k]);
+    const double worst = largest_deviation(method);
+    text += worst > 0 ? fmt::format("   {:.3f} at worst\n", worst) : "\n";
+  }
+  return text;
+}
+
+std::string stability_json(const StabilityMap& map) {
+  using json = nlohmann::ordered_json;
+  const auto limit_json = [](double limit) { return std::isinf(limit) ? json("infinity") : json(limit); };
+  json root{{"scene_hash", scene_hash(map.scene)},
+            {"complete", map.complete},
+            {"rows", map.rows},
+            {"columns", map.columns},
+            {"x", axis_text(map.options.x)},
+            {"y", axis_text(map.options.y)},
+            {"criterion", criterion_text(map)},
+            {"methods", json::array()}};
+  for (const MethodMap& method : map.methods) {
+    json entry{{"name", method.method}, {"cells", json::object()}, {"limits", json::array()}};
+    for (const StabilityCell& cell : method.cells) {
+      json& count = entry["cells"][status_of(cell)];
+      count = count.is_null() ? 1 : count.get<int>() + 1;
+    }
+    for (const MeasuredLimit& limit : method.measured)
+      entry["limits"].push_back({{"at", limit.other},
+                                 {"measured_s", limit.bracketed() ? json(limit.middle()) : json(nullptr)},
+                                 {"predicted_s", limit_json(limit.limits.predicted)},
+                                 {"guaranteed_s", limit_json(limit.limits.guaranteed)},
+                                 {"spectrum_s", limit_json(limit.limits.spectrum)},
+                                 {"provot_s", limit_json(limit.limits.provot)}});
+    root["methods"].push_back(std::move(entry));
+  }
+  return root.dump(2) + "\n";
+}
+
+}  // namespace cloth

@@ -1,0 +1,37 @@
+// A stability map on paper: CSV, SVG and a page that explains itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/heat_map.h"
+#include "study/stability_map.h"
+
+namespace cloth {
+
+/// What a cell is called in stability.csv: "accurate", "stable-inaccurate", "energy-growth", "diverged",
+/// "solver-failed"; "refused" without a step to run with, "not-run" after a stop.
+std::string status_of(const StabilityCell& cell);
+
+/// method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,time_step_s,
+/// growth_rate_per_s,steps,detail; a row for each cell, method after method, from the lowest y.
+std::string stability_csv(const StabilityMap& map);
+
+/// The criterion in sentences, with its thresholds and what was done to the scene.
+std::vector<std::string> criterion_text(const StabilityMap& map);
+
+HeatMap stability_heat_map(const StabilityMap& map);
+
+/// measured / predicted of each bracketed limit that has a finite prediction; the worst one first by
+/// |log ratio|. 0 where there is none.
+double largest_deviation(const MethodMap& method);
+
+/// report.html. `svg` is that of the heat map, `command` what made it, `wall` in s.
+std::string stability_page(const StabilityMap& map, const std::string& svg, const std::string& command,
+                           double wall);
+
+/// For a terminal: a line for each method.
+std::string stability_text(const StabilityMap& map);
+std::string stability_json(const StabilityMap& map);
+
+}  // namespace cloth

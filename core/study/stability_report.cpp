@@ -214,8 +214,7 @@ void add_agreement(HtmlPage& page, const StabilityMap& map) {
       "The measured limit lies between the last stable cell of a row and the first one after it that is not; "
       "runs between the two have halved the gap five times more. Predicted: the limit of the method's own "
       "stability polynomial, with the scene's damping, at the largest frequency of the flat unbounded grid "
-      "at "
-      "rest. Spectrum: the same at the largest frequency of this very grid with its pins (Lanczos "
+      "at rest. Spectrum: the same at the largest frequency of this very grid with its pins (Lanczos "
       "iteration). "
       "A ratio is measured / the column before it. A finite grid oscillates more slowly than the unbounded "
       "one, a stretched cloth faster.");
@@ -282,16 +281,14 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   text.push_back(fmt::format(
       "Diverged: not finite, or ten times the kinetic energy that the scene could give. Energy growth: the "
       "method created more than {:g} of the energy scale and what it created still grew steadily, {:g} times "
-      "or more over the second half of the run; or it created the whole scale (at {:g} scales the run "
-      "ends). Stable but inaccurate: "
+      "or more over the second half of the run; or it created the whole scale. Stable but inaccurate: "
       "neither, "
       "but the energy error passed {:g} % of the scale. Solver failed: the equations of a step were not "
       "solved. The energy error is the change of the total energy less all works and losses.",
-      c.growth, c.growth_factor, c.hopeless, 100 * c.accuracy));
+      c.growth, c.growth_factor, 100 * c.accuracy));
   text.push_back(
       "Energy scale: weight times diagonal, plus the cloth's kinetic energy at full wind, plus what it "
-      "starts "
-      "with, plus a millionth of all springs at twice their length.");
+      "starts with, plus a millionth of all springs at twice their length.");
   const ClothSheet& cloth = map.scene.cloth;
   if (map.rows != cloth.rows || map.columns != cloth.columns)
     text.push_back(
@@ -364,11 +361,8 @@ std::string stability_page(const StabilityMap& map, const std::string& svg, cons
   for (const std::string& paragraph : criterion_text(map)) items.emplace_back(paragraph);
   page.list(items);
   page.paragraph(
-      "A finite run finds no instability that grows more slowly than it lasts: Runge-Kutta methods just "
-      "beyond "
-      "their limit grow by some 1e-4 a step, and show as stable here a little beyond the line. A method "
-      "without "
-      "a predicted limit is stable at every step for linear motions only.");
+      "A run finds no instability that grows more slowly than the run lasts. A method for which every step "
+      "is predicted to be stable is so for small motions, no more.");
   page.heading("How it was made");
   std::vector<std::pair<std::string, HtmlText>> facts{{"scene", map.scene.title},
                                                       {"scene hash", html_code(scene_hash(map.scene))},

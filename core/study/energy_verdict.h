@@ -16,7 +16,6 @@ struct StabilityCriterion {
   unsigned perturbation_seed = 1;  ///< of its random numbers
   double growth = 1e-3;            ///< energy that a method may create, of the energy scale
   double growth_factor = 10;       ///< by which it must still grow in the second half to be an instability
-  double hopeless = 100;           ///< created energy that ends a run, of the energy scale
   double accuracy = 0.01;          ///< energy error of an accurate run, of the energy scale
 };
 

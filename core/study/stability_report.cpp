@@ -8,8 +8,6 @@
 
 #include "integrators/registry.h"
 #include "io/csv.h"
-#include "report/html_page.h"
-#include "report/machine.h"
 #include "report/svg.h"
 #include "scene/scene_json.h"
 
@@ -115,13 +113,6 @@ const MeasuredLimit* worst_limit(const MethodMap& method) {
   return worst;
 }
 
-std::size_t count_of(const MethodMap& method, RunClass run_class) {
-  return static_cast<std::size_t>(
-      std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
-        return cell.status == CellStatus::run && cell.run_class == run_class;
-      }));
-}
-
 std::ptrdiff_t cells_cut_short(const StabilityMap& map) {
   std::ptrdiff_t count = 0;
   for (const MethodMap& method : map.methods)
@@ -150,92 +141,19 @@ std::string limits_outside(const StabilityMap& map, const MethodMap& method) {
                      short_number(shortest, 2), short_number(longest, 2));
 }
 
+}  // namespace
+
+std::size_t count_of(const MethodMap& method, RunClass run_class) {
+  return static_cast<std::size_t>(
+      std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
+        return cell.status == CellStatus::run && cell.run_class == run_class;
+      }));
+}
+
 std::string axis_text(const StudyAxis& axis) {
   return fmt::format("{}={}:{}:{}:{}", axis.path, short_number(axis.low, 6), short_number(axis.high, 6),
                      axis.count, axis.scale == AxisScale::logarithmic ? "log" : "lin");
 }
-
-HtmlCell ratio_cell(double measured, double predicted) {
-  if (!finite_positive(predicted)) return "";
-  const double ratio = measured / predicted;
-  const double away = std::abs(ratio - 1);
-  return HtmlCell(fmt::format("{:.3f}", ratio), away <= 0.03   ? Verdict::good
-                                                : away <= 0.15 ? Verdict::none
-                                                               : Verdict::warn);
-}
-
-HtmlTable agreement_table(const StabilityMap& map, const MethodMap& method) {
-  const bool x_is_step = map.options.x.path == time_step_path;
-  const StudyAxis& other = x_is_step ? map.options.y : map.options.x;
-  HtmlTable table{.caption = method.method, .columns = {}, .rows = {}};
-  const Axis axis = plot_axis(other, map.scene);
-  const std::string unit = axis.unit.empty() ? "" : " (" + axis.unit + ")";
-  for (const HtmlText& header :
-       {html_code(other.path) + unit, HtmlText("measured (s)"), HtmlText("predicted (s)"), HtmlText("ratio"),
-        HtmlText("spectrum (s)"), HtmlText("ratio"), HtmlText("guaranteed (s)"), HtmlText("Provot (s)")})
-    table.columns.push_back({header, Align::right});
-  for (const MeasuredLimit& limit : method.measured) {
-    HtmlRow row{.cells = {HtmlCell(html_number(limit.other))}};
-    if (limit.bracketed())
-      row.cells.push_back(HtmlCell(
-          html_number(limit.middle(), 4), Verdict::none,
-          fmt::format("stable at {:.5g} s, not at {:.5g} s", limit.longest_stable, limit.shortest_unstable)));
-    else
-      row.cells.emplace_back(limit.longest_stable > 0 ? "beyond the range" : "below the range");
-    const auto add = [&](double value, bool ratio) {
-      row.cells.push_back(finite_positive(value) ? HtmlCell(html_number(value, 4))
-                                                 : HtmlCell(std::isinf(value) ? "any" : "none"));
-      if (ratio) row.cells.push_back(limit.bracketed() ? ratio_cell(limit.middle(), value) : HtmlCell(""));
-    };
-    add(limit.limits.predicted, true);
-    add(limit.limits.spectrum, true);
-    add(limit.limits.guaranteed, false);
-    add(limit.limits.provot, false);
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-HtmlTable class_table(const StabilityMap& map) {
-  HtmlTable table{.caption = "How many cells ended how", .columns = {{"method"}}, .rows = {}};
-  for (const ClassStyle& style : run_classes()) table.columns.push_back({style.name, Align::right});
-  for (const MethodMap& method : map.methods) {
-    HtmlRow row{.cells = {HtmlCell(html_code(method.method))}};
-    for (int k = 0; k < static_cast<int>(run_classes().size()); ++k)
-      row.cells.emplace_back(std::to_string(count_of(method, static_cast<RunClass>(k))));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-void add_agreement(HtmlPage& page, const StabilityMap& map) {
-  page.heading("Measured and predicted limits");
-  page.paragraph(
-      "The measured limit lies between the last stable cell of a row and the first one after it that is not; "
-      "runs between the two have halved the gap five times more. Predicted: the limit of the method's own "
-      "stability polynomial, with the scene's damping, at the largest frequency of the flat unbounded grid "
-      "at "
-      "rest. Spectrum: the same at the largest frequency of this very grid with its pins (Lanczos "
-      "iteration). "
-      "A ratio is measured / the column before it. A finite grid oscillates more slowly than the unbounded "
-      "one, a stretched cloth faster.");
-  for (const MethodMap& method : map.methods) {
-    if (method.measured.empty()) continue;
-    page.heading(facts_of(method.method).title, 3);
-    if (const MeasuredLimit* worst = worst_limit(method))
-      page.paragraph(fmt::format("Largest deviation: measured / predicted = {:.3f}.",
-                                 worst->middle() / worst->limits.predicted));
-    if (std::any_of(method.measured.begin(), method.measured.end(),
-                    [](const MeasuredLimit& limit) { return limit.stable_beyond; }))
-      page.notice(
-          "In some rows a longer step was stable again beyond the first unstable one: the table gives "
-          "the first change.",
-          Verdict::warn);
-    page.table(agreement_table(map, method));
-  }
-}
-
-}  // namespace
 
 std::string status_of(const StabilityCell& cell) {
   if (cell.status == CellStatus::not_run) return "not-run";
@@ -282,16 +200,14 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   text.push_back(fmt::format(
       "Diverged: not finite, or ten times the kinetic energy that the scene could give. Energy growth: the "
       "method created more than {:g} of the energy scale and what it created still grew steadily, {:g} times "
-      "or more over the second half of the run; or it created the whole scale (at {:g} scales the run "
-      "ends). Stable but inaccurate: "
+      "or more over the second half of the run; or it created the whole scale. Stable but inaccurate: "
       "neither, "
       "but the energy error passed {:g} % of the scale. Solver failed: the equations of a step were not "
       "solved. The energy error is the change of the total energy less all works and losses.",
-      c.growth, c.growth_factor, c.hopeless, 100 * c.accuracy));
+      c.growth, c.growth_factor, 100 * c.accuracy));
   text.push_back(
       "Energy scale: weight times diagonal, plus the cloth's kinetic energy at full wind, plus what it "
-      "starts "
-      "with, plus a millionth of all springs at twice their length.");
+      "starts with, plus a millionth of all springs at twice their length.");
   const ClothSheet& cloth = map.scene.cloth;
   if (map.rows != cloth.rows || map.columns != cloth.columns)
     text.push_back(
@@ -343,44 +259,6 @@ HeatMap stability_heat_map(const StabilityMap& map) {
 double largest_deviation(const MethodMap& method) {
   const MeasuredLimit* worst = worst_limit(method);
   return worst ? worst->middle() / worst->limits.predicted : 0;
-}
-
-std::string stability_page(const StabilityMap& map, const std::string& svg, const std::string& command,
-                           double wall) {
-  HtmlPage page(
-      "Stability: " + map.scene.title,
-      "Which steps each method can take, measured by running the scene and judged by its energy, with "
-      "the predicted limits over it.");
-  if (!map.complete)
-    page.notice("The study was interrupted. Cells that were not run are empty.", Verdict::warn);
-  page.figure(svg,
-              "Colours and marks are explained in the legend, thresholds below it. A cell's tooltip has its "
-              "energy error, its steps and why it ended.",
-              command);
-  page.table(class_table(map));
-  if (map.options.x.path == time_step_path || map.options.y.path == time_step_path) add_agreement(page, map);
-  page.heading("The criterion");
-  std::vector<HtmlText> items;
-  for (const std::string& paragraph : criterion_text(map)) items.emplace_back(paragraph);
-  page.list(items);
-  page.paragraph(
-      "A finite run finds no instability that grows more slowly than it lasts: Runge-Kutta methods just "
-      "beyond "
-      "their limit grow by some 1e-4 a step, and show as stable here a little beyond the line. A method "
-      "without "
-      "a predicted limit is stable at every step for linear motions only.");
-  page.heading("How it was made");
-  std::vector<std::pair<std::string, HtmlText>> facts{{"scene", map.scene.title},
-                                                      {"scene hash", html_code(scene_hash(map.scene))},
-                                                      {"x axis", html_code(axis_text(map.options.x))},
-                                                      {"y axis", html_code(axis_text(map.options.y))},
-                                                      {"time taken", fmt::format("{:.3g} s", wall)}};
-  for (const auto& [name, value] : fact_rows(machine_facts())) facts.emplace_back(name, value);
-  page.facts(facts);
-  page.begin_details("The scene as given");
-  page.preformatted(write_scene(map.scene));
-  page.end_details();
-  return page.to_html();
 }
 
 std::string stability_text(const StabilityMap& map) {

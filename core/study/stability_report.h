@@ -17,13 +17,17 @@ std::string status_of(const StabilityCell& cell);
 /// growth_rate_per_s,steps,detail; a row for each cell, method after method, from the lowest y.
 std::string stability_csv(const StabilityMap& map);
 
+std::size_t count_of(const MethodMap& method, RunClass run_class);
+
+/// As the option says it: "springs.structural=10:1000:12:log".
+std::string axis_text(const StudyAxis& axis);
+
 /// The criterion in sentences, with its thresholds and what was done to the scene.
 std::vector<std::string> criterion_text(const StabilityMap& map);
 
 HeatMap stability_heat_map(const StabilityMap& map);
 
-/// measured / predicted of each bracketed limit that has a finite prediction; the worst one first by
-/// |log ratio|. 0 where there is none.
+/// measured / predicted of the bracketed limit that is farthest from its prediction; 0 where there is none.
 double largest_deviation(const MethodMap& method);
 
 /// report.html. `svg` is that of the heat map, `command` what made it, `wall` in s.

@@ -46,10 +46,13 @@ LoadedScene load_scene(const std::string& name, const std::vector<std::string>& 
 
   std::string text;
   std::error_code error;
-  const bool is_file = std::filesystem::exists(name, error);
+  const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name);
+  // A folder of results may well have the name of the scene that it came from.
+  const bool is_file =
+      std::filesystem::exists(name, error) && !(builtin && std::filesystem::is_directory(name, error));
   if (is_file) {
     if (const auto failure = cloth::read_text_file(name, text)) return {std::nullopt, report(*failure)};
-  } else if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name)) {
+  } else if (builtin) {
     text = builtin->text;
   } else {
     say(fmt::format(

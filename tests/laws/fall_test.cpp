@@ -1,6 +1,7 @@
 // Falling, known in closed form. numerics.md A7.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

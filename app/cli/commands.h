@@ -28,6 +28,13 @@ struct ExplainArguments {
 };
 int explain(const ExplainArguments& arguments);
 
+struct ExtremesArguments {
+  std::string methods, cases;  ///< names between commas; empty: all
+  std::string folder;
+  bool json = false, markdown = false;
+};
+int extremes(const ExtremesArguments& arguments);
+
 int schema();
 int parameters();
 

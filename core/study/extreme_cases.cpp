@@ -229,16 +229,19 @@ void add_shapes(std::vector<ExtremeCase>& cases) {
 
 void add_grids(std::vector<ExtremeCase>& cases) {
   cases.push_back({"cloth-2x2", "The smallest cloth: four particles, two of them pinned, no flexion spring.",
-                   "", base_scene(2, 2), 300});
+                   "Two free particles oscillate as any cloth does, so each method has its limit here too.",
+                   base_scene(2, 2), 300});
   Scene rope = base_scene(2, 500);
   rope.cloth.pins = {NamedPin::left_edge};
-  cases.push_back({"cloth-2x500", "A band of 2 x 500 particles, 50 m long, held at one end.", "", rope, 150});
+  cases.push_back({"cloth-2x500", "A band of 2 x 500 particles, 50 m long, held at one end.",
+                   "The springs are those of the base scene, and so are the limits.", rope, 150});
   Scene pinned = base_scene();
   pinned.cloth.pins.clear();
   for (int row = 0; row < pinned.cloth.rows; ++row)
     for (int column = 0; column < pinned.cloth.columns; ++column)
       pinned.cloth.pins.emplace_back(PinnedParticle{row, column});
-  cases.push_back({"all-pinned", "Every particle pinned: nothing can move.", "", pinned, 300});
+  cases.push_back({"all-pinned", "Every particle pinned: nothing can move.",
+                   "No method may move what is pinned.", pinned, 300});
   Scene free = base_scene();
   free.cloth.pins.clear();
   free.gravity.reset();
@@ -267,10 +270,12 @@ void add_outside(std::vector<ExtremeCase>& cases) {
        hurricane, 500});
   Scene around = base_scene();
   around.obstacles = {Obstacle{.shape = Shape::sphere, .center = around.cloth.origin, .radius = 0.25}};
-  cases.push_back({"obstacle-around-a-pin",
-                   "A ball of 0.25 m with one of the two pins in its centre: the pin stays, its neighbours "
-                   "are put on the surface, their springs stretched for good.",
-                   "", around, 300});
+  cases.push_back(
+      {"obstacle-around-a-pin",
+       "A ball of 0.25 m with one of the two pins in its centre: the pin stays, its neighbours "
+       "are put on the surface, their springs stretched for good.",
+       "Springs that are stretched for good oscillate a little faster, within the margin of the base step.",
+       around, 300});
   Scene bullet = base_scene();
   bullet.obstacles = {Obstacle{.shape = Shape::box, .center = {0.4, -0.4, -0.25}, .size = {2, 2, 0.01}}};
   cases.push_back(
@@ -287,7 +292,7 @@ void add_outside(std::vector<ExtremeCase>& cases) {
   cases.push_back({"1e6-m-away",
                    "The base scene a million metres from the origin along every axis: positions are rounded "
                    "to 1e-10 m, a billionth of a spring.",
-                   "", far, 300});
+                   "Nothing but the last digits may differ from the base scene.", far, 300});
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ std::string word_of(const ExtremeCell* cell) {
       return "growth";
     case ExtremeStatus::solver_failed:
       return "failed";
+    case ExtremeStatus::unreachable:
+      return "unreach.";
     default:
       return name_of(cell->status);
   }
@@ -134,13 +136,33 @@ HtmlTable matrix_html(const ExtremesTable& table) {
   return matrix;
 }
 
-int count_not_stable(const ExtremesTable& table, std::size_t extreme) {
-  int count = 0;
-  for (std::size_t m = 0; m < table.methods.size(); ++m) {
-    const ExtremeCell* cell = table.cell(extreme, m);
-    count += cell && cell->status != ExtremeStatus::stable ? 1 : 0;
+std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme) {
+  std::vector<const ExtremeCell*> cells;
+  for (std::size_t m = 0; m < table.methods.size(); ++m)
+    if (const ExtremeCell* cell = table.cell(extreme, m); cell && cell->status != ExtremeStatus::stable)
+      cells.push_back(cell);
+  return cells;
+}
+
+/// A stop says itself that it is one.
+std::string reason_of(const ExtremeCell& cell) {
+  return cell.status == ExtremeStatus::diverged ? cell.detail
+                                                : fmt::format("{}: {}", name_of(cell.status), cell.detail);
+}
+
+/// A row for each case with a cell that is not stable.
+HtmlTable reasons_html(const ExtremesTable& table) {
+  HtmlTable reasons;
+  reasons.columns = {{"case"}, {"not stable"}, {"why"}};
+  for (std::size_t c = 0; c < table.cases.size(); ++c) {
+    std::string methods;
+    for (const ExtremeCell* cell : not_stable(table, c))
+      methods += (methods.empty() ? "" : ", ") + cell->method;
+    if (!methods.empty())
+      reasons.rows.push_back(
+          {{HtmlText(table.cases[c].name), HtmlText(methods), HtmlText(table.cases[c].reading)}});
   }
-  return count;
+  return reasons;
 }
 
 HtmlTable case_html(const ExtremesTable& table, std::size_t extreme) {
@@ -173,17 +195,17 @@ HtmlTable case_html(const ExtremesTable& table, std::size_t extreme) {
 void add_cases(HtmlPage& page, const ExtremesTable& table) {
   page.heading("The cases one by one");
   page.paragraph(
-      "What was done, what it shows, and each method's numbers. Cases with a cell that is not stable come "
-      "open. Strain is the largest of structural and shear springs over the whole run; the energy ratio is "
+      "What was done, what it shows, and each method's numbers. Strain is the largest of structural and "
+      "shear springs over the whole run; the energy ratio is "
       "kinetic and elastic energy at the end over the energy scale.");
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     const ExtremeCase& extreme = table.cases[c];
     if (!table.cell(c, 0)) continue;
-    const int red = count_not_stable(table, c);
-    page.begin_details(HtmlText(extreme.name) + (red == 0 ? HtmlText(" – all stable")
-                                                          : HtmlText(fmt::format(" – {} of {} not stable",
-                                                                                 red, table.methods.size()))),
-                       red > 0);
+    const std::size_t red = not_stable(table, c).size();
+    page.begin_details(HtmlText(extreme.name) +
+                       (red == 0
+                            ? HtmlText(" – all stable")
+                            : HtmlText(fmt::format(" – {} of {} not stable", red, table.methods.size()))));
     page.paragraph(extreme.what + (extreme.reading.empty() ? "" : " " + extreme.reading));
     page.table(case_html(table, c));
     page.end_details();
@@ -238,8 +260,8 @@ std::string extremes_text(const ExtremesTable& table) {
   bool any = false;
   for (const ExtremeCell& cell : table.cells) {
     if (cell.status == ExtremeStatus::stable) continue;
-    text += fmt::format("{}{}, {}: {}: {}\n", any ? "" : "Not stable:\n", cell.case_name, cell.method,
-                        name_of(cell.status), cell.detail);
+    text += fmt::format("{}{}, {}: {}\n", any ? "" : "Not stable:\n", cell.case_name, cell.method,
+                        reason_of(cell));
     any = true;
   }
   return text + fmt::format("{}{} cells: {}; seed of random starts {}\n", any ? "\n" : "", table.cells.size(),
@@ -261,13 +283,12 @@ std::string extremes_markdown(const ExtremesTable& table) {
   }
   text += fmt::format("\n\n{} cells: {}.\n", table.cells.size(), count_of_statuses(table));
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    if (count_not_stable(table, c) == 0) continue;
+    if (not_stable(table, c).empty()) continue;
     const ExtremeCase& extreme = table.cases[c];
     text += fmt::format("\n### {}\n\n{}{}{}\n\n", extreme.name, extreme.what,
                         extreme.reading.empty() ? "" : " ", extreme.reading);
-    for (std::size_t m = 0; m < table.methods.size(); ++m)
-      if (const ExtremeCell* cell = table.cell(c, m); cell && cell->status != ExtremeStatus::stable)
-        text += fmt::format("- `{}`: {}: {}\n", cell->method, name_of(cell->status), cell->detail);
+    for (const ExtremeCell* cell : not_stable(table, c))
+      text += fmt::format("- `{}`: {}\n", cell->method, reason_of(*cell));
   }
   return text;
 }
@@ -296,6 +317,10 @@ std::string extremes_html(const ExtremesTable& table, const std::string& command
       "start "
       "holds. Divergence is judged against ten times this scale after every step, energy growth against a "
       "twentieth of it at some fifty records of a run.");
+  page.heading("Why cells are not stable");
+  page.paragraph(
+      "By case; what happened in each cell, with step, particle and cause, is in the next section.");
+  page.table(reasons_html(table));
   add_cases(page, table);
   page.heading("How it was run");
   page.facts(conditions(command));

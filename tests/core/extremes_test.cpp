@@ -150,6 +150,14 @@ TEST(EnergyGrowth, IsSeenInARunThatStaysFinite) {
   EXPECT_TRUE(contains(cell.detail, "of the energy scale was added")) << cell.detail;
 }
 
+TEST(EnergyGrowth, OfACollapsedClothIsMadeByTheStep) {
+  ExtremeCase collapsed = case_named("collapsed-to-a-point");
+  EXPECT_EQ(run_extreme(collapsed, "verlet").status, ExtremeStatus::energy_growth);
+  collapsed.scene.integrator.time_step = 2e-5;  // a hundredth
+  collapsed.most_steps *= 100;
+  EXPECT_EQ(run_extreme(collapsed, "verlet").status, ExtremeStatus::stable);
+}
+
 TEST(ARunThatIsStopped, EndsAtTheNextRecord) {
   EXPECT_EQ(run_extreme(case_named("step-1e-4"), "verlet", [] { return false; }).steps, 300 / 50);
 }

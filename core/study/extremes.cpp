@@ -24,12 +24,13 @@ class CellRun {
   CellRun(const ExtremeCase& extreme, const Scene& scene, double time_step)
       : simulation_(scene, extreme.prepare),
         last_(std::min(extreme.most_steps, steps_to_cover(scene.duration, time_step))),
-        stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)) {}
+        stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)),
+        most_evaluations_(extreme.most_evaluations) {}
 
   ExtremeCell to_end(ExtremeCell cell, const std::function<bool()>& keep_going) {
     record();
     while (!divergence_ && simulation_.state().step < last_ &&
-           simulation_.count().force_evaluations < most_evaluations) {
+           simulation_.count().force_evaluations < most_evaluations_) {
       look_for_tunnelling();
       divergence_ = simulation_.step();
       if (divergence_) break;
@@ -41,6 +42,7 @@ class CellRun {
     cell.max_strain = max_strain_;
     cell.energy_ratio = energy_ratio_;
     cell.status = status();
+    cell.ended_early = !divergence_ && cell.steps < last_;
     cell.detail = detail();
     return cell;
   }
@@ -100,9 +102,9 @@ class CellRun {
   }
 
   std::string why_short() const {
-    if (simulation_.count().force_evaluations < most_evaluations) return "interrupted";
+    if (simulation_.count().force_evaluations < most_evaluations_) return "interrupted";
     return fmt::format("ended after {} of {} steps: a cell has {} force evaluations",
-                       simulation_.count().steps, last_, most_evaluations);
+                       simulation_.count().steps, last_, most_evaluations_);
   }
 
   void add_costs(std::vector<std::string>& facts) const {
@@ -118,7 +120,7 @@ class CellRun {
   }
 
   Simulation simulation_;
-  std::int64_t last_, stride_;
+  std::int64_t last_, stride_, most_evaluations_;
   std::optional<Divergence> divergence_;
   std::optional<TunnellingRisk> tunnelling_;
   std::int64_t tunnelling_step_ = 0;

@@ -27,6 +27,8 @@ struct ExtremeCase {
   Scene scene;          ///< of any method; without a time step: each method's own, 80 % of its limit
   std::int64_t most_steps = 300;
   Preparation prepare = {};  ///< what a scene file cannot say
+  /// Of the force, after which a cell ends whatever its steps: error control may need any number.
+  std::int64_t most_evaluations = 100'000;
 };
 
 /// In the order of the table.
@@ -35,29 +37,25 @@ const std::vector<ExtremeCase>& extreme_cases();
 /// Of every random start in the list.
 inline constexpr std::uint64_t extreme_seed = 19950517;
 
-/// Force evaluations after which a cell ends, whatever its steps: methods with error control may need any
-/// number.
-inline constexpr std::int64_t most_evaluations = 100'000;
-
 /// Of the energy that the scene can give: what a method may add before its cell says energy growth.
 inline constexpr double growth_threshold = 0.05;
 
 struct ExtremeCell {
   std::string case_name, method;
   ExtremeStatus status = ExtremeStatus::stable;
-  std::string detail;       ///< one sentence or a few facts
-  double time_step = 0;     ///< s; 0 if refused
-  std::int64_t steps = 0;   ///< that were accepted
-  double max_strain = 0;    ///< of all records
-  double energy_ratio = 0;  ///< kinetic and elastic energy at the end over what the scene can give
-  double wall = 0;          ///< s, of the run
+  std::string detail;        ///< one sentence or a few facts
+  double time_step = 0;      ///< s; 0 if refused
+  std::int64_t steps = 0;    ///< that were accepted
+  bool ended_early = false;  ///< for its evaluations
+  double max_strain = 0;     ///< of all records
+  double energy_ratio = 0;   ///< kinetic and elastic energy at the end over what the scene can give
+  double wall = 0;           ///< s, of the run
 };
 
-/// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the
-/// records of the second half (there are some 50 of a run) the kinetic, elastic and gravity energies are in
-/// the mean above those of the start and all works into the cloth by more than the threshold, losses by
-/// damping not counted. `keep_going` is asked at every record; false ends the
-/// run.
+/// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the records of the second
+/// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
+/// the start and all works into the cloth by more than the threshold, losses by damping not counted.
+/// `keep_going` is asked at every record; false ends the run.
 ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
                         const std::function<bool()>& keep_going = {});
 

@@ -131,8 +131,9 @@ TEST(UnreachablePins, AreSaidToBeSoWhateverTheMethodMakesOfThem) {
     const ExtremeCell cell = run_extreme(shortened(case_named("unreachable-pins"), 20), method);
     EXPECT_NE(cell.status, ExtremeStatus::stable) << method;
     EXPECT_TRUE(contains(cell.detail, "deformation.rate cannot be kept")) << method << ": " << cell.detail;
-    if (cell.status == ExtremeStatus::unreachable)
+    if (cell.status == ExtremeStatus::unreachable) {
       EXPECT_TRUE(contains(cell.detail, "excess over the rate")) << cell.detail;
+    }
   }
   EXPECT_EQ(run_extreme(case_named("unreachable-pins"), "verlet").status, ExtremeStatus::unreachable);
 }

@@ -40,6 +40,12 @@ struct StabilityArguments {
   bool json = false;
 };
 int stability(const StabilityArguments& arguments);
+struct ExtremesArguments {
+  std::string methods, cases;  ///< names between commas; empty: all
+  std::string folder;
+  bool json = false, markdown = false;
+};
+int extremes(const ExtremesArguments& arguments);
 
 int schema();
 int parameters();

@@ -27,6 +27,7 @@ struct Arguments {
   cli::ScenesArguments scenes;
   cli::ExplainArguments explain;
   cli::StabilityArguments stability;
+  cli::ExtremesArguments extremes;
 };
 
 void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
@@ -86,6 +87,16 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   explain->add_flag("--json", arguments.explain.json, json_help);
 
   add_stability(app, arguments.stability);
+  CLI::App* extremes =
+      app.add_subcommand("extremes", "The fixed list of stiff and extreme cases, every method on each");
+  extremes->add_option("--methods", arguments.extremes.methods, "Methods, between commas; all without");
+  extremes->add_option("--cases", arguments.extremes.cases, "Cases, between commas; all without");
+  extremes->add_option("--out", arguments.extremes.folder,
+                       "Folder for extremes.csv and report.html; made if missing");
+  CLI::Option* extremes_json = extremes->add_flag("--json", arguments.extremes.json, json_help);
+  extremes->add_flag("--markdown", arguments.extremes.markdown, "Print the table as Markdown")
+      ->excludes(extremes_json);
+
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
@@ -109,6 +120,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
+  if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

@@ -1,5 +1,7 @@
 #include "contact/obstacle_contact.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,6 +59,31 @@ Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& 
   const double speed = tangential.norm();
   const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * change / speed) : 0;
   return kept * tangential - obstacle.restitution * inward * normal;
+}
+
+std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obstacles,
+                                              const ClothSystem& system, const ClothState& state,
+                                              double time_step) {
+  std::optional<TunnellingRisk> risk;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (obstacles[k].shape == Shape::plane) continue;
+    const double thickness =
+        obstacles[k].shape == Shape::sphere ? 2 * obstacles[k].radius : obstacles[k].size.minCoeff();
+    if (!risk || thickness < risk->thickness) risk = TunnellingRisk{0, k, 0, thickness};
+  }
+  if (!risk) return std::nullopt;
+  for (std::size_t i = 0; i < state.velocity.size(); ++i) {
+    if (system.pinned[i]) continue;
+    const double travel = state.velocity[i].norm() * time_step;
+    if (travel > risk->travel) risk->travel = travel, risk->particle = static_cast<int>(i);
+  }
+  return risk->travel > risk->thickness ? risk : std::nullopt;
+}
+
+std::string describe(const TunnellingRisk& risk) {
+  return fmt::format(
+      "particle {} moves {:.3g} m in a step and obstacle {} is {:.3g} m thick: it can pass it unseen",
+      risk.particle, risk.travel, risk.obstacle, risk.thickness);
 }
 
 ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)) {}

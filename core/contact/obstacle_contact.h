@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cloth/cloth_system.h"
@@ -24,6 +25,23 @@ std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& po
 /// tangential part loses up to friction |change of v_n|. reflect (report, Eq. (17)): v -> friction (v - 2 v_n
 /// n).
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
+
+/// A particle that moves further in a step than an obstacle is thick: it can pass between two steps unseen.
+struct TunnellingRisk {
+  int particle = 0;
+  std::size_t obstacle = 0;
+  double travel = 0;     ///< m, |v| h
+  double thickness = 0;  ///< m: a ball's diameter, a box's smallest side
+};
+
+/// The particle that moves furthest, if that is further than the thinnest obstacle. Planes have no other
+/// side.
+std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obstacles,
+                                              const ClothSystem& system, const ClothState& state,
+                                              double time_step);
+
+/// "particle 40 moves 2 m in a step and obstacle 0 is 0.01 m thick: it can pass it unseen"
+std::string describe(const TunnellingRisk& risk);
 
 struct ContactReport {
   int contacts = 0;  ///< particles that were put back, counted once per obstacle

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "cloth/sums.h"
 #include "forces/gravity.h"
 #include "integrators/registry.h"
+#include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "simulation/time_step.h"
 
@@ -23,6 +25,12 @@ double elastic_scale_of(const ClothSystem& system) {
   for (const SpringRun& run : system.springs)
     energy += 0.5 * run.stiffness * run.rest_length * run.rest_length * run.count;
   return energy;
+}
+
+std::optional<int> first_not_finite(const Vec3Field& field) {
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (!field[i].allFinite()) return static_cast<int>(i);
+  return std::nullopt;
 }
 
 Vec3 gravity_of(const Scene& scene) {
@@ -44,6 +52,7 @@ Simulation::Simulation(const Scene& scene, Preparation prepare)
   time_step_ = resolved_time_step(scene_).value();
   integrator_ = make_integrator(scene_.integrator);
   assemble();
+  limit_start();
   ledger_.initial = total_energy();
 }
 
@@ -124,6 +133,15 @@ void Simulation::count_step(const IntegratorReport& report) {
   count_.linear_iterations += report.linear_iterations;
   count_.factorisations += report.factorisations;
   count_.largest_residual = std::max(count_.largest_residual, report.residual);
+}
+
+/// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.
+void Simulation::limit_start() {
+  if (!prepare_ || !limiter_ || limiter_->accepts(limiter_->excess(system_, state_.position))) return;
+  const Vec3Field velocity = state_.velocity;
+  limiter_->set_unreachable(unreachable_.has_value());
+  limiter_->apply(system_, time_step_, state_);
+  state_.velocity = velocity;
 }
 
 void Simulation::limit_deformation() {
@@ -216,7 +234,7 @@ Measurement Simulation::measure() const {
 
 /// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
 /// wind, what the hand did, what there was at the start.
-double Simulation::energy_scale(double fallen) const {
+double Simulation::energy_scale_after(double fallen) const {
   const double mass = system_.total_mass();
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
   double wind = 0;
@@ -225,27 +243,47 @@ double Simulation::energy_scale(double fallen) const {
          std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
 }
 
+double Simulation::energy_scale() const {
+  return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
+}
+
 bool Simulation::has_run_away(double kinetic) const {
   if (!std::isfinite(kinetic)) return true;
-  if (kinetic <= runaway_factor * energy_scale(0)) return false;
-  return !(kinetic <=
-           runaway_factor * energy_scale(-gravity_energy(system_, gravity_of(scene_), state_.position)));
+  if (kinetic <= runaway_factor * energy_scale_after(0)) return false;
+  return !(kinetic <= runaway_factor * energy_scale());
 }
 
 std::optional<Divergence> Simulation::find_divergence() const {
-  if (!has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
+  const auto x = state_.position.flat();
+  // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.
+  const double sum = ordered_sum(x.size(), [p = x.data()](std::size_t k) { return p[k]; });
+  const bool lost = !std::isfinite(sum) && first_not_finite(state_.position);
+  if (!lost && !has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
+  return stop_at_fastest("its speed has run away");
+}
 
+Divergence Simulation::stop_at_fastest(const std::string& cause) const {
+  if (const auto i = first_not_finite(state_.velocity)) return stop_at(*i, "its velocity is not finite");
+  if (const auto i = first_not_finite(state_.position)) return stop_at(*i, "its position is not finite");
   int fastest = 0;
   double highest_speed = -1;
   for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
-    const Vec3 v = state_.velocity[i];
-    if (!v.allFinite()) return stop_at(static_cast<int>(i), "its velocity is not finite");
-    if (const double speed = v.stableNorm(); speed > highest_speed) {
+    if (const double speed = state_.velocity[i].stableNorm(); speed > highest_speed) {
       highest_speed = speed;
       fastest = static_cast<int>(i);
     }
   }
-  return stop_at(fastest, "its speed has run away");
+  return stop_at(fastest, cause);
+}
+
+/// The longest stable step in s, 0 if there is none. Of a prepared cloth only the bound for any shape is
+/// known.
+double Simulation::method_limit() const {
+  const auto of_scene = stable_step(scene_.integrator.method, scene_);
+  if (!of_scene || !prepare_ || std::isinf(*of_scene)) return of_scene.value_or(0);
+  const auto of_system =
+      stable_step(scene_.integrator.method, guaranteed_frequency(system_), damping_rates(scene_));
+  return std::min(*of_scene, of_system.value_or(0));
 }
 
 Divergence Simulation::stop_at(int particle, std::string cause) const {
@@ -255,7 +293,7 @@ Divergence Simulation::stop_at(int particle, std::string cause) const {
   divergence.particle = particle;
   divergence.cause = std::move(cause);
   divergence.time_step = time_step_;
-  divergence.stable_step = stable_step(scene_.integrator.method, scene_).value_or(0);
+  divergence.stable_step = method_limit();
   divergence.row = divergence.particle / system_.columns;
   divergence.column = divergence.particle % system_.columns;
   return divergence;

@@ -69,6 +69,7 @@ struct StepCount {
 };
 
 /// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
+/// Positions beyond the deformation rate are then brought within it, before the first step.
 using Preparation = std::function<void(ClothSystem&, ClothState&)>;
 
 class Simulation {
@@ -107,16 +108,24 @@ class Simulation {
 
   Measurement measure() const;
 
+  /// The most kinetic energy in J that the scene could have given so far; what divergence is judged by.
+  double energy_scale() const;
+
+  /// What a stop here would say of the particle that is not finite or else the fastest.
+  Divergence stop_at_fastest(const std::string& cause) const;
+
  private:
   void assemble();
   void count_step(const IntegratorReport& report);
   void choose_pull_stiffness();
+  void limit_start();
   void limit_deformation();
   void resolve_contact();
   double total_energy() const;
   std::optional<Divergence> find_divergence() const;
   Divergence stop_at(int particle, std::string cause) const;
-  double energy_scale(double fallen) const;
+  double method_limit() const;
+  double energy_scale_after(double fallen) const;
   bool has_run_away(double kinetic) const;
 
   Scene scene_;

@@ -1,0 +1,176 @@
+#include "study/extremes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "simulation/recorder.h"
+#include "simulation/time_step.h"
+
+namespace cloth {
+namespace {
+
+constexpr std::int64_t records_of_a_run = 50;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// One cell on its way.
+class CellRun {
+ public:
+  CellRun(const ExtremeCase& extreme, const Scene& scene, double time_step)
+      : simulation_(scene, extreme.prepare),
+        last_(std::min(extreme.most_steps, steps_to_cover(scene.duration, time_step))),
+        stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)),
+        most_evaluations_(extreme.most_evaluations) {}
+
+  ExtremeCell to_end(ExtremeCell cell, const std::function<bool()>& keep_going) {
+    record();
+    while (!divergence_ && simulation_.state().step < last_ &&
+           simulation_.count().force_evaluations < most_evaluations_) {
+      look_for_tunnelling();
+      divergence_ = simulation_.step();
+      if (divergence_) break;
+      cell.steps = simulation_.state().step;
+      if (cell.steps % stride_ != 0 && cell.steps != last_) continue;
+      record();
+      if (keep_going && !keep_going()) break;
+    }
+    cell.max_strain = max_strain_;
+    cell.energy_ratio = energy_ratio_;
+    cell.status = status();
+    cell.ended_early = !divergence_ && cell.steps < last_;
+    cell.detail = detail();
+    return cell;
+  }
+
+ private:
+  void record() {
+    const Measurement now = simulation_.measure();
+    const double scale = simulation_.energy_scale();
+    const double held = now.energy.kinetic + now.energy.elastic;
+    if (!std::isfinite(held) || !std::isfinite(now.strain.maximum())) {
+      divergence_ = simulation_.stop_at_fastest("the energy of the cloth is not finite");
+      return;
+    }
+    max_strain_ = std::max(max_strain_, now.strain.maximum());
+    largest_excess_ = std::max(largest_excess_, now.limiter_excess);
+    last_excess_ = now.limiter_excess;
+    if (scale > 0) energy_ratio_ = held / scale;
+    if (2 * now.step < last_ || !(scale > 0)) return;
+    // Losses are not given back: a method that adds what damping takes would be a steady state.
+    added_ += (now.energy_error() - now.ledger.forces.damping_loss) / scale;
+    ++added_records_;
+  }
+
+  /// Of the energy scale, mean of the second half: some methods only lend energy for half an oscillation.
+  double growth() const { return added_records_ > 0 ? added_ / added_records_ : 0; }
+
+  void look_for_tunnelling() {
+    if (tunnelling_) return;
+    tunnelling_ = find_tunnelling(simulation_.scene().obstacles, simulation_.system(), simulation_.state(),
+                                  simulation_.time_step());
+    tunnelling_step_ = simulation_.state().step + 1;
+  }
+
+  ExtremeStatus status() const {
+    if (divergence_)
+      return divergence_->solver_failed ? ExtremeStatus::solver_failed : ExtremeStatus::diverged;
+    if (simulation_.unreachable_rate()) return ExtremeStatus::unreachable;
+    return growth() > growth_threshold ? ExtremeStatus::energy_growth : ExtremeStatus::stable;
+  }
+
+  std::string detail() const {
+    std::vector<std::string> facts;
+    if (divergence_) facts.push_back(describe(*divergence_));
+    if (!divergence_ && growth() > growth_threshold)
+      facts.push_back(
+          fmt::format("{:.3g} of the energy scale was added, more than {}", growth(), growth_threshold));
+    if (!divergence_ && simulation_.count().steps < last_) facts.push_back(why_short());
+    if (simulation_.unreachable_rate())
+      facts.push_back(describe(*simulation_.unreachable_rate(), simulation_.system().columns));
+    if (simulation_.quantities().limiter && largest_excess_ > 0 && !divergence_)
+      facts.push_back(fmt::format("excess over the rate at most {:.2g}, at the end {:.2g}", largest_excess_,
+                                  last_excess_));
+    if (tunnelling_)
+      facts.push_back(fmt::format("warning in step {}: {}", tunnelling_step_, describe(*tunnelling_)));
+    add_costs(facts);
+    return fmt::format("{}", fmt::join(facts, "; "));
+  }
+
+  std::string why_short() const {
+    if (simulation_.count().force_evaluations < most_evaluations_) return "interrupted";
+    return fmt::format("ended after {} of {} steps: a cell has {} force evaluations",
+                       simulation_.count().steps, last_, most_evaluations_);
+  }
+
+  void add_costs(std::vector<std::string>& facts) const {
+    const StepCount& count = simulation_.count();
+    const double steps = static_cast<double>(std::max<std::int64_t>(1, count.steps));
+    if (count.iterations > 0)
+      facts.push_back(fmt::format("{:.3g} iterations a step", static_cast<double>(count.iterations) / steps));
+    if (count.inner_steps > count.steps || count.rejected_steps > 0)
+      facts.push_back(
+          fmt::format("{:.3g} inner steps a step", static_cast<double>(count.inner_steps) / steps));
+    if (count.largest_residual > 1e-3)
+      facts.push_back(fmt::format("residual up to {:.2g}", count.largest_residual));
+  }
+
+  Simulation simulation_;
+  std::int64_t last_, stride_, most_evaluations_;
+  std::optional<Divergence> divergence_;
+  std::optional<TunnellingRisk> tunnelling_;
+  std::int64_t tunnelling_step_ = 0;
+  int added_records_ = 0;
+  double max_strain_ = 0, energy_ratio_ = 0, added_ = 0, largest_excess_ = 0, last_excess_ = 0;
+};
+
+}  // namespace
+
+const char* name_of(ExtremeStatus status) {
+  switch (status) {
+    case ExtremeStatus::stable:
+      return "stable";
+    case ExtremeStatus::energy_growth:
+      return "energy-growth";
+    case ExtremeStatus::diverged:
+      return "diverged";
+    case ExtremeStatus::unreachable:
+      return "unreachable";
+    case ExtremeStatus::refused:
+      return "refused";
+    case ExtremeStatus::solver_failed:
+      return "solver-failed";
+  }
+  return "";
+}
+
+const std::vector<ExtremeStatus>& extreme_statuses() {
+  static const std::vector<ExtremeStatus> all{ExtremeStatus::stable,   ExtremeStatus::energy_growth,
+                                              ExtremeStatus::diverged, ExtremeStatus::unreachable,
+                                              ExtremeStatus::refused,  ExtremeStatus::solver_failed};
+  return all;
+}
+
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
+                        const std::function<bool()>& keep_going) {
+  ExtremeCell cell{.case_name = extreme.name, .method = method, .detail = {}};
+  Scene scene = extreme.scene;
+  scene.integrator.method = method;
+  const auto time_step = resolved_time_step(scene);
+  if (!time_step) {
+    cell.status = ExtremeStatus::refused;
+    cell.detail = no_stable_step_text(scene);
+    return cell;
+  }
+  cell.time_step = *time_step;
+  const auto start = std::chrono::steady_clock::now();
+  cell = CellRun(extreme, scene, *time_step).to_end(std::move(cell), keep_going);
+  cell.wall = seconds_since(start);
+  return cell;
+}
+
+}  // namespace cloth

@@ -1,0 +1,62 @@
+// Stiff and extreme cases: a fixed, named list, every method on each. A cell of the table is a finite result
+// or a stop that names step, particle and cause.
+//
+//     for (const ExtremeCase& extreme : extreme_cases())
+//       for (const std::string& method : integrator_names()) ExtremeCell cell = run_extreme(extreme, method);
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "simulation/simulation.h"
+
+namespace cloth {
+
+enum class ExtremeStatus { stable, energy_growth, diverged, unreachable, refused, solver_failed };
+
+/// As files have it: "energy-growth".
+const char* name_of(ExtremeStatus status);
+const std::vector<ExtremeStatus>& extreme_statuses();
+
+struct ExtremeCase {
+  std::string name;     ///< "stiffness-1e3"
+  std::string what;     ///< the scene and how it is started
+  std::string reading;  ///< what a cell that is not stable means here
+  Scene scene;          ///< of any method; without a time step: each method's own, 80 % of its limit
+  std::int64_t most_steps = 300;
+  Preparation prepare = {};  ///< what a scene file cannot say
+  /// Of the force, after which a cell ends whatever its steps: error control may need any number.
+  std::int64_t most_evaluations = 100'000;
+};
+
+/// In the order of the table.
+const std::vector<ExtremeCase>& extreme_cases();
+
+/// Of every random start in the list.
+inline constexpr std::uint64_t extreme_seed = 19950517;
+
+/// Of the energy that the scene can give: what a method may add before its cell says energy growth.
+inline constexpr double growth_threshold = 0.05;
+
+struct ExtremeCell {
+  std::string case_name, method;
+  ExtremeStatus status = ExtremeStatus::stable;
+  std::string detail;        ///< one sentence or a few facts
+  double time_step = 0;      ///< s; 0 if refused
+  std::int64_t steps = 0;    ///< that were accepted
+  bool ended_early = false;  ///< for its evaluations
+  double max_strain = 0;     ///< of all records
+  double energy_ratio = 0;   ///< kinetic and elastic energy at the end over what the scene can give
+  double wall = 0;           ///< s, of the run
+};
+
+/// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the records of the second
+/// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
+/// the start and all works into the cloth by more than the threshold, losses by damping not counted.
+/// `keep_going` is asked at every record; false ends the run.
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
+                        const std::function<bool()>& keep_going = {});
+
+}  // namespace cloth

@@ -28,6 +28,13 @@ struct ExplainArguments {
 };
 int explain(const ExplainArguments& arguments);
 
+struct ReproduceArguments {
+  std::string folder;
+  std::vector<std::string> only;
+  bool json = false;
+};
+int reproduce(const ReproduceArguments& arguments);
+
 int schema();
 int parameters();
 

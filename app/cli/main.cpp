@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/run_folder.h"
+#include "study/reproduce.h"
 
 namespace {
 
@@ -26,6 +27,7 @@ struct Arguments {
   cli::RunArguments run;
   cli::ScenesArguments scenes;
   cli::ExplainArguments explain;
+  cli::ReproduceArguments reproduce;
 };
 
 void add_commands(CLI::App& app, Arguments& arguments) {
@@ -50,6 +52,18 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   explain->add_option("--set", arguments.explain.settings, set_help)->allow_extra_args(false);
   explain->add_flag("--json", arguments.explain.json, json_help);
 
+  CLI::App* reproduce = app.add_subcommand(
+      "reproduce", "Measure the source report's figures, its Table 1 and its errata; one report.html");
+  reproduce->add_option("--out", arguments.reproduce.folder, "Folder for report.html and its pictures")
+      ->required();
+  reproduce
+      ->add_option("--only", arguments.reproduce.only,
+                   "Only these parts, separated by commas: " +
+                       fmt::format("{}", fmt::join(cloth::reproduce_parts(), ", ")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(cloth::reproduce_parts()));
+  reproduce->add_flag("--json", arguments.reproduce.json, json_help);
+
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
@@ -72,6 +86,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("run")) return cli::run(arguments.run);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
+  if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

@@ -138,7 +138,9 @@ std::vector<MethodErrors> errors_of_printed_methods() {
 
 CurrentLengthCloth current_length_cloth() {
   Scene scene;
-  scene.cloth = {.columns = 10, .rows = 10, .width = 0.9, .height = 0.9, .mass = 1.0};
+  scene.cloth.columns = scene.cloth.rows = 10;
+  scene.cloth.width = scene.cloth.height = 0.9;
+  scene.cloth.mass = 1.0;
   scene.springs = SpringMaterial{.structural = 100, .shear = 100, .flexion = 100};
   scene.integrator = {.method = "rk4", .time_step = 1e-4};
   scene.duration = 0.03;

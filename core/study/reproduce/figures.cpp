@@ -84,6 +84,13 @@ Image panel(const Scene& scene, const ClothSystem& system, const Vec3Field& posi
   return cloth_image(scene, system, position, camera, options);
 }
 
+Vec3Field joined(const std::vector<Vec3Field>& fields) {
+  Vec3Field all(fields.size() * fields.front().size());
+  for (std::size_t k = 0; k < fields.size(); ++k)
+    for (std::size_t i = 0; i < fields[k].size(); ++i) all.set(k * fields[k].size() + i, fields[k][i]);
+  return all;
+}
+
 double panel_aspect() {
   return static_cast<double>(panel_width) / panel_height;
 }
@@ -96,7 +103,8 @@ void reproduce_springs(StudyPage& study) {
   scene.cloth.rows = scene.cloth.columns = 5;
   scene.cloth.down = {0, -1, 0};
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
-  const PictureCamera camera = camera_showing(scene, system.start, Vec3(0, 0, 1), panel_aspect());
+  PictureCamera camera = camera_showing(scene, system.start, Vec3(0, 0, 1), panel_aspect());
+  camera.eye += 0.2 * (camera.eye - camera.target);  // room for the arcs
   std::vector<Image> panels;
   for (int k = 0; k < 4; ++k) {
     PictureOptions options{.wireframe = true, .ground = false, .shadow = false};
@@ -112,7 +120,7 @@ void reproduce_springs(StudyPage& study) {
   study.picture(
       "fig1-springs", beside(panels), "A 5 x 5 grid of particles four times: each family of springs, and all",
       "From left to right: structural springs between neighbours, shear springs along the diagonals, flexion "
-      "springs two particles apart (each pair drawn on one line), and all of them. 40, 32 and 30 springs.");
+      "springs between particles two apart (as arcs), and all of them: 40, 32 and 30 springs.");
 }
 
 void reproduce_deformation(StudyPage& study) {
@@ -132,7 +140,7 @@ void reproduce_deformation(StudyPage& study) {
   std::string commands;
   for (std::size_t k = 0; k < hung_cloths.size(); ++k) {
     const SceneRun run = scene_run(hung_cloths[k].scene);
-    commands += (k > 0 ? "\n" : "") + run.command;
+    commands += (k > 0 ? " && " : "") + run.command;
     Simulation simulation(run.scene);
     LimiterWork work;
     const double part = static_cast<double>(k) / 3;
@@ -163,15 +171,18 @@ void reproduce_wind(StudyPage& study) {
   Simulation simulation(run.scene);
   std::vector<Image> panels;
   constexpr std::array<double, 3> times{0.5, 1.5, 4.0};
-  const PictureOptions still{.arrows = wind_arrows(run.scene, simulation.state().position)};
-  const PictureCamera camera = camera_showing(run.scene, simulation.state().position, Vec3(0.9, 0.3, 0.6),
-                                              panel_aspect(), still.arrows);
-  double from = 0;
+  std::vector<Vec3Field> shapes;
   for (const double time : times) {
+    const double from = shapes.empty() ? 0 : simulation.time() / times.back();
     if (!advance(simulation, time, study, from, time / times.back())) return;
-    from = time / times.back();
-    panels.push_back(panel(run.scene, simulation.system(), simulation.state().position, camera, still));
+    shapes.push_back(simulation.state().position);
   }
+  const Vec3Field everywhere = joined(shapes);  // one camera for all three
+  const PictureOptions look{.arrows = wind_arrows(run.scene, everywhere)};
+  const PictureCamera camera =
+      camera_showing(run.scene, everywhere, Vec3(0.85, 0.12, 0.75), panel_aspect(), look.arrows);
+  for (const Vec3Field& shape : shapes)
+    panels.push_back(panel(run.scene, simulation.system(), shape, camera, look));
   const Measurement measurement = simulation.measure();
   study.number("work of the air on the cloth in 4 s", measurement.ledger.forces.air, "J");
   study.number("largest strain at 4 s", measurement.strain.maximum());

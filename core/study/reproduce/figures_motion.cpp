@@ -61,7 +61,7 @@ bool show_obstacles(StudyPage& study) {
   std::string commands;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const SceneRun run = scene_run(scenes[k]);
-    commands += (k > 0 ? "\n" : "") + run.command;
+    commands += (k > 0 ? " && " : "") + run.command;
     Simulation simulation(run.scene);
     PlotSeries speed{.name = scenes[k]};
     const double part = 0.2 * static_cast<double>(k);
@@ -89,7 +89,7 @@ bool show_friction(StudyPage& study) {
   for (std::size_t k = 0; k < frictions.size(); ++k) {
     const SceneRun run = scene_run("ball", {"cloth.origin=[-0.32, 0.75, -0.5]", "duration=0.9",
                                             fmt::format("obstacles.0.friction={}", frictions[k])});
-    commands += (k > 0 ? "\n" : "") + run.command;
+    commands += (k > 0 ? " && " : "") + run.command;
     Simulation simulation(run.scene);
     PlotSeries speed{.name = fmt::format("friction {}", frictions[k])};
     const double part = 0.6 + 0.2 * static_cast<double>(k);
@@ -101,9 +101,11 @@ bool show_friction(StudyPage& study) {
     speeds.push_back(std::move(speed));
     panels.push_back(panel(simulation, usual_direction));
   }
-  study.picture(
-      "fig5-friction", beside(panels), "The cloth on a ball under its edge, little and much friction",
-      "The ball away from the cloth's middle, after 0.9 s: friction 0.1 (left) and 0.8 (right).", commands);
+  study.picture("fig5-friction", beside(panels),
+                "The cloth on a ball under its edge, little and much friction",
+                "The ball away from the cloth's middle, after 0.9 s: with a friction of 0.1 the cloth has "
+                "slipped off (left), with 0.8 it still hangs (right).",
+                commands);
   study.plot(
       "fig5-friction", speed_plot("More friction, slower cloth", std::move(speeds)),
       fmt::format("The same two: over the whole time the mean speed is {:.3f} m/s with friction 0.1 and "
@@ -140,8 +142,8 @@ void reproduce_methods(StudyPage& study) {
       "fig4-methods", beside(panels), "The same cloth by three methods",
       "a) semi-implicit Euler, b) Runge-Kutta 4, c) Verlet: corners-free with a step of 0.5 ms after 2 s. "
       "To the eye they are one; the distances are below.",
-      "for method in semi-implicit-euler rk4 verlet; do\n  clothlab-cli run corners-free --set "
-      "integrator.method=$method --set integrator.time_step=0.0005 --out $method\ndone");
+      "for method in semi-implicit-euler rk4 verlet; do clothlab-cli run corners-free --set "
+      "integrator.method=$method --set integrator.time_step=0.0005 --out $method; done");
   const auto limited = three_shapes("corners-shear", "0.0005", study, 0.5, nullptr);
   if (limited.empty()) return;
 

@@ -26,10 +26,10 @@ struct ReproduceProgress {
 };
 
 struct ReproduceOptions {
-  std::filesystem::path folder;
-  std::vector<std::string> only;  ///< of reproduce_parts(); empty: all
+  std::filesystem::path folder{};
+  std::vector<std::string> only{};  ///< of reproduce_parts(); empty: all
   /// Called often; false stops: what is done by then is written.
-  std::function<bool(const ReproduceProgress&)> progress;
+  std::function<bool(const ReproduceProgress&)> progress{};
 };
 
 struct ReproduceResult {

@@ -93,7 +93,7 @@ void show_hooke(StudyPage& study) {
       "errata-hooke",
       {.title = "A free cloth with F = -k l",
        .x = {.label = "time", .unit = "s", .low = 0},
-       .y = {.label = "distance of the farthest particle from the middle", .unit = "m", .low = 0},
+       .y = {.label = "largest distance from the middle", .unit = "m", .low = 0},
        .series = {series_of("as printed", cloth.radius)},
        .plot_height = 260},
       "10 x 10 particles of 10 g, 0.1 m apart, springs of 100 N/m: with the current length in place of "

@@ -84,12 +84,13 @@ void reproduce_table(StudyPage& study) {
   if (!time_methods(limited, "corners-shear", study, 0.4, 1)) return;
   add_timed_table(limited, "corners-shear", study);
   page.paragraph(
-      "Runge-Kutta 4 evaluates the forces four times a step, the others once, so nearly 4 is expected where "
+      "Runge-Kutta 4 evaluates the forces four times a step, the others once, so about 4 is expected where "
       "nothing but integration is timed; what every frame does besides (limiting the deformation, and "
       "drawing in the report's program) is the same for all methods and pulls the ratio toward 1. The "
       "report's 2.62 is what a frame gives of which 46 % is such fixed work: 4 e + f = 2.62 (e + f). Verlet "
-      "keeps the force over to the next step; after a step that the limiter changed it must evaluate once "
-      "more.");
+      "here also solves for the velocity that centres the damping, which the report's does not; and it keeps "
+      "the "
+      "force over to the next step, so that after a step that the limiter changed it evaluates once more.");
   page.heading("The unit of Table 1", 3);
   HtmlTable units =
       number_table("What a frame of the report would take in either unit",

@@ -1,5 +1,6 @@
 // clothlab-cli: the engine without Qt and without a display.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 

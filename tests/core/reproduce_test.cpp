@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "io/csv.h"
 #include "study/reproduce/errata.h"

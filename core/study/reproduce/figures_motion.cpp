@@ -89,7 +89,7 @@ bool show_friction(StudyPage& study) {
   for (std::size_t k = 0; k < frictions.size(); ++k) {
     const SceneRun run = scene_run("ball", {"cloth.origin=[-0.32, 0.75, -0.5]", "duration=0.9",
                                             fmt::format("obstacles.0.friction={}", frictions[k])});
-    commands += (k > 0 ? " && " : "") + run.command;
+    commands += (k > 0 ? " && " : "") + run.command + "-friction-" + frictions[k];
     Simulation simulation(run.scene);
     PlotSeries speed{.name = fmt::format("friction {}", frictions[k])};
     const double part = 0.6 + 0.2 * static_cast<double>(k);

@@ -46,6 +46,12 @@ struct ExtremesArguments {
   bool json = false, markdown = false;
 };
 int extremes(const ExtremesArguments& arguments);
+struct ReproduceArguments {
+  std::string folder;
+  std::vector<std::string> only;
+  bool json = false;
+};
+int reproduce(const ReproduceArguments& arguments);
 
 int schema();
 int parameters();

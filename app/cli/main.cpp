@@ -1,11 +1,13 @@
 // clothlab-cli: the engine without Qt and without a display.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "console.h"
 #include "io/run_folder.h"
+#include "study/reproduce.h"
 
 namespace {
 
@@ -28,6 +30,7 @@ struct Arguments {
   cli::ExplainArguments explain;
   cli::StabilityArguments stability;
   cli::ExtremesArguments extremes;
+  cli::ReproduceArguments reproduce;
 };
 
 void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
@@ -96,6 +99,17 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::Option* extremes_json = extremes->add_flag("--json", arguments.extremes.json, json_help);
   extremes->add_flag("--markdown", arguments.extremes.markdown, "Print the table as Markdown")
       ->excludes(extremes_json);
+  CLI::App* reproduce = app.add_subcommand(
+      "reproduce", "Measure the source report's figures, its Table 1 and its errata; one report.html");
+  reproduce->add_option("--out", arguments.reproduce.folder, "Folder for report.html and its pictures")
+      ->required();
+  reproduce
+      ->add_option("--only", arguments.reproduce.only,
+                   "Only these parts, separated by commas: " +
+                       fmt::format("{}", fmt::join(cloth::reproduce_parts(), ", ")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(cloth::reproduce_parts()));
+  reproduce->add_flag("--json", arguments.reproduce.json, json_help);
 
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
@@ -121,6 +135,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
   if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
+  if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

@@ -25,7 +25,7 @@ struct PictureOptions {
   bool ground = true;  ///< a floor below everything where the scene has no level plane
   bool shadow = true;  ///< on the floor, and of cloth and bodies on each other
   Rgb background_top{0xd9, 0xe0, 0xea}, background_bottom{0xf6, 0xf8, 0xfa};
-  std::vector<PictureArrow> arrows;  ///< over everything else
+  std::vector<PictureArrow> arrows{};  ///< over everything else
 };
 
 /// The colours of the three families of springs in a wireframe, for a legend.

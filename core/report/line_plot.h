@@ -63,7 +63,7 @@ struct LinePlot {
   std::vector<SlopeTriangle> triangles{};
   std::vector<ReferenceLine> lines{};
   std::string
-      best_line;  // its name in the legend; empty: none. The lowest y that any run reached with at most x
+      best_line{};  // its name in the legend; empty: none. The lowest y that any run reached with at most x
   double width = 960;        // of the whole picture [px]
   double plot_height = 440;  // of the axes' frame [px]
 };

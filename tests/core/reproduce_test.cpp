@@ -1,0 +1,125 @@
+#include "study/reproduce.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "io/csv.h"
+#include "study/reproduce/errata.h"
+#include "support/files.h"
+
+namespace cloth::test {
+namespace {
+
+/// Made once: the parts that measure no times.
+class Reproduce : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    result_ = reproduce({.folder = folder_->path(), .only = {"errata", "fig1"}});
+    page_ = content_of(*folder_ / "report.html");
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static double number(const std::string& name) {
+    for (const Measured& measured : result_.numbers)
+      if (measured.name == name) return measured.value;
+    ADD_FAILURE() << "no number " << name;
+    return std::nan("");
+  }
+
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  static inline ReproduceResult result_;
+  static inline std::string page_;
+};
+
+TEST_F(Reproduce, PrintedRungeKuttaDoesNotConverge) {
+  EXPECT_NEAR(number("3 k3: error of x' = -x at t = 1, 320 steps"), 5.66e-2, 1e-4);
+  EXPECT_NEAR(number("3 k3: turns per period"), 7.0 / 6, 1e-4);
+  EXPECT_NEAR(number("2 k3: turns per period"), 1, 1e-9);
+  EXPECT_NEAR(number("Runge-Kutta 4 with 3 k3, Eq. (8): order"), 0, 0.05);
+  EXPECT_NEAR(number("Runge-Kutta 4: order"), 4, 0.1);
+  EXPECT_GT(number("Runge-Kutta 4 with 3 k3: error that stays"), 1e-2);
+}
+
+TEST_F(Reproduce, LaggedVerletIsOfFirstOrderAndCentredOfSecond) {
+  EXPECT_NEAR(number("Verlet with lagged damping, Eq. (14): order"), 1, 0.05);
+  EXPECT_NEAR(number("Verlet, damping centred: order"), 2, 0.05);
+}
+
+TEST_F(Reproduce, CurrentLengthHookeCollapsesTheCloth) {
+  EXPECT_NEAR(number("F = -k l: force on a corner at rest"), 56.6, 0.06);
+  EXPECT_NEAR(number("F = -k l: acceleration of a corner"), 577, 1);
+  EXPECT_NEAR(number("F = -k l: radius at the start"), 0.45 * std::sqrt(2), 1e-9);
+  EXPECT_NEAR(number("F = -k l: least radius"), 0.039, 5e-4);
+  EXPECT_NEAR(number("F = -k l: time of the collapse"), 0.0195, 1e-4);
+}
+
+TEST_F(Reproduce, CornerPushIsFourTimesTheLeastPenetration) {
+  EXPECT_NEAR(number("all three, mean over the cube"), 0.9606, 5e-4);
+  EXPECT_NEAR(number("least penetration, mean over the cube"), 0.25, 5e-4);
+  EXPECT_NEAR(number("all three: speed of that jump"), 602, 1);
+  EXPECT_NEAR(number("least penetration: speed of that jump"), 5, 1e-9);
+}
+
+TEST_F(Reproduce, SemiImplicitEulerGrowsBeyondItsLimitAndImplicitEulerDoesNot) {
+  EXPECT_NEAR(number("semi-implicit Euler, w = 1.9"), 1, 1e-9);
+  EXPECT_NEAR(number("semi-implicit Euler, w = 2.1"), 1.88, 0.005);
+  EXPECT_NEAR(number("semi-implicit Euler, w = 10"), 98, 0.02);
+  EXPECT_NEAR(number("implicit Euler, w = 2.1"), 1 / std::hypot(1, 2.1), 1e-9);
+  EXPECT_NEAR(number("implicit Euler, w = 10"), 1 / std::hypot(1, 10), 1e-9);
+  EXPECT_EQ(number("corners-free at 0.95 of the limit: steps until it diverged (0: never)"), 0);
+  EXPECT_GT(number("corners-free at 1.1 of the limit: steps until it diverged (0: never)"), 0);
+}
+
+TEST(LeavingParticle, IsSentBackInAsPrintedAndLeftAloneOtherwise) {
+  const auto [printed, right] = leaving_particle();
+  EXPECT_NEAR(printed.velocity, -0.9, 1e-12);
+  EXPECT_NEAR(right.velocity, 1, 1e-12);
+  EXPECT_GT(printed.time_lost, 0);
+}
+
+TEST_F(Reproduce, ReportIsOneFileWithEverySection) {
+  for (const char* section : {"Fig. 1", "Eqs. (8) and (14)", "Eq. (1)", "Eqs. (17) and (20)",
+                              "Eqs. (6) and (7)", "Machine and measurement"})
+    EXPECT_NE(page_.find(section), std::string::npos) << section;
+  EXPECT_EQ(page_.find("src=\"http"), std::string::npos);
+  EXPECT_EQ(page_.find("<link"), std::string::npos);
+  EXPECT_EQ(page_.find("<script"), std::string::npos);
+  EXPECT_NE(page_.find("clothlab-cli reproduce --only errata"), std::string::npos);
+}
+
+TEST_F(Reproduce, EveryFileIsThereAndEveryNumberIsFinite) {
+  EXPECT_FALSE(result_.io_error);
+  for (const std::string& file : result_.files) EXPECT_FALSE(content_of(*folder_ / file).empty()) << file;
+  EXPECT_EQ(content_of(*folder_ / "fig1-springs.png").substr(1, 3), "PNG");
+  const CsvTable table = parse_csv(content_of(*folder_ / "numbers.csv"));
+  EXPECT_EQ(table.rows.size(), result_.numbers.size());
+  for (const Measured& measured : result_.numbers)
+    EXPECT_TRUE(std::isfinite(measured.value)) << measured.name;
+}
+
+TEST_F(Reproduce, GivesTheSameNumbersAgain) {
+  const TemporaryFolder folder;
+  const ReproduceResult again = reproduce({.folder = folder.path(), .only = {"errata"}});
+  std::map<std::string, double> first;
+  for (const Measured& measured : result_.numbers) first[measured.name] = measured.value;
+  for (const Measured& measured : again.numbers) EXPECT_EQ(measured.value, first[measured.name]);
+}
+
+TEST(StoppedReproduction, LeavesAPageOfWhatWasDone) {
+  const TemporaryFolder folder;
+  const ReproduceResult result = reproduce(
+      {.folder = folder.path(), .progress = [](const ReproduceProgress& p) { return p.part == "fig1"; }});
+  EXPECT_TRUE(result.stopped);
+  const std::string page = content_of(folder / "report.html");
+  EXPECT_NE(page.find("Fig. 1"), std::string::npos);
+  EXPECT_NE(page.find("Stopped before the end"), std::string::npos);
+  EXPECT_NE(page.find("</html>"), std::string::npos);
+  EXPECT_EQ(page.find("Table 1: 2500"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cloth::test

@@ -1,6 +1,7 @@
 // One function per command, in a file of its own. Each returns the program's exit code.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,17 @@ struct ExplainArguments {
   bool json = false;
 };
 int explain(const ExplainArguments& arguments);
+
+struct WorkPrecisionArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::vector<std::string> methods;  ///< empty: all
+  std::optional<double> horizon;     ///< s
+  int repeats = 5;
+  std::string folder;
+  bool json = false;
+};
+int work_precision(const WorkPrecisionArguments& arguments);
 
 int schema();
 int parameters();

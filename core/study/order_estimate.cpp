@@ -78,8 +78,7 @@ Slope fit_slope(const std::vector<OrderPoint>& points) {
   }
   if (!(xx > 0)) return {};
   Slope slope{.value = xy / xx, .standard_error = 0, .points = static_cast<int>(points.size())};
-  if (points.size() > 2)
-    slope.standard_error = std::sqrt(std::max(0.0, yy - xy * xy / xx) / (n - 2) / xx);
+  if (points.size() > 2) slope.standard_error = std::sqrt(std::max(0.0, yy - xy * xy / xx) / (n - 2) / xx);
   return slope;
 }
 
@@ -103,7 +102,8 @@ OrderEstimate estimate_order(const std::vector<OrderPoint>& points, const OrderR
       const auto from = points.begin() + begin;
       return std::all_of(from, from + count,
                          [&](const OrderPoint& p) { return above_floor(p, rule) && slow_enough(p, rule); }) &&
-             settled(estimate.pairwise, static_cast<std::size_t>(begin), static_cast<std::size_t>(count), rule);
+             settled(estimate.pairwise, static_cast<std::size_t>(begin), static_cast<std::size_t>(count),
+                     rule);
     });
     if (first < 0) continue;
     estimate.asymptotic = true;

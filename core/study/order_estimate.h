@@ -13,8 +13,8 @@ struct OrderPoint {
 
 /// Which points count.
 struct OrderRule {
-  double floor = 0;              ///< uncertainty of the reference, in the errors' unit: 10 of it must lie below
-  double scale = 0;              ///< size of the solution, in the errors' unit: 100 eps of it must lie below
+  double floor = 0;  ///< uncertainty of the reference, in the errors' unit: 10 of it must lie below
+  double scale = 0;  ///< size of the solution, in the errors' unit: 100 eps of it must lie below
   double excited_frequency = 0;  ///< 1/s of the fastest motion that is there: step * this <= largest_phase
   double largest_phase = 0.3;
   double slack = 0.1;  ///< most by which the pairwise orders of a window may differ; 0.2 from order 4 on

@@ -53,8 +53,7 @@ class ExcitedFrequency {
     motion.derivative(time - moment_, before_y, before_);
     motion.derivative(time + moment_, after_y, after_);
     acceleration_ += weighted_square(motion.system(), slope_.tail(half));
-    jerk_ +=
-        weighted_square(motion.system(), ((after_ - before_).tail(half) / (2 * moment_)).eval());
+    jerk_ += weighted_square(motion.system(), ((after_ - before_).tail(half) / (2 * moment_)).eval());
   }
   double value() const { return acceleration_ > 0 ? std::sqrt(jerk_ / acceleration_) : 0; }
 

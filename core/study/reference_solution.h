@@ -55,9 +55,9 @@ struct ReferenceSolution {
   double excited_frequency = 0;    ///< 1/s, see below; 0 where not smooth
   double largest_kinetic = 0;      ///< J, of `states`
   bool smooth = true;
-  std::string first, second;       ///< what solved it, and what checked it
-  std::int64_t evaluations = 0;    ///< of the force, by both
-  std::string failure;             ///< not empty: there is no reference, and why
+  std::string first, second;     ///< what solved it, and what checked it
+  std::int64_t evaluations = 0;  ///< of the force, by both
+  std::string failure;           ///< not empty: there is no reference, and why
 };
 
 /// Told the part that is done, from 0 to 1; false stops.

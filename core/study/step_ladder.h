@@ -11,8 +11,8 @@
 
 namespace cloth {
 
-/// min(duration, 150 periods of the fastest oscillation), the latter rounded down to one of 1, 1.5, 2, 2.5, 3, 4,
-/// 5, 6, 8 times a power of ten. s
+/// min(duration, 150 periods of the fastest oscillation), the latter rounded down to one of 1, 1.5, 2, 2.5,
+/// 3, 4, 5, 6, 8 times a power of ten. s
 double default_horizon(const Scene& scene);
 
 /// How one method's runs follow each other: rung 0 is the coarsest one that should work, each further rung

@@ -78,9 +78,9 @@ double whole_cost(const WorkPrecisionRun& run, int repeats) {
 }
 
 int reached(const MethodStudy& method) {
-  return static_cast<int>(std::count_if(method.runs.begin(), method.runs.end(), [](const WorkPrecisionRun& run) {
-    return run.rung >= 0 && run.reached_horizon();
-  }));
+  return static_cast<int>(
+      std::count_if(method.runs.begin(), method.runs.end(),
+                    [](const WorkPrecisionRun& run) { return run.rung >= 0 && run.reached_horizon(); }));
 }
 
 /// What `rung` should cost by the rung before it; 0 where nothing is known.
@@ -88,7 +88,8 @@ double predicted(const MethodStudy& method, int rung, int repeats) {
   if (rung < 1 || method.runs.empty()) return 0;
   const WorkPrecisionRun& last = method.runs.back();
   if (!last.reached_horizon()) return 0;
-  WorkPrecisionRun next{.estimated = (method.ladder.by_tolerance ? 1.6 : 2.0) * last.estimated, .samples = {}};
+  WorkPrecisionRun next{.estimated = (method.ladder.by_tolerance ? 1.6 : 2.0) * last.estimated,
+                        .samples = {}};
   return whole_cost(next, repeats);
 }
 
@@ -99,8 +100,8 @@ WorkPrecisionRun refused_run(const MethodStudy& method, int rung, double horizon
   run.error = {nan, nan, nan};
   run.energy_error = nan;
   run.status = RunStatus::refused;
-  run.detail = fmt::format("it and its repeats would take some {:.0f} s; {:.0f} s of the budget are left", cost,
-                           std::max(0.0, left));
+  run.detail = fmt::format("it and its repeats would take some {:.0f} s; {:.0f} s of the budget are left",
+                           cost, std::max(0.0, left));
   return run;
 }
 
@@ -177,7 +178,8 @@ void shuffle(std::vector<std::pair<MethodStudy*, WorkPrecisionRun*>>& runs, std:
   }
 }
 
-/// One warm-up of each run, then its repeats, all runs of a repeat in shuffled order. False if stopped.
+/// Each run has run once, untimed, before: that was the warm-up. All runs of a repeat in shuffled order.
+/// False if stopped.
 bool time_all(WorkPrecision& study, const WorkPrecisionOptions& options) {
   double total = 0, spent = 0;
   int most = 0;
@@ -196,7 +198,8 @@ bool time_all(WorkPrecision& study, const WorkPrecisionOptions& options) {
     shuffle(turn, static_cast<std::uint64_t>(repeat));
     for (std::size_t k = 0; k < turn.size(); ++k) {
       auto& [method, run] = turn[k];
-      const std::string text = fmt::format("timing {}, repeat {} of {}", method->ladder.facts.name, repeat, most);
+      const std::string text =
+          fmt::format("timing {}, repeat {} of {}", method->ladder.facts.name, repeat, most);
       if (options.progress && !options.progress({0.25 + 0.75 * spent / std::max(total, 1e-9), text}))
         return false;
       run->samples.push_back({repeat, static_cast<int>(k) + 1, seconds_of(study, method->ladder, run->rung)});
@@ -270,8 +273,7 @@ double estimated_seconds(int particles, const StepCount& count, std::int64_t lim
       60e-9 * static_cast<double>(count.iterations + count.linear_iterations + count.velocity_iterations) +
       40e-9 * static_cast<double>(count.limiter_sweeps);
   const double factorisation = 200e-9 * std::pow(n, 1.5);
-  return n * per_particle +
-         factorisation * static_cast<double>(count.factorisations + limiter_iterations);
+  return n * per_particle + factorisation * static_cast<double>(count.factorisations + limiter_iterations);
 }
 
 TimeSpread spread_of(const std::vector<TimedSample>& samples) {
@@ -307,8 +309,7 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
     study.stopped = study.reference.failure == "stopped";
     return study;
   }
-  study.estimated = estimated_seconds(study.particles,
-                                      {.force_evaluations = study.reference.evaluations}, 0);
+  study.estimated = estimated_seconds(study.particles, {.force_evaluations = study.reference.evaluations}, 0);
   study.stopped = !Measuring(study, options).all() || !time_all(study, options);
   conclude(study);
   return study;

@@ -44,15 +44,15 @@ struct WorkPrecisionRun {
   double tolerance = 0;  ///< of error control; 0: none
   double time_step = 0;  ///< s; with error control the mean of the accepted ones
   std::int64_t steps = 0;
-  StepCount count;
+  StepCount count = {};
   std::int64_t limiter_iterations = 0;  ///< of the direct solver
-  StateDifference error;                ///< only of runs that reached the horizon; else not a number
+  StateDifference error = {};           ///< only of runs that reached the horizon; else not a number
   double energy_error = 0;              ///< J, at the horizon
   RunStatus status = RunStatus::stable;
-  std::string detail;    ///< where and why it stopped or was refused
-  double estimated = 0;  ///< s
-  std::vector<TimedSample> samples;
-  TimeSpread time;
+  std::string detail = {};  ///< where and why it stopped or was refused
+  double estimated = 0;     ///< s
+  std::vector<TimedSample> samples = {};
+  TimeSpread time = {};
 
   bool reached_horizon() const { return status == RunStatus::stable || status == RunStatus::energy_growth; }
 };

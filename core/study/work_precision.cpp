@@ -151,7 +151,7 @@ class Measuring {
     if (reached(method) >= options_.steps_per_method) return true;
     if (method.runs.empty() || !method.runs.back().reached_horizon()) return false;
     return reached(method) >= promised_rungs &&
-           method.runs.back().error.rms_position < study_.reference.floor.rms_position;
+           method.runs.back().error.rms_position < 10 * study_.reference.floor.rms_position;
   }
 
   WorkPrecision& study_;

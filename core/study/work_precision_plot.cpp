@@ -121,8 +121,10 @@ LinePlot error_plot(const WorkPrecision& study, PlotAgainst against) {
   plot.x = axis_of(against);
   plot.y = {.label = "RMS position error", .unit = "m", .scale = AxisScale::logarithmic};
   for (const MethodStudy& method : study.methods) plot.series.push_back(series_of(study, method, against));
-  if (const double floor = study.reference.floor.rms_position; floor > 0)
-    plot.floor = PlotFloor{10 * floor, "within ten times what the two references differ by"};
+  if (const double floor = 10 * study.reference.floor.rms_position; floor > 0) {
+    plot.floor = PlotFloor{floor, "within ten times what the two references differ by"};
+    plot.y.low = floor / 100;  // room for its label
+  }
   plot.triangles = triangles_of(study, against);
   if (against == PlotAgainst::run_time) plot.best_line = "least error for the time";
   return plot;

@@ -148,14 +148,14 @@ StateDifference difference(const std::vector<ClothState>& a, const std::vector<C
 ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
                                const ReferenceProgress& progress) {
   ReferenceSolution solution;
-  solution.first = fmt::format("Gragg-Bulirsch-Stoer extrapolation, tolerance {:.0e} a step", tolerance);
   ClothMotion motion(scene);
   const Derivative f = [&](double time, const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
     motion.derivative(time, y, dy);
   };
   const double rate = std::max(fastest_rate(scene), 1 / horizon);
   const int steps = std::max(1, static_cast<int>(std::ceil(horizon / samples * rate / collocation_phase)));
-  solution.second = fmt::format("Gauss-Legendre collocation of order 12 in {} steps", steps * samples);
+  solution.first = fmt::format("Gauss-Legendre collocation of order 12 in {} steps", steps * samples);
+  solution.second = fmt::format("Gragg-Bulirsch-Stoer extrapolation, tolerance {:.0e} a step", tolerance);
 
   const Eigen::VectorXd scale = scale_of(motion.system(), horizon);
   Extrapolation extrapolation(tolerance, scale);
@@ -165,8 +165,8 @@ ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
   std::vector<ClothState> check;
   for (int k = 1; k <= samples; ++k) {
     const double begin = horizon * (k - 1) / samples, end = horizon * k / samples;
-    auto failure = extrapolation.advance(f, begin, end, first);
-    if (!failure) failure = collocation.advance(f, begin, end, steps, second);
+    auto failure = collocation.advance(f, begin, end, steps, first);
+    if (!failure) failure = extrapolation.advance(f, begin, end, second);
     if (failure) solution.failure = *failure;
     if (!failure && progress && !progress(static_cast<double>(k) / samples)) solution.failure = "stopped";
     if (!solution.failure.empty()) return solution;

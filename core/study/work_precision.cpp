@@ -13,7 +13,8 @@ namespace {
 
 constexpr int most_rungs = 12;
 constexpr int promised_rungs = 5;
-constexpr double worth_timing = 0.2;  // s, all repeats of a run together
+constexpr double worth_timing = 0.2;        // s, all repeats of a run together
+constexpr double limiter_tolerance = 1e-6;  // the default of 1e-4 would stop errors at some 1e-3 m
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// One untimed run: errors at the fixed times, counts, and how it ended.
@@ -293,6 +294,8 @@ TimeSpread spread_of(const std::vector<TimedSample>& samples) {
 WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study;
   study.scene = scene;
+  if (scene.deformation)
+    study.scene.deformation->tolerance = std::min(scene.deformation->tolerance, limiter_tolerance);
   study.particles = scene.cloth.rows * scene.cloth.columns;
   study.diagonal = std::hypot(scene.cloth.width, scene.cloth.height);
   study.repeats = options.repeats;

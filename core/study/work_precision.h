@@ -64,7 +64,7 @@ struct MethodStudy {
 };
 
 struct WorkPrecision {
-  Scene scene;
+  Scene scene;  ///< with the limiter's tolerance at most 1e-6, so that it is below the errors of time
   int particles = 0;
   double diagonal = 0;  ///< m
   double horizon = 0;   ///< s

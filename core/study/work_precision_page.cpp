@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "report/html_page.h"
 #include "report/machine.h"
@@ -29,9 +30,13 @@ void add_notices(const WorkPrecision& study, HtmlPage& page) {
                 Verdict::bad);
   if (!study.reference.smooth)
     page.notice(
-        "The scene limits stretching or has obstacles. Projections at the end of a step make every method of "
-        "first order: the reference is the same loop with the same projections and a far finer step, and "
-        "what is measured is the error of time alone, not the difference between models.",
+        "The scene limits stretching or has obstacles. Projections at the end of a step are not smooth in "
+        "time: "
+        "expect first order from every method, whatever its order without them. The reference is the same "
+        "loop "
+        "with the same projections and a far finer step, so that what is measured is the error of time "
+        "alone, "
+        "not the difference between models. The limiter's tolerance is 1e-6 at most in all runs.",
         Verdict::warn);
 }
 
@@ -123,33 +128,76 @@ void add_orders(const WorkPrecision& study, HtmlPage& page) {
   page.table(table);
 }
 
-HtmlRow run_row(const MethodStudy& method, const WorkPrecisionRun& run) {
-  const bool ran = run.status != RunStatus::refused;
-  const auto count = [&](std::int64_t n) { return ran && n > 0 ? fmt::format("{}", n) : std::string(); };
-  const auto error = [&](double value) { return run.reached_horizon() ? html_number(value) : HtmlText(); };
-  const auto time = [&](double value) { return run.samples.empty() ? HtmlText() : html_number(value); };
+/// A column of the table of runs.
+struct RunColumn {
+  HtmlColumn head;
+  std::function<HtmlCell(const WorkPrecisionRun&)> cell;
+};
+
+RunColumn count_column(const char* head, std::int64_t (*count)(const WorkPrecisionRun&)) {
+  return {{head, Align::right}, [count](const WorkPrecisionRun& run) -> HtmlCell {
+            const std::int64_t n = count(run);
+            return n > 0 ? std::to_string(n) : std::string();
+          }};
+}
+
+RunColumn number_column(const char* head, double (*value)(const WorkPrecisionRun&)) {
+  return {{head, Align::right}, [value](const WorkPrecisionRun& run) -> HtmlCell {
+            const double number = value(run);
+            return number > 0 ? html_number(number) : HtmlText();
+          }};
+}
+
+HtmlCell status_cell(const WorkPrecisionRun& run) {
   HtmlText what = name_of(run.status);
   if (run.tolerance > 0) what = what + ", tolerance " + html_number(run.tolerance, 1);
   if (run.rung < 0) what = what + ", beyond the limit";
-  const Verdict verdict = run.status == RunStatus::stable    ? Verdict::none
-                          : run.status == RunStatus::refused ? Verdict::warn
-                                                             : Verdict::bad;
-  HtmlRow row;
-  row.cells = {method.ladder.facts.title,
-               std::isfinite(run.time_step) ? html_number(run.time_step) : HtmlText(),
-               run.steps > 0 ? std::to_string(run.steps) : "",
-               count(run.count.force_evaluations),
-               count(run.count.factorisations),
-               count(run.count.iterations + run.count.linear_iterations),
-               count(run.count.limiter_sweeps + run.limiter_iterations),
-               error(run.error.rms_position),
-               error(run.error.largest_position),
-               error(run.error.rms_velocity),
-               time(run.time.least),
-               time(run.time.median),
-               HtmlCell(what, verdict, run.detail),
-               run.detail};
-  return row;
+  if (run.status == RunStatus::stable) return what;
+  return {what, run.status == RunStatus::refused ? Verdict::warn : Verdict::bad, run.detail};
+}
+
+using Run = WorkPrecisionRun;
+
+std::int64_t sum_over(const WorkPrecision& study, std::int64_t (*count)(const Run&)) {
+  std::int64_t sum = 0;
+  for (const MethodStudy& method : study.methods)
+    for (const Run& run : method.runs) sum += count(run);
+  return sum;
+}
+
+/// Counts that no run has are left out.
+std::vector<RunColumn> run_columns(const WorkPrecision& study) {
+  std::vector<RunColumn> columns{
+      number_column("Step (s)", [](const Run& run) { return run.time_step; }),
+      count_column("Steps", [](const Run& run) { return run.steps; }),
+      count_column("Force evaluations", [](const Run& run) { return run.count.force_evaluations; })};
+  const std::vector<std::pair<const char*, std::int64_t (*)(const Run&)>> counts{
+      {"Factorisations", [](const Run& run) { return run.count.factorisations; }},
+      {"Iterations", [](const Run& run) { return run.count.iterations + run.count.linear_iterations; }},
+      {"Limiter", [](const Run& run) { return run.count.limiter_sweeps + run.limiter_iterations; }}};
+  for (const auto& [head, count] : counts)
+    if (sum_over(study, count) > 0) columns.push_back(count_column(head, count));
+  columns.push_back(number_column("RMS error (m)", [](const Run& run) { return run.error.rms_position; }));
+  columns.push_back(number_column("Largest (m)", [](const Run& run) { return run.error.largest_position; }));
+  columns.push_back(number_column("Velocity (m/s)", [](const Run& run) { return run.error.rms_velocity; }));
+  columns.push_back(number_column("Least time (s)", [](const Run& run) { return run.time.least; }));
+  columns.push_back(number_column("Median (s)", [](const Run& run) { return run.time.median; }));
+  columns.push_back({{"Status"}, status_cell});
+  return columns;
+}
+
+/// Why runs failed or were refused, each in a sentence.
+void add_causes(const WorkPrecision& study, HtmlPage& page) {
+  std::vector<HtmlText> items;
+  for (const MethodStudy& method : study.methods)
+    for (const Run& run : method.runs)
+      if (!run.detail.empty())
+        items.push_back(html_strong(method.ladder.facts.title) +
+                        (std::isfinite(run.time_step) ? " at " + seconds(run.time_step) : HtmlText()) + ": " +
+                        name_of(run.status) + "; " + run.detail);
+  if (items.empty()) return;
+  page.heading("What failed, and why", 3);
+  page.list(items);
 }
 
 void add_runs(const WorkPrecision& study, HtmlPage& page) {
@@ -157,27 +205,20 @@ void add_runs(const WorkPrecision& study, HtmlPage& page) {
   page.paragraph("The same as " + html_code("work_precision.csv") +
                  ", which has quartiles too; every timed repeat is in " +
                  html_code("work_precision_samples.csv") + ".");
-  HtmlTable table{"Runs, from each method's longest step to its shortest",
-                  {{"Method"},
-                   {"Step (s)", Align::right},
-                   {"Steps", Align::right},
-                   {"Force evaluations", Align::right},
-                   {"Factori\u00ADsations", Align::right},
-                   {"Iterations", Align::right},
-                   {"Limiter", Align::right},
-                   {"RMS error (m)", Align::right},
-                   {"Largest error (m)", Align::right},
-                   {"RMS velocity error (m/s)", Align::right},
-                   {"Least time (s)", Align::right},
-                   {"Median (s)", Align::right},
-                   {"Status"},
-                   {"Cause"}},
-                  {}};
+  HtmlTable table{"Runs, from each method's longest step to its shortest", {{"Method"}}, {}};
+  const std::vector<RunColumn> columns = run_columns(study);
+  for (const RunColumn& column : columns) table.columns.push_back(column.head);
   for (const MethodStudy& method : study.methods)
-    for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(run_row(method, run));
+    for (const Run& run : method.runs) {
+      HtmlRow row;
+      row.cells.emplace_back(method.ladder.facts.title);
+      for (const RunColumn& column : columns) row.cells.push_back(column.cell(run));
+      table.rows.push_back(row);
+    }
   page.begin_details(fmt::format("{} runs", table.rows.size()), true);
   page.table(table);
   page.end_details();
+  add_causes(study, page);
 }
 
 void add_protocol(const WorkPrecision& study, HtmlPage& page) {

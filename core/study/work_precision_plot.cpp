@@ -105,8 +105,9 @@ std::vector<std::string> caption_of(const WorkPrecision& study, PlotAgainst agai
                     study.particles, study.samples, study.horizon, study.repeats));
   if (!study.reference.smooth)
     caption.push_back(
-        "Deformation rate or contact at work: first order by construction, methods of higher order gain "
-        "nothing.");
+        "Deformation rate or contact at work: expect first order from every method; what was observed stands "
+        "in "
+        "the legend.");
   if (study.stopped) caption.push_back("The study was stopped: what is drawn was finished.");
   return caption;
 }

@@ -34,6 +34,7 @@ bool monotone(const double* p, std::size_t count, double scatter) {
 bool settled(const std::vector<double>& pairwise, std::size_t first, std::size_t points,
              const OrderRule& rule) {
   const double* p = pairwise.data() + first;
+  if (!std::all_of(p, p + points - 1, [](double order) { return std::isfinite(order); })) return false;
   const auto [low, high] = std::minmax_element(p, p + points - 1);
   return *high - *low <= rule.slack && monotone(p, points - 1, 0.2 * rule.slack);
 }

@@ -1,6 +1,7 @@
 // One function per command, in a file of its own. Each returns the program's exit code.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,16 @@ struct ReproduceArguments {
   bool json = false;
 };
 int reproduce(const ReproduceArguments& arguments);
+struct WorkPrecisionArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::vector<std::string> methods;  ///< empty: all
+  std::optional<double> horizon;     ///< s
+  int repeats = 5;
+  std::string folder;
+  bool json = false;
+};
+int work_precision(const WorkPrecisionArguments& arguments);
 
 int schema();
 int parameters();

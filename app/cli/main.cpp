@@ -31,6 +31,7 @@ struct Arguments {
   cli::StabilityArguments stability;
   cli::ExtremesArguments extremes;
   cli::ReproduceArguments reproduce;
+  cli::WorkPrecisionArguments work_precision;
 };
 
 void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
@@ -115,6 +116,22 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
 
+void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
+  CLI::App* study = app.add_subcommand("work-precision", "Error against run time of every method on a scene");
+  study->add_option("scene", arguments.scene, scene_help)->required();
+  study->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
+  study->add_option("--methods", arguments.methods, "Only these methods, e.g. verlet,rk4")->delimiter(',');
+  study->add_option("--horizon", arguments.horizon, "Simulated time in s; chosen from the scene if not given")
+      ->check(CLI::PositiveNumber);
+  study->add_option("--repeats", arguments.repeats, "Timed repeats of each run")
+      ->check(CLI::Range(5, 1000))
+      ->capture_default_str();
+  study->add_option("--out", arguments.folder,
+                    "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg and "
+                    "report.html; made if missing");
+  study->add_flag("--json", arguments.json, json_help);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -125,6 +142,7 @@ int main(int argc, char** argv) {
   app.footer(exit_codes);
   Arguments arguments;
   add_commands(app, arguments);
+  add_work_precision(app, arguments.work_precision);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -136,6 +154,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
   if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
   if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
+  if (app.got_subcommand("work-precision")) return cli::work_precision(arguments.work_precision);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "console.h"
+#include "integrators/registry.h"
+#include "io/run_folder.h"
+#include "progress.h"
+#include "study/work_precision_report.h"
+#include "study/work_precision_tables.h"
+
+namespace clothlab::cli {
+namespace {
+
+/// True if every method is known; says which are otherwise.
+bool are_known(const std::vector<std::string>& methods) {
+  const auto& names = cloth::integrator_names();
+  for (const std::string& method : methods)
+    if (std::find(names.begin(), names.end(), method) == names.end()) {
+      say(fmt::format("--methods: \"{}\" is not a method; known are {}", method, fmt::join(names, ", ")));
+      return false;
+    }
+  return true;
+}
+
+std::string command_of(const WorkPrecisionArguments& arguments) {
+  std::string text = "clothlab-cli work-precision " + arguments.scene;
+  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
+  if (arguments.horizon) text += fmt::format(" --horizon {}", *arguments.horizon);
+  if (arguments.repeats != WorkPrecisionArguments{}.repeats)
+    text += fmt::format(" --repeats {}", arguments.repeats);
+  return text + " --out DIR";
+}
+
+std::optional<cloth::IoError> write_files(const WorkPrecisionArguments& arguments,
+                                          const cloth::WorkPrecision& study) {
+  const std::filesystem::path folder = arguments.folder;
+  if (auto error = cloth::make_folder(folder)) return error;
+  if (auto error = cloth::write_csv(folder / "work_precision.csv", cloth::run_table(study))) return error;
+  if (auto error = cloth::write_csv(folder / "work_precision_samples.csv", cloth::sample_table(study)))
+    return error;
+  const std::string svg = cloth::to_svg(cloth::error_plot(study, cloth::PlotAgainst::run_time));
+  if (auto error = cloth::write_text_file(folder / "work_precision.svg", svg)) return error;
+  return cloth::write_text_file(folder / "report.html",
+                                cloth::work_precision_page(study, command_of(arguments)));
+}
+
+}  // namespace
+
+int work_precision(const WorkPrecisionArguments& arguments) {
+  if (!are_known(arguments.methods)) return bad_input;
+  const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
+  if (!loaded.scene) return loaded.exit_code;
+  if (!arguments.folder.empty())
+    if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
+
+  listen_for_stop();
+  cloth::WorkPrecision study;
+  {
+    Progress bar;
+    study =
+        cloth::study_work_precision(*loaded.scene, {.methods = arguments.methods,
+                                                    .horizon = arguments.horizon,
+                                                    .repeats = arguments.repeats,
+                                                    .progress = [&](const cloth::StudyProgress& progress) {
+                                                      bar.show(progress.fraction, progress.text);
+                                                      return !stop_is_requested();
+                                                    }});
+  }
+  if (!arguments.folder.empty())
+    if (const auto error = write_files(arguments, study)) return report(*error);
+  const bool has_reference = study.reference.failure.empty();
+  if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
+  std::string text = arguments.json ? cloth::work_precision_json(study) : cloth::work_precision_text(study);
+  if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
+  if (const int printed = print(text); printed != done) return printed;
+  if (study.stopped) return interrupted;
+  return has_reference ? done : diverged;
+}
+
+}  // namespace clothlab::cli

@@ -1,0 +1,321 @@
+#include "study/work_precision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace cloth {
+namespace {
+
+constexpr int most_rungs = 12;
+constexpr int promised_rungs = 5;
+constexpr double worth_timing = 0.2;        // s, all repeats of a run together
+constexpr double limiter_tolerance = 1e-6;  // the default of 1e-4 would stop errors at some 1e-3 m
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// One untimed run: errors at the fixed times, counts, and how it ended.
+class UntimedPass {
+ public:
+  UntimedPass(const WorkPrecision& study, const StepLadder& ladder) : study_(study), ladder_(ladder) {}
+
+  /// nullopt if `go_on` said false before the end.
+  std::optional<WorkPrecisionRun> run(int rung, const std::function<bool()>& go_on) const {
+    Simulation simulation(scene_at(study_.scene, ladder_, rung, study_.horizon));
+    WorkPrecisionRun result{.rung = rung, .tolerance = ladder_.tolerance(rung), .samples = {}};
+    const std::int64_t stride = ladder_.steps(rung) / study_.samples;
+    std::vector<ClothState> states;
+    std::optional<Divergence> divergence;
+    for (int k = 0; k < study_.samples && !divergence; ++k) {
+      for (std::int64_t n = 0; n < stride && !divergence; ++n) {
+        divergence = simulation.step();
+        result.limiter_iterations += simulation.last_limit().direct_iterations;
+      }
+      if (!go_on()) return std::nullopt;
+      if (!divergence) states.push_back(simulation.state());
+    }
+    result.count = simulation.count();
+    result.steps = ladder_.by_tolerance ? result.count.inner_steps : result.count.steps;
+    result.time_step = simulation.time() / static_cast<double>(std::max<std::int64_t>(1, result.steps));
+    if (!ladder_.by_tolerance) result.time_step = simulation.time_step();
+    result.estimated = estimated_seconds(study_.particles, result.count, result.limiter_iterations);
+    judge(simulation, divergence, states, result);
+    return result;
+  }
+
+ private:
+  void judge(const Simulation& simulation, const std::optional<Divergence>& divergence,
+             const std::vector<ClothState>& states, WorkPrecisionRun& result) const {
+    if (divergence) {
+      result.status = divergence->solver_failed ? RunStatus::solver_failed : RunStatus::diverged;
+      result.detail = describe(*divergence);
+      result.error = {nan, nan, nan};
+      result.energy_error = nan;
+      return;
+    }
+    result.error = difference(states, study_.reference.states);
+    result.energy_error = simulation.measure().energy_error();
+    if (result.energy_error <= study_.reference.largest_kinetic) return;
+    result.status = RunStatus::energy_growth;
+    result.detail = fmt::format("the method added {:.3g} J; the cloth never moves with more than {:.3g} J",
+                                result.energy_error, study_.reference.largest_kinetic);
+  }
+
+  const WorkPrecision& study_;
+  const StepLadder& ladder_;
+};
+
+int repeats_of(const WorkPrecisionRun& run, int repeats) {
+  const double wanted = std::ceil(worth_timing / std::max(run.estimated, 1e-9));
+  return static_cast<int>(std::clamp(wanted, 1.0 * repeats, 4.0 * repeats));
+}
+
+/// What the run and its repeats cost, in estimated s.
+double whole_cost(const WorkPrecisionRun& run, int repeats) {
+  return run.estimated * (1 + repeats_of(run, repeats));
+}
+
+int reached(const MethodStudy& method) {
+  return static_cast<int>(
+      std::count_if(method.runs.begin(), method.runs.end(),
+                    [](const WorkPrecisionRun& run) { return run.rung >= 0 && run.reached_horizon(); }));
+}
+
+/// What `rung` should cost by the rung before it; 0 where nothing is known.
+double predicted(const MethodStudy& method, int rung, int repeats) {
+  if (rung < 1 || method.runs.empty()) return 0;
+  const WorkPrecisionRun& last = method.runs.back();
+  if (!last.reached_horizon()) return 0;
+  WorkPrecisionRun next{.estimated = (method.ladder.by_tolerance ? 1.6 : 2.0) * last.estimated,
+                        .samples = {}};
+  return whole_cost(next, repeats);
+}
+
+WorkPrecisionRun refused_run(const MethodStudy& method, int rung, double horizon, double cost, double left) {
+  WorkPrecisionRun run{.rung = rung, .tolerance = method.ladder.tolerance(rung), .samples = {}};
+  run.steps = method.ladder.by_tolerance ? 0 : method.ladder.steps(rung);
+  run.time_step = run.steps > 0 ? horizon / static_cast<double>(run.steps) : nan;
+  run.error = {nan, nan, nan};
+  run.energy_error = nan;
+  run.status = RunStatus::refused;
+  run.detail = fmt::format("it and its repeats would take some {:.0f} s; {:.0f} s of the budget are left",
+                           cost, std::max(0.0, left));
+  return run;
+}
+
+/// Measures rung by rung, all methods before the next rung, so that what the budget cannot hold are the
+/// finest runs.
+class Measuring {
+ public:
+  Measuring(WorkPrecision& study, const WorkPrecisionOptions& options)
+      : study_(study), options_(options), active_(study.methods.size(), true) {}
+
+  /// False if it was stopped.
+  bool all() {
+    for (int rung = -1; rung < most_rungs; ++rung)
+      for (std::size_t m = 0; m < study_.methods.size(); ++m)
+        if (active_[m] && !one(m, rung)) return false;
+    return true;
+  }
+
+ private:
+  bool one(std::size_t m, int rung) {
+    MethodStudy& method = study_.methods[m];
+    if (rung < 0 && method.ladder.beyond_steps == 0) return true;
+    if (is_complete(method)) {
+      active_[m] = false;
+      return true;
+    }
+    const double left = study_.budget - study_.estimated;
+    const double cost = predicted(method, rung, study_.repeats);
+    const auto sharing = static_cast<double>(std::count(active_.begin(), active_.end(), true));
+    if (cost > left / (reached(method) < promised_rungs ? std::min(2.0, sharing) : sharing)) {
+      method.runs.push_back(refused_run(method, rung, study_.horizon, cost, left));
+      active_[m] = false;
+      return true;
+    }
+    const std::string text = fmt::format("measuring {}", method.ladder.facts.name);
+    const auto run = UntimedPass(study_, method.ladder).run(rung, [&] {
+      return !options_.progress || options_.progress({0.1 + 0.15 * study_.estimated / study_.budget, text});
+    });
+    if (!run) return false;
+    study_.estimated += whole_cost(*run, study_.repeats);
+    method.runs.push_back(*run);
+    return true;
+  }
+
+  /// Enough runs, or errors that no longer say anything.
+  bool is_complete(const MethodStudy& method) const {
+    if (reached(method) >= options_.steps_per_method) return true;
+    if (method.runs.empty() || !method.runs.back().reached_horizon()) return false;
+    return reached(method) >= promised_rungs &&
+           method.runs.back().error.rms_position < 10 * study_.reference.floor.rms_position;
+  }
+
+  WorkPrecision& study_;
+  const WorkPrecisionOptions& options_;
+  std::vector<bool> active_;
+};
+
+double seconds_of(const WorkPrecision& study, const StepLadder& ladder, int rung) {
+  Simulation simulation(scene_at(study.scene, ladder, rung, study.horizon));
+  const std::int64_t steps = ladder.steps(rung);
+  const auto start = std::chrono::steady_clock::now();
+  for (std::int64_t n = 0; n < steps; ++n)
+    if (simulation.step()) break;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Fisher and Yates with a fixed generator (splitmix64): the same order on every machine.
+void shuffle(std::vector<std::pair<MethodStudy*, WorkPrecisionRun*>>& runs, std::uint64_t seed) {
+  for (std::size_t k = runs.size(); k > 1; --k) {
+    std::uint64_t z = (seed += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    std::swap(runs[k - 1], runs[(z ^ (z >> 31)) % k]);
+  }
+}
+
+/// Each run has run once, untimed, before: that was the warm-up. All runs of a repeat in shuffled order.
+/// False if stopped.
+bool time_all(WorkPrecision& study, const WorkPrecisionOptions& options) {
+  double total = 0, spent = 0;
+  int most = 0;
+  for (const MethodStudy& method : study.methods)
+    for (const WorkPrecisionRun& run : method.runs) {
+      if (run.status == RunStatus::refused) continue;
+      most = std::max(most, repeats_of(run, study.repeats));
+      total += run.estimated * repeats_of(run, study.repeats);
+    }
+  for (int repeat = 1; repeat <= most; ++repeat) {
+    std::vector<std::pair<MethodStudy*, WorkPrecisionRun*>> turn;
+    for (MethodStudy& method : study.methods)
+      for (WorkPrecisionRun& run : method.runs)
+        if (run.status != RunStatus::refused && repeat <= repeats_of(run, study.repeats))
+          turn.emplace_back(&method, &run);
+    shuffle(turn, static_cast<std::uint64_t>(repeat));
+    for (std::size_t k = 0; k < turn.size(); ++k) {
+      auto& [method, run] = turn[k];
+      const std::string text =
+          fmt::format("timing {}, repeat {} of {}", method->ladder.facts.name, repeat, most);
+      if (options.progress && !options.progress({0.25 + 0.75 * spent / std::max(total, 1e-9), text}))
+        return false;
+      run->samples.push_back({repeat, static_cast<int>(k) + 1, seconds_of(study, method->ladder, run->rung)});
+      spent += run->estimated;
+    }
+  }
+  return true;
+}
+
+void conclude(WorkPrecision& study) {
+  for (MethodStudy& method : study.methods) {
+    std::vector<OrderPoint> position, velocity;
+    for (WorkPrecisionRun& run : method.runs) {
+      run.time = spread_of(run.samples);
+      if (!run.reached_horizon() || run.rung < 0) continue;
+      position.push_back({run.time_step, run.error.rms_position});
+      velocity.push_back({run.time_step, run.error.rms_velocity});
+    }
+    OrderRule rule = order_rule(method.ladder.facts.order);
+    rule.excited_frequency = study.reference.excited_frequency;
+    rule.floor = study.reference.floor.rms_position;
+    rule.scale = study.diagonal;
+    method.order = estimate_order(position, rule);
+    rule.floor = study.reference.floor.rms_velocity;
+    rule.scale = study.diagonal / study.horizon;
+    method.velocity_order = estimate_order(velocity, rule);
+  }
+}
+
+ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecisionOptions& options) {
+  const ReferenceProgress progress = [&](double part) {
+    return !options.progress || options.progress({0.1 * part, "solving the reference"});
+  };
+  if (is_smooth(study.scene)) return solve_smooth(study.scene, study.horizon, study.samples, progress);
+  // As fine as a third of the budget allows, at most 64 times the finest step that the ladders plan.
+  std::int64_t finest = 0;
+  for (const MethodStudy& method : study.methods)
+    if (method.ladder.limit && !method.ladder.by_tolerance)
+      finest = std::max(finest, method.ladder.steps(promised_rungs - 1));
+  const double step_cost = estimated_seconds(study.particles, {.steps = 1, .force_evaluations = 3}, 0);
+  const double most = study.budget / 3 / (1.5 * step_cost);
+  int ratio = 64;
+  while (ratio > 4 && static_cast<double>(finest) * ratio > most) ratio /= 2;
+  const std::int64_t unit = 2 * study.samples;
+  const std::int64_t steps = std::max<std::int64_t>(finest, unit) * ratio / unit * unit;
+  return solve_by_loop(study.scene, study.horizon, study.samples, steps, progress);
+}
+
+}  // namespace
+
+const char* name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::stable:
+      return "stable";
+    case RunStatus::energy_growth:
+      return "energy-growth";
+    case RunStatus::diverged:
+      return "diverged";
+    case RunStatus::solver_failed:
+      return "solver-failed";
+    case RunStatus::refused:
+      return "refused";
+  }
+  return "";
+}
+
+double estimated_seconds(int particles, const StepCount& count, std::int64_t limiter_iterations) {
+  const double n = particles;
+  const double per_particle =
+      15e-9 * static_cast<double>(count.force_evaluations) + 15e-9 * static_cast<double>(count.steps) +
+      60e-9 * static_cast<double>(count.iterations + count.linear_iterations + count.velocity_iterations) +
+      40e-9 * static_cast<double>(count.limiter_sweeps);
+  const double factorisation = 200e-9 * std::pow(n, 1.5);
+  return n * per_particle + factorisation * static_cast<double>(count.factorisations + limiter_iterations);
+}
+
+TimeSpread spread_of(const std::vector<TimedSample>& samples) {
+  if (samples.empty()) return {};
+  std::vector<double> seconds;
+  for (const TimedSample& sample : samples) seconds.push_back(sample.seconds);
+  std::sort(seconds.begin(), seconds.end());
+  const auto at = [&](double part) {
+    const double place = part * static_cast<double>(seconds.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, seconds.size() - 1);
+    return seconds[below] + (place - static_cast<double>(below)) * (seconds[above] - seconds[below]);
+  };
+  return {seconds.front(), at(0.25), at(0.5), at(0.75)};
+}
+
+WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
+  WorkPrecision study;
+  study.scene = scene;
+  if (scene.deformation)
+    study.scene.deformation->tolerance = std::min(scene.deformation->tolerance, limiter_tolerance);
+  study.particles = scene.cloth.rows * scene.cloth.columns;
+  study.diagonal = std::hypot(scene.cloth.width, scene.cloth.height);
+  study.repeats = options.repeats;
+  study.budget = options.budget;
+  const auto& methods = options.methods.empty() ? integrator_names() : options.methods;
+  Ladders ladders = make_ladders(scene, methods, options.horizon.value_or(default_horizon(scene)));
+  study.horizon = ladders.horizon;
+  study.samples = ladders.samples;
+  for (StepLadder& ladder : ladders.methods)
+    study.methods.push_back({.ladder = std::move(ladder), .runs = {}, .order = {}, .velocity_order = {}});
+
+  study.reference = make_reference(study, options);
+  if (!study.reference.failure.empty()) {
+    study.stopped = study.reference.failure == "stopped";
+    return study;
+  }
+  study.estimated = estimated_seconds(study.particles, {.force_evaluations = study.reference.evaluations}, 0);
+  study.stopped = !Measuring(study, options).all() || !time_all(study, options);
+  conclude(study);
+  return study;
+}
+
+}  // namespace cloth

@@ -1,0 +1,46 @@
+// A study of error against run time as files: CSV and JSON, and the method that is cheapest for an error.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/csv.h"
+#include "study/work_precision.h"
+
+namespace cloth {
+
+/// work_precision.csv: a row for each run, failed and refused ones too.
+CsvTable run_table(const WorkPrecision& study);
+
+/// work_precision_samples.csv: a row for each timed repeat.
+CsvTable sample_table(const WorkPrecision& study);
+
+/// A table as a file.
+std::optional<IoError> write_csv(const std::filesystem::path& path, const CsvTable& table);
+
+/// One object: what was studied and measured, the order of each method, the machine.
+std::string work_precision_json(const WorkPrecision& study);
+
+/// What an error costs with one method.
+struct ErrorCost {
+  double seconds = 0;
+  double time_step = 0;       ///< s
+  bool at_first_run = false;  ///< the longest step is more accurate than asked: no shorter time was measured
+};
+
+/// Along the line of the runs that reached the horizon, interpolated in logarithms; nullopt outside what was
+/// measured. `error` is the RMS position error in m.
+std::optional<ErrorCost> cost_of(const MethodStudy& method, double error);
+
+/// 1e-2 to 1e-8 m.
+const std::vector<double>& wanted_errors();
+
+/// The index of the cheapest method for an error; nullopt where no measured run reaches it.
+std::optional<std::size_t> cheapest(const WorkPrecision& study, double error);
+
+/// For a terminal: a line for each method and what is cheapest.
+std::string work_precision_text(const WorkPrecision& study);
+
+}  // namespace cloth

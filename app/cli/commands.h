@@ -41,18 +41,21 @@ struct StabilityArguments {
   bool json = false;
 };
 int stability(const StabilityArguments& arguments);
+
 struct ExtremesArguments {
   std::string methods, cases;  ///< names between commas; empty: all
   std::string folder;
   bool json = false, markdown = false;
 };
 int extremes(const ExtremesArguments& arguments);
+
 struct ReproduceArguments {
   std::string folder;
   std::vector<std::string> only;
   bool json = false;
 };
 int reproduce(const ReproduceArguments& arguments);
+
 struct WorkPrecisionArguments {
   std::string scene;
   std::vector<std::string> settings;

@@ -34,6 +34,22 @@ struct Arguments {
   cli::WorkPrecisionArguments work_precision;
 };
 
+void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
+  CLI::App* study = app.add_subcommand("work-precision", "Error against run time of every method on a scene");
+  study->add_option("scene", arguments.scene, scene_help)->required();
+  study->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
+  study->add_option("--methods", arguments.methods, "Only these methods, e.g. verlet,rk4")->delimiter(',');
+  study->add_option("--horizon", arguments.horizon, "Simulated time in s; chosen from the scene if not given")
+      ->check(CLI::PositiveNumber);
+  study->add_option("--repeats", arguments.repeats, "Timed repeats of each run")
+      ->check(CLI::Range(5, 1000))
+      ->capture_default_str();
+  study->add_option("--out", arguments.folder,
+                    "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg and "
+                    "report.html; made if missing");
+  study->add_flag("--json", arguments.json, json_help);
+}
+
 void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
   CLI::App* stability = app.add_subcommand(
       "stability", "Map where each method is stable over two parameters, with the predicted limits over it");
@@ -68,6 +84,30 @@ void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
   stability->add_flag("--json", arguments.json, json_help);
 }
 
+void add_extremes(CLI::App& app, cli::ExtremesArguments& arguments) {
+  CLI::App* extremes =
+      app.add_subcommand("extremes", "The fixed list of stiff and extreme cases, every method on each");
+  extremes->add_option("--methods", arguments.methods, "Methods, between commas; all without");
+  extremes->add_option("--cases", arguments.cases, "Cases, between commas; all without");
+  extremes->add_option("--out", arguments.folder, "Folder for extremes.csv and report.html; made if missing");
+  CLI::Option* extremes_json = extremes->add_flag("--json", arguments.json, json_help);
+  extremes->add_flag("--markdown", arguments.markdown, "Print the table as Markdown")
+      ->excludes(extremes_json);
+}
+
+void add_reproduce(CLI::App& app, cli::ReproduceArguments& arguments) {
+  CLI::App* reproduce = app.add_subcommand(
+      "reproduce", "Measure the source report's figures, its Table 1 and its errata; one report.html");
+  reproduce->add_option("--out", arguments.folder, "Folder for report.html and its pictures")->required();
+  reproduce
+      ->add_option("--only", arguments.only,
+                   "Only these parts, separated by commas: " +
+                       fmt::format("{}", fmt::join(cloth::reproduce_parts(), ", ")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(cloth::reproduce_parts()));
+  reproduce->add_flag("--json", arguments.json, json_help);
+}
+
 void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* run = app.add_subcommand("run", "Run a scene to its duration");
   run->add_option("scene", arguments.run.scene, scene_help)->required();
@@ -90,59 +130,25 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   explain->add_option("--set", arguments.explain.settings, set_help)->allow_extra_args(false);
   explain->add_flag("--json", arguments.explain.json, json_help);
 
+  add_work_precision(app, arguments.work_precision);
   add_stability(app, arguments.stability);
-  CLI::App* extremes =
-      app.add_subcommand("extremes", "The fixed list of stiff and extreme cases, every method on each");
-  extremes->add_option("--methods", arguments.extremes.methods, "Methods, between commas; all without");
-  extremes->add_option("--cases", arguments.extremes.cases, "Cases, between commas; all without");
-  extremes->add_option("--out", arguments.extremes.folder,
-                       "Folder for extremes.csv and report.html; made if missing");
-  CLI::Option* extremes_json = extremes->add_flag("--json", arguments.extremes.json, json_help);
-  extremes->add_flag("--markdown", arguments.extremes.markdown, "Print the table as Markdown")
-      ->excludes(extremes_json);
-  CLI::App* reproduce = app.add_subcommand(
-      "reproduce", "Measure the source report's figures, its Table 1 and its errata; one report.html");
-  reproduce->add_option("--out", arguments.reproduce.folder, "Folder for report.html and its pictures")
-      ->required();
-  reproduce
-      ->add_option("--only", arguments.reproduce.only,
-                   "Only these parts, separated by commas: " +
-                       fmt::format("{}", fmt::join(cloth::reproduce_parts(), ", ")))
-      ->delimiter(',')
-      ->check(CLI::IsMember(cloth::reproduce_parts()));
-  reproduce->add_flag("--json", arguments.reproduce.json, json_help);
-
+  add_extremes(app, arguments.extremes);
+  add_reproduce(app, arguments.reproduce);
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
-}
-
-void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
-  CLI::App* study = app.add_subcommand("work-precision", "Error against run time of every method on a scene");
-  study->add_option("scene", arguments.scene, scene_help)->required();
-  study->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
-  study->add_option("--methods", arguments.methods, "Only these methods, e.g. verlet,rk4")->delimiter(',');
-  study->add_option("--horizon", arguments.horizon, "Simulated time in s; chosen from the scene if not given")
-      ->check(CLI::PositiveNumber);
-  study->add_option("--repeats", arguments.repeats, "Timed repeats of each run")
-      ->check(CLI::Range(5, 1000))
-      ->capture_default_str();
-  study->add_option("--out", arguments.folder,
-                    "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg and "
-                    "report.html; made if missing");
-  study->add_flag("--json", arguments.json, json_help);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Clothlab on the command line: runs, lists and explains cloth simulation scenes.",
-               "clothlab-cli"};
+  CLI::App app{
+      "Clothlab on the command line: runs and explains cloth simulation scenes, and studies their methods.",
+      "clothlab-cli"};
   app.require_subcommand(1);
   app.set_version_flag("--version", cloth::version());
   app.footer(exit_codes);
   Arguments arguments;
   add_commands(app, arguments);
-  add_work_precision(app, arguments.work_precision);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

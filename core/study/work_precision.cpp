@@ -271,7 +271,8 @@ double estimated_seconds(int particles, const StepCount& count, std::int64_t lim
   const double n = particles;
   const double per_particle =
       15e-9 * static_cast<double>(count.force_evaluations) + 15e-9 * static_cast<double>(count.steps) +
-      60e-9 * static_cast<double>(count.iterations + count.linear_iterations + count.velocity_iterations) +
+      300e-9 * static_cast<double>(count.iterations) +
+      100e-9 * static_cast<double>(count.linear_iterations + count.velocity_iterations) +
       40e-9 * static_cast<double>(count.limiter_sweeps);
   const double factorisation = 200e-9 * std::pow(n, 1.5);
   return n * per_particle + factorisation * static_cast<double>(count.factorisations + limiter_iterations);

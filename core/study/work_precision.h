@@ -23,7 +23,7 @@ struct WorkPrecisionOptions {
   std::optional<double> horizon;     ///< s; none: default_horizon
   int repeats = 5;                   ///< timed ones; runs of less than 40 ms get up to four times as many
   int steps_per_method = 7;          ///< runs that must reach the horizon, if the budget lasts
-  double budget = 120;  ///< estimated s, see estimated_seconds: what does not fit is refused and says so
+  double budget = 200;  ///< estimated s, see estimated_seconds: what does not fit is refused and says so
   std::function<bool(const StudyProgress&)> progress;  ///< false stops the study; what is finished is kept
 };
 

@@ -262,6 +262,23 @@ class FormTest : public QObject {
     QCOMPARE(combo->currentText(), QString("Verlet"));
   }
 
+  void a_method_brings_its_own_settings_and_takes_them_along_when_it_goes() {
+    QVERIFY(!field("integrator.tolerance") && !field("integrator.iterations"));
+    auto* combo = part<QComboBox>("integrator.method", "combo");
+    combo->setFocus();
+    const int steps = combo->findText("Implicit Euler") - combo->currentIndex();
+    QVERIFY(steps > 0);
+    for (int n = 0; n < steps; ++n)  // the form may be a new one after every key
+      QTest::keyClick(part<QComboBox>("integrator.method", "combo"), Qt::Key_Down);
+    QCOMPARE(doc().scene().integrator.method, std::string("implicit-euler"));
+    QVERIFY(field("integrator.tolerance") && field("integrator.iterations"));
+    type(field("integrator.tolerance"), "1e-9");
+    QCOMPARE(doc().scene().integrator.tolerance, 1e-9);
+    while (undo().canUndo()) undo().undo();
+    QCOMPARE(doc().scene().integrator.method, std::string("verlet"));
+    QVERIFY(!field("integrator.tolerance") && !field("integrator.iterations"));
+  }
+
   void auto_gives_way_to_a_number_and_back() {
     panel().setAutoValue("integrator.time_step", 0.00042);
     auto* toggle = part<QCheckBox>("integrator.time_step", "auto");

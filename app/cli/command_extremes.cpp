@@ -1,11 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -14,42 +9,13 @@
 #include "integrators/registry.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
+#include "progress.h"
 #include "study/extremes_report.h"
 
 namespace clothlab::cli {
 namespace {
 
 using json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-std::atomic<bool> stop_requested{false};
-extern "C" void request_extremes_stop(int) {
-  stop_requested = true;
-}
-
-/// One line on a terminal, nothing elsewhere. Time left: cells take very different times, so a guess.
-class CellProgress {
- public:
-  explicit CellProgress(std::size_t cells) : cells_(cells), shown_(::isatty(STDERR_FILENO) == 1) {}
-  ~CellProgress() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  void show(std::size_t done, const std::string& name) const {
-    if (!shown_) return;
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    std::string left;
-    if (done > 0)
-      left = fmt::format(", about {:.0f} s left",
-                         std::ceil(spent * static_cast<double>(cells_ - done) / static_cast<double>(done)));
-    fmt::print(stderr, "\r\033[K{}/{} cells{}: {}", done, cells_, left, name);
-    std::fflush(stderr);
-  }
-
- private:
-  std::size_t cells_;
-  bool shown_;
-  Clock::time_point start_ = Clock::now();
-};
 
 std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> names;
@@ -92,12 +58,13 @@ std::optional<cloth::ExtremesTable> asked_table(const ExtremesArguments& argumen
 
 /// Runs the cells into `table`; each is on disk before the next begins.
 std::optional<cloth::IoError> fill(cloth::ExtremesTable& table, cloth::CsvFile& csv) {
-  const CellProgress progress(table.cases.size() * table.methods.size());
+  Progress progress;  // cells take very different times: what is left is a guess
+  const double all = static_cast<double>(table.cases.size() * table.methods.size());
   for (const cloth::ExtremeCase& extreme : table.cases) {
     for (const std::string& method : table.methods) {
-      progress.show(table.cells.size(), extreme.name + ", " + method);
-      cloth::ExtremeCell cell = cloth::run_extreme(extreme, method, [] { return !stop_requested.load(); });
-      if (stop_requested) return std::nullopt;  // half a cell is none
+      progress.show(static_cast<double>(table.cells.size()) / all, extreme.name + ", " + method);
+      cloth::ExtremeCell cell = cloth::run_extreme(extreme, method, [] { return !stop_is_requested(); });
+      if (stop_is_requested()) return std::nullopt;  // half a cell is none
       table.cells.push_back(std::move(cell));
       if (!csv.is_open()) continue;
       if (auto error = csv.add(cloth::extremes_row(table.cells.back()))) return error;
@@ -140,9 +107,7 @@ std::string command_of(const ExtremesArguments& arguments) {
 int extremes(const ExtremesArguments& arguments) {
   std::optional<cloth::ExtremesTable> table = asked_table(arguments);
   if (!table) return bad_input;
-  std::signal(SIGINT, request_extremes_stop);
-  std::signal(SIGTERM, request_extremes_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
+  listen_for_stop();
 
   const std::filesystem::path folder = arguments.folder;
   cloth::CsvFile csv;
@@ -161,7 +126,7 @@ int extremes(const ExtremesArguments& arguments) {
                             : arguments.markdown ? cloth::extremes_markdown(*table)
                                                  : cloth::extremes_text(*table));
   if (printed != done) return printed;
-  return stop_requested ? interrupted : done;
+  return stop_is_requested() ? interrupted : done;
 }
 
 }  // namespace clothlab::cli

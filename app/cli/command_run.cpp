@@ -1,44 +1,13 @@
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <cmath>
-#include <csignal>
 
 #include "commands.h"
 #include "console.h"
+#include "progress.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
 namespace clothlab::cli {
 namespace {
-
-std::atomic<bool> stop_requested{false};
-extern "C" void request_stop(int) {
-  stop_requested = true;
-}
-
-/// A bar on a terminal, nothing elsewhere: logs stay readable.
-class ProgressBar {
- public:
-  explicit ProgressBar(double duration) : duration_(duration), shown_(::isatty(STDERR_FILENO) == 1) {}
-  ~ProgressBar() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  void show(double time) const {
-    if (!shown_) return;
-    constexpr int width = 40;
-    const double fraction = std::min(1.0, time / duration_);
-    const int filled = static_cast<int>(std::lround(fraction * width));
-    fmt::print(stderr, "\r[{:=<{}}{:<{}}] {:3.0f} %  t = {:.2f} s", "", filled, "", width - filled,
-               100 * fraction, time);
-    std::fflush(stderr);
-  }
-
- private:
-  double duration_;
-  bool shown_;
-};
 
 std::string summary_text(const cloth::RunSummary& s, const std::string& folder) {
   std::string text = fmt::format(
@@ -75,16 +44,13 @@ int run(const RunArguments& arguments) {
   }
   if (!scene.integrator.time_step) say(fmt::format("time step: auto, {:.6g} s", *time_step));
 
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
-
+  listen_for_stop();
   cloth::RunResult result;
   {
-    const ProgressBar bar(scene.duration);
+    Progress bar;
     result = cloth::run_scene(scene, {.folder = arguments.folder, .progress = [&](double time) {
-                                        bar.show(time);
-                                        return !stop_requested.load();
+                                        bar.show(time / scene.duration, fmt::format("t = {:.2f} s", time));
+                                        return !stop_is_requested();
                                       }});
   }
   const cloth::RunSummary& summary = result.summary;

@@ -1,52 +1,21 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 
 #include "commands.h"
 #include "console.h"
 #include "integrators/registry.h"
 #include "io/run_folder.h"
+#include "progress.h"
 #include "study/stability_report.h"
 
 namespace clothlab::cli {
 namespace {
 
-std::atomic<bool> stability_stop_requested{false};
-extern "C" void request_stability_stop(int) {
-  stability_stop_requested = true;
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-/// Part done and time left on a terminal, nothing elsewhere.
-class StabilityProgress {
- public:
-  StabilityProgress() : shown_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {}
-  ~StabilityProgress() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  void show(double part) {
-    const double elapsed = seconds_since(start_);
-    if (!shown_ || elapsed - last_ < 0.1) return;
-    last_ = elapsed;
-    const double left = part > 0.01 ? elapsed * (1 - part) / part : 0;
-    fmt::print(stderr, "\r{:3.0f} %  {}\033[K", 100 * part,
-               part > 0.01 ? fmt::format("{:.0f} s left", std::ceil(left)) : "");
-    std::fflush(stderr);
-  }
-
- private:
-  bool shown_;
-  std::chrono::steady_clock::time_point start_;
-  double last_ = 0;
-};
 
 /// Fills in axes and methods, or says what is wrong with them.
 std::vector<cloth::Problem> read_options(const StabilityArguments& arguments, const cloth::Scene& scene,
@@ -116,17 +85,15 @@ int stability(const StabilityArguments& arguments) {
   if (!problems.empty()) return report(problems);
   if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
 
-  std::signal(SIGINT, request_stability_stop);
-  std::signal(SIGTERM, request_stability_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
+  listen_for_stop();
 
   const auto start = std::chrono::steady_clock::now();
   cloth::StabilityMap map;
   {
-    StabilityProgress progress;
+    Progress progress;
     options.progress = [&](double part) {
-      progress.show(part);
-      return !stability_stop_requested.load();
+      progress.show(part, "stability map");
+      return !stop_is_requested();
     };
     map = cloth::run_stability_map(*loaded.scene, options);
   }

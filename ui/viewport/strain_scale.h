@@ -5,13 +5,13 @@
 #include <array>
 #include <vector>
 
+#include "picture/strain_colours.h"
+
 namespace clothlab {
 
-inline constexpr int strain_colour_count = 256;
+using cloth::strain_colour_count;
 
-/// From no strain to the largest: dark to light at an even pace (equal steps in OKLab, Ottosson 2020), from
-/// indigo over teal to yellow, so that lightness alone tells the order to every kind of colour vision and in
-/// print.
+/// The engine's strain colours, from no strain to the largest.
 const std::array<QColor, strain_colour_count>& strain_colours();
 
 /// The colour at `fraction` of the range; clamped to [0, 1].

@@ -1,99 +1,16 @@
-// The parameter panel, driven by real keys and mouse events.
-#include <QAccessible>
-#include <QAction>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QLabel>
-#include <QLineEdit>
-#include <QLocale>
-#include <QMenu>
-#include <QPointer>
-#include <QScrollArea>
-#include <QScrollBar>
-#include <QSlider>
-#include <QToolButton>
-#include <QWheelEvent>
-#include <QtTest>
-#include <cmath>
-#include <memory>
-
-#include "params/number_text.h"
-#include "params/parameter_panel.h"
-#include "params/slider_scale.h"
+// The parameter panel's editors, driven by real keys and mouse events.
+#include "form_fixture.h"
 
 using namespace clothlab;
+using namespace clothlab::test;
 using cloth::Vec3;
 
-namespace {
-
-cloth::Scene plain_scene() {
-  cloth::Scene scene;
-  scene.springs = cloth::SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0};
-  scene.gravity = Vec3(0, -9.81, 0);
-  scene.deformation = cloth::Deformation{};
-  return scene;
-}
-
-}  // namespace
-
-class FormTest : public QObject {
+class FormTest : public FormFixture {
   Q_OBJECT
 
- private:
-  std::unique_ptr<LabDocument> document_;
-  std::unique_ptr<ParameterPanel> panel_;
-
-  LabDocument& doc() { return *document_; }
-  ParameterPanel& panel() { return *panel_; }
-  QUndoStack& undo() { return doc().undoStack(); }
-
-  template <class Widget>
-  Widget* part(const char* path, const char* name) {
-    auto* editor = panel().findChild<QWidget*>(QString("param:") + path);
-    return editor ? editor->findChild<Widget*>(name) : nullptr;
-  }
-  QLineEdit* field(const char* path) { return part<QLineEdit>(path, "field"); }
-  QSlider* slider(const char* path) { return part<QSlider>(path, "slider"); }
-  QWidget* section(const char* path) { return panel().findChild<QWidget*>(QString("section:") + path); }
-  double structural() { return doc().scene().springs->structural; }
-
-  void type(QLineEdit* into, const QString& text, Qt::Key then = Qt::Key_Return) {
-    into->setFocus();
-    into->selectAll();
-    QTest::keyClicks(into, text);
-    QTest::keyClick(into, then);
-  }
-  static QPoint at(QSlider* slider, double part) {
-    return {static_cast<int>(part * (slider->width() - 1)), slider->height() / 2};
-  }
-  void drag(QSlider* slider, double from, double to) {
-    QTest::mousePress(slider, Qt::LeftButton, {}, at(slider, from));
-    for (int i = 1; i <= 20; ++i) QTest::mouseMove(slider, at(slider, from + (to - from) * i / 20));
-    QTest::mouseRelease(slider, Qt::LeftButton, {}, at(slider, to));
-  }
-  static void wheel(QWidget* over, int angle) {
-    const QPointF middle = over->rect().center();
-    QWheelEvent event(middle, over->mapToGlobal(middle), {}, {0, angle}, Qt::NoButton, {}, Qt::NoScrollPhase,
-                      false);
-    QSpontaneKeyEvent::setSpontaneous(&event);  // only the system's own wheel events go on to the parents
-    qApp->notify(over, &event);
-  }
-
  private Q_SLOTS:
-  void init() {
-    document_ = std::make_unique<LabDocument>();
-    doc().load(plain_scene());
-    panel_ = std::make_unique<ParameterPanel>(doc());
-    panel().resize(320, 700);
-    panel().show();
-    QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
-    panel().activateWindow();
-    QVERIFY(QTest::qWaitForWindowActive(panel_.get()));
-  }
-  void cleanup() {
-    panel_.reset();
-    document_.reset();
-  }
+  void init() { open(); }
+  void cleanup() { close(); }
 
   void one_slider_drag_is_one_undo_step() {
     int live_edits = 0;
@@ -307,100 +224,6 @@ class FormTest : public QObject {
       QVERIFY2(bar->value() > 0, qPrintable(over->objectName()));
     }
     QVERIFY(doc().scene() == before);
-  }
-
-  void only_present_blocks_have_a_section() {
-    QVERIFY(section("springs") && section("gravity") && section("cloth") && section("integrator"));
-    QVERIFY(!section("air") && !section("damping") && !section("obstacles.0"));
-    QVERIFY(section("springs")->findChild<QToolButton*>("remove"));
-    QVERIFY(!section("cloth")->findChild<QToolButton*>("remove"));
-    for (const cloth::Parameter& parameter : parameters_of(doc().scene()))
-      QVERIFY2(panel().findChild<QWidget*>("param:" + QString::fromStdString(parameter.path)),
-               parameter.path.c_str());
-  }
-
-  void add_menu_brings_wind_and_the_cross_takes_it_out() {
-    auto* button = panel().findChild<QToolButton*>("add");
-    auto* menu = panel().findChild<QMenu*>("addMenu");
-    QTimer::singleShot(50, menu, [menu] {
-      menu->setActiveAction(menu->findChild<QAction*>("offer:air"));
-      QTest::keyClick(menu, Qt::Key_Return);
-    });
-    QTest::mouseClick(button, Qt::LeftButton);  // returns when the menu has closed
-    QVERIFY(doc().scene().air.has_value());
-    QVERIFY(section("air"));
-    QVERIFY(!menu->findChild<QAction*>("offer:air"));
-    auto* cross = section("air")->findChild<QToolButton*>("remove");
-    panel().findChild<QScrollArea*>("scroll")->ensureWidgetVisible(cross);
-    QTest::mouseClick(cross, Qt::LeftButton);
-    QVERIFY(!doc().scene().air);
-    QVERIFY(!section("air"));
-    QVERIFY(menu->findChild<QAction*>("offer:air"));
-    QCOMPARE(undo().count(), 2);
-  }
-
-  void removing_an_obstacle_does_not_hand_its_typed_text_to_the_next() {
-    doc().addBlock("sphere");
-    doc().addBlock("sphere");
-    QLineEdit* radius = field("obstacles.0.radius");
-    radius->setFocus();
-    radius->selectAll();
-    QTest::keyClicks(radius, "0.9");
-    doc().removeBlock("obstacles.0");
-    QCoreApplication::processEvents();
-    QCOMPARE(doc().scene().obstacles.size(), std::size_t(1));
-    QVERIFY(doc().scene().obstacles[0].radius != 0.9);
-  }
-
-  void the_form_follows_in_place_and_keeps_focus_scroll_and_collapsed_sections() {
-    panel().resize(320, 400);
-    QPointer<QLineEdit> focused = field("deformation.rate");
-    focused->setFocus();
-    QTest::mouseClick(section("springs")->findChild<QAbstractButton*>("header"), Qt::LeftButton);
-    QVERIFY(!slider("springs.structural")->isVisible());
-    auto* bar = panel().findChild<QScrollArea*>("scroll")->verticalScrollBar();
-    QCoreApplication::processEvents();
-    bar->setValue(60);
-    doc().setParameter("deformation.rate", 0.2);
-    doc().addBlock("air");
-    doc().removeBlock("gravity");
-    QVERIFY(focused && focused->hasFocus());
-    QCOMPARE(focused->text(), QString("0.2"));
-    QVERIFY(!slider("springs.structural")->isVisible());
-    QCOMPARE(bar->value(), 60);
-    doc().load(doc().scene());
-    QVERIFY(!slider("springs.structural")->isVisible());
-    QVERIFY(field("deformation.rate")->hasFocus());
-    QCOMPARE(bar->value(), 60);
-  }
-
-  void reset_returns_the_declared_default() {
-    auto* reset = part<QToolButton>("springs.structural", "reset");
-    const double fallback = std::get<double>(*cloth::default_of(doc().scene(), "springs.structural"));
-    doc().setParameter("springs.structural", fallback + 1);
-    QVERIFY(reset->isVisible());
-    QTest::mouseClick(reset, Qt::LeftButton);
-    QCOMPARE(structural(), fallback);
-    QVERIFY(!reset->isVisible());
-  }
-
-  void the_default_of_an_obstacle_goes_with_the_cloth() {
-    doc().addBlock("sphere");
-    QVERIFY(!part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
-    doc().setParameter("cloth.width", 2.0);
-    QVERIFY(part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
-    doc().resetParameter("obstacles.0.radius");
-    QCOMPARE(doc().scene().obstacles[0].radius, 0.5);
-    QVERIFY(!part<QToolButton>("obstacles.0.radius", "reset")->isVisible());
-  }
-
-  void a_note_survives_a_new_form() {
-    panel().setNote("integrator.time_step", "auto: 0.42 ms");
-    QVERIFY(part<QLabel>("integrator.time_step", "note")->isVisible());
-    doc().load(plain_scene());
-    QCOMPARE(part<QLabel>("integrator.time_step", "note")->text(), QString("auto: 0.42 ms"));
-    panel().setNote("integrator.time_step", {});
-    QVERIFY(!part<QLabel>("integrator.time_step", "note")->isVisible());
   }
 
   void tab_visits_the_form_from_top_to_bottom() {

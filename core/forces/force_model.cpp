@@ -31,6 +31,11 @@ ForceModel::~ForceModel() = default;
 ForceModel::ForceModel(ForceModel&&) noexcept = default;
 ForceModel& ForceModel::operator=(ForceModel&&) noexcept = default;
 
+void ForceModel::add(std::unique_ptr<Force> force) {
+  forces_.push_back(std::move(force));
+  note_kinds();
+}
+
 void ForceModel::note_kinds() {
   has_damping_ = has_power_ = pull_ != nullptr;
   for (const auto& force : forces_) {

@@ -22,6 +22,9 @@ class ForceModel {
   ForceModel(ForceModel&&) noexcept;
   ForceModel& operator=(ForceModel&&) noexcept;
 
+  /// One more force, which no scene file describes; it takes part like those of the scene.
+  void add(std::unique_ptr<Force> force);
+
   /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it.
   void update(const Vec3Field& position, double time);
 

@@ -47,6 +47,23 @@ json divergence_json(const Divergence& d) {
           {"message", describe(d)}};
 }
 
+/// What a method's own equations took beside force evaluations; only what there was.
+json solver_json(const StepCount& count) {
+  json solver;
+  const auto note = [&](const char* name, std::int64_t number) {
+    if (number > 0) solver[name] = number;
+  };
+  if (count.inner_steps != count.steps) note("inner_steps", count.inner_steps);
+  note("rejected_steps", count.rejected_steps);
+  note("iterations", count.iterations);
+  note("linear_iterations", count.linear_iterations);
+  note("factorisations", count.factorisations);
+  note("velocity_iterations", count.velocity_iterations);
+  note("limiter_sweeps", count.limiter_sweeps);
+  if (count.iterations > 0) solver["largest_residual"] = finite_or_word(count.largest_residual);
+  return solver;
+}
+
 }  // namespace
 
 std::optional<IoError> make_folder(const fs::path& folder) {
@@ -98,7 +115,7 @@ std::string state_csv(const ClothState& state) {
 }
 
 double RunSummary::nanoseconds_per_particle_step() const {
-  return steps > 0 && particles > 0 ? wall * 1e9 / (static_cast<double>(steps) * particles) : 0;
+  return count.steps > 0 && particles > 0 ? wall * 1e9 / (static_cast<double>(count.steps) * particles) : 0;
 }
 
 std::string version() {
@@ -112,8 +129,8 @@ std::string summary_json(const RunSummary& s) {
             {"title", s.title},
             {"method", s.method},
             {"time_step_s", s.time_step},
-            {"steps", s.steps},
-            {"force_evaluations", s.force_evaluations},
+            {"steps", s.count.steps},
+            {"force_evaluations", s.count.force_evaluations},
             {"particles", s.particles},
             {"simulated_s", s.simulated},
             {"wall_s", s.wall},
@@ -122,6 +139,7 @@ std::string summary_json(const RunSummary& s) {
             {"energy_drift_J", finite_or_word(s.energy_drift)},
             {"limiter_excess", finite_or_word(s.limiter_excess)},
             {"status", name_of(s.status)}};
+  if (json solver = solver_json(s.count); !solver.empty()) root["solver"] = std::move(solver);
   if (s.divergence) root["diverged"] = divergence_json(*s.divergence);
   if (!s.notice.empty()) root["notice"] = s.notice;
   root["threads"] = s.threads;

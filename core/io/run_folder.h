@@ -28,8 +28,7 @@ struct RunSummary {
   std::string title;
   std::string method;
   double time_step = 0;  ///< s
-  std::int64_t steps = 0;
-  std::int64_t force_evaluations = 0;
+  StepCount count;  ///< steps, force evaluations and what else they took
   int particles = 0;
   double simulated = 0;       ///< s
   double wall = 0;            ///< s, of stepping alone

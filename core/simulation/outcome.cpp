@@ -18,6 +18,19 @@ const char* name_of(Status status) {
   return "";
 }
 
+StepCount StepCount::since(const StepCount& earlier) const {
+  return {.steps = steps - earlier.steps,
+          .force_evaluations = force_evaluations - earlier.force_evaluations,
+          .velocity_iterations = velocity_iterations - earlier.velocity_iterations,
+          .limiter_sweeps = limiter_sweeps - earlier.limiter_sweeps,
+          .inner_steps = inner_steps - earlier.inner_steps,
+          .rejected_steps = rejected_steps - earlier.rejected_steps,
+          .iterations = iterations - earlier.iterations,
+          .linear_iterations = linear_iterations - earlier.linear_iterations,
+          .factorisations = factorisations - earlier.factorisations,
+          .largest_residual = largest_residual};
+}
+
 std::string describe(const Divergence& d) {
   std::string advice;
   if (d.solver_failed)

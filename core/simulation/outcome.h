@@ -9,6 +9,17 @@ namespace cloth {
 enum class Status { finished, stopped, diverged };
 const char* name_of(Status status);
 
+/// What the steps so far have cost.
+struct StepCount {
+  std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
+  std::int64_t inner_steps = 0, rejected_steps = 0;
+  std::int64_t iterations = 0, linear_iterations = 0, factorisations = 0;  ///< of implicit methods
+  double largest_residual = 0;  ///< of a step's last iteration, see IntegratorReport
+
+  /// What was added since `earlier`; the largest residual remains that of the whole run.
+  StepCount since(const StepCount& earlier) const;
+};
+
 /// Why and where a run diverged.
 struct Divergence {
   std::int64_t step = 0;  ///< the first one that was not accepted

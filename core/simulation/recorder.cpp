@@ -133,8 +133,7 @@ class Run {
 
   void finish(std::int64_t last) {
     RunSummary& summary = result_.summary;
-    summary.steps = simulation_.count().steps;
-    summary.force_evaluations = simulation_.count().force_evaluations;
+    summary.count = simulation_.count();
     summary.simulated = result_.final_state.time;
     summary.status = summary.divergence                ? Status::diverged
                      : simulation_.state().step < last ? Status::stopped

@@ -60,14 +60,6 @@ struct Checkpoint {
   std::int64_t first_step = 0;
 };
 
-/// What the steps so far have cost.
-struct StepCount {
-  std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
-  std::int64_t inner_steps = 0, rejected_steps = 0;
-  std::int64_t iterations = 0, linear_iterations = 0, factorisations = 0;  ///< of implicit methods
-  double largest_residual = 0;  ///< of a step's last iteration, see IntegratorReport
-};
-
 /// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
 /// Positions beyond the deformation rate are then brought within it, before the first step.
 using Preparation = std::function<void(ClothSystem&, ClothState&)>;

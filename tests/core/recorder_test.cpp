@@ -120,6 +120,23 @@ TEST(RunFolder, HoldsTheFinalStateToTheBit) {
   }
 }
 
+TEST(RunFolder, SaysWhatTheEquationsOfAMethodTook) {
+  const auto solver_of = [](const char* method) {
+    const TemporaryFolder folder;
+    Scene scene = short_pendulum();
+    scene.integrator.method = method;
+    scene.integrator.tolerance = 1e-12;
+    run_scene(scene, {.folder = folder.path(), .progress = {}});
+    return nlohmann::json::parse(content_of(folder / "summary.json"))["solver"];
+  };
+  EXPECT_TRUE(solver_of("rk4").is_null());
+  EXPECT_GT(solver_of("dormand-prince")["inner_steps"], 0);
+  const auto newton = solver_of("implicit-euler");
+  EXPECT_GT(newton["iterations"], 0);
+  EXPECT_TRUE(newton.contains("largest_residual"));
+  EXPECT_FALSE(newton.contains("limiter_sweeps"));
+}
+
 TEST(RunFolder, HoldsASummaryOfTheRun) {
   const TemporaryFolder folder;
   const Scene scene = short_pendulum();
@@ -127,8 +144,8 @@ TEST(RunFolder, HoldsASummaryOfTheRun) {
   const auto summary = nlohmann::json::parse(content_of(folder / "summary.json"));
   EXPECT_EQ(summary["status"], "finished");
   EXPECT_EQ(summary["method"], "rk4");
-  EXPECT_EQ(summary["steps"], result.summary.steps);
-  EXPECT_EQ(summary["force_evaluations"], 4 * result.summary.steps);
+  EXPECT_EQ(summary["steps"], result.summary.count.steps);
+  EXPECT_EQ(summary["force_evaluations"], 4 * result.summary.count.steps);
   EXPECT_EQ(summary["scene_hash"], scene_hash(scene));
   EXPECT_EQ(summary["particles"], 4);
   EXPECT_NEAR(summary["simulated_s"].get<double>(), 0.25, 1e-12);
@@ -158,7 +175,7 @@ TEST(ADivergingRun, StopsAndNamesStepTimeParticleAndTheStableStep) {
     ASSERT_EQ(result.summary.status, Status::diverged) << method;
     ASSERT_TRUE(result.summary.divergence);
     const Divergence& d = *result.summary.divergence;
-    EXPECT_EQ(d.step, result.summary.steps);
+    EXPECT_EQ(d.step, result.summary.count.steps);
     EXPECT_DOUBLE_EQ(d.time, static_cast<double>(d.step) * *scene.integrator.time_step);
     EXPECT_EQ(d.particle, d.row * 6 + d.column);
     EXPECT_NE(d.particle, 0);

@@ -36,7 +36,7 @@ TEST_P(EveryScene, RunsToItsEndAtTheAutomaticStepOrIsToldThatThereIsNone) {
   const RunResult result = run_scene(scene, {.folder = {}, .progress = {}});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::printf("%s with %s: %lld steps, %.2f s\n", name.c_str(), method.c_str(),
-              static_cast<long long>(result.summary.steps), seconds);
+              static_cast<long long>(result.summary.count.steps), seconds);
   EXPECT_EQ(result.summary.status, Status::finished);
   if (result.summary.divergence) ADD_FAILURE() << describe(*result.summary.divergence);
   EXPECT_TRUE(all_finite(result.final_state));

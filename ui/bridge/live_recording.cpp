@@ -50,6 +50,7 @@ std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& 
   rows_ = 0;
   wall_ = max_strain_ = limiter_excess_ = energy_error_ = 0;
   first_step_ = simulation.state().step;
+  first_count_ = simulation.count();
   first_time_ = simulation.time();
   last_flush_ = std::chrono::steady_clock::now();
 
@@ -103,10 +104,10 @@ std::optional<cloth::IoError> LiveRecording::end(const cloth::Simulation& simula
   summary.title = simulation.scene().title;
   summary.method = simulation.scene().integrator.method;
   summary.time_step = simulation.time_step();
-  summary.steps = last_good.step - first_step_;
   summary.particles = simulation.system().size();
   summary.simulated = last_good.time - first_time_;
-  summary.force_evaluations = simulation.count().force_evaluations;
+  summary.count = simulation.count().since(first_count_);
+  summary.count.steps = last_good.step - first_step_;  // without one that diverged
   summary.max_strain = max_strain_;
   summary.limiter_excess = limiter_excess_;
   summary.energy_drift = energy_error_;

@@ -14,7 +14,7 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system)
     : system_(&system), position_force_(static_cast<std::size_t>(system.size())) {
   if (scene.gravity && scene.gravity->squaredNorm() > 0)
     forces_.push_back(std::make_unique<Gravity>(*scene.gravity));
-  if (!system.springs.empty()) forces_.push_back(std::make_unique<SpringForce>());
+  if (!system.springs.empty()) forces_.push_back(std::make_unique<SpringForce>(system));
   if (!system.springs.empty() && scene.springs->damping > 0)
     forces_.push_back(std::make_unique<SpringDamping>(scene.springs->damping));
   if (scene.damping && *scene.damping > 0)

@@ -1,0 +1,151 @@
+#include "cloth/mesh_order.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <numeric>
+#include <tuple>
+
+namespace cloth {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Who is joined to whom, as rows of one list.
+struct Neighbours {
+  std::vector<int> begin, list;
+
+  int degree(int i) const { return begin[at(i) + 1] - begin[at(i)]; }
+  template <class Visit>
+  void for_each(int i, Visit visit) const {
+    for (int k = begin[at(i)]; k < begin[at(i) + 1]; ++k) visit(list[at(k)]);
+  }
+};
+
+template <class Visit>  // visit(i, j)
+void for_each_spring(const ClothSystem& system, Visit visit) {
+  for (const SpringRun& run : system.springs)
+    for (int s = 0; s < run.count; ++s) visit(run.first + s, run.first + s + run.offset);
+}
+
+Neighbours neighbours_of(const ClothSystem& system) {
+  const std::size_t particles = system.mass.size();
+  Neighbours n;
+  n.begin.assign(particles + 1, 0);
+  for_each_spring(system, [&](int i, int j) { ++n.begin[at(i) + 1], ++n.begin[at(j) + 1]; });
+  std::partial_sum(n.begin.begin(), n.begin.end(), n.begin.begin());
+  n.list.resize(at(n.begin.back()));
+  std::vector<int> next(n.begin.begin(), n.begin.end() - 1);
+  for_each_spring(system, [&](int i, int j) {
+    n.list[at(next[at(i)]++)] = j;
+    n.list[at(next[at(j)]++)] = i;
+  });
+  for (std::size_t i = 0; i < particles; ++i)
+    std::sort(n.list.begin() + n.begin[i], n.list.begin() + n.begin[i + 1],
+              [&](int a, int b) { return std::tuple(n.degree(a), a) < std::tuple(n.degree(b), b); });
+  return n;
+}
+
+/// Breadth first from `start`, neighbours of low degree first: appends to `order` and notes in `level`, which
+/// must be -1 throughout the part, how many springs away each is.
+void visit_part(const Neighbours& neighbours, int start, std::vector<int>& level, std::vector<int>& order) {
+  level[at(start)] = 0;
+  std::size_t next = order.size();
+  order.push_back(start);
+  for (; next < order.size(); ++next) {
+    const int i = order[next];
+    neighbours.for_each(i, [&](int j) {
+      if (level[at(j)] >= 0) return;
+      level[at(j)] = level[at(i)] + 1;
+      order.push_back(j);
+    });
+  }
+}
+
+/// A particle about as far from others as any: from the farthest of `start` of least degree to its farthest,
+/// as long as that is farther.
+int end_of_a_long_path(const Neighbours& neighbours, int start, std::vector<int>& level) {
+  std::vector<int> part;
+  for (int longest = -1;;) {
+    part.clear();
+    visit_part(neighbours, start, level, part);
+    const int length = level[at(part.back())];
+    int farthest = part.back();
+    for (const int i : part)
+      if (level[at(i)] == length && neighbours.degree(i) < neighbours.degree(farthest)) farthest = i;
+    for (const int i : part) level[at(i)] = -1;
+    if (length <= longest) return start;
+    longest = length;
+    start = farthest;
+  }
+}
+
+}  // namespace
+
+ParticleOrder small_bandwidth_order(const ClothSystem& system) {
+  const Neighbours neighbours = neighbours_of(system);
+  std::vector<int> level(system.mass.size(), -1);
+  ParticleOrder order;
+  order.reserve(level.size());
+  for (int i = 0; i < static_cast<int>(level.size()); ++i)
+    if (level[at(i)] < 0) visit_part(neighbours, end_of_a_long_path(neighbours, i, level), level, order);
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+ParticleOrder inverse_of(const ParticleOrder& order) {
+  ParticleOrder inverse(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) inverse[at(order[k])] = static_cast<int>(k);
+  return inverse;
+}
+
+Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order) {
+  assert(field.size() == order.size());
+  Vec3Field result(field.size());
+  for (std::size_t k = 0; k < order.size(); ++k) result.set(k, field[at(order[k])]);
+  return result;
+}
+
+ClothState renumbered(const ClothState& state, const ParticleOrder& order) {
+  return {.position = renumbered(state.position, order),
+          .velocity = renumbered(state.velocity, order),
+          .time = state.time,
+          .step = state.step};
+}
+
+ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order) {
+  assert(system.mass.size() == order.size());
+  ClothSystem result;
+  result.rows = 1;
+  result.columns = static_cast<int>(order.size());
+  result.diagonal = system.diagonal;
+  result.start = renumbered(system.start, order);
+  for (const int old : order) {
+    result.mass.push_back(system.mass[at(old)]);
+    result.inverse_mass.push_back(system.inverse_mass[at(old)]);
+    result.pinned.push_back(system.pinned[at(old)]);
+  }
+  const ParticleOrder number = inverse_of(order);
+  for (const SpringRun& run : system.springs)
+    for (int s = 0; s < run.count; ++s) {
+      const auto [low, high] =
+          std::minmax({number[at(run.first + s)], number[at(run.first + s + run.offset)]});
+      SpringRun spring = run;
+      spring.first = low, spring.offset = high - low, spring.count = 1;
+      result.springs.push_back(spring);
+    }
+  std::stable_sort(result.springs.begin(), result.springs.end(), [](const SpringRun& a, const SpringRun& b) {
+    return std::tuple(a.family, a.first, a.offset) < std::tuple(b.family, b.first, b.offset);
+  });
+  return result;
+}
+
+int bandwidth_of(const ClothSystem& system) {
+  int bandwidth = 0;
+  for (const SpringRun& run : system.springs) bandwidth = std::max(bandwidth, std::abs(run.offset));
+  return bandwidth;
+}
+
+}  // namespace cloth

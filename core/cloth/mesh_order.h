@@ -1,0 +1,30 @@
+// A numbering of particles in which springs join numbers close to each other, so that what a spring needs is
+// in the cache and few threads meet at a particle. For whoever makes a cloth from a general mesh.
+#pragma once
+
+#include <vector>
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+/// order[k]: the present number of the particle that becomes number k.
+using ParticleOrder = std::vector<int>;
+
+/// Reverse Cuthill-McKee (Cuthill and McKee 1969, George 1971), each connected part from an end of a long
+/// path through it (George and Liu 1979).
+ParticleOrder small_bandwidth_order(const ClothSystem& system);
+
+/// The order that undoes `order`.
+ParticleOrder inverse_of(const ParticleOrder& order);
+
+/// The same cloth with its particles in this order: springs one by one, by family and then by their ends. A
+/// grid is none any more: it becomes one row.
+ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order);
+ClothState renumbered(const ClothState& state, const ParticleOrder& order);
+Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order);
+
+/// The largest difference between the numbers of a spring's ends.
+int bandwidth_of(const ClothSystem& system);
+
+}  // namespace cloth

@@ -13,11 +13,22 @@ inline constexpr int slice_width = 8;
 /// numbers for each particle, x y z 0, 32-byte aligned, for a whole number of slices.
 struct MeshArrays {
   const int* slot_begin;    ///< slice s has the slots slot_begin[s] to slot_begin[s + 1]
-  const int* neighbour;     ///< [slot][lane]: the other end
+  const int* neighbour;     ///< [slot][lane]: 4 times the number of the other end
   const double* stiffness;  ///< [slot][lane]: k, N/m; 0 in an empty lane
   const double* tension;    ///< [slot][lane]: k L, N
   double* position;         ///< m
   double* force;            ///< N
+};
+
+/// One sweep over all slices that takes positions in just before the first spring needs them, and gives
+/// forces out after the last one has added to them, so that both stay in the caches and the loads and stores
+/// hide behind divisions.
+struct MeshSweep {
+  const int* load_until;   ///< by slice: the particles up to this one must be loaded before it
+  const int* store_until;  ///< by slice: after it the forces up to this particle are complete
+  const double *x, *y, *z;
+  double *fx, *fy, *fz;
+  int loaded, stored;  ///< particles so far
 };
 
 /// Every set does the same operations in the same order, each correctly rounded, so all give the same bits.
@@ -32,6 +43,9 @@ struct MeshKernel {
 
   /// Adds the forces of the particles in [begin, end) to fx, fy, fz.
   void (*store)(const MeshArrays& from, int begin, int end, double* fx, double* fy, double* fz);
+
+  /// All three for the slices [begin, end).
+  void (*sweep)(const MeshArrays& mesh, MeshSweep& through, int begin, int end);
 };
 
 const MeshKernel& baseline_mesh_kernel();

@@ -30,7 +30,7 @@ inline Lanes halves(const double* a, const double* b) {
 
 template <class At>
 inline void gather(const double* from, At at, Lanes& x, Lanes& y, Lanes& z) {
-  const double *a = from + 4 * at(0), *b = from + 4 * at(1), *c = from + 4 * at(2), *d = from + 4 * at(3);
+  const double *a = from + at(0), *b = from + at(1), *c = from + at(2), *d = from + at(3);
   const Lanes xy02 = halves(a, c), xy13 = halves(b, d);
   x = _mm256_unpacklo_pd(xy02, xy13), y = _mm256_unpackhi_pd(xy02, xy13);
   z = _mm256_unpacklo_pd(halves(a + 2, c + 2), halves(b + 2, d + 2));
@@ -59,7 +59,7 @@ inline void add_to(double* to, __m256d a) {
 }  // namespace
 
 const MeshKernel& avx2_mesh_kernel() {
-  static constexpr MeshKernel kernel{"avx2", load, add_springs, store};
+  static constexpr MeshKernel kernel{"avx2", load, add_springs, store, sweep};
   return kernel;
 }
 

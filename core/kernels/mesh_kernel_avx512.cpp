@@ -38,7 +38,7 @@ inline Lanes upper_pairs(Lanes a, Lanes b) {
 
 template <class At>
 inline void gather(const double* from, At at, Lanes& x, Lanes& y, Lanes& z) {
-  const auto pair = [&](int lane) { return halves(from + 4 * at(lane), from + 4 * at(lane + 4)); };
+  const auto pair = [&](int lane) { return halves(from + at(lane), from + at(lane + 4)); };
   const Lanes a = pair(0), b = pair(1), c = pair(2), d = pair(3);
   const Lanes xz01 = _mm512_unpacklo_pd(a, b), xz23 = _mm512_unpacklo_pd(c, d);
   x = lower_pairs(xz01, xz23), z = upper_pairs(xz01, xz23);
@@ -74,7 +74,7 @@ inline void add_to(double* to, __m256d a) {
 }  // namespace
 
 const MeshKernel& avx512_mesh_kernel() {
-  static constexpr MeshKernel kernel{"avx512", load, add_springs, store};
+  static constexpr MeshKernel kernel{"avx512", load, add_springs, store, sweep};
   return kernel;
 }
 

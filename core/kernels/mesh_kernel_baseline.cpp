@@ -26,7 +26,7 @@ inline Lanes where_positive(Lanes test, Lanes a) {
 
 template <class At>
 inline void gather(const double* from, At at, Lanes& x, Lanes& y, Lanes& z) {
-  const double *a = from + 4 * at(0), *b = from + 4 * at(1);
+  const double *a = from + at(0), *b = from + at(1);
   x = Lanes{a[0], b[0]}, y = Lanes{a[1], b[1]}, z = Lanes{a[2], b[2]};
 }
 
@@ -50,7 +50,7 @@ inline void add_to(double* to, Vector a) {
 }  // namespace
 
 const MeshKernel& baseline_mesh_kernel() {
-  static constexpr MeshKernel kernel{"baseline", load, add_springs, store};
+  static constexpr MeshKernel kernel{"baseline", load, add_springs, store, sweep};
   return kernel;
 }
 

@@ -47,7 +47,7 @@ void append_slice(const std::vector<End>* owned, int first, MeshLayout& layout) 
     for (int lane = 0; lane < slice_width; ++lane) {
       const bool empty = slot >= owned[lane].size();
       const End end = empty ? End{first + lane, 0, 0} : owned[lane][slot];
-      neighbour.lane[lane] = end.neighbour;
+      neighbour.lane[lane] = 4 * end.neighbour;
       stiffness.lane[lane] = end.stiffness;
       tension.lane[lane] = end.stiffness * end.rest_length;
     }
@@ -71,40 +71,102 @@ std::vector<int> particles_touched(const MeshLayout& layout, MeshLayout::Block b
   const auto begin = static_cast<std::size_t>(layout.slot_begin[static_cast<std::size_t>(block.begin)]);
   const auto end = static_cast<std::size_t>(layout.slot_begin[static_cast<std::size_t>(block.end)]);
   for (std::size_t slot = begin; slot < end; ++slot)
-    touched.insert(touched.end(), layout.neighbour[slot].lane, layout.neighbour[slot].lane + slice_width);
+    for (const int offset : layout.neighbour[slot].lane) touched.push_back(offset / 4);
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   return touched;
 }
 
-void colour(int length, MeshLayout& layout) {
+/// Block by block, but those of a lower colour that meet a block before it: every particle is added to in the
+/// order of the colours.
+std::vector<int> sequence_of(const std::vector<std::vector<int>>& meeting, const std::vector<int>& colours) {
+  std::vector<int> sequence;
+  std::vector<bool> taken(colours.size(), false);
+  const auto take = [&](const auto& self, std::size_t block) -> void {
+    if (taken[block]) return;
+    taken[block] = true;
+    for (const int other : meeting[block])
+      if (colours[static_cast<std::size_t>(other)] < colours[block])
+        self(self, static_cast<std::size_t>(other));
+    sequence.push_back(static_cast<int>(block));
+  };
+  for (std::size_t block = 0; block < colours.size(); ++block) take(take, block);
+  return sequence;
+}
+
+/// The lowest and the highest particle that a slice touches.
+std::pair<int, int> reach_of(const MeshLayout& layout, int slice) {
+  int lowest = slice * slice_width, highest = lowest + slice_width - 1;
+  for (int slot = layout.slot_begin[static_cast<std::size_t>(slice)];
+       slot < layout.slot_begin[static_cast<std::size_t>(slice) + 1]; ++slot)
+    for (const int offset : layout.neighbour[static_cast<std::size_t>(slot)].lane)
+      lowest = std::min(lowest, offset / 4), highest = std::max(highest, offset / 4);
+  return {lowest, highest};
+}
+
+/// When to load and when to store, in whole slices.
+void note_progress(MeshLayout& layout) {
+  std::vector<int> slices;
+  for (const MeshLayout::Block block : layout.sequence)
+    for (int slice = block.begin; slice < block.end; ++slice) slices.push_back(slice);
+  layout.load_until.resize(slices.size());
+  layout.store_until.resize(slices.size());
+  int needed = 0, complete = layout.particles;
+  for (const int slice : slices) {
+    needed = std::max(needed, reach_of(layout, slice).second / slice_width * slice_width + slice_width);
+    layout.load_until[static_cast<std::size_t>(slice)] = std::min(needed, layout.particles);
+  }
+  for (auto slice = slices.rbegin(); slice != slices.rend(); ++slice) {
+    layout.store_until[static_cast<std::size_t>(*slice)] = complete;
+    complete = std::min(complete, reach_of(layout, *slice).first / slice_width * slice_width);
+  }
+}
+
+void arrange_blocks(int length, MeshLayout& layout) {
   std::vector<MeshLayout::Block> blocks;
   std::vector<std::vector<int>> touched;
   for (int begin = 0; begin < layout.slices; begin += length) {
     blocks.push_back({begin, std::min(begin + length, layout.slices)});
     touched.push_back(particles_touched(layout, blocks.back()));
   }
-  const std::vector<int> colours = colours_of_blocks(touched, layout.slices * slice_width);
+  const auto meeting = blocks_that_meet(touched, layout.slices * slice_width);
+  const std::vector<int> colours = colours_of_blocks(meeting);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto c = static_cast<std::size_t>(colours[b]);
     if (layout.colours.size() <= c) layout.colours.resize(c + 1);
     layout.colours[c].push_back(blocks[b]);
   }
+  for (const int b : sequence_of(meeting, colours))
+    layout.sequence.push_back(blocks[static_cast<std::size_t>(b)]);
+  note_progress(layout);
 }
 
 }  // namespace
 
-std::vector<int> colours_of_blocks(const std::vector<std::vector<int>>& touched, int particles) {
-  std::vector<std::vector<int>> colours_at(static_cast<std::size_t>(particles));
+std::vector<std::vector<int>> blocks_that_meet(const std::vector<std::vector<int>>& touched, int particles) {
+  std::vector<std::vector<int>> blocks_at(static_cast<std::size_t>(particles)), meeting(touched.size());
+  for (std::size_t block = 0; block < touched.size(); ++block)
+    for (const int particle : touched[block])
+      blocks_at[static_cast<std::size_t>(particle)].push_back(static_cast<int>(block));
+  for (std::size_t block = 0; block < touched.size(); ++block) {
+    std::vector<bool> met(touched.size(), false);
+    for (const int particle : touched[block])
+      for (const int other : blocks_at[static_cast<std::size_t>(particle)])
+        met[static_cast<std::size_t>(other)] = true;
+    for (std::size_t other = 0; other < met.size(); ++other)
+      if (met[other] && other != block) meeting[block].push_back(static_cast<int>(other));
+  }
+  return meeting;
+}
+
+std::vector<int> colours_of_blocks(const std::vector<std::vector<int>>& meeting) {
   std::vector<int> colours;
-  for (const std::vector<int>& here : touched) {
-    std::vector<bool> taken(touched.size(), false);
-    for (const int particle : here)
-      for (const int other : colours_at[static_cast<std::size_t>(particle)])
-        taken[static_cast<std::size_t>(other)] = true;
-    const auto free = static_cast<int>(std::find(taken.begin(), taken.end(), false) - taken.begin());
-    colours.push_back(free);
-    for (const int particle : here) colours_at[static_cast<std::size_t>(particle)].push_back(free);
+  for (std::size_t block = 0; block < meeting.size(); ++block) {
+    std::vector<bool> taken(meeting.size(), false);
+    for (const int other : meeting[block])
+      if (static_cast<std::size_t>(other) < block)
+        taken[static_cast<std::size_t>(colours[static_cast<std::size_t>(other)])] = true;
+    colours.push_back(static_cast<int>(std::find(taken.begin(), taken.end(), false) - taken.begin()));
   }
   return colours;
 }
@@ -119,7 +181,7 @@ MeshLayout make_mesh_layout(const ClothSystem& system) {
   layout.slot_begin.push_back(0);
   for (int slice = 0; slice < layout.slices; ++slice)
     append_slice(owned.data() + slice * slice_width, slice * slice_width, layout);
-  colour(block_length(springs), layout);
+  arrange_blocks(block_length(springs), layout);
   return layout;
 }
 

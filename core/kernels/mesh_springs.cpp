@@ -50,10 +50,18 @@ MeshArrays MeshSprings::arrays() {
 
 void MeshSprings::add_forces(const Vec3Field& position, Vec3Field& force) {
   const MeshArrays mesh = arrays();
-  kernel_->load(position.x(), position.y(), position.z(), 0, layout_.particles, mesh);
-  for (const auto& blocks : layout_.colours)
-    for (const MeshLayout::Block block : blocks) kernel_->add_springs(mesh, block.begin, block.end);
-  kernel_->store(mesh, 0, layout_.particles, force.x(), force.y(), force.z());
+  MeshSweep through{.load_until = layout_.load_until.data(),
+                    .store_until = layout_.store_until.data(),
+                    .x = position.x(),
+                    .y = position.y(),
+                    .z = position.z(),
+                    .fx = force.x(),
+                    .fy = force.y(),
+                    .fz = force.z(),
+                    .loaded = 0,
+                    .stored = 0};
+  for (const MeshLayout::Block block : layout_.sequence)
+    kernel_->sweep(mesh, through, block.begin, block.end);
 }
 
 void MeshSprings::add_forces(const Vec3Field& position, Vec3Field& force, int threads, const RunParts& run) {

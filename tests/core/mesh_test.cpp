@@ -251,7 +251,8 @@ TEST(MeshSprings, OfOneColourMeetAtNoParticle) {
         for (int i = block.begin * slice_width; i < block.end * slice_width; ++i) here.insert(i);
         for (int slot = layout.slot_begin[static_cast<std::size_t>(block.begin)];
              slot < layout.slot_begin[static_cast<std::size_t>(block.end)]; ++slot)
-          for (const int j : layout.neighbour[static_cast<std::size_t>(slot)].lane) here.insert(j);
+          for (const int offset : layout.neighbour[static_cast<std::size_t>(slot)].lane)
+            here.insert(offset / 4);
         for (const int i : here) EXPECT_TRUE(touched.insert(i).second) << i;
       }
     }

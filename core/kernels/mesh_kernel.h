@@ -31,7 +31,8 @@ struct MeshSweep {
   int loaded, stored;  ///< particles so far
 };
 
-/// Every set does the same operations in the same order, each correctly rounded, so all give the same bits.
+/// Every set takes the springs in the same order. Baseline and AVX2 round each operation alike; AVX-512
+/// refines a reciprocal root instead of dividing, and differs by rounding.
 struct MeshKernel {
   const char* name;  ///< as in CLOTHLAB_INSTRUCTION_SET
 

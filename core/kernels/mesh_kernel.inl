@@ -3,8 +3,7 @@
 //
 //   lanes                                  doubles in a Lanes
 //   load_lanes(from), store_lanes(to, a)   of contiguous doubles, aligned or not
-//   square_root(a)
-//   where_positive(test, a)                a where test > 0, else 0
+//   scale_of(dx, dy, dz, k, kL)            k - kL/|d|; finite where |d| = 0
 //   gather(from, at, x, y, z)              x y z of the 4-vectors at from + at(0) ... from + at(lanes - 1)
 //   for_each_vector(at, x, y, z, visit)    the way back: visit(at(l), vector l), l = 0, 1, ...
 //   add_to(to, vector), put(to, vector)    to a 4-vector in memory
@@ -75,9 +74,7 @@ void add_springs(const MeshArrays& mesh, int begin, int end) {
         Lanes x, y, z;
         gather(position, j, x, y, z);
         const Lanes dx = xi[p] - x, dy = yi[p] - y, dz = zi[p] - z;
-        const Lanes length = square_root(dx * dx + dy * dy + dz * dz);
-        const Lanes k = load_lanes(stiffness + at), kL = load_lanes(tension + at);
-        const Lanes scale = where_positive(length, k - kL / length);
+        const Lanes scale = scale_of(dx, dy, dz, load_lanes(stiffness + at), load_lanes(tension + at));
         const Lanes gx = scale * dx, gy = scale * dy, gz = scale * dz;
         fx[p] -= gx, fy[p] -= gy, fz[p] -= gz;
         for_each_vector(j, gx, gy, gz, add);

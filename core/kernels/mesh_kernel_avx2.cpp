@@ -16,8 +16,9 @@ inline Lanes load_lanes(const double* from) {
 inline void store_lanes(double* to, Lanes a) {
   _mm256_storeu_pd(to, a);
 }
-inline Lanes square_root(Lanes a) {
-  return _mm256_sqrt_pd(a);
+inline Lanes scale_of(Lanes dx, Lanes dy, Lanes dz, Lanes k, Lanes kL) {
+  const Lanes length = _mm256_sqrt_pd(dx * dx + dy * dy + dz * dz);
+  return _mm256_and_pd(k - kL / length, _mm256_cmp_pd(length, _mm256_setzero_pd(), _CMP_GT_OQ));
 }
 inline Lanes where_positive(Lanes test, Lanes a) {
   return _mm256_and_pd(a, _mm256_cmp_pd(test, _mm256_setzero_pd(), _CMP_GT_OQ));

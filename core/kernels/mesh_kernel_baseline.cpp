@@ -17,11 +17,10 @@ inline Lanes load_lanes(const double* from) {
 inline void store_lanes(double* to, Lanes a) {
   to[0] = a[0], to[1] = a[1];
 }
-inline Lanes square_root(Lanes a) {
-  return Lanes{__builtin_sqrt(a[0]), __builtin_sqrt(a[1])};
-}
-inline Lanes where_positive(Lanes test, Lanes a) {
-  return test > 0 ? a : Lanes{};
+inline Lanes scale_of(Lanes dx, Lanes dy, Lanes dz, Lanes k, Lanes kL) {
+  const Lanes squared = dx * dx + dy * dy + dz * dz;
+  const Lanes length{__builtin_sqrt(squared[0]), __builtin_sqrt(squared[1])};
+  return length > 0 ? k - kL / length : Lanes{};
 }
 
 template <class At>

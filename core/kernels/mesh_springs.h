@@ -27,7 +27,7 @@ class MeshSprings {
   /// `system` is not referred to afterwards.
   explicit MeshSprings(const ClothSystem& system, const MeshKernel& kernel = chosen_mesh_kernel());
 
-  /// force += the springs' forces, in N. The same bits whatever the kernel, and the same on several threads.
+  /// force += the springs' forces, in N. The same bits again and on any number of threads.
   void add_forces(const Vec3Field& position, Vec3Field& force);
 
   /// The same in `threads` parts at a time, carried out by `run`.

@@ -1,5 +1,5 @@
-// The loops of mesh_kernel.h over the type Lanes, which the including file defines for its instruction set together
-// with
+// The loops of mesh_kernel.h over the type Lanes, which the including file defines for its
+// instruction set together with
 //
 //   lanes                                  doubles in a Lanes
 //   load_lanes(from), store_lanes(to, a)   of contiguous doubles, aligned or not
@@ -52,7 +52,8 @@ void store(const MeshArrays& from, int begin, int end, double* fx, double* fy, d
   }
 }
 
-// Legend: i the particle of a lane, j its neighbour; d = x_i - x_j; k, L stiffness and rest length; f the sum on i.
+// Legend: i the particle of a lane, j its neighbour; d = x_i - x_j; k, L stiffness and rest
+// length; f the sum on i.
 void add_springs(const MeshArrays& mesh, int begin, int end) {
   // Nothing that the loop stores changes what it reads, except the forces: the compiler cannot know.
   const int *__restrict slot_begin = mesh.slot_begin, *__restrict neighbour = mesh.neighbour;

@@ -18,7 +18,7 @@ inline void store_lanes(double* to, Lanes a) {
 }
 /// 1/sqrt(a) to full precision for a in [least, most]: the processor's estimate r of 14 bits times the series
 /// of 1/sqrt(1 - h), h = 1 - a r^2, to the third power; what is left out is below 2^-53. Seven operations in
-/// place of a square root and a division, which keep the divider busy for twice as long as all the rest
+/// place of a square root and a division, which keep the divider busy for longer than all the rest
 /// takes.
 inline Lanes reciprocal_root(Lanes a) {
   const Lanes r = _mm512_rsqrt14_pd(a);

@@ -9,7 +9,7 @@
 #include "cloth/cloth_system.h"
 #include "scene/scene.h"
 
-namespace cloth::bench {
+namespace cloth::speed {
 
 class ReferenceKernel {
  public:
@@ -37,4 +37,4 @@ class ReferenceKernel {
   double damping_;
 };
 
-}  // namespace cloth::bench
+}  // namespace cloth::speed

@@ -1,8 +1,8 @@
 #include "study/speed/interleaved_timing.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace cloth::speed {
 namespace {
@@ -12,10 +12,17 @@ struct Pace {
   int runs = 1, repeats = 1;
 };
 
+double seconds_on(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 double seconds_for(Subject& subject, int runs) {
-  const auto start = std::chrono::steady_clock::now();
+  const clockid_t clock = subject.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
+  const double start = seconds_on(clock);
   if (!subject.run(runs)) subject.broken = true;
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::max(seconds_on(clock) - start, 1e-9);
 }
 
 /// Doubles the number of runs until they take a moment: that warms up, and says how many make one.
@@ -45,7 +52,7 @@ Spread spread_of(std::vector<double> values) {
     const std::size_t above = std::min(below + 1, values.size() - 1);
     return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
   };
-  return {at(0.25), at(0.5), at(0.75)};
+  return {at(0.25), at(0.5), at(0.75), values.front()};
 }
 
 Spread spread_of(const Subject& subject) {

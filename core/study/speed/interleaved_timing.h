@@ -17,6 +17,7 @@ struct Subject {
   std::string name;
   double scale = 1;                  ///< what a run's seconds are multiplied with
   std::function<bool(int)> run;      ///< does its work so many times; false: it broke down
+  int threads = 1;                   ///< that its work is shared among
   std::function<void()> warm = {};   ///< called once, between warming up and the first sample
   std::vector<Sample> samples = {};  ///< none if it broke down
   bool broken = false;
@@ -24,9 +25,10 @@ struct Subject {
 
 struct Spread {
   double low = 0, median = 0, high = 0;  ///< quartiles
+  double least = 0;
 };
 
-/// Quartiles, interpolated; zeros if there is nothing.
+/// Quartiles, interpolated, and the least; zeros if there is nothing.
 Spread spread_of(std::vector<double> values);
 Spread spread_of(const Subject& subject);
 
@@ -42,8 +44,9 @@ struct TimingPlan {
 /// Asked before every sample, with the part that is done and what comes next; false ends the timing.
 using TimingProgress = std::function<bool(double fraction, const std::string& name)>;
 
-/// Warms each subject up, then takes samples of each in turn, starting with another one every time. False:
-/// it was ended, and the samples are not complete.
+/// The time of one thread is its processor time, which other work on the machine lengthens little; that of
+/// several is wall time. Warms each subject up, then takes samples of each in turn, starting with another one
+/// every time. False: it was ended, and the samples are not complete.
 bool time_interleaved(std::vector<Subject>& subjects, const TimingPlan& plan, const TimingProgress& progress);
 
 }  // namespace cloth::speed

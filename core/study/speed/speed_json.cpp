@@ -18,7 +18,10 @@ json positive(double value) {
 
 json spread_json(const Spread& s) {
   if (!(s.median > 0)) return {};
-  return {{"median", finite(s.median)}, {"low", finite(s.low)}, {"high", finite(s.high)}};
+  return {{"median", finite(s.median)},
+          {"low", finite(s.low)},
+          {"high", finite(s.high)},
+          {"least", finite(s.least)}};
 }
 
 json text_or_null(const std::string& text) {

@@ -29,7 +29,7 @@ class Page {
 std::string number(double value) {
   const double size = std::abs(value);
   if (size == 0) return "0";
-  if (size < 1) return fmt::format("{:.2g}", value);
+  if (size < 0.1) return fmt::format("{:.2g}", value);
   return fmt::format("{:.{}f}", value, size < 10 ? 2 : size < 100 ? 1 : 0);
 }
 
@@ -114,7 +114,7 @@ TextTable yardstick_table(const Yardsticks& y) {
   };
   const auto throughput = [](const Spread& time) {
     const auto of = [](double ns) { return Yardsticks::bytes_per_element / ns; };
-    return Spread{of(time.high), of(time.median), of(time.low)};
+    return Spread{of(time.high), of(time.median), of(time.low), 0};
   };
   add("square root and division, scalar", y.scalar_root, "ns per double");
   add("square root and division, " + y.vectors, y.vector_root, "ns per double");
@@ -155,28 +155,29 @@ TextTable memory_table(const std::vector<MemoryCost>& memory) {
 
 TextTable start_table(const std::vector<StartCost>& starts) {
   TextTable table;
-  table.columns = {{"Start"}, {"Time (ms)", true}, {"Quartiles (ms)", true}, {"Repeats", true}, {"Remark"}};
+  table.columns = {{"Start"},         {"Time (ms)", true}, {"Quartiles (ms)", true}, {"Least (ms)", true},
+                   {"Repeats", true}, {"Remark"}};
   for (const StartCost& row : starts)
     table.rows.push_back({row.what, row.samples > 0 ? number(row.milliseconds.median) : "-",
-                          row.samples > 0 ? quartiles(row.milliseconds) : "", std::to_string(row.samples),
+                          row.samples > 0 ? quartiles(row.milliseconds) : "",
+                          row.samples > 0 ? number(row.milliseconds.least) : "", std::to_string(row.samples),
                           row.remark});
   return table;
 }
 
+constexpr const char* step_legend =
+    R"(A cloth of N x N particles hung by two corners, springs in six directions, gravity, after {} s of hanging. Time:
+per particle and step, median and quartiles of {} interleaved repeats; processor time for one thread, wall time for
+more. Divided by: reference, the time of semi-implicit Euler on index pairs in scalar code; bare, the method's own step
+without the addition; divider, exact roots and divisions at {} ns per spring and force evaluation; memory, 96 bytes per
+particle at {} GB/s. The last two are one core's; a cloth in the caches may be below memory, a kernel that refines
+estimates of roots below divider. Forces: evaluations per step.)";
+
 void add_steps(Page& page, const SpeedReport& report) {
   page.heading("A step");
-  page.paragraph(
-      fmt::format("A cloth of N x N particles hung by two corners, springs in six directions, gravity, after "
-                  "{} s of hanging.\n"
-                  "Time: per particle and step, median and quartiles of {} interleaved repeats. Ratios: to "
-                  "the reference kernel\n"
-                  "(semi-implicit Euler, index pairs, scalar code), to the bare step of the method, to exact "
-                  "roots and divisions at\n"
-                  "{} ns per spring and force evaluation, and to 96 bytes per particle at {} GB/s, both of "
-                  "one core. Forces: force\n"
-                  "evaluations per step.",
-                  hanging_time, report.repeats, number(report.yardsticks.vector_root.median),
-                  number(report.yardsticks.update_throughput())));
+  page.paragraph(fmt::format(step_legend, hanging_time, report.repeats,
+                             number(report.yardsticks.vector_root.median),
+                             number(report.yardsticks.update_throughput())));
   page.table(yardstick_table(report.yardsticks));
   std::vector<int> sizes;
   for (const StepCost& row : report.rows)

@@ -97,7 +97,7 @@ std::vector<StepCost> rows_of(const std::vector<Variant>& variants, const std::v
                   .time_step = kernel_source.time_step(),
                   .samples = static_cast<int>(subjects[0].samples.size()),
                   .time = spread_of(subjects[0]),
-                  .to_reference = {1, 1, 1},
+                  .to_reference = {1, 1, 1, 1},
                   .evaluations = 1});
   for (std::size_t k = 0; k < variants.size(); ++k) {
     StepCost row = cost_of(variants[k], subjects[k + 1], yardsticks);
@@ -143,10 +143,21 @@ std::optional<Field> prepare(int size, const std::vector<Wanted>& wanted, const 
   return field;
 }
 
+/// Where simulations have threads, asks for them; else a step takes one.
+template <class Engine>
+int threads_used(Engine& engine, [[maybe_unused]] int threads) {
+  if constexpr (requires { engine.set_threads(threads); }) {
+    engine.set_threads(threads);
+    return engine.threads();
+  } else {
+    return 1;
+  }
+}
+
 }  // namespace
 
-int use_threads(Simulation&, int) {
-  return 1;  // the engine steps on one thread
+int use_threads(Simulation& simulation, int threads) {
+  return threads_used(simulation, threads);
 }
 
 SizeCosts measure_size(int size, const std::vector<Wanted>& wanted, const StepPlan& plan,
@@ -173,6 +184,7 @@ SizeCosts measure_size(int size, const std::vector<Wanted>& wanted, const StepPl
     subjects.push_back({.name = title_of(variant.wanted),
                         .scale = per_particle,
                         .run = [&variant](int steps) { return advance(variant, steps); },
+                        .threads = variant.wanted.threads,
                         .warm = [&variant] { variant.warm = variant.simulation->count(); }});
   result.complete = time_interleaved(subjects, plan.timing, progress);
   if (!result.complete) return result;

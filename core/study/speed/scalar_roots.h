@@ -1,4 +1,4 @@
-// One root and one division after the other: compiled, like the reference kernel, without vectors.
+// One root and one division after the other: compiled without vectors.
 #pragma once
 
 #include <cstddef>

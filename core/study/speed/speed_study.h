@@ -1,5 +1,5 @@
 // What Clothlab costs on this machine: the time of a step by method, size, threads and feature beside a plain
-// scalar kernel and the machine's own limits, its growth with size, the speed of the built-in scenes, memory
+// kernel and the machine's own limits, its growth with size, the speed of the built-in scenes, memory
 // and start.
 //
 // Absolute times are this machine's and this minute's; the ratios are what carries over.

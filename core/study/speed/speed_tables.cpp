@@ -168,7 +168,7 @@ TextTable start_table(const std::vector<StartCost>& starts) {
 constexpr const char* step_legend =
     R"(A cloth of N x N particles hung by two corners, springs in six directions, gravity, after {} s of hanging. Time:
 per particle and step, median and quartiles of {} interleaved repeats; processor time for one thread, wall time for
-more. Divided by: reference, the time of semi-implicit Euler on index pairs in scalar code; bare, the method's own step
+more. Divided by: reference, the time of semi-implicit Euler in textbook code on index pairs; bare, the method's own step
 without the addition; divider, exact roots and divisions at {} ns per spring and force evaluation; memory, 96 bytes per
 particle at {} GB/s. The last two are one core's; a cloth in the caches may be below memory, a kernel that refines
 estimates of roots below divider. Forces: evaluations per step.)";

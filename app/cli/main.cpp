@@ -8,6 +8,7 @@
 #include "console.h"
 #include "io/run_folder.h"
 #include "study/reproduce.h"
+#include "study/speed/speed_study.h"
 
 namespace {
 
@@ -32,6 +33,7 @@ struct Arguments {
   cli::ExtremesArguments extremes;
   cli::ReproduceArguments reproduce;
   cli::WorkPrecisionArguments work_precision;
+  cli::BenchArguments bench;
 };
 
 void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
@@ -108,6 +110,35 @@ void add_reproduce(CLI::App& app, cli::ReproduceArguments& arguments) {
   reproduce->add_flag("--json", arguments.json, json_help);
 }
 
+void add_bench(CLI::App& app, cli::BenchArguments& arguments) {
+  CLI::App* bench = app.add_subcommand(
+      "bench", "What a step costs on this machine, beside a plain kernel and the machine's own limits");
+  bench->add_option("--sizes", arguments.sizes, "Particles along an edge, e.g. 64,128; 32 to 512 without")
+      ->delimiter(',')
+      ->check(CLI::Range(4, 2048));
+  bench->add_option("--methods", arguments.methods, "Only these methods, e.g. verlet,rk4")->delimiter(',');
+  bench
+      ->add_option(
+          "--features", arguments.features,
+          "Only these beside the bare step: damping, air, spring-damping, limit-10, limit-1, sphere; "
+          "all without")
+      ->delimiter(',');
+  bench->add_option("--threads", arguments.threads, "Numbers of threads, e.g. 1,2; 1 and all cores without")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024));
+  bench->add_option("--repeats", arguments.repeats, "Timings of each row")
+      ->capture_default_str()
+      ->check(CLI::Range(3, 1000));
+  bench
+      ->add_option("--only", arguments.only,
+                   "Only these parts: " + fmt::format("{}", fmt::join(cloth::speed::speed_parts(), ", ")))
+      ->delimiter(',');
+  bench->add_flag("--quick", arguments.quick, "Small sizes and short timings: a look, not a measurement");
+  bench->add_option("--out", arguments.folder, "Folder for bench.json; made if missing");
+  CLI::Option* json = bench->add_flag("--json", arguments.json, json_help);
+  bench->add_flag("--markdown", arguments.markdown, "Print the tables as Markdown")->excludes(json);
+}
+
 void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* run = app.add_subcommand("run", "Run a scene to its duration");
   run->add_option("scene", arguments.run.scene, scene_help)->required();
@@ -134,6 +165,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   add_stability(app, arguments.stability);
   add_extremes(app, arguments.extremes);
   add_reproduce(app, arguments.reproduce);
+  add_bench(app, arguments.bench);
   app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
@@ -161,6 +193,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
   if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("work-precision")) return cli::work_precision(arguments.work_precision);
+  if (app.got_subcommand("bench")) return cli::bench(arguments.bench);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema();
 }

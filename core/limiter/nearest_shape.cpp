@@ -15,6 +15,9 @@ constexpr double nearness = 2;
 }  // namespace
 
 NearestShape::NearestShape(const ClothSystem& system, const std::vector<SpringRun>& limited, double rate) {
+  std::size_t count = 0;
+  for (const SpringRun& run : limited) count += static_cast<std::size_t>(run.count);
+  springs_.reserve(count);
   for (const SpringRun& run : limited) {
     if (!(run.rest_length > 0)) continue;  // nothing to take a fraction of
     for (int s = run.first; s < run.first + run.count; ++s) {

@@ -14,18 +14,18 @@
 #include <string>
 #include <thread>
 
-#include "bench_scenes.h"
 #include "cloth/grid.h"
 #include "cloth/mesh_order.h"
-#include "interleaved_timing.h"
 #include "kernels/mesh_springs.h"
-#include "reference_kernel.h"
+#include "study/speed/interleaved_timing.h"
+#include "study/speed/reference_kernel.h"
+#include "study/speed/speed_scenes.h"
 #include "support/meshes.h"
 
 namespace {
 
 using namespace cloth;
-using namespace cloth::bench;
+using namespace cloth::speed;
 
 constexpr double time_step = 1e-5;  // s
 constexpr double damping = 0.001;   // N s/m
@@ -136,7 +136,7 @@ class MeshStep {
 };
 
 double least(const Subject& subject) {
-  return *std::min_element(subject.samples.begin(), subject.samples.end());
+  return spread_of(subject).least;
 }
 
 void measure(const std::string& name, const Scene& scene, const ClothSystem& given, int repeats) {
@@ -154,11 +154,13 @@ void measure(const std::string& name, const Scene& scene, const ClothSystem& giv
   const auto repeat = [](auto& subject) {
     return [&subject](int times) {
       for (int k = 0; k < times; ++k) subject.step();
+      return true;
     };
   };
   const auto repeat_reference = [](ReferenceKernel& kernel) {
     return [&kernel](int times) {
       for (int k = 0; k < times; ++k) kernel.step(time_step);
+      return true;
     };
   };
   std::vector<Subject> subjects{
@@ -167,10 +169,12 @@ void measure(const std::string& name, const Scene& scene, const ClothSystem& giv
       {"mesh kernel, springs alone", scale,
        [&](int times) {
          for (int k = 0; k < times; ++k) one.springs().add_forces(one.position(), one.force());
+         return true;
        }},
       {"mesh kernel, step", scale, repeat(one)},
       {"mesh kernel, step, two threads", scale, repeat(two)}};
-  time_interleaved(subjects, repeats, 0.002);
+  subjects.back().threads = 2;
+  time_interleaved(subjects, {.repeats = repeats, .moment = 0.002}, [](double, const std::string&) { return true; });
 
   const MeshLayout& layout = one.springs().layout();
   fmt::print(
@@ -184,7 +188,7 @@ void measure(const std::string& name, const Scene& scene, const ClothSystem& giv
   fmt::print("  {:<44} {:>7} {:>7}  {}\n", "", "ns", "least", "reference / this, medians and least");
   for (const Subject& s : subjects)
     fmt::print("  {:<44} {:>7.1f} {:>7.1f}  as given {:.2f} {:.2f}, in this order {:.2f} {:.2f}\n", s.name,
-               spread_of(s.samples).median, least(s), ratio_of(subjects[1], s).median,
+               spread_of(s).median, least(s), ratio_of(subjects[1], s).median,
                least(subjects[1]) / least(s), ratio_of(subjects[0], s).median, least(subjects[0]) / least(s));
 }
 
@@ -194,7 +198,7 @@ int main(int argc, char** argv) {
   const int side = argc > 1 ? std::max(4, std::atoi(argv[1])) : 128;
   const int repeats = argc > 2 ? std::max(3, std::atoi(argv[2])) : 21;
   test::Random random;
-  Scene scene = hanging_cloth(side, "semi-implicit-euler");
+  Scene scene = hanging_cloth(side, "semi-implicit-euler", bare_feature());
   scene.damping = damping;
   fmt::print("ns per particle and step, medians of {} interleaved repeats; instruction set {}\n", repeats,
              chosen_mesh_kernel().name);

@@ -1,7 +1,7 @@
 // The yardstick: a mass-spring step as a textbook writes it. Particles are structs, springs are index pairs,
-// one spring after the other in plain scalar code; semi-implicit Euler with gravity and viscous damping,
-// nothing else. It keeps no ledger and looks for no divergence, so it does less than a step of Clothlab, and
-// the ratio to it is a fair one.
+// one spring after the other in plain code, compiled for the baseline processor; semi-implicit Euler with
+// gravity and viscous damping, nothing else. It keeps no ledger and looks for no divergence, so it does less
+// than a step of Clothlab, and the ratio to it is a fair one.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 #include "cloth/cloth_system.h"
 #include "scene/scene.h"
 
-namespace cloth::bench {
+namespace cloth::speed {
 
 class ReferenceKernel {
  public:
@@ -37,4 +37,4 @@ class ReferenceKernel {
   double damping_;
 };
 
-}  // namespace cloth::bench
+}  // namespace cloth::speed

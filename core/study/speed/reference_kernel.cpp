@@ -1,9 +1,9 @@
-#include "reference_kernel.h"
+#include "study/speed/reference_kernel.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace cloth::bench {
+namespace cloth::speed {
 
 ReferenceKernel::ReferenceKernel(const Scene& scene, const ClothSystem& system, const ClothState& state)
     : damping_(scene.damping.value_or(0)) {
@@ -49,4 +49,4 @@ double ReferenceKernel::distance_to(const Vec3Field& position) const {
   return largest;
 }
 
-}  // namespace cloth::bench
+}  // namespace cloth::speed

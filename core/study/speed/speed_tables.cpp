@@ -1,0 +1,230 @@
+#include "study/speed/speed_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/text_table.h"
+
+namespace cloth::speed {
+namespace {
+
+/// Text or Markdown, built from the same paragraphs and tables.
+class Page {
+ public:
+  explicit Page(bool markdown) : markdown_(markdown) {}
+
+  void heading(const std::string& text) { text_ += (markdown_ ? "\n## " : "\n") + text + "\n"; }
+  void paragraph(const std::string& text) { text_ += (markdown_ ? "\n" : "") + text + "\n"; }
+  void table(const TextTable& table) { text_ += markdown_ ? "\n" + to_markdown(table) : to_text(table); }
+  std::string take() { return std::move(text_); }
+
+ private:
+  bool markdown_;
+  std::string text_;
+};
+
+/// Some three significant digits, without an exponent where it can be.
+std::string number(double value) {
+  const double size = std::abs(value);
+  if (size == 0) return "0";
+  if (size < 0.1) return fmt::format("{:.2g}", value);
+  return fmt::format("{:.{}f}", value, size < 10 ? 2 : size < 100 ? 1 : 0);
+}
+
+std::string number_if(double value, bool there = true) {
+  return there && value > 0 ? number(value) : "";
+}
+
+std::string quartiles(const Spread& spread) {
+  return number(spread.low) + " to " + number(spread.high);
+}
+
+std::string title_of(const std::string& feature) {
+  return feature_named(feature).title;
+}
+
+std::string name_of_method(const std::string& method) {
+  return method == reference_method ? "reference kernel" : method;
+}
+
+/// "1", "4" or "5.3"
+std::string count_text(double each_step) {
+  return each_step == std::floor(each_step) ? fmt::format("{:.0f}", each_step)
+                                            : fmt::format("{:.1f}", each_step);
+}
+
+std::string solver_text(const StepCost& row) {
+  if (row.sweeps > 0) return count_text(row.sweeps) + " sweeps";
+  if (row.velocity_iterations > 0) return count_text(row.velocity_iterations) + " velocity iterations";
+  if (row.linear_iterations > 0) return count_text(row.linear_iterations) + " linear iterations";
+  return "";
+}
+
+TextTable step_table(const std::vector<StepCost>& rows, int size) {
+  TextTable table;
+  table.columns = {{"Method"},
+                   {"With"},
+                   {"Threads", true},
+                   {"Time (ns)", true},
+                   {"Quartiles (ns)", true},
+                   {"/ reference", true},
+                   {"/ bare", true},
+                   {"/ divider", true},
+                   {"/ memory", true},
+                   {"Forces", true},
+                   {"Solver, per step"},
+                   {"Remark"}};
+  for (const StepCost& row : rows) {
+    if (row.size != size) continue;
+    const std::vector<std::string> names{name_of_method(row.method), title_of(row.feature),
+                                         std::to_string(row.threads)};
+    if (row.samples == 0) {
+      table.rows.push_back({names[0], names[1], names[2], "-", "", "", "", "", "", "", "", row.remark});
+      continue;
+    }
+    const bool more = row.feature != bare_feature().name;
+    table.rows.push_back({names[0], names[1], names[2], number(row.time.median), quartiles(row.time),
+                          number(row.to_reference.median), number_if(row.to_bare.median, more),
+                          number_if(row.to_divider), number_if(row.to_memory), count_text(row.evaluations),
+                          solver_text(row), row.remark});
+  }
+  return table;
+}
+
+TextTable growth_table(const std::vector<Growth>& growth) {
+  TextTable table;
+  table.columns = {{"Method"}, {"With"},           {"Threads", true},
+                   {"Sizes"},  {"Exponent", true}, {"Standard error", true}};
+  for (const Growth& row : growth)
+    table.rows.push_back(
+        {name_of_method(row.method), title_of(row.feature), std::to_string(row.threads),
+         fmt::format("{} to {}", row.smallest, row.largest), fmt::format("{:.3f}", row.exponent.value),
+         row.exponent.points > 2 ? fmt::format("{:.3f}", row.exponent.standard_error) : "-"});
+  return table;
+}
+
+TextTable yardstick_table(const Yardsticks& y) {
+  TextTable table;
+  table.columns = {{"Machine, one core"}, {"Median", true}, {"Quartiles", true}, {"Unit"}};
+  const auto add = [&](const std::string& what, const Spread& spread, const char* unit) {
+    table.rows.push_back({what, fmt::format("{:.3f}", spread.median),
+                          fmt::format("{:.3f} to {:.3f}", spread.low, spread.high), unit});
+  };
+  const auto throughput = [](const Spread& time) {
+    const auto of = [](double ns) { return Yardsticks::bytes_per_element / ns; };
+    return Spread{of(time.high), of(time.median), of(time.low), 0};
+  };
+  add("square root and division, scalar", y.scalar_root, "ns per double");
+  add("square root and division, " + y.vectors, y.vector_root, "ns per double");
+  add("memory, triad a = b + s c", throughput(y.triad), "GB/s");
+  add("memory, update x += s v", throughput(y.update), "GB/s");
+  return table;
+}
+
+TextTable scene_table(const std::vector<SceneSpeed>& scenes) {
+  TextTable table;
+  table.columns = {{"Scene"},
+                   {"Method"},
+                   {"Particles", true},
+                   {"Time step (s)", true},
+                   {"Simulated (s)", true},
+                   {"Wall (s)", true},
+                   {"Simulated / wall", true},
+                   {"Per particle and step (ns)", true},
+                   {"Remark"}};
+  for (const SceneSpeed& scene : scenes)
+    table.rows.push_back({scene.name, scene.method, std::to_string(scene.particles),
+                          fmt::format("{:.4g}", scene.time_step), number(scene.simulated), number(scene.wall),
+                          number(scene.speed()), number(scene.nanoseconds), scene.remark});
+  return table;
+}
+
+TextTable memory_table(const std::vector<MemoryCost>& memory) {
+  TextTable table;
+  table.columns = {
+      {"Method"}, {"Size"}, {"Held (bytes per particle)", true}, {"Peak (bytes per particle)", true}};
+  const auto bytes = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.0f}", *value) : "-";
+  };
+  for (const MemoryCost& row : memory)
+    table.rows.push_back({row.method, fmt::format("{0} x {0}", row.size), bytes(row.held), bytes(row.peak)});
+  return table;
+}
+
+TextTable start_table(const std::vector<StartCost>& starts) {
+  TextTable table;
+  table.columns = {{"Start"},         {"Time (ms)", true}, {"Quartiles (ms)", true}, {"Least (ms)", true},
+                   {"Repeats", true}, {"Remark"}};
+  for (const StartCost& row : starts)
+    table.rows.push_back({row.what, row.samples > 0 ? number(row.milliseconds.median) : "-",
+                          row.samples > 0 ? quartiles(row.milliseconds) : "",
+                          row.samples > 0 ? number(row.milliseconds.least) : "", std::to_string(row.samples),
+                          row.remark});
+  return table;
+}
+
+constexpr const char* step_legend =
+    R"(A cloth of N x N particles hung by two corners, springs in six directions, gravity, after {} s of hanging. Time:
+per particle and step, median and quartiles of {} interleaved repeats; processor time for one thread, wall time for
+more. Divided by: reference, the time of semi-implicit Euler in textbook code on index pairs; bare, the method's own step
+without the addition; divider, exact roots and divisions at {} ns per spring and force evaluation; memory, 96 bytes per
+particle at {} GB/s. The last two are one core's; a cloth in the caches may be below memory, a kernel that refines
+estimates of roots below divider. Forces: evaluations per step.)";
+
+void add_steps(Page& page, const SpeedReport& report) {
+  page.heading("A step");
+  page.paragraph(fmt::format(step_legend, hanging_time, report.repeats,
+                             number(report.yardsticks.vector_root.median),
+                             number(report.yardsticks.update_throughput())));
+  page.table(yardstick_table(report.yardsticks));
+  std::vector<int> sizes;
+  for (const StepCost& row : report.rows)
+    if (std::find(sizes.begin(), sizes.end(), row.size) == sizes.end()) sizes.push_back(row.size);
+  for (const int size : sizes) {
+    page.heading(fmt::format("{0} x {0}", size));
+    page.table(step_table(report.rows, size));
+  }
+  page.heading("Growth");
+  page.paragraph(
+      "The power of the number of particles by which the time of a step grows: least squares over the lower "
+      "quartiles.");
+  page.table(growth_table(report.growth));
+}
+
+std::string built(const SpeedReport& report, bool markdown) {
+  Page page(markdown);
+  const MachineFacts& machine = report.machine;
+  page.paragraph(fmt::format("Clothlab {}, {}, {}; {}, {} cores", machine.version, machine.compiler,
+                             machine.build_type, machine.processor, machine.cores));
+  if (!report.complete) page.paragraph("Interrupted: this is what was finished.");
+  if (!report.rows.empty()) add_steps(page, report);
+  if (!report.scenes.empty()) {
+    page.heading("The built-in scenes");
+    page.table(scene_table(report.scenes));
+  }
+  if (!report.memory.empty()) {
+    page.heading("Memory");
+    page.paragraph("After the first step: what is held, and the most resident memory until then.");
+    page.table(memory_table(report.memory));
+  }
+  if (!report.starts.empty()) {
+    page.heading("Start");
+    page.table(start_table(report.starts));
+  }
+  std::string text = page.take();
+  return markdown ? text.substr(1) : text;
+}
+
+}  // namespace
+
+std::string speed_text(const SpeedReport& report) {
+  return built(report, false);
+}
+
+std::string speed_markdown(const SpeedReport& report) {
+  return built(report, true);
+}
+
+}  // namespace cloth::speed

@@ -1,0 +1,105 @@
+// clothlab-cli bench: its tables, its file, its exit codes. Never how fast anything is.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command_line.h"
+#include "support/files.h"
+
+namespace cloth::test {
+namespace {
+
+const std::string few =
+    "bench --quick --sizes 8,12,16 --methods verlet,rk4 --features air --threads 1 --repeats 3 ";
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Bench, AsJsonHasEveryRowWithItsRatios) {
+  const CommandResult result = cli(few + "--only steps --json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_LT(json["reference_disagreement_m"], 1e-9) << "the reference kernel computes the same motion";
+  ASSERT_EQ(json["rows"].size(), 3u * 5u) << "the reference, two methods bare and with air";
+  for (const auto& row : json["rows"]) {
+    const std::string name = row.dump();
+    EXPECT_GT(row["ns_per_particle_step"]["median"], 0) << name;
+    EXPECT_GT(row["ratio_to_reference"]["median"], 0) << name;
+    if (row["method"] == "reference") continue;
+    EXPECT_GT(row["ratio_to_bare"]["median"], 0) << name;
+    EXPECT_GT(row["ratio_to_divider_floor"], 0) << name;
+    EXPECT_GT(row["ratio_to_memory_floor"], 0) << name;
+    EXPECT_GE(row["force_evaluations_per_step"], row["method"] == "rk4" ? 4 : 1) << name;
+  }
+  ASSERT_EQ(json["growth"].size(), 5u);
+  EXPECT_TRUE(json["growth"][0]["standard_error"].is_number());
+  EXPECT_GT(json["yardsticks"]["vector_root_and_division_ns"]["median"], 0);
+  EXPECT_GT(json["yardsticks"]["update_GB_per_s"], 0);
+}
+
+TEST(Bench, MeasuresScenesMemoryAndStart) {
+  const CommandResult result = cli("bench --quick --only scenes,memory,start --methods verlet --json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_TRUE(json["rows"].empty());
+  EXPECT_GE(json["scenes"].size(), 10u);
+  for (const auto& scene : json["scenes"]) EXPECT_GT(scene["simulated_per_wall"], 0) << scene.dump();
+  ASSERT_EQ(json["memory"].size(), 1u);
+  ASSERT_EQ(json["start"].size(), 3u);
+  for (const auto& start : json["start"]) EXPECT_GT(start["ms"]["median"], 0) << start.dump();
+}
+
+TEST(Bench, PrintsTablesAndLeavesTheFile) {
+  const TemporaryFolder folder;
+  const CommandResult result = cli(few + "--only steps --out '" + (folder / "result").string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* part : {"\n16 x 16\n", "reference kernel", "wind and normals", "/ divider", "Growth"})
+    EXPECT_TRUE(has(result.output, part)) << part << "\n" << result.output;
+  EXPECT_FALSE(has(result.output, " \n")) << "blanks at the end of a line";
+  EXPECT_EQ(nlohmann::json::parse(content_of(folder / "result/bench.json"))["complete"], true);
+}
+
+TEST(Bench, AsMarkdownIsTables) {
+  const std::string text = cli(few + "--only steps --markdown").output;
+  EXPECT_TRUE(has(text, "\n| Method | With | Threads |")) << text;
+  EXPECT_TRUE(has(text, "\n## 16 x 16\n")) << text;
+}
+
+TEST(Bench, OfWhatDoesNotExistIsBadUsage) {
+  for (const char* arguments :
+       {"bench --methods heun", "bench --features rain", "bench --only colours", "bench --sizes 3",
+        "bench --sizes many", "bench --threads 0", "bench --repeats 1", "bench --json --markdown"}) {
+    const CommandResult result = cli(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_EQ(result.output, "") << arguments;
+    EXPECT_NE(result.errors, "") << arguments;
+  }
+  EXPECT_TRUE(has(cli("bench --features rain").errors, "spring-damping"));
+}
+
+TEST(Bench, ThatCannotBeWrittenExitsWithFour) {
+  EXPECT_EQ(cli(few + "--out /dev/null/x").exit_code, 4);
+}
+
+TEST(Bench, ThatIsInterruptedLeavesAValidFile) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "result").string();
+  const CommandResult result = shell("\"$CLI\" bench --only steps --out '" + out +
+                                     "' &\n"
+                                     "run=$!\n"
+                                     "until [ -d '" +
+                                     out +
+                                     "' ]; do :; done\n"
+                                     "sleep 0.2\n"
+                                     "kill -INT $run\n"
+                                     "kill -TERM $run\n"
+                                     "wait $run");
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_EQ(nlohmann::json::parse(content_of(folder / "result/bench.json"))["complete"], false);
+  EXPECT_TRUE(has(result.output, "Interrupted"));
+}
+
+}  // namespace
+}  // namespace cloth::test

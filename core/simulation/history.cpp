@@ -80,7 +80,8 @@ void History::keep(const Simulation& simulation) {
   thin_out();
 }
 
-/// Doubles the interval until the states fit; the first and the newest stay.
+/// Doubles the interval until the states fit; the first and the newest stay. States come every so many steps:
+/// the interval is then the one that they really have, so that later ones stand as far apart.
 void History::thin_out() {
   while (state_bytes_ > most_bytes_ && states_.size() > 2) {
     interval_ *= 2;
@@ -90,6 +91,12 @@ void History::thin_out() {
       if (due || n + 1 == states_.size()) kept.push_back(std::move(states_[n]));
     }
     states_ = std::move(kept);
+    if (states_.size() > 2) {
+      std::int64_t smallest = states_[1].step() - states_[0].step();
+      for (std::size_t n = 2; n + 1 < states_.size(); ++n)
+        smallest = std::min(smallest, states_[n].step() - states_[n - 1].step());
+      interval_ = smallest;
+    }
     state_bytes_ = 0;
     for (const State& state : states_) state_bytes_ += state.bytes();
   }

@@ -42,7 +42,8 @@ class RecordedRun {
 
   void advance(int steps) {
     for (int n = 0; n < steps; ++n) {
-      ASSERT_FALSE(simulation.step());
+      const auto divergence = simulation.step();
+      ASSERT_FALSE(divergence) << describe(*divergence);
       history.extend(simulation);
       if (simulation.state().step % 5 == 0) history.keep(simulation);
       note();
@@ -83,7 +84,7 @@ void do_everything(RecordedRun& run) {
   run.edit([](Scene& scene) { scene.integrator = {"dormand-prince", 0.01}; });
   run.advance(13);
   run.perform(std::optional<BrushGust>());
-  run.edit([](Scene& scene) { scene.air.reset(), scene.deformation = Deformation{.rate = 0.05}; });
+  run.edit([](Scene& scene) { scene.air.reset(), scene.obstacles.emplace_back(); });
   run.edit([](Scene& scene) { scene.integrator = {"verlet", 0.0005}; });
   run.advance(40);
 }

@@ -93,7 +93,7 @@ TEST(ASession, DoesWhatItsCommandsSayAtTheirSteps) {
   }
   EXPECT_EQ(replay(session, {}).run.final_state, simulation.state());
   EXPECT_EQ(simulation.scene().integrator.method, "rk4");
-  EXPECT_EQ(simulation.time(), 0.009 + 11 * 0.0005);
+  EXPECT_EQ(simulation.time(), 9 * 0.001 + 11 * 0.0005);
   EXPECT_FALSE(simulation.scene().damping);
 }
 

@@ -9,16 +9,6 @@
 namespace clothlab::cli {
 namespace {
 
-std::string summary_text(const cloth::RunSummary& s, const std::string& folder) {
-  std::string text = fmt::format(
-      "{}: {}, {} steps of {:.6g} s, {:.6g} s simulated in {:.3g} s ({:.3g} ns per particle and step)\n"
-      "largest strain {:.4g} %, energy error {:.3g} J\n",
-      cloth::name_of(s.status), s.method, s.count.steps, s.time_step, s.simulated, s.wall,
-      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy_drift);
-  if (!folder.empty()) text += fmt::format("results in {}\n", folder);
-  return text;
-}
-
 int exit_code_of(cloth::Status status) {
   switch (status) {
     case cloth::Status::finished:

@@ -1,6 +1,7 @@
 // One function per command, in a file of its own. Each returns the program's exit code.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,14 @@ struct RunArguments {
   bool json = false;
 };
 int run(const RunArguments& arguments);
+
+struct ReplayArguments {
+  std::string session;
+  std::string folder;
+  double until = std::numeric_limits<double>::infinity();  ///< s
+  bool json = false;
+};
+int replay(const ReplayArguments& arguments);
 
 struct ScenesArguments {
   std::string name;

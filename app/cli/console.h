@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "io/csv.h"
+#include "io/run_folder.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
 
 namespace clothlab::cli {
 
-enum ExitCode { done = 0, bad_input = 2, diverged = 3, io_failed = 4, interrupted = 130 };
+enum ExitCode { done = 0, bad_input = 2, diverged = 3, io_failed = 4, differs = 5, interrupted = 130 };
 
 /// A scene, or the exit code of a command whose messages are already on standard error.
 struct LoadedScene {
@@ -27,6 +27,9 @@ int report(const cloth::IoError& error);
 
 /// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe.
 int print(const std::string& text);
+
+/// A run in a few lines; `folder` is where its files are, or empty.
+std::string summary_text(const cloth::RunSummary& summary, const std::string& folder);
 
 /// Writes to standard error with the program's name before it.
 void say(const std::string& message);

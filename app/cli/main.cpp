@@ -23,10 +23,11 @@ const char* const json_help = "Give the result as one JSON object";
 const char* const exit_codes =
     "Exit codes: 0 done; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
     "on disk); "
-    "4 a file could not be read or written; 130 interrupted.";
+    "4 a file could not be read or written; 5 a replay did not end in its session's state; 130 interrupted.";
 
 struct Arguments {
   cli::RunArguments run;
+  cli::ReplayArguments replay;
   cli::ScenesArguments scenes;
   cli::ExplainArguments explain;
   cli::StabilityArguments stability;
@@ -139,6 +140,17 @@ void add_bench(CLI::App& app, cli::BenchArguments& arguments) {
   bench->add_flag("--markdown", arguments.markdown, "Print the tables as Markdown")->excludes(json);
 }
 
+void add_replay(CLI::App& app, cli::ReplayArguments& arguments) {
+  CLI::App* replay =
+      app.add_subcommand("replay", "Carry out a saved session again and compare its end, to the bit");
+  replay->add_option("session", arguments.session, "A session file")->required();
+  replay->add_option("--out", arguments.folder,
+                     "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
+  replay->add_option("--until", arguments.until, "End at the step nearest to this time in s")
+      ->check(CLI::NonNegativeNumber);
+  replay->add_flag("--json", arguments.json, json_help);
+}
+
 void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* run = app.add_subcommand("run", "Run a scene to its duration");
   run->add_option("scene", arguments.run.scene, scene_help)->required();
@@ -149,6 +161,8 @@ void add_commands(CLI::App& app, Arguments& arguments) {
                   "Threads to use. This version steps on one thread whatever is asked; summary.json says so")
       ->check(CLI::Range(1, 1024));
   run->add_flag("--json", arguments.run.json, json_help);
+
+  add_replay(app, arguments.replay);
 
   CLI::App* scenes = app.add_subcommand("scenes", "List the built-in scenes, or print one");
   scenes->add_option("name", arguments.scenes.name, "The scene to print");
@@ -187,6 +201,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? cli::done : cli::bad_input;
   }
   if (app.got_subcommand("run")) return cli::run(arguments.run);
+  if (app.got_subcommand("replay")) return cli::replay(arguments.replay);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);

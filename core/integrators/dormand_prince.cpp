@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -60,6 +61,18 @@ void StepSizeControl::reject(double step, double error) {
 void StepSizeControl::forget_history() {
   last_error_ = 1;
   rejected_ = false;
+}
+
+void StepSizeControl::recall(const std::vector<double>& numbers) {
+  assert(numbers.size() == 3);
+  size_ = numbers[0];
+  last_error_ = numbers[1];
+  rejected_ = numbers[2] != 0;
+}
+
+void DormandPrince::recall(const IntegratorMemory& memory) {
+  holds_slope_ = false;
+  control_.recall(memory.numbers);
 }
 
 void DormandPrince::forget(Change change) {

@@ -24,6 +24,10 @@ class StepSizeControl {
   void reject(double step, double error);
   void forget_history();
 
+  /// All that it remembers, as numbers and back.
+  std::vector<double> numbers() const { return {size_, last_error_, rejected_ ? 1.0 : 0.0}; }
+  void recall(const std::vector<double>& numbers);
+
  private:
   double size_ = std::numeric_limits<double>::infinity();
   double last_error_ = 1;
@@ -41,6 +45,9 @@ class DormandPrince : public Integrator {
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
   void forget(Change change) override;
+  IntegratorMemory remember() const override { return {.fields = {}, .numbers = control_.numbers()}; }
+  /// The slope is a function of state and time: the next step takes it again.
+  void recall(const IntegratorMemory& memory) override;
 
  private:
   struct LargestError {

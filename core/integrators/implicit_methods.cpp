@@ -84,4 +84,22 @@ void Bdf2::forget(Change change) {
   if (change == Change::state && history_ == History::held) history_ = History::broken;
 }
 
+IntegratorMemory Bdf2::remember() const {
+  IntegratorMemory memory{.fields = {}, .numbers = {static_cast<double>(history_)}};
+  if (history_ != History::held) return memory;
+  memory.fields = {before_.position, before_.velocity};
+  memory.numbers.insert(memory.numbers.end(), {step_before_, work_before_.damping_loss, work_before_.air,
+                                               work_before_.brush, work_before_.pull});
+  return memory;
+}
+
+void Bdf2::recall(const IntegratorMemory& memory) {
+  history_ = static_cast<History>(memory.numbers.at(0));
+  if (history_ != History::held) return;
+  before_.position = memory.fields.at(0);
+  before_.velocity = memory.fields.at(1);
+  step_before_ = memory.numbers.at(1);
+  work_before_ = {memory.numbers.at(2), memory.numbers.at(3), memory.numbers.at(4), memory.numbers.at(5)};
+}
+
 }  // namespace cloth

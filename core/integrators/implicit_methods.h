@@ -41,6 +41,8 @@ class Bdf2 : public Integrator {
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
   void forget(Change change) override;
+  IntegratorMemory remember() const override;
+  void recall(const IntegratorMemory& memory) override;
 
  private:
   IntegratorReport multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,

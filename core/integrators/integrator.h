@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "forces/force_model.h"
 
@@ -36,6 +37,13 @@ struct IntegratorReport {
 /// What has changed behind an integrator's back.
 enum class Change { forces, state };
 
+/// What a method carries from one step to the next beside the state, as far as later bits depend on it.
+/// Caches and scratch are none of it. Only the method that made one can read it.
+struct IntegratorMemory {
+  std::vector<Vec3Field> fields;
+  std::vector<double> numbers;
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -47,6 +55,13 @@ class Integrator {
 
   /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
   virtual void forget(Change) {}
+
+  /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
+  /// choice. Most methods need nothing.
+  virtual IntegratorMemory remember() const { return {}; }
+
+  /// The state is again that at which `memory` was made; the forces stand elsewhere.
+  virtual void recall(const IntegratorMemory&) { forget(Change::state); }
 };
 
 /// to += scale * inverse_mass * force

@@ -27,6 +27,13 @@ class Locator {
       ++at_;
   }
 
+  /// Of the next character. Lines are counted on from the last call: a long text is not read over and over.
+  TextPosition position() {
+    for (; counted_ < at_; ++counted_)
+      if (text_[counted_] == '\n') ++line_, line_begin_ = counted_ + 1;
+    return {line_, static_cast<int>(at_ - line_begin_) + 1};
+  }
+
   char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
   /// Skips punctuation and the space around it.
@@ -45,7 +52,7 @@ class Locator {
   }
 
   void value(const std::string& path) {
-    locations_.values.insert_or_assign(path, position_of(text_, at_));
+    locations_.values.insert_or_assign(path, position());
     if (peek() == '{')
       object(path);
     else if (peek() == '[')
@@ -61,7 +68,7 @@ class Locator {
   void object(const std::string& path) {
     skip_mark();
     while (at_ < text_.size() && peek() != '}') {
-      const TextPosition key_position = position_of(text_, at_);
+      const TextPosition key_position = position();
       const std::string member = joined(path, string());
       if (!locations_.keys.insert_or_assign(member, key_position).second)
         locations_.repeated.push_back(member);
@@ -83,7 +90,8 @@ class Locator {
   }
 
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, counted_ = 0, line_begin_ = 0;
+  int line_ = 1;
   JsonLocations locations_;
 };
 
@@ -98,6 +106,13 @@ TextPosition position_of(std::string_view text, std::size_t offset) {
 
 JsonLocations locate_json(std::string_view text) {
   return Locator(text).run();
+}
+
+TextPosition JsonLocations::place_of(std::string path, bool of_key) const {
+  if (const auto key = keys.find(path); of_key && key != keys.end()) return key->second;
+  while (!values.count(path))
+    path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
+  return values.at(path);
 }
 
 }  // namespace cloth

@@ -44,4 +44,11 @@ std::vector<SceneEdit> edits_between(const Scene& before, const Scene& after) {
   return edits;
 }
 
+SceneReading edited_scene(const Scene& scene, const std::vector<SceneEdit>& edits) {
+  std::vector<Override> overrides;
+  overrides.reserve(edits.size());
+  for (const SceneEdit& edit : edits) overrides.push_back({edit.path, edit.value});
+  return read_scene(write_scene(scene), "", overrides);
+}
+
 }  // namespace cloth

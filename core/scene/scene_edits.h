@@ -1,10 +1,10 @@
-// What changed between two scenes, parameter by parameter, for logs.
+// What changed between two scenes, parameter by parameter, for logs; and such changes put in again.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/scene_json.h"
 
 namespace cloth {
 
@@ -15,5 +15,9 @@ struct SceneEdit {
 
 /// The edits that lead from `before` to `after`.
 std::vector<SceneEdit> edits_between(const Scene& before, const Scene& after);
+
+/// The way back: `scene` with all of `edits`, checked as a file is. Edits found between two scenes that can
+/// be run lead from the one to what write_scene writes of the other. Problems have the scene's paths.
+SceneReading edited_scene(const Scene& scene, const std::vector<SceneEdit>& edits);
 
 }  // namespace cloth

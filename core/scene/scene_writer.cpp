@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "io/fnv_hash.h"
 #include "scene/scene_json.h"
 #include "scene/scene_parameters.h"
 
@@ -109,9 +109,9 @@ std::string write_scene(const Scene& scene) {
 }
 
 std::string scene_hash(const Scene& scene) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const unsigned char byte : write_scene(scene)) hash = (hash ^ byte) * 1099511628211u;
-  return fmt::format("{:016x}", hash);
+  FnvHash hash;
+  hash.add(write_scene(scene));
+  return hash.text();
 }
 
 }  // namespace cloth

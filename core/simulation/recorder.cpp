@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "scene/scene_json.h"
+#include "simulation/session.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -60,11 +61,23 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+/// What is to be done within a run, and where it ends.
+struct Script {
+  const std::vector<SessionCommand>* commands = nullptr;
+  std::int64_t steps = 0;
+  double until = std::numeric_limits<double>::infinity();  ///< s
+};
+
 /// A run in progress: the simulation, its file, and the last state that was good.
 class Run {
  public:
-  Run(const Scene& scene, const RunOptions& options)
-      : scene_(scene), options_(options), simulation_(scene), clock_(RowClock::of(simulation_)) {
+  Run(const Scene& scene, const RunOptions& options, const Script& script = {})
+      : scene_(scene),
+        options_(options),
+        script_(script),
+        simulation_(scene),
+        clock_(RowClock::of(simulation_)) {
+    if (!script_.commands) script_.steps = steps_to_cover(scene_.duration, simulation_.time_step());
     RunSummary& summary = result_.summary;
     summary.scene_hash = scene_hash(scene);
     summary.title = scene.title;
@@ -77,9 +90,9 @@ class Run {
 
   RunResult to_end() {
     if (!options_.folder.empty() && !begin_folder()) return std::move(result_);
-    const std::int64_t last = steps_to_cover(scene_.duration, simulation_.time_step());
-    bool recorded = add_row();
-    while (recorded && simulation_.state().step < last && may_go_on()) {
+    note_end();
+    bool going = add_row() && carry_out_due();
+    while (going && !ended_ && may_go_on()) {
       const Clock::time_point start = Clock::now();
       result_.summary.divergence = simulation_.step();
       const double taken = seconds_since(start);
@@ -87,12 +100,16 @@ class Run {
       result_.summary.wall += taken;
       if (result_.summary.divergence) break;
       ++steps_since_row_;
-      const std::int64_t step = simulation_.state().step;
-      if (clock_.due(step) || step == last) recorded = add_row();
+      note_end();
+      if (clock_.due(simulation_.state().step) || ended_) going = add_row();
+      going = going && carry_out_due();
     }
-    finish(last);
+    finish();
     return std::move(result_);
   }
+
+  const std::vector<Problem>& problems() const { return problems_; }
+  std::size_t carried_out() const { return next_; }  ///< commands
 
  private:
   bool keep(std::optional<IoError> error) {
@@ -105,7 +122,24 @@ class Run {
     resolved.integrator.time_step = simulation_.time_step();
     return keep(make_folder(options_.folder)) &&
            keep(write_text_file(options_.folder / "scene.json", write_scene(resolved))) &&
-           keep(csv_.open(options_.folder / "record.csv", record_columns(simulation_.quantities())));
+           keep(record_.open(options_.folder, simulation_.quantities()));
+  }
+
+  void note_end() {
+    ended_ = simulation_.state().step >= script_.steps ||
+             simulation_.time() + 0.5 * simulation_.time_step() > script_.until;
+  }
+
+  /// What the script has for the present step. A row shows the state before it.
+  bool carry_out_due() {
+    if (!script_.commands) return true;
+    const auto& commands = *script_.commands;
+    for (; next_ < commands.size() && commands[next_].step == simulation_.state().step; ++next_) {
+      problems_ = carry_out(commands[next_].action, simulation_);
+      if (!problems_.empty()) return false;
+    }
+    clock_.follow(simulation_);
+    return true;
   }
 
   bool add_row() {
@@ -118,7 +152,7 @@ class Run {
     const double mean = steps_since_row_ > 0 ? wall_since_row_ / static_cast<double>(steps_since_row_) : 0;
     steps_since_row_ = 0;
     wall_since_row_ = 0;
-    return !csv_.is_open() || keep(csv_.add(record_row(measurement, simulation_.quantities(), mean)));
+    return !record_.is_open() || keep(record_.add(measurement, simulation_.quantities(), mean));
   }
 
   bool may_go_on() {
@@ -127,29 +161,34 @@ class Run {
     if (!options_.progress || ++looks_ % steps_between_looks != 0 || seconds_since(last_look_) < interval)
       return true;
     last_look_ = Clock::now();
-    keep(csv_.flush());
+    keep(record_.flush());
     return options_.progress(simulation_.time()) && !result_.io_error;
   }
 
-  void finish(std::int64_t last) {
+  void finish() {
     RunSummary& summary = result_.summary;
+    if (ended_ && !summary.divergence) result_.final_state = simulation_.state();  // after the last commands
     summary.count = simulation_.count();
     summary.simulated = result_.final_state.time;
-    summary.status = summary.divergence                ? Status::diverged
-                     : simulation_.state().step < last ? Status::stopped
-                                                       : Status::finished;
+    summary.status = summary.divergence              ? Status::diverged
+                     : !ended_ || !problems_.empty() ? Status::stopped
+                                                     : Status::finished;
     if (options_.folder.empty()) return;
-    keep(csv_.close());
+    keep(record_.close());
     keep(write_text_file(options_.folder / "final_state.csv", state_csv(result_.final_state)));
     keep(write_text_file(options_.folder / "summary.json", summary_json(summary)));
   }
 
   const Scene& scene_;
   const RunOptions& options_;
+  Script script_;
   Simulation simulation_;
   RowClock clock_;
-  CsvFile csv_;
+  RecordFile record_;
   RunResult result_;
+  bool ended_ = false;
+  std::size_t next_ = 0;  ///< of the script's commands
+  std::vector<Problem> problems_;
   std::int64_t steps_since_row_ = 0;
   double wall_since_row_ = 0;
   std::int64_t looks_ = 0;
@@ -179,8 +218,54 @@ RowClock RowClock::of(const Simulation& simulation) {
   return {simulation.state().step, steps_per_row(simulation.scene().record.interval, simulation.time_step())};
 }
 
+void RowClock::follow(const Simulation& simulation) {
+  if (const RowClock now = of(simulation); now.stride != stride) *this = now;
+}
+
+std::filesystem::path RecordFile::part_path(int part) const {
+  return folder_ / (part == 1 ? "record.csv" : fmt::format("record-{}.csv", part));
+}
+
+std::optional<IoError> RecordFile::open(const std::filesystem::path& folder, const Quantities& quantities) {
+  folder_ = folder;
+  part_ = 0;
+  std::error_code ignored;
+  for (int part = 2; std::filesystem::remove(part_path(part), ignored); ++part) {
+  }
+  return open_part(quantities);
+}
+
+std::optional<IoError> RecordFile::open_part(const Quantities& quantities) {
+  quantities_ = quantities;
+  return csv_.open(part_path(++part_), record_columns(quantities));
+}
+
+std::optional<IoError> RecordFile::add(const Measurement& measurement, const Quantities& quantities,
+                                       double step_time) {
+  if (quantities != quantities_) {
+    if (auto error = csv_.close()) return error;
+    if (auto error = open_part(quantities)) return error;
+  }
+  return csv_.add(record_row(measurement, quantities, step_time));
+}
+
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
   return Run(scene, options).to_end();
+}
+
+ReplayResult replay(const Session& session, const ReplayOptions& options) {
+  const RunOptions run_options{.folder = options.folder, .progress = options.progress};
+  Run run(session.scene, run_options,
+          {.commands = &session.commands, .steps = session.steps, .until = options.until});
+  ReplayResult result;
+  result.run = run.to_end();
+  result.commands = run.carried_out();
+  result.problems = run.problems();
+  const bool at_end = result.run.summary.status == Status::finished &&
+                      result.run.final_state.step == session.steps && !result.run.io_error;
+  if (at_end && !session.final_state_hash.empty())
+    result.agrees = state_hash(result.run.final_state) == session.final_state_hash;
+  return result;
 }
 
 std::string describe(const UnreachableRate& u, int columns) {

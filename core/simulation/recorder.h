@@ -23,6 +23,31 @@ struct RowClock {
   std::int64_t origin = 0, stride = 1;
   static RowClock of(const Simulation& simulation);
   bool due(std::int64_t step) const { return (step - origin) % stride == 0; }
+  /// After an edit: counts from the present step on where the stride is another one.
+  void follow(const Simulation& simulation);
+};
+
+/// record.csv; where the scene's stages change within a run, record-2.csv, ... go on with the new columns.
+class RecordFile {
+ public:
+  /// Those of an earlier run in the folder go.
+  std::optional<IoError> open(const std::filesystem::path& folder, const Quantities& quantities);
+
+  /// `step_time` in s: mean wall time of a step since the row before.
+  std::optional<IoError> add(const Measurement& measurement, const Quantities& quantities, double step_time);
+
+  std::optional<IoError> flush() { return csv_.flush(); }
+  std::optional<IoError> close() { return csv_.close(); }
+  bool is_open() const { return csv_.is_open(); }
+
+ private:
+  std::optional<IoError> open_part(const Quantities& quantities);
+  std::filesystem::path part_path(int part) const;
+
+  std::filesystem::path folder_;
+  CsvFile csv_;
+  Quantities quantities_;
+  int part_ = 0;
 };
 
 struct RunOptions {

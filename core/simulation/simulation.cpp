@@ -9,6 +9,7 @@
 #include "integrators/registry.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_parameters.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -40,6 +41,15 @@ Vec3 gravity_of(const Scene& scene) {
 /// Takes from `material` only what exists, so that an absent block is a material of zeros.
 SpringMaterial material_of(const Scene& scene) {
   return scene.springs.value_or(SpringMaterial{});
+}
+
+/// Whether one integrator serves both: the step may differ, and settings that the method does not have.
+bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
+  if (a.method != b.method) return false;
+  const Fields<IntegratorChoice>& fields = integrator_fields(a.method);
+  return std::all_of(fields.begin(), fields.end(), [&](const Field<IntegratorChoice>& field) {
+    return field.info.key == "time_step" || field.get(a) == field.get(b);
+  });
 }
 
 }  // namespace
@@ -165,9 +175,7 @@ void Simulation::resolve_contact() {
 
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
-  IntegratorChoice same_step = scene.integrator;
-  same_step.time_step = scene_.integrator.time_step;
-  const bool new_method = same_step != scene_.integrator;
+  const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_grid(scene_.cloth, material_of(scene_));
@@ -191,16 +199,46 @@ void Simulation::edit(const Scene& scene) {
   ledger_.initial += total_energy() - before;
 }
 
+std::size_t Checkpoint::bytes() const {
+  std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
+  for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
+  return sizeof(Checkpoint) + sizeof(double) * numbers;
+}
+
+Checkpoint Simulation::checkpoint() const {
+  return {.state = state_,
+          .method = scene_.integrator.method,
+          .memory = integrator_->remember(),
+          .ledger = ledger_,
+          .time_step = time_step_,
+          .first_time = first_time_,
+          .first_step = first_step_,
+          .brush = brush_,
+          .pull = pull_,
+          .quantities = quantities_,
+          .count = count_,
+          .last_limit = last_limit_,
+          .last_contact = last_contact_};
+}
+
 void Simulation::restore(const Checkpoint& checkpoint) {
   state_ = checkpoint.state;
   ledger_ = checkpoint.ledger;
+  count_ = checkpoint.count;
+  set_brush(checkpoint.brush);
+  set_pull(checkpoint.pull);
+  quantities_.brush = checkpoint.quantities.brush;
+  quantities_.pull = checkpoint.quantities.pull;
   const bool same_step = checkpoint.time_step == time_step_;
   first_time_ = same_step ? checkpoint.first_time : state_.time;
   first_step_ = same_step ? checkpoint.first_step : state_.step;
-  last_limit_ = {};
-  last_contact_ = {};
+  last_limit_ = checkpoint.last_limit;
+  last_contact_ = checkpoint.last_contact;
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
-  integrator_->forget(Change::state);
+  if (checkpoint.method == scene_.integrator.method)
+    integrator_->recall(checkpoint.memory);
+  else
+    integrator_->forget(Change::state);
 }
 
 void Simulation::set_brush(const std::optional<BrushGust>& brush) {

@@ -51,13 +51,24 @@ struct Quantities {
   bool operator==(const Quantities&) const = default;
 };
 
-/// Enough to go on from here later, to the bit.
+/// Enough to go on from here later, to the bit: what is not a function of the scene in force. Later steps may
+/// only cost something else, where a method fills a cache again.
 struct Checkpoint {
   ClothState state;
+  std::string method;  ///< that `memory` is of
+  IntegratorMemory memory;
   EnergyLedger ledger;
   double time_step = 0;   ///< s, in force since `first_step`, which began at `first_time`
   double first_time = 0;  ///< s
   std::int64_t first_step = 0;
+  std::optional<BrushGust> brush;
+  std::optional<Pull> pull;
+  Quantities quantities;
+  StepCount count;
+  LimiterReport last_limit;
+  ContactReport last_contact;
+
+  std::size_t bytes() const;
 };
 
 /// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
@@ -80,13 +91,16 @@ class Simulation {
   /// energy.
   void edit(const Scene& scene);
 
-  Checkpoint checkpoint() const { return {state_, ledger_, time_step_, first_time_, first_step_}; }
-  /// Goes back to a checkpoint of this simulation; the scene in force stays as it is.
+  Checkpoint checkpoint() const;
+  /// Goes to a checkpoint of this simulation, or of another one of the same start. The scene in force stays
+  /// as it is: to go on to the bit it must be the one that was in force at the checkpoint.
   void restore(const Checkpoint& checkpoint);
 
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull);
+  const std::optional<BrushGust>& brush() const { return brush_; }
+  const std::optional<Pull>& pull() const { return pull_; }
 
   const Scene& scene() const { return scene_; }
   const ClothSystem& system() const { return system_; }

@@ -39,6 +39,8 @@ class ChartDataTest : public QObject {
  private Q_SLOTS:
   // What is kept and what is drawn of it
   void decimation_keeps_every_extreme();
+  void rows_after_a_cut_are_gone_and_those_before_it_stay();
+  void a_record_that_is_cut_keeps_what_came_before();
   void decimation_of_a_million_points_returns_about_two_per_pixel();
   void decimation_returns_few_points_as_they_are();
   void a_curve_runs_in_time_order_to_both_edges();
@@ -87,6 +89,41 @@ void ChartDataTest::decimation_keeps_every_extreme() {
       }
     QVERIFY(drawn_low <= low && drawn_high >= high);
   }
+}
+
+void ChartDataTest::rows_after_a_cut_are_gone_and_those_before_it_stay() {
+  const std::vector<double> values = noise(100'000);
+  for (const int rows : {0, 1, 7, 8, 9, 512, 4095, 33'333, 99'999, 100'000}) {
+    SampleSeries series = series_of(values);
+    series.drop_after(rows - 0.5);
+    QCOMPARE(series.size(), static_cast<std::size_t>(rows));
+    for (int row = rows; row < rows + 5000; ++row) series.append(row, std::array{2.0 * row});
+    std::vector<double> expected(values.begin(), values.begin() + rows);
+    for (int row = rows; row < rows + 5000; ++row) expected.push_back(2.0 * row);
+    const SampleSeries fresh = series_of(expected);
+    std::vector<CurvePoint> curve, expected_curve;
+    for (const int pixels : {10, 300, 5000}) {
+      series.query(0, 0, 200'000, pixels, Keep::finite, curve);
+      fresh.query(0, 0, 200'000, pixels, Keep::finite, expected_curve);
+      QCOMPARE(curve.size(), expected_curve.size());
+      for (std::size_t i = 0; i < curve.size(); ++i) QCOMPARE(curve[i].value, expected_curve[i].value);
+    }
+  }
+}
+
+void ChartDataTest::a_record_that_is_cut_keeps_what_came_before() {
+  ChartRecord record;
+  std::vector<ChartSample> samples;
+  for (int n = 0; n < 100; ++n) samples.push_back({.time_s = 0.01 * n, .kinetic_J = 1.0 * n});
+  record.append(samples);
+  record.append_draw_time(0.2, 3);
+  record.append_draw_time(0.8, 4);
+  record.append(std::array{ChartSample{.time_s = 0.305, .is_cut = true}});
+  QCOMPARE(record.samples.size(), std::size_t{31});
+  QCOMPARE(record.samples.last_time(), 0.01 * 30);
+  QCOMPARE(record.draws.size(), std::size_t{1});
+  record.append(std::array{ChartSample{.time_s = 0.31, .kinetic_J = -1}});
+  QCOMPARE(record.samples.size(), std::size_t{32});
 }
 
 void ChartDataTest::decimation_of_a_million_points_returns_about_two_per_pixel() {

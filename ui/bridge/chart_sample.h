@@ -12,6 +12,8 @@ struct ChartSample {
   double max_strain = 0;                                      ///< a fraction; charts show percent
   double step_ms = std::numeric_limits<double>::quiet_NaN();  ///< one simulation step
   double draw_ms = std::numeric_limits<double>::quiet_NaN();  ///< one drawing of the view
+  bool is_cut =
+      false;  ///< no point: the run went back to this time and on from there; what came later is gone
 };
 
 }  // namespace clothlab

@@ -8,23 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "forces/hand.h"
 #include "io/run_folder.h"
-#include "scene/scene_edits.h"
 #include "simulation/recorder.h"
+#include "simulation/session.h"
 
 namespace clothlab {
-
-/// One line of edits.jsonl, made when an edit is put in force.
-struct EditLogEntry {
-  std::int64_t step = 0;
-  double time = 0;    ///< s
-  std::string path;   ///< of a parameter; "brush", "pull" or "state" for the rest
-  std::string value;  ///< JSON
-};
-
-std::string brush_json(const std::optional<cloth::BrushGust>& brush);
-std::string pull_json(const std::optional<cloth::Pull>& pull);
 
 class LiveRecording {
  public:
@@ -47,7 +35,8 @@ class LiveRecording {
                                         const cloth::Measurement& measurement, double wall,
                                         std::int64_t steps);
 
-  std::optional<cloth::IoError> log(const EditLogEntry& entry);
+  /// One line of edits.jsonl for each value that the command sets.
+  std::optional<cloth::IoError> log(const cloth::SessionCommand& command);
 
   /// Puts everything on disk if the last time was more than half a second ago, or `now`.
   std::optional<cloth::IoError> keep_current(bool now);
@@ -57,17 +46,13 @@ class LiveRecording {
                                     const std::optional<cloth::Divergence>& divergence);
 
  private:
-  std::optional<cloth::IoError> open_record(const cloth::Quantities& quantities);
-
   std::filesystem::path folder_;
-  cloth::CsvFile record_;
+  cloth::RecordFile record_;
   cloth::LineFile edits_;
   bool active_ = false;
-  int part_ = 0;
   std::int64_t rows_ = 0, first_step_ = 0;
   cloth::StepCount first_count_;
   double first_time_ = 0, wall_ = 0, max_strain_ = 0, limiter_excess_ = 0, energy_error_ = 0;
-  cloth::Quantities quantities_;
   std::chrono::steady_clock::time_point last_flush_;
 };
 

@@ -41,13 +41,15 @@ std::string refusal_of(const cloth::Scene& scene) {
 /// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big
 /// cloth assembles.
 bool is_overtaken_by(const Command& command, const Command& next) {
-  return (std::holds_alternative<command::Load>(command) || std::holds_alternative<command::Edit>(command)) &&
+  return (std::holds_alternative<command::Load>(command) || std::holds_alternative<command::Edit>(command) ||
+          std::holds_alternative<command::GoTo>(command)) &&
          command.index() == next.index();
 }
 
 }  // namespace
 
-SimulationWorker::SimulationWorker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+SimulationWorker::SimulationWorker(std::size_t most_history)
+    : history_(most_history), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 SimulationWorker::~SimulationWorker() {
   thread_.request_stop();
@@ -89,8 +91,10 @@ void SimulationWorker::run(const std::stop_token& stop) {
       commands.swap(inbox_);
     }
     for (std::size_t i = 0; i < commands.size(); ++i)
-      if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1]))
+      if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
+        batch_is_done_ = i + 1 == commands.size();
         std::visit([this](const auto& c) { handle(c); }, commands[i]);
+      }
     if (status_.playing) play_for_a_moment();
     if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
     publish_status();
@@ -134,7 +138,11 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   status_.refusal = refusal_of(scene);
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
-  last_good_ = simulation_->checkpoint();
+  history_.begin(*simulation_);
+  playing_again_ = false;
+  last_sampled_step_ = -1;
+  first_sample_.reset();
+  status_.session_agrees.reset();
   rows_ = cloth::RowClock::of(*simulation_);
   status_.divergence.reset();
   wall_since_row_ = 0;
@@ -152,22 +160,43 @@ void SimulationWorker::handle(const command::Edit& edit) {
   if (!simulation_) return;
   status_.refusal = refusal_of(edit.scene);
   if (!status_.refusal.empty()) return;
-  if (recording_.is_active())
-    for (const cloth::SceneEdit& change : cloth::edits_between(simulation_->scene(), edit.scene))
-      note_record(
-          recording_.log({simulation_->state().step, simulation_->time(), change.path, change.value}));
-  const double time_step = simulation_->time_step(), interval = simulation_->scene().record.interval;
-  simulation_->edit(edit.scene);
-  if (simulation_->time_step() != time_step || edit.scene.record.interval != interval)
-    rows_ = cloth::RowClock::of(*simulation_);
-  last_good_ = simulation_->checkpoint();
+  const auto problems = perform(cloth::edits_between(simulation_->scene(), edit.scene));
+  if (!problems.empty()) status_.refusal = problems.front().text();
   publish_frame();
+}
+
+/// Carries out what the window asks for the way a replay will, and logs it.
+std::vector<cloth::Problem> SimulationWorker::perform(const cloth::SessionAction& action) {
+  if (!simulation_ || cloth::is_idle(action, *simulation_)) return {};
+  auto problems = cloth::carry_out(action, *simulation_);
+  if (!problems.empty()) return problems;
+  begin_branch();
+  history_.log(action, *simulation_);
+  rows_.follow(*simulation_);
+  if (recording_.is_active()) note_record(recording_.log(history_.commands().back()));
+  return {};
+}
+
+/// From here on something new happens: what the history has of later times is over.
+void SimulationWorker::begin_branch() {
+  playing_again_ = false;
+  status_.session_agrees.reset();
+  if (history_.cut(*simulation_)) drop_later_samples();
+}
+
+/// Tells the charts, if they have been given any.
+void SimulationWorker::drop_later_samples() {
+  const std::int64_t step = simulation_->state().step;
+  if (last_sampled_step_ <= step) return;
+  last_sampled_step_ = step;
+  deliver({.time_s = simulation_->time(), .is_cut = true});
 }
 
 void SimulationWorker::handle(const command::Play&) {
   if (!simulation_ || !status_.refusal.empty()) return;
   status_.divergence.reset();
   status_.playing = true;
+  playing_again_ = false;
   pace_.restart(simulation_->time(), Clock::now());
   meter_.restart(simulation_->time(), Clock::now());
 }
@@ -189,20 +218,11 @@ void SimulationWorker::handle(const command::Speed& speed) {
 }
 
 void SimulationWorker::handle(const command::Brush& brush) {
-  if (!simulation_) return;
-  if (recording_.is_active())
-    note_record(
-        recording_.log({simulation_->state().step, simulation_->time(), "brush", brush_json(brush.gust)}));
-  simulation_->set_brush(brush.gust);
+  perform(brush.gust);
 }
 
 void SimulationWorker::handle(const command::Pull& pull) {
-  if (!simulation_) return;
-  if (pull.pull && (pull.pull->particle < 0 || pull.pull->particle >= simulation_->system().size())) return;
-  if (recording_.is_active())
-    note_record(
-        recording_.log({simulation_->state().step, simulation_->time(), "pull", pull_json(pull.pull)}));
-  simulation_->set_pull(pull.pull);
+  perform(pull.pull);
 }
 
 void SimulationWorker::handle(const command::StartRecording& start) {
@@ -210,6 +230,7 @@ void SimulationWorker::handle(const command::StartRecording& start) {
   if (recording_.is_active()) end_recording();
   status_.recording_error.clear();
   rows_.origin = simulation_->state().step;
+  history_.keep(*simulation_);  // a divergence does not lead back to before the recording
   wall_since_row_ = 0;
   steps_since_row_ = 0;
   const auto error = recording_.begin(start.folder, *simulation_);
@@ -235,6 +256,8 @@ void SimulationWorker::play_for_a_moment() {
 }
 
 bool SimulationWorker::advance() {
+  if (playing_again_) return advance_again();
+  begin_branch();
   const Clock::time_point start = Clock::now();
   const auto divergence = simulation_->step();
   wall_since_row_ += seconds(Clock::now() - start);
@@ -242,6 +265,7 @@ bool SimulationWorker::advance() {
     diverge(*divergence);
     return false;
   }
+  history_.extend(*simulation_);
   ++steps_since_row_;
   if (rows_.due(simulation_->state().step)) take_sample();
   return true;
@@ -249,7 +273,7 @@ bool SimulationWorker::advance() {
 
 void SimulationWorker::take_sample() {
   const cloth::Measurement m = simulation_->measure();
-  last_good_ = simulation_->checkpoint();
+  history_.keep(*simulation_);
   ChartSample sample{.time_s = m.time,
                      .kinetic_J = m.energy.kinetic,
                      .elastic_J = m.energy.elastic,
@@ -262,6 +286,8 @@ void SimulationWorker::take_sample() {
   wall_since_row_ = 0;
   steps_since_row_ = 0;
 
+  if (m.step <= last_sampled_step_) return;  // on the way through the history
+  last_sampled_step_ = m.step;
   if (m.step == 0) {
     first_sample_ = sample;
     return;
@@ -283,9 +309,13 @@ void SimulationWorker::deliver(const ChartSample& sample) {
 void SimulationWorker::diverge(const cloth::Divergence& divergence) {
   status_.divergence = divergence;
   status_.playing = false;
+  playing_again_ = false;
+  history_.return_from(divergence, *simulation_);
+  drop_later_samples();
   if (recording_.is_active()) end_recording();
-  simulation_->restore(last_good_);
+  rows_.follow(*simulation_);
   rows_.origin = simulation_->state().step;
+  ++status_.jumps;
   publish_frame();
 }
 
@@ -296,8 +326,7 @@ void SimulationWorker::note_record(const std::optional<cloth::IoError>& error) {
 }
 
 void SimulationWorker::end_recording() {
-  const cloth::ClothState& last = status_.divergence ? last_good_.state : simulation_->state();
-  const auto error = recording_.end(*simulation_, last, status_.divergence);
+  const auto error = recording_.end(*simulation_, simulation_->state(), status_.divergence);
   if (error && status_.recording_error.empty()) status_.recording_error = error->text();
 }
 
@@ -334,7 +363,15 @@ void SimulationWorker::publish_status() {
     status_.time_step = simulation_->time_step();
     const auto& unreachable = simulation_->unreachable_rate();
     status_.notice = unreachable ? cloth::describe(*unreachable, simulation_->system().columns) : "";
+    if (!status_.scene || *status_.scene != simulation_->scene())
+      status_.scene = std::make_shared<cloth::Scene>(simulation_->scene());
+    status_.history = {.last_step = history_.last_step(),
+                       .last_time = history_.last_time(),
+                       .states = history_.state_count(),
+                       .bytes = history_.bytes(),
+                       .most_bytes = history_.most_bytes()};
   }
+  status_.playing_again = status_.playing && playing_again_;
   status_.steps_per_second = status_.playing ? meter_.steps_per_second() : 0;
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   status_.recording = recording_.is_active();

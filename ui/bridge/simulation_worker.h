@@ -15,7 +15,7 @@
 #include "bridge/live_recording.h"
 #include "bridge/worker_pace.h"
 #include "bridge/worker_status.h"
-#include "simulation/simulation.h"
+#include "simulation/history.h"
 
 namespace clothlab {
 
@@ -43,15 +43,27 @@ struct StartRecording {
   std::filesystem::path folder;
 };
 struct StopRecording {};
+struct GoTo {
+  cloth::HistoryTarget target;
+};                    ///< pauses there; one that comes later takes the place of one that is not there yet
+struct PlayAgain {};  ///< what the history has, from here to its end, and pauses there
+struct SaveSession {
+  std::filesystem::path file;
+};  ///< the whole history
+struct OpenSession {
+  std::variant<std::filesystem::path, cloth::Session> session;
+};  ///< a new start, paused, with the session as its history: GoTo and PlayAgain go through it
 }  // namespace command
 
 using Command = std::variant<command::Load, command::Restart, command::Edit, command::Play, command::Pause,
                              command::SingleStep, command::Speed, command::Brush, command::Pull,
-                             command::StartRecording, command::StopRecording>;
+                             command::StartRecording, command::StopRecording, command::GoTo,
+                             command::PlayAgain, command::SaveSession, command::OpenSession>;
 
 class SimulationWorker {
  public:
-  SimulationWorker();
+  /// `most_history` bytes of states are kept to go back to.
+  explicit SimulationWorker(std::size_t most_history = cloth::History::default_most_bytes);
   /// Stops within one step; a recording is ended properly.
   ~SimulationWorker();
   SimulationWorker(const SimulationWorker&) = delete;
@@ -86,10 +98,21 @@ class SimulationWorker {
   void handle(const command::Pull& pull);
   void handle(const command::StartRecording& start);
   void handle(const command::StopRecording&);
+  void handle(const command::GoTo& go);
+  void handle(const command::PlayAgain&);
+  void handle(const command::SaveSession& save);
+  void handle(const command::OpenSession& open);
 
   bool start_simulation(const cloth::Scene& scene);
+  std::vector<cloth::Problem> perform(const cloth::SessionAction& action);
+  void begin_branch();
+  bool may_go_on();
+  void settle(const cloth::HistoryArrival& arrival);
+  void drop_later_samples();
+  void show_session_problems(const std::vector<cloth::Problem>& problems);
   void play_for_a_moment();
   bool advance();
+  bool advance_again();
   void take_sample();
   void deliver(const ChartSample& sample);
   void diverge(const cloth::Divergence& divergence);
@@ -110,7 +133,10 @@ class SimulationWorker {
 
   // The worker's own.
   std::unique_ptr<cloth::Simulation> simulation_;
-  cloth::Checkpoint last_good_;
+  cloth::History history_;
+  bool playing_again_ = false;
+  bool batch_is_done_ = true;            ///< no command waits behind the present one but those in the inbox
+  std::int64_t last_sampled_step_ = -1;  ///< samples up to here have been given
   cloth::RowClock rows_;
   LiveRecording recording_;
   WorkerStatus status_;

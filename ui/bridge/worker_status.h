@@ -2,12 +2,22 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "scene/scene.h"
 #include "simulation/outcome.h"
 
 namespace clothlab {
+
+/// What can be gone back to.
+struct HistoryStatus {
+  std::int64_t first_step = 0, last_step = 0;
+  double first_time = 0, last_time = 0;  ///< s
+  std::size_t states = 0;                ///< kept; steps between them are computed again
+  std::size_t bytes = 0, most_bytes = 0;
+};
 
 struct WorkerStatus {
   bool playing = false;
@@ -24,6 +34,15 @@ struct WorkerStatus {
   std::int64_t recorded_rows = 0;
   std::string recording_error;
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
+
+  HistoryStatus history;
+  bool playing_again = false;          ///< what the history has, rather than something new
+  std::string session_error;           ///< why the last session was not saved, opened or gone through
+  std::optional<bool> session_agrees;  ///< at an opened session's end: whether it came out to the bit
+  /// How often the worker itself has changed time or scene: by going back or forth, opening a session, or
+  /// returning from a divergence. A document then takes up `scene`.
+  std::int64_t jumps = 0;
+  std::shared_ptr<const cloth::Scene> scene;  ///< in force
 };
 
 }  // namespace clothlab

@@ -7,6 +7,11 @@ namespace clothlab {
 
 void ChartRecord::append(std::span<const ChartSample> batch) {
   for (const ChartSample& s : batch) {
+    if (s.is_cut) {
+      samples.drop_after(s.time_s);
+      draws.drop_after(s.time_s);
+      continue;
+    }
     if (!samples.empty() && s.time_s < samples.last_time()) clear();
     const std::array<double, sample_columns> row{s.kinetic_J, s.elastic_J,  s.gravity_J,
                                                  s.total_J,   s.max_strain, s.step_ms};
@@ -16,7 +21,7 @@ void ChartRecord::append(std::span<const ChartSample> batch) {
 }
 
 void ChartRecord::append_draw_time(double time_s, double milliseconds) {
-  if (!draws.empty() && time_s < draws.last_time()) draws.clear();
+  draws.drop_after(time_s);  // a run that is gone through again draws anew
   draws.append(time_s, std::array{milliseconds});
 }
 

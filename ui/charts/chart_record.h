@@ -22,7 +22,8 @@ struct ChartRecord {
       1};  ///< time per drawing (ms), at times of its own: drawing and simulation do not march in step
   std::optional<double> deformation_rate;  ///< a fraction
 
-  /// A time before the last one starts a new record: the simulation was reset.
+  /// A time before the last one starts a new record: the simulation was reset. A cut only takes out what is
+  /// later.
   void append(std::span<const ChartSample> batch);
   void append_draw_time(double time_s, double milliseconds);
   void clear();

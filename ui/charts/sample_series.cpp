@@ -32,6 +32,26 @@ void SampleSeries::clear() {
   }
 }
 
+void SampleSeries::drop_after(double time_s) {
+  const std::size_t rows = upper_bound(time_s);
+  if (rows == size()) return;
+  times_.resize(rows);
+  for (Column& column : columns_) shorten(column, rows);
+}
+
+/// Whole blocks stay; the last one of each level is made again from the rows that it keeps.
+void SampleSeries::shorten(Column& column, std::size_t rows) {
+  column.values.resize(rows);
+  std::size_t width = 1;
+  for (auto& level : column.pyramid) {
+    width *= fanout;
+    level.resize((rows + width - 1) / width);
+    if (rows % width == 0) continue;
+    level.back() = Node{};
+    for (std::size_t row = rows / width * width; row < rows; ++row) add_row(column, row, level.back());
+  }
+}
+
 std::size_t SampleSeries::lower_bound(double time_s) const {
   return static_cast<std::size_t>(std::lower_bound(times_.begin(), times_.end(), time_s) - times_.begin());
 }

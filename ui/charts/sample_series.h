@@ -33,6 +33,8 @@ class SampleSeries {
   /// (false) when the time is not finite or lies before the last row's.
   bool append(double time_s, std::span<const double> values);
   void clear();
+  /// Takes out the rows later than a time; those before it stay as they are.
+  void drop_after(double time_s);
 
   std::size_t size() const { return times_.size(); }
   bool empty() const { return times_.empty(); }
@@ -83,6 +85,7 @@ class SampleSeries {
 
   static void add_row(const Column& column, std::size_t row, Node& node);
   static void add_node(const Column& column, const Node& part, Node& node);
+  static void shorten(Column& column, std::size_t rows);
   static void add_to_pyramid(Column& column, std::size_t row);
   Node fold(const Column& column, std::size_t first, std::size_t last) const;
   std::size_t lower_bound_near(std::size_t first, std::size_t last, std::size_t guess, double time_s) const;

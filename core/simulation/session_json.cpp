@@ -1,0 +1,289 @@
+#include "simulation/session_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/run_folder.h"
+#include "scene/json_locator.h"
+#include "scene/json_syntax.h"
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::ordered_json;
+constexpr double largest_step = 1e15;  // whole numbers up to here are exact in a double
+
+json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json hand_json(const std::optional<BrushGust>& brush) {
+  if (!brush) return nullptr;
+  json matrix = json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix.push_back(brush->world_to_screen(row, column));
+  return {{"velocity_m_s", vector_json(brush->velocity)},
+          {"cursor_px", {brush->cursor.x(), brush->cursor.y()}},
+          {"radius_px", brush->radius},
+          {"world_to_screen", matrix}};
+}
+
+json hand_json(const std::optional<Pull>& pull) {
+  if (!pull) return nullptr;
+  return {{"particle", pull->particle}, {"target_m", vector_json(pull->target)}};
+}
+
+json edits_json(const Edits& edits) {
+  json values = json::object();
+  for (const SceneEdit& edit : edits) values[edit.path] = json::parse(edit.value);
+  return values;
+}
+
+json command_json(const SessionCommand& command) {
+  json entry{{"step", command.step}, {"time_s", command.time}};
+  if (const auto* edits = std::get_if<Edits>(&command.action))
+    entry["set"] = edits_json(*edits);
+  else if (const auto* brush = std::get_if<std::optional<BrushGust>>(&command.action))
+    entry["brush"] = hand_json(*brush);
+  else
+    entry["pull"] = hand_json(std::get<std::optional<Pull>>(command.action));
+  return entry;
+}
+
+std::string indented(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n' && i + 1 == text.size()) break;
+    out += text[i];
+    if (text[i] == '\n') out += "  ";
+  }
+  return out;
+}
+
+/// Takes a session's document apart. Problems are collected, never thrown.
+class SessionReader {
+ public:
+  std::vector<Problem> problems;
+
+  Session read(const json& root) {
+    Session session;
+    if (!object(root, "")) return session;
+    known_keys(root, "", {"format", "version", "scene", "steps", "time_s", "commands", "final_state_hash"});
+    if (const auto format = root.find("format"); format != root.end() && *format != session_format)
+      problem("format", *format, fmt::format("must be \"{}\"", session_format));
+    read_scene_part(root, session);
+    session.steps = step(root, "", "steps").value_or(std::numeric_limits<std::int64_t>::max());
+    session.time = optional_number(root, "", "time_s");
+    session.version = optional_text(root, "version");
+    session.final_state_hash = optional_text(root, "final_state_hash");
+    if (const json* commands = member(root, "", "commands")) read_commands(*commands, session);
+    return session;
+  }
+
+ private:
+  void problem(const std::string& path, const json& value, const std::string& rule) {
+    constexpr std::size_t longest = 60;
+    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
+    problems.push_back({path, text, rule, "", 0, 0});
+  }
+
+  static std::string joined(const std::string& path, const std::string& key) {
+    return path.empty() ? key : path + "." + key;
+  }
+
+  bool object(const json& value, const std::string& path) {
+    if (value.is_object()) return true;
+    problem(path, value, "must be an object in braces");
+    return false;
+  }
+
+  void known_keys(const json& from, const std::string& path, const std::vector<std::string>& known) {
+    for (const auto& [key, value] : from.items())
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        problems.push_back({joined(path, key), "",
+                            fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
+                            0});
+  }
+
+  const json* member(const json& from, const std::string& path, const std::string& key) {
+    const auto found = from.find(key);
+    if (found != from.end()) return &*found;
+    problems.push_back({joined(path, key), "", "must be given", "", 0, 0});
+    return nullptr;
+  }
+
+  void read_scene_part(const json& root, Session& session) {
+    const json* value = member(root, "", "scene");
+    if (!value) return;
+    SceneReading reading = read_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "");
+    if (reading.scene) session.scene = std::move(*reading.scene);
+    for (Problem& found : reading.problems) {
+      found.path = found.path.empty() ? "scene" : "scene." + found.path;
+      problems.push_back(std::move(found));
+    }
+  }
+
+  std::optional<std::int64_t> step(const json& from, const std::string& path, const std::string& key) {
+    const json* value = member(from, path, key);
+    if (!value) return std::nullopt;
+    if (value->is_number_integer() && value->get<double>() >= 0 && value->get<double>() <= largest_step)
+      return value->get<std::int64_t>();
+    problem(joined(path, key), *value, "must be a whole number, >= 0");
+    return std::nullopt;
+  }
+
+  double optional_number(const json& from, const std::string& path, const std::string& key) {
+    const auto found = from.find(key);
+    if (found == from.end()) return 0;
+    if (found->is_number()) return found->get<double>();
+    problem(joined(path, key), *found, "must be a number");
+    return 0;
+  }
+
+  std::string optional_text(const json& from, const std::string& key) {
+    const auto found = from.find(key);
+    if (found == from.end()) return "";
+    if (found->is_string()) return found->get<std::string>();
+    problem(key, *found, "must be a text in quotes");
+    return "";
+  }
+
+  /// `count` numbers of a list, or nothing and a problem.
+  std::vector<double> numbers(const json& from, const std::string& path, const std::string& key,
+                              std::size_t count) {
+    const json* value = member(from, path, key);
+    if (!value) return {};
+    const auto is_number = [](const json& entry) { return entry.is_number(); };
+    if (value->is_array() && value->size() == count && std::all_of(value->begin(), value->end(), is_number))
+      return value->get<std::vector<double>>();
+    problem(joined(path, key), *value, fmt::format("must be a list of {} numbers", count));
+    return {};
+  }
+
+  void read_commands(const json& commands, Session& session) {
+    if (!commands.is_array()) return problem("commands", commands, "must be a list");
+    std::int64_t earliest = 0;
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      const std::string path = fmt::format("commands.{}", i);
+      if (!object(commands[i], path)) continue;
+      SessionCommand& command = session.commands.emplace_back();
+      if (const auto at = step(commands[i], path, "step")) {
+        if (*at > session.steps)
+          problem(path + ".step", *at, fmt::format("must be <= steps, {}", session.steps));
+        if (*at < earliest) problem(path + ".step", *at, "must not be before the command above it");
+        command.step = earliest = std::max(*at, earliest);
+      }
+      command.time = optional_number(commands[i], path, "time_s");
+      known_keys(commands[i], path, {"step", "time_s", "set", "brush", "pull"});
+      read_action(commands[i], path, command.action);
+    }
+  }
+
+  void read_action(const json& command, const std::string& path, SessionAction& action) {
+    const auto set = command.find("set"), brush = command.find("brush"), pull = command.find("pull");
+    const auto end = command.end();
+    if ((set != end) + (brush != end) + (pull != end) != 1) {
+      problems.push_back({path, "", "must have one of set, brush, pull", "", 0, 0});
+    } else if (set != end) {
+      if (!object(*set, path + ".set")) return;
+      Edits edits;
+      for (const auto& [key, value] : set->items()) edits.push_back({key, value.dump()});
+      action = std::move(edits);
+    } else if (brush != end) {
+      action = read_brush(*brush, path + ".brush");
+    } else {
+      action = read_pull(*pull, path + ".pull");
+    }
+  }
+
+  std::optional<BrushGust> read_brush(const json& value, const std::string& path) {
+    if (value.is_null() || !object(value, path)) return std::nullopt;
+    known_keys(value, path, {"velocity_m_s", "cursor_px", "radius_px", "world_to_screen"});
+    BrushGust gust;
+    if (const auto v = numbers(value, path, "velocity_m_s", 3); !v.empty())
+      gust.velocity = {v[0], v[1], v[2]};
+    if (const auto p = numbers(value, path, "cursor_px", 2); !p.empty()) gust.cursor = {p[0], p[1]};
+    if (member(value, path, "radius_px")) gust.radius = optional_number(value, path, "radius_px");
+    const auto matrix = numbers(value, path, "world_to_screen", 16);
+    for (std::size_t k = 0; k < matrix.size(); ++k)
+      gust.world_to_screen(static_cast<int>(k / 4), static_cast<int>(k % 4)) = matrix[k];
+    return gust;
+  }
+
+  std::optional<Pull> read_pull(const json& value, const std::string& path) {
+    if (value.is_null() || !object(value, path)) return std::nullopt;
+    known_keys(value, path, {"particle", "target_m"});
+    Pull pull;
+    if (const auto particle = step(value, path, "particle"))
+      pull.particle = static_cast<int>(std::min<std::int64_t>(*particle, std::numeric_limits<int>::max()));
+    if (const auto x = numbers(value, path, "target_m", 3); !x.empty()) pull.target = {x[0], x[1], x[2]};
+    return pull;
+  }
+};
+
+void put_in_place(const JsonLocations& locations, const std::string& place, Problem& problem) {
+  const TextPosition at = locations.place_of(problem.path, problem.value.empty());
+  problem.place = place;
+  problem.line = at.line, problem.column = at.column;
+}
+
+}  // namespace
+
+SessionReading read_session(const std::string& text, const std::string& place) {
+  if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
+  SessionReader reader;
+  Session session = reader.read(json::parse(text));
+  const JsonLocations locations = locate_json(text);
+  for (const std::string& path : locations.repeated)
+    reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
+  if (reader.problems.empty()) return {std::move(session), {}};
+  for (Problem& problem : reader.problems) put_in_place(locations, place, problem);
+  std::stable_sort(reader.problems.begin(), reader.problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
+  return {std::nullopt, std::move(reader.problems)};
+}
+
+void place_in_session(const std::string& text, const std::string& place, std::size_t command,
+                      std::vector<Problem>& problems) {
+  const JsonLocations locations = locate_json(text);
+  for (Problem& problem : problems) {
+    problem.path = fmt::format("commands.{}.{}", command, problem.path);
+    put_in_place(locations, place, problem);
+  }
+}
+
+/// A command is a line: logs are long, and people look through them with line-based tools.
+std::string write_session(const Session& session) {
+  std::string out =
+      fmt::format("{{\n  \"format\": \"{}\",\n  \"version\": {},\n  \"scene\": {},\n", session_format,
+                  json(session.version).dump(), indented(write_scene(session.scene)));
+  out += fmt::format("  \"steps\": {},\n  \"time_s\": {},\n  \"commands\": [", session.steps,
+                     json(session.time).dump());
+  for (std::size_t i = 0; i < session.commands.size(); ++i)
+    out += fmt::format("{}\n    {}", i > 0 ? "," : "", command_json(session.commands[i]).dump());
+  out += session.commands.empty() ? "]" : "\n  ]";
+  if (!session.final_state_hash.empty())
+    out += fmt::format(",\n  \"final_state_hash\": \"{}\"", session.final_state_hash);
+  return out + "\n}\n";
+}
+
+std::vector<std::string> edit_log_lines(const SessionCommand& command) {
+  std::vector<std::string> lines;
+  const auto add = [&](const std::string& path, const std::string& value) {
+    lines.push_back(fmt::format("{{\"step\":{},\"time_s\":{},\"path\":{},\"value\":{}}}", command.step,
+                                command.time, json(path).dump(), value));
+  };
+  if (const auto* edits = std::get_if<Edits>(&command.action))
+    for (const SceneEdit& edit : *edits) add(edit.path, edit.value);
+  else if (const auto* brush = std::get_if<std::optional<BrushGust>>(&command.action))
+    add("brush", hand_json(*brush).dump());
+  else
+    add("pull", hand_json(std::get<std::optional<Pull>>(command.action)).dump());
+  return lines;
+}
+
+}  // namespace cloth

@@ -100,4 +100,11 @@ JsonLocations locate_json(std::string_view text) {
   return Locator(text).run();
 }
 
+TextPosition JsonLocations::place_of(std::string path, bool of_key) const {
+  if (const auto key = keys.find(path); of_key && key != keys.end()) return key->second;
+  while (!values.count(path))
+    path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
+  return values.at(path);
+}
+
 }  // namespace cloth

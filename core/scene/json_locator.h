@@ -20,6 +20,10 @@ struct JsonLocations {
   std::map<std::string, TextPosition> values;  ///< by dotted path; "" is the root
   std::map<std::string, TextPosition> keys;    ///< by dotted path, where the key itself stands
   std::vector<std::string> repeated;           ///< paths that an object has more than once
+
+  /// The most precise place that the text has for `path`: its value, or its key if `of_key`; for what is not
+  /// in the text, that which would hold it.
+  TextPosition place_of(std::string path, bool of_key) const;
 };
 
 /// Precondition: `text` is one valid JSON value.

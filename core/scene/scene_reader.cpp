@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scene/json_locator.h"
+#include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "scene/scene_parameters.h"
@@ -228,54 +229,6 @@ class SceneReader {
   }
 };
 
-/// Only notes where and why a text is not JSON, or is nested so deeply that it cannot be a scene.
-struct SyntaxCheck : nlohmann::json_sax<json> {
-  static constexpr int deepest = 64;
-  const std::size_t length;  // of the text
-  std::size_t offset = 0;
-  std::string message;
-  int depth = 0;
-
-  explicit SyntaxCheck(std::size_t text_length) : length(text_length) {}
-
-  bool enter() {
-    if (++depth <= deepest) return true;
-    message = "is nested too deeply for a scene";
-    return false;
-  }
-  bool leave() {
-    --depth;
-    return true;
-  }
-
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return enter(); }
-  bool end_object() override { return leave(); }
-  bool start_array(std::size_t) override { return enter(); }
-  bool end_array() override { return leave(); }
-  bool key(string_t&) override { return true; }
-  bool parse_error(std::size_t position, const std::string& last_token,
-                   const json::exception& error) override {
-    offset = position > 0 ? position - 1 : 0;
-    message = error.id == 406     ? "the number " + last_token + " is too large"
-              : position > length ? std::string("is not JSON: the text ends too early")
-                                  : "is not JSON from here on: unexpected '" + last_token + "'";
-    return false;
-  }
-};
-
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return text;
-}
-
 /// A bare word that is no JSON stands for itself, so that `--set integrator.method=rk4` needs no quotes.
 json parse_value(const std::string& text) {
   json value = json::parse(text, nullptr, false);
@@ -329,21 +282,13 @@ class Placer {
       }
     }
     problem.place = place_;
-    const auto key = locations_.keys.find(problem.path);
-    if (problem.value.empty() && key != locations_.keys.end()) return put(problem, key->second);
-    std::string path = problem.path;  // a value that is not in the text is placed at what would hold it
-    while (!locations_.values.count(path))
-      path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
-    put(problem, locations_.values.at(path));
+    const TextPosition at = locations_.place_of(problem.path, problem.value.empty());
+    problem.line = at.line, problem.column = at.column;
   }
 
   const std::vector<std::string>& repeated() const { return locations_.repeated; }
 
  private:
-  static void put(Problem& problem, const TextPosition& at) {
-    problem.line = at.line, problem.column = at.column;
-  }
-
   JsonLocations locations_;
   std::string place_;
   const std::vector<Override>& overrides_;
@@ -359,11 +304,7 @@ std::optional<Override> parse_override(const std::string& text) {
 
 SceneReading read_scene(const std::string& text, const std::string& place,
                         const std::vector<Override>& overrides) {
-  SyntaxCheck syntax(text.size());
-  if (!json::sax_parse(text, &syntax)) {
-    const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
-    return {std::nullopt, {{"", "", printable(syntax.message), place, at.line, at.column}}};
-  }
+  if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
   json document = json::parse(text);
   const Placer place_problem(text, place, overrides);
 

@@ -51,6 +51,13 @@ struct Quantities {
   bool operator==(const Quantities&) const = default;
 };
 
+/// How strongly the hand holds a particle.
+struct PullStrength {
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+  bool operator==(const PullStrength&) const = default;
+};
+
 /// Enough to go on from here later, to the bit.
 struct Checkpoint {
   ClothState state;
@@ -88,6 +95,11 @@ class Simulation {
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull);
 
+  /// The strongest hand that the method stands at its step; and no stronger than `most` from now on, so that
+  /// one hand can hold several simulations alike.
+  const PullStrength& strongest_pull() const { return strongest_pull_; }
+  void limit_pull(const std::optional<PullStrength>& most);
+
   const Scene& scene() const { return scene_; }
   const ClothSystem& system() const { return system_; }
   const ClothState& state() const { return state_; }
@@ -109,7 +121,8 @@ class Simulation {
  private:
   void assemble();
   void count_step(const IntegratorReport& report);
-  void choose_pull_stiffness();
+  PullStrength find_strongest_pull() const;
+  void apply_hand();
   void limit_start();
   void limit_deformation();
   void resolve_contact();
@@ -140,7 +153,8 @@ class Simulation {
   std::optional<UnreachableRate> unreachable_;
   std::optional<BrushGust> brush_;
   std::optional<Pull> pull_;
-  double pull_stiffness_ = 0, pull_damping_ = 0;
+  PullStrength strongest_pull_, pull_strength_;
+  std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;  ///< J, all springs at twice their length
 };
 

@@ -1,0 +1,15 @@
+// Whether a text is JSON at all, with the place where it stops being so.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/problem.h"
+
+namespace cloth {
+
+/// Where and why `text` is not JSON, or is nested so deeply that it cannot be a file of this program; nothing
+/// if it is. `place` names the text in the message.
+std::optional<Problem> syntax_problem(const std::string& text, const std::string& place);
+
+}  // namespace cloth

@@ -44,15 +44,14 @@ std::string place_of(std::size_t pane, const std::string& key) {
   return fmt::format("panes.{}.{}", pane, key);
 }
 
-/// The rules of the comparison itself; where `sound` there are as many panes as there may be, and each has a
-/// name.
+/// The rules of the comparison itself.
 void check_panes(const Comparison& comparison, std::vector<Problem>& problems) {
   const std::size_t count = comparison.panes.size();
   if (count < least_panes || count > most_panes)
     problems.push_back({"panes", fmt::format("{} panes", count),
                         fmt::format("must be {} to {}", least_panes, most_panes), "", 0, 0});
   std::set<std::string> names;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count && count <= most_panes; ++i) {  // of too many, some have no name
     const std::string& name = comparison.panes[i].name;
     const std::string shown = fmt::format("\"{}\"", name);
     if (std::find(std::begin(pane_names), std::end(pane_names), name) == std::end(pane_names))
@@ -123,20 +122,24 @@ Scene scene_of(const Comparison& comparison, std::size_t pane) {
   return scene;
 }
 
-Scene controlled_scene(const Comparison& comparison) {
+ControlledScenes controlled_scenes(const Comparison& comparison) {
   Scene scene = comparison.scene;
   const double interval = scene.record.interval;
   if (is_smooth(scene)) {
     scene.integrator = {.method = "dormand-prince", .time_step = interval, .tolerance = controlled_tolerance};
-    return scene;
+    Scene check = scene;
+    check.integrator.tolerance = 10 * controlled_tolerance;
+    return {std::move(scene), std::move(check)};
   }
   scene.integrator = {.method = "verlet"};
   const double stable = stable_step("verlet", scene).value_or(infinity);
-  const double step = controlled_part * std::min({shortest_step(comparison), stable, interval});
-  scene.integrator.time_step = step_dividing(interval, step);
+  const double longest = controlled_part * std::min({shortest_step(comparison), stable, interval});
   if (scene.deformation)
     scene.deformation->tolerance = std::min(scene.deformation->tolerance, controlled_limiter_tolerance);
-  return scene;
+  Scene check = scene;
+  check.integrator.time_step = step_dividing(interval, 2 * longest);
+  scene.integrator.time_step = *check.integrator.time_step / 2;
+  return {std::move(scene), std::move(check)};
 }
 
 std::string title_of(const Comparison& comparison, std::size_t pane) {

@@ -36,7 +36,7 @@ struct Pane {
 };
 
 /// What errors are measured against, unless it is the name of a pane: the shared scene under error control
-/// (see controlled_scene), or nothing.
+/// (see controlled_scenes), or nothing.
 inline constexpr const char* controlled_reference = "controlled";
 inline constexpr const char* no_reference = "none";
 
@@ -54,12 +54,15 @@ std::vector<Pane> panes_for(const std::vector<std::string>& methods);
 /// The shared scene with the pane's own values. A value for a parameter that the scene lacks is left out.
 Scene scene_of(const Comparison& comparison, std::size_t pane);
 
-/// What runs as the controlled reference: the shared scene by Dormand-Prince under a tolerance of 1e-11 of
-/// the cloth's diagonal for each inner step. Where a limiter or contact is at work, the motion is defined by
-/// the loop that projects at the end of each step: Verlet, then, with an eighth of the shortest step of the
-/// panes and of Verlet's own stable step, and a limiter's tolerance of 1e-6 at most. Its step divides the
-/// record interval.
-Scene controlled_scene(const Comparison& comparison);
+/// What runs as the controlled reference, and what it is checked by: the shared scene by Dormand-Prince under
+/// a tolerance of 1e-11 of the cloth's diagonal for each inner step, and of 1e-10. Where a limiter or contact
+/// is at work, the motion is defined by the loop that projects at the end of each step: Verlet, then, with an
+/// eighth of the shortest step of the panes and of Verlet's own stable step, and with twice that; a limiter's
+/// tolerance is 1e-6 at most. The steps divide the record interval.
+struct ControlledScenes {
+  Scene reference, check;
+};
+ControlledScenes controlled_scenes(const Comparison& comparison);
 
 /// "the pane's title", or the method's.
 std::string title_of(const Comparison& comparison, std::size_t pane);

@@ -40,6 +40,7 @@ std::vector<std::string> comparison_columns(const LockStep& lockstep) {
     add("rms_difference_m");
     add("largest_difference_m");
   }
+  if (lockstep.comparison().reference == controlled_reference) names.emplace_back("reference_floor_m");
   return names;
 }
 
@@ -62,6 +63,8 @@ std::vector<std::string> comparison_row(const LockStep& lockstep) {
     add(difference != nullptr, [&] { return csv_number(difference->rms); });
     add(difference != nullptr, [&] { return csv_number(difference->largest); });
   }
+  if (lockstep.comparison().reference == controlled_reference)
+    row.push_back(lockstep.floor() ? csv_number(lockstep.floor()->rms) : "");
   return row;
 }
 

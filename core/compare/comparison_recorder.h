@@ -12,7 +12,8 @@
 namespace cloth {
 
 /// The columns of compare.csv: time_s, then for each pane A_total_J, A_energy_error_J, A_max_strain,
-/// A_limiter_excess?, A_contacts?, A_step_time_us, A_rms_difference_m?, A_largest_difference_m?.
+/// A_limiter_excess?, A_contacts?, A_step_time_us, A_rms_difference_m?, A_largest_difference_m?; and
+/// reference_floor_m? of a controlled reference.
 std::vector<std::string> comparison_columns(const LockStep& lockstep);
 
 /// One row at the last compare(). Fields of a pane that has stopped are empty, and so are differences that

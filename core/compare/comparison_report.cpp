@@ -45,6 +45,14 @@ std::string note_of(const PaneResult& pane) {
   return note;
 }
 
+std::string floor_sentence(const ComparisonRun& run) {
+  return fmt::format(
+      "the reference is checked by itself with a ten times looser tolerance or twice the step: {:.2g} m RMS "
+      "at "
+      "the end, {:.2g} m at most",
+      *run.floor, run.largest_floor);
+}
+
 json finite(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
@@ -147,7 +155,7 @@ void add_table(const ComparisonRun& run, HtmlPage& page) {
 
 void add_protocol(const ComparisonRun& run, HtmlPage& page) {
   page.heading("How it was run");
-  page.facts({{"Reference", run.reference},
+  page.facts({{"Reference", run.reference + (run.floor ? "; " + floor_sentence(run) : "")},
               {"Particles", fmt::format("{}", run.particles)},
               {"Simulated", fmt::format("{:.6g} s", run.simulated)},
               {"Common times", fmt::format("every {:.6g} s", run.comparison.scene.record.interval)},
@@ -166,7 +174,9 @@ void add_protocol(const ComparisonRun& run, HtmlPage& page) {
 std::string comparison_text(const ComparisonRun& run) {
   std::string text =
       fmt::format("{}\n{} particles, {:.6g} s simulated", title_of(run), run.particles, run.simulated);
-  text += has_reference(run) ? fmt::format("; differences from {}\n\n", run.reference) : "\n\n";
+  text += has_reference(run) ? fmt::format("; differences from {}\n", run.reference) : "\n";
+  if (run.floor) text += floor_sentence(run) + "\n";
+  text += "\n";
   text +=
       fmt::format("{:<5} {:<24} {:>12} {:>12} {:>12} {:>13} {:>5} {:>10} {:>5} {:>12}\n", "pane", "title",
                   "step", "RMS at end", "largest", "RMS over time", "rank", "cost", "rank", "evaluations");
@@ -199,7 +209,11 @@ std::string comparison_summary(const ComparisonRun& run) {
             {"interval_s", run.comparison.scene.record.interval},
             {"reference", run.comparison.reference},
             {"reference_text", run.reference}};
-  if (run.comparison.reference == controlled_reference) root["reference_wall_s"] = run.reference_wall;
+  if (run.comparison.reference == controlled_reference) {
+    root["reference_wall_s"] = run.reference_wall;
+    root["reference_floor_m"] = optional_number(run.floor);
+    root["reference_largest_floor_m"] = finite(run.largest_floor);
+  }
   if (!run.reference_failure.empty()) root["reference_failure"] = run.reference_failure;
   root["ranking"] = json::array();
   for (const std::size_t i : ranked(run.panes)) root["ranking"].push_back(run.panes[i].name);
@@ -223,6 +237,15 @@ LinePlot difference_plot(const ComparisonRun& run) {
       series.difference_time.erase(series.difference_time.begin());
     }
     plot.series.push_back(series_of(run.panes[i], series.difference_time, series.rms));
+  }
+  if (run.floor_series.rms.size() > 1) {
+    PlotSeries floor{.name = "Reference from its check",
+                     .detail = "differences below are not told apart",
+                     .style = static_cast<int>(most_panes),
+                     .markers = false};
+    for (std::size_t k = 1; k < run.floor_series.rms.size(); ++k)
+      floor.points.push_back({.x = run.floor_series.difference_time[k], .y = run.floor_series.rms[k]});
+    plot.series.push_back(std::move(floor));
   }
   return plot;
 }

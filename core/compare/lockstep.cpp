@@ -19,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 const char* const reference_name = "reference";
+const char* const check_name = "check";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -58,8 +59,9 @@ LockStep::LockStep(const Comparison& comparison)
   for (std::size_t i = 0; i < comparison_.panes.size(); ++i)
     add_lane(comparison_.panes[i].name, title_of(comparison_, i), scene_of(comparison_, i));
   if (comparison_.reference == controlled_reference) {
-    const Scene scene = controlled_scene(comparison_);
-    add_lane(reference_name, controlled_title(scene), scene);
+    const ControlledScenes scenes = controlled_scenes(comparison_);
+    add_lane(reference_name, controlled_title(scenes.reference), scenes.reference);
+    add_lane(check_name, controlled_title(scenes.check), scenes.check);
   }
   share_pull_strength();
   compare();
@@ -79,7 +81,7 @@ void LockStep::add_lane(const std::string& name, const std::string& title, const
 }
 
 std::optional<std::size_t> LockStep::reference_lane() const {
-  if (comparison_.reference == controlled_reference) return lanes_.size() - 1;
+  if (comparison_.reference == controlled_reference) return pane_count();
   return find_pane(comparison_, comparison_.reference);
 }
 
@@ -130,20 +132,23 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
   return true;
 }
 
+void LockStep::measure(Error& error, std::size_t lane, std::size_t against) {
+  const Lane &one = *lanes_[lane], &other = *lanes_[against];
+  error.present = lane != against && one.going() && other.going();
+  if (!error.present) return;
+  assert(one.index == index() && other.index == index());
+  measure_difference(one.state.position, other.state.position, error.difference);
+  if (one.index <= error.counted) return;
+  error.squares += error.difference.rms * error.difference.rms;
+  ++error.times;
+  error.counted = one.index;
+}
+
 void LockStep::compare() {
   const std::optional<std::size_t> against = reference_lane();
-  const std::int64_t at = index();
-  for (std::size_t i = 0; i < errors_.size(); ++i) {
-    Error& error = errors_[i];
-    error.present = against && *against != i && lanes_[i]->going() && lanes_[*against]->going();
-    if (!error.present) continue;
-    assert(lanes_[i]->index == at && lanes_[*against]->index == at);
-    measure_difference(lanes_[i]->state.position, lanes_[*against]->state.position, error.difference);
-    if (at <= error.counted) continue;
-    error.squares += error.difference.rms * error.difference.rms;
-    ++error.times;
-    error.counted = at;
-  }
+  if (!against) return;
+  for (std::size_t i = 0; i < errors_.size(); ++i) measure(errors_[i], i, *against);
+  if (*against == pane_count()) measure(floor_, pane_count() + 1, pane_count());
 }
 
 bool LockStep::advance(std::int64_t index, const std::function<bool()>& may_go_on, int threads) {
@@ -177,16 +182,23 @@ void LockStep::edit(const Comparison& edited) {
   assert(acts_at_once(comparison_, edited));
   if (edited.reference != comparison_.reference) {
     for (Error& error : errors_) error = {};
-    if (comparison_.reference == controlled_reference) lanes_.pop_back();
+    floor_ = {};
+    lanes_.resize(pane_count());
   }
   comparison_ = edited;
   last_index_ = steps_to_cover(comparison_.scene.duration, interval_);
+  std::vector<Scene> scenes;
+  for (std::size_t i = 0; i < pane_count(); ++i) scenes.push_back(scene_of(comparison_, i));
+  if (lanes_.size() > pane_count()) {
+    ControlledScenes controlled = controlled_scenes(comparison_);
+    scenes.push_back(std::move(controlled.reference));
+    scenes.push_back(std::move(controlled.check));
+  }
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = *lanes_[i];
-    if (i < pane_count()) lane.title = title_of(comparison_, i);
+    const Scene& scene = scenes[i];
+    lane.title = i < pane_count() ? title_of(comparison_, i) : controlled_title(scene);
     if (!lane.going()) continue;
-    const Scene scene = i < pane_count() ? scene_of(comparison_, i) : controlled_scene(comparison_);
-    if (i == pane_count()) lane.title = controlled_title(scene);
     lane.simulation->edit(in_lock_step(scene));
     lane.first_index_ = lane.index;
     lane.first_step_ = lane.simulation->state().step;

@@ -25,10 +25,10 @@
 
 namespace cloth {
 
-/// One pane's run, or the controlled reference's. What it shows is that of the last common time it reached,
-/// which is also where a lane that diverged stays.
+/// One pane's run, the controlled reference's, or its check's. What it shows is that of the last common time
+/// it reached, which is also where a lane that diverged stays.
 struct Lane {
-  std::string name;    ///< the pane's; "reference" for the controlled reference
+  std::string name;    ///< the pane's; "reference" and "check" for the controlled reference's
   std::string title;   ///< for people
   std::string notice;  ///< what is not as the pane asked for; empty: nothing
   std::unique_ptr<Simulation> simulation;
@@ -63,7 +63,7 @@ class LockStep {
 
   const Comparison& comparison() const { return comparison_; }
 
-  /// The panes in their order; behind them the controlled reference where there is one.
+  /// The panes in their order; behind them the controlled reference and its check, where there are.
   std::size_t lane_count() const { return lanes_.size(); }
   std::size_t pane_count() const { return comparison_.panes.size(); }
   const Lane& lane(std::size_t i) const { return *lanes_[i]; }
@@ -88,6 +88,9 @@ class LockStep {
   /// From the reference, at the last compare(); nullptr for the reference itself, for a pane that stopped,
   /// and where there is no reference or it has stopped.
   const Difference* difference(std::size_t pane) const;
+  /// Of the controlled reference from its check, likewise: what differences of the panes cannot be trusted
+  /// below. nullptr for another reference.
+  const Difference* floor() const { return floor_.present ? &floor_.difference : nullptr; }
   /// m, root of the mean of the squared RMS differences at all common times so far but the start; nothing for
   /// the reference itself or before the first.
   std::optional<double> rms_over_time(std::size_t pane) const;
@@ -109,6 +112,7 @@ class LockStep {
     std::int64_t times = 0, counted = 0;  ///< how many, and the index of the last
   };
 
+  void measure(Error& error, std::size_t lane, std::size_t against);
   void add_lane(const std::string& name, const std::string& title, const Scene& scene);
   void arrive(Lane& lane, std::int64_t index);
   void share_pull_strength();
@@ -118,6 +122,7 @@ class LockStep {
   std::int64_t last_index_ = 0;
   std::vector<std::unique_ptr<Lane>> lanes_;
   std::vector<Error> errors_;  ///< one of each pane
+  Error floor_;
 };
 
 /// `scene` with the step that a pane of these rows is run with: see step_dividing. Precondition: it has one.

@@ -11,7 +11,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds flush_interval{200};
 
-void gather(const LockStep& lockstep, std::vector<PaneSeries>& series) {
+void gather(const LockStep& lockstep, ComparisonRun& run) {
+  std::vector<PaneSeries>& series = run.series;
   const double time = lockstep.time_of(lockstep.index());
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Lane& lane = lockstep.lane(i);
@@ -23,6 +24,12 @@ void gather(const LockStep& lockstep, std::vector<PaneSeries>& series) {
       series[i].difference_time.push_back(time);
       series[i].rms.push_back(difference->rms);
     }
+  }
+  if (const Difference* floor = lockstep.floor()) {
+    run.floor_series.difference_time.push_back(time);
+    run.floor_series.rms.push_back(floor->rms);
+    run.floor = floor->rms;
+    run.largest_floor = std::max(run.largest_floor, floor->rms);
   }
 }
 
@@ -59,7 +66,7 @@ ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptio
   };
   const bool on_disk = !options.folder.empty();
   const auto add_row = [&] {
-    gather(lockstep, run.series);
+    gather(lockstep, run);
     return !on_disk || keep(recorder.add_row(lockstep));
   };
 

@@ -35,6 +35,9 @@ struct ComparisonRun {
   std::string reference;           ///< reference_text
   std::string reference_failure;   ///< not empty: the reference stopped, and why
   double reference_wall = 0;       ///< s, of a controlled reference
+  std::optional<double> floor;     ///< m, RMS at the end: see LockStep::floor
+  double largest_floor = 0;        ///< m, of all common times
+  PaneSeries floor_series;         ///< its rms
   int particles = 0, columns = 0;
   double simulated = 0;  ///< s, the last common time
   int threads = 1;

@@ -48,6 +48,7 @@ PaneResult result_of(const LockStep& lockstep, std::size_t pane) {
     result.rms = difference->rms;
     result.largest = difference->largest;
     result.particle = difference->particle;
+    result.below_floor = lockstep.floor() && difference->rms < lockstep.floor()->rms;
   }
   return result;
 }

@@ -23,6 +23,7 @@ struct PaneResult {
   double energy_error = 0;              ///< J, at the last common time
   std::optional<double> rms, largest;   ///< m, from the reference at the last common time
   int particle = 0;                     ///< that has the largest
+  bool below_floor = false;             ///< `rms` is less than the reference's own from its check
   std::optional<double> rms_over_time;  ///< m, over particles and common times; of a stopped pane until then
   int error_rank = 0, cost_rank = 0;    ///< from 1; equal values share one; 0: not ranked
 

@@ -42,7 +42,10 @@ void conclude(const LockStep& lockstep, ComparisonRun& run) {
   const auto reference = lockstep.reference_lane();
   if (!reference) return;
   const Lane& lane = lockstep.lane(*reference);
-  if (*reference >= lockstep.pane_count()) run.reference_wall = lane.wall;
+  if (*reference == lockstep.pane_count()) {
+    run.reference_wall = lane.wall;
+    run.check = lockstep.lane(*reference + 1).title;
+  }
   if (lane.divergence) run.reference_failure = describe(*lane.divergence);
 }
 

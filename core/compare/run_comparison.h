@@ -33,6 +33,7 @@ struct ComparisonRun {
   std::vector<PaneResult> panes;
   std::vector<PaneSeries> series;  ///< one of each pane
   std::string reference;           ///< reference_text
+  std::string check;               ///< what a controlled reference is checked by
   std::string reference_failure;   ///< not empty: the reference stopped, and why
   double reference_wall = 0;       ///< s, of a controlled reference
   std::optional<double> floor;     ///< m, RMS at the end: see LockStep::floor

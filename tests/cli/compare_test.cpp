@@ -78,7 +78,7 @@ TEST(Compare, GoesOnWithoutAPaneThatDiverges) {
   const TemporaryFolder folder;
   const CommandResult result =
       cli("compare explicit-implicit --set cloth.rows=9 --set cloth.columns=9 --set cloth.mass=0.02 "
-          "--set springs.structural=200 --duration 0.1 " +
+          "--duration 0.1 " +
           out(folder));
   EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
   const auto summary = nlohmann::json::parse(content_of(folder / "results/summary.json"));

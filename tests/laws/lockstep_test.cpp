@@ -101,6 +101,7 @@ TEST(AControlledReference, IsAsGoodAsItsCheckSays) {
   EXPECT_GT(lockstep.floor()->rms, 0);
   EXPECT_LT(lockstep.floor()->rms, 1e-7);
   EXPECT_LT(lockstep.difference(0)->rms, lockstep.floor()->rms);
+  EXPECT_TRUE(results_of(lockstep)[0].below_floor);
   EXPECT_LT(lockstep.difference(1)->rms, 2 * lockstep.floor()->rms);
 }
 

@@ -130,23 +130,26 @@ void add_table(const ComparisonRun& run, HtmlPage& page) {
                    {"Cost", Align::right},
                    {"By cost", Align::right},
                    {"Evaluations", Align::right},
-                   {"Largest strain", Align::right},
-                   {"Note"}},
+                   {"Largest strain", Align::right}},
                   {}};
   const auto metres = [](const PaneResult& pane, const std::optional<double>& value) {
     return value ? HtmlCell(html_number(*value) + " m") : HtmlCell(no_difference(pane));
   };
+  std::vector<HtmlText> notes;
   for (const std::size_t i : ranked(run.panes)) {
     const PaneResult& pane = run.panes[i];
+    if (const std::string note = note_of(pane); !note.empty())
+      notes.push_back(html_strong(pane.name) + ": " + note);
     table.rows.push_back(
         {{html_strong(pane.name), pane.title, html_number(pane.time_step) + " s", metres(pane, pane.rms),
           metres(pane, pane.largest), metres(pane, pane.rms_over_time), rank_or_dash(pane.error_rank),
           fmt::format("{:.3g}", pane.cost()), rank_or_dash(pane.cost_rank),
           fmt::format("{:.0f}", pane.evaluations_each_second()),
-          fmt::format("{:.4g} %", 100 * pane.max_strain), note_of(pane)},
+          fmt::format("{:.4g} %", 100 * pane.max_strain)},
          pane.divergence ? Verdict::bad : Verdict::none});
   }
   page.table(table);
+  if (!notes.empty()) page.list(notes);
   page.paragraph(
       "Cost: seconds of stepping for each simulated second. Evaluations: of the force, for each simulated "
       "second. Differences are distances of the same particles at the same time; RMS over all particles.");

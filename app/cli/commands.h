@@ -38,6 +38,19 @@ struct ExplainArguments {
 };
 int explain(const ExplainArguments& arguments);
 
+struct CompareArguments {
+  std::string file;   ///< or a built-in comparison
+  std::string scene;  ///< without a file: this scene, a pane for each of `methods`
+  std::vector<std::string> methods;
+  std::vector<std::string> settings;
+  std::optional<double> duration;  ///< s
+  std::string reference;           ///< empty: the comparison's own
+  std::string folder;
+  int threads = 1;
+  bool list = false, json = false;
+};
+int compare(const CompareArguments& arguments);
+
 struct StabilityArguments {
   std::string scene;
   std::vector<std::string> settings;
@@ -86,7 +99,7 @@ struct BenchArguments {
 };
 int bench(const BenchArguments& arguments);
 
-int schema();
+int schema(bool of_comparison);
 int parameters();
 
 }  // namespace clothlab::cli

@@ -43,17 +43,22 @@ std::string summary_text(const cloth::RunSummary& s, const std::string& folder) 
   return text;
 }
 
-LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings) {
+std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std::string>& settings) {
   std::vector<cloth::Override> overrides;
   for (const std::string& setting : settings) {
     const auto parsed = cloth::parse_override(setting);
     if (!parsed) {
       say(fmt::format("--set {}: must be PATH=VALUE, for example springs.structural=500", setting));
-      return {std::nullopt, bad_input};
+      return std::nullopt;
     }
     overrides.push_back(*parsed);
   }
+  return overrides;
+}
 
+LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings) {
+  const auto overrides = parse_settings(settings);
+  if (!overrides) return {std::nullopt, bad_input};
   std::string text;
   std::error_code error;
   const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name);
@@ -71,7 +76,7 @@ LoadedScene load_scene(const std::string& name, const std::vector<std::string>& 
         name));
     return {std::nullopt, io_failed};
   }
-  cloth::SceneReading reading = cloth::read_scene(text, name, overrides);
+  cloth::SceneReading reading = cloth::read_scene(text, name, *overrides);
   if (!reading.scene) return {std::nullopt, report(reading.problems)};
   return {std::move(reading.scene), done};
 }

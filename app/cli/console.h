@@ -8,6 +8,7 @@
 #include "io/run_folder.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
+#include "scene/scene_json.h"
 
 namespace clothlab::cli {
 
@@ -21,6 +22,9 @@ struct LoadedScene {
 
 /// `name` is a file or the name of a built-in scene; a file wins. `settings` are PATH=VALUE.
 LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings);
+
+/// `settings` are PATH=VALUE; nothing, and a message, if one is not.
+std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std::string>& settings);
 
 int report(const std::vector<cloth::Problem>& problems);
 int report(const cloth::IoError& error);

@@ -30,6 +30,8 @@ struct Arguments {
   cli::ReplayArguments replay;
   cli::ScenesArguments scenes;
   cli::ExplainArguments explain;
+  cli::CompareArguments compare;
+  bool comparison_schema = false;
   cli::StabilityArguments stability;
   cli::ExtremesArguments extremes;
   cli::ReproduceArguments reproduce;
@@ -51,6 +53,39 @@ void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
                     "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg and "
                     "report.html; made if missing");
   study->add_flag("--json", arguments.json, json_help);
+}
+
+void add_compare(CLI::App& app, cli::CompareArguments& arguments) {
+  CLI::App* compare = app.add_subcommand(
+      "compare",
+      "Two to four methods, steps or values on one scene, in lock step: differences and a ranking");
+  CLI::Option* file =
+      compare->add_option("comparison", arguments.file, "A .compare.json file or a built-in comparison");
+  CLI::Option* scene = compare->add_option("--scene", arguments.scene,
+                                           "Without a file: this scene, a pane for each of --methods");
+  CLI::Option* methods =
+      compare->add_option("--methods", arguments.methods, "Two to four methods, e.g. verlet,rk4")
+          ->delimiter(',')
+          ->allow_extra_args(false);
+  scene->needs(methods)->excludes(file);
+  methods->needs(scene);
+  compare->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
+  compare->add_option("--duration", arguments.duration, "Simulated time in s, instead of the scene's")
+      ->check(CLI::PositiveNumber);
+  compare->add_option("--reference", arguments.reference,
+                      "What differences are measured from: the name of a pane, controlled (the shared scene "
+                      "under error control) or none");
+  compare->add_option("--out", arguments.folder,
+                      "Folder for A.csv, B.csv, ..., compare.csv, comparison.json, summary.json, compare.svg "
+                      "and report.html; made if missing");
+  compare
+      ->add_option("--threads", arguments.threads,
+                   "Panes that step at the same time; with more than one, costs contain what they take from "
+                   "each other")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  compare->add_flag("--list", arguments.list, "List the built-in comparisons");
+  compare->add_flag("--json", arguments.json, json_help);
 }
 
 void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
@@ -175,12 +210,15 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   explain->add_option("--set", arguments.explain.settings, set_help)->allow_extra_args(false);
   explain->add_flag("--json", arguments.explain.json, json_help);
 
+  add_compare(app, arguments.compare);
   add_work_precision(app, arguments.work_precision);
   add_stability(app, arguments.stability);
   add_extremes(app, arguments.extremes);
   add_reproduce(app, arguments.reproduce);
   add_bench(app, arguments.bench);
-  app.add_subcommand("schema", "Print the JSON Schema of the scene file")->add_flag("--json", json_help);
+  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the scene file");
+  schema->add_flag("--comparison", arguments.comparison_schema, "Of the comparison file instead");
+  schema->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
 
@@ -204,11 +242,12 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("replay")) return cli::replay(arguments.replay);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
+  if (app.got_subcommand("compare")) return cli::compare(arguments.compare);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
   if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
   if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("work-precision")) return cli::work_precision(arguments.work_precision);
   if (app.got_subcommand("bench")) return cli::bench(arguments.bench);
   if (app.got_subcommand("parameters")) return cli::parameters();
-  return cli::schema();
+  return cli::schema(arguments.comparison_schema);
 }

@@ -35,8 +35,12 @@ SceneReading read_scene(const std::string& text, const std::string& place,
 /// Writes every value, defaults resolved, with numbers that read back to the same bits.
 std::string write_scene(const Scene& scene);
 
-/// JSON Schema (draft 7) of the scene file.
+/// One parameter's value as write_scene has it.
+std::string value_json(const ParameterValue& value);
+
+/// JSON Schema (draft 7) of the scene file, and of one parameter's value.
 std::string scene_schema();
+std::string value_schema_json(const ParameterInfo& info);
 
 /// 64-bit FNV-1a of write_scene, as 16 hexadecimal digits.
 std::string scene_hash(const Scene& scene);

@@ -96,6 +96,10 @@ json integrator_schema() {
 
 }  // namespace
 
+std::string value_schema_json(const ParameterInfo& info) {
+  return described(info).dump();
+}
+
 std::string scene_schema() {
   json properties{{"format", {{"const", scene_format}}}};
   json cloth = object_schema(cloth_fields());

@@ -108,6 +108,12 @@ std::string write_scene(const Scene& scene) {
   return out + "\n";
 }
 
+std::string value_json(const ParameterValue& value) {
+  std::string out;
+  print(std::visit(ToJson{}, value), 1, out);
+  return out;
+}
+
 std::string scene_hash(const Scene& scene) {
   FnvHash hash;
   hash.add(write_scene(scene));

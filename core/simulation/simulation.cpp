@@ -91,14 +91,13 @@ void Simulation::assemble() {
       .structural = system_.spring_count(SpringFamily::structural) > 0,
       .shear = system_.spring_count(SpringFamily::shear) > 0};
 
-  choose_pull_stiffness();
-  forces_->set_brush(brush_);
-  forces_->set_pull(pull_, pull_stiffness_, pull_damping_);
+  strongest_pull_ = find_strongest_pull();
+  apply_hand();
 }
 
 /// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit. A
 /// method without a limit takes the strongest hand.
-void Simulation::choose_pull_stiffness() {
+PullStrength Simulation::find_strongest_pull() const {
   const double mass = *std::min_element(system_.mass.begin(), system_.mass.end());
   const SpringMaterial material = material_of(scene_);
   const double omega = largest_frequency(scene_.cloth, material);
@@ -106,13 +105,26 @@ void Simulation::choose_pull_stiffness() {
   const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / time_step_ : 1 / time_step_;
   const double strongest =
       std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
-  if (stable_at_every_step(scene_.integrator.method)) {
-    pull_stiffness_ = strongest;
-    pull_damping_ = std::sqrt(strongest * mass);
-    return;
+  if (stable_at_every_step(scene_.integrator.method)) return {strongest, std::sqrt(strongest * mass)};
+  const double stiffness = std::clamp(0.5 * mass * (allowed * allowed - omega * omega), 0.0, strongest);
+  return {stiffness, std::min(std::sqrt(stiffness * mass), 0.1 * mass / time_step_)};
+}
+
+void Simulation::limit_pull(const std::optional<PullStrength>& most) {
+  if (most == most_pull_) return;
+  most_pull_ = most;
+  apply_hand();
+  integrator_->forget(Change::forces);
+}
+
+void Simulation::apply_hand() {
+  pull_strength_ = strongest_pull_;
+  if (most_pull_) {
+    pull_strength_.stiffness = std::min(pull_strength_.stiffness, most_pull_->stiffness);
+    pull_strength_.damping = std::min(pull_strength_.damping, most_pull_->damping);
   }
-  pull_stiffness_ = std::clamp(0.5 * mass * (allowed * allowed - omega * omega), 0.0, strongest);
-  pull_damping_ = std::min(std::sqrt(pull_stiffness_ * mass), 0.1 * mass / time_step_);
+  forces_->set_brush(brush_);
+  forces_->set_pull(pull_, pull_strength_.stiffness, pull_strength_.damping);
 }
 
 std::optional<Divergence> Simulation::step() {
@@ -251,7 +263,7 @@ void Simulation::set_brush(const std::optional<BrushGust>& brush) {
 void Simulation::set_pull(const std::optional<Pull>& pull) {
   pull_ = pull;
   if (pull) quantities_.pull = true;
-  forces_->set_pull(pull, pull_stiffness_, pull_damping_);
+  forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
   integrator_->forget(Change::forces);
 }
 

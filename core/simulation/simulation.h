@@ -51,6 +51,13 @@ struct Quantities {
   bool operator==(const Quantities&) const = default;
 };
 
+/// How strongly the hand holds a particle.
+struct PullStrength {
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+  bool operator==(const PullStrength&) const = default;
+};
+
 /// Enough to go on from here later, to the bit: what is not a function of the scene in force. Later steps may
 /// only cost something else, where a method fills a cache again.
 struct Checkpoint {
@@ -102,6 +109,11 @@ class Simulation {
   const std::optional<BrushGust>& brush() const { return brush_; }
   const std::optional<Pull>& pull() const { return pull_; }
 
+  /// The strongest hand that the method stands at its step; and no stronger than `most` from now on, so that
+  /// one hand can hold several simulations alike.
+  const PullStrength& strongest_pull() const { return strongest_pull_; }
+  void limit_pull(const std::optional<PullStrength>& most);
+
   const Scene& scene() const { return scene_; }
   const ClothSystem& system() const { return system_; }
   const ClothState& state() const { return state_; }
@@ -123,7 +135,8 @@ class Simulation {
  private:
   void assemble();
   void count_step(const IntegratorReport& report);
-  void choose_pull_stiffness();
+  PullStrength find_strongest_pull() const;
+  void apply_hand();
   void limit_start();
   void limit_deformation();
   void resolve_contact();
@@ -154,7 +167,8 @@ class Simulation {
   std::optional<UnreachableRate> unreachable_;
   std::optional<BrushGust> brush_;
   std::optional<Pull> pull_;
-  double pull_stiffness_ = 0, pull_damping_ = 0;
+  PullStrength strongest_pull_, pull_strength_;
+  std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;  ///< J, all springs at twice their length
 };
 

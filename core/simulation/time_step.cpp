@@ -23,6 +23,13 @@ std::optional<double> resolved_time_step(const Scene& scene) {
   return interval / std::ceil(interval / longest);
 }
 
+double step_dividing(double interval, double time_step) {
+  const double parts = interval / time_step;
+  const double whole = std::round(parts);
+  if (whole >= 1 && std::abs(parts - whole) <= whole_number_slack * whole) return time_step;
+  return interval / std::ceil(parts);
+}
+
 std::string no_stable_step_text(const Scene& scene) {
   return "integrator.time_step = \"auto\": " + scene.integrator.method +
          " has no stable time step for this scene: it amplifies every motion that is not damped, and the "

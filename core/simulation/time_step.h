@@ -16,6 +16,9 @@ inline constexpr double auto_fraction = 0.8;
 /// divides the record interval into whole steps. nullopt where the method has no stable step for the scene.
 std::optional<double> resolved_time_step(const Scene& scene);
 
+/// `time_step` where it divides `interval` into whole steps; else the longest shorter one that does. s
+double step_dividing(double interval, double time_step);
+
 /// Why `auto` has no answer for this scene, in words.
 std::string no_stable_step_text(const Scene& scene);
 

@@ -1,4 +1,4 @@
-// The JSON Schema of the format, checked by a validator that knows nothing of Clothlab.
+// The JSON Schemas of the formats, checked by a validator that knows nothing of Clothlab.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -7,16 +7,18 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "compare/builtin_comparisons.h"
+#include "compare/comparison_json.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_json.h"
 
 namespace cloth::test {
 namespace {
 
-class SceneSchema : public ::testing::Test {
+class SchemaTest : public ::testing::Test {
  protected:
-  SceneSchema() {
-    const auto document = nlohmann::json::parse(scene_schema());
+  explicit SchemaTest(const std::string& schema) {
+    const auto document = nlohmann::json::parse(schema);
     valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
     parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema_);
   }
@@ -29,6 +31,16 @@ class SceneSchema : public ::testing::Test {
 
  private:
   valijson::Schema schema_;
+};
+
+class SceneSchema : public SchemaTest {
+ protected:
+  SceneSchema() : SchemaTest(scene_schema()) {}
+};
+
+class ComparisonSchema : public SchemaTest {
+ protected:
+  ComparisonSchema() : SchemaTest(comparison_schema()) {}
 };
 
 TEST_F(SceneSchema, AcceptsEveryBuiltinScene) {
@@ -70,6 +82,32 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
                            R"({"cloth": {}, "duration": 0})"}) {
     EXPECT_FALSE(accepts(text)) << text;
     EXPECT_FALSE(read_scene(text, "name").scene) << text;
+  }
+}
+
+TEST_F(ComparisonSchema, AcceptsWhatIsBuiltInAndWhatIsWritten) {
+  for (const BuiltinComparison& builtin : builtin_comparisons()) {
+    EXPECT_TRUE(accepts(builtin.text)) << builtin.name;
+    EXPECT_TRUE(accepts(write_comparison(builtin_comparison(builtin.name)))) << builtin.name;
+  }
+  EXPECT_TRUE(accepts(R"({"scene": "ball", "panes": [{}, {"own": {"obstacles.0.radius": 0.2}}]})"));
+  EXPECT_TRUE(accepts(R"({"scene": "ball", "panes": [{}, {"own": {"integrator.time_step": "auto"}}]})"));
+}
+
+TEST_F(ComparisonSchema, RefusesWhatTheReaderRefuses) {
+  for (const char* text :
+       {R"({"panes": [{}, {}]})", R"({"scene": "flag"})", R"({"scene": "flagg", "panes": [{}, {}]})",
+        R"({"scene": {"cloth": {"rows": 1}}, "panes": [{}, {}]})", R"({"scene": "flag", "panes": [{}]})",
+        R"({"scene": "flag", "panes": [{}, {}, {}, {}, {}]})",
+        R"({"scene": "flag", "panes": [{}, {"name": "E"}]})",
+        R"({"scene": "flag", "panes": [{}, {"own": {"springs.shear": -1}}]})",
+        R"({"scene": "flag", "panes": [{}, {"own": {"springs.strength": 1}}]})",
+        R"({"scene": "flag", "panes": [{}, {"own": {"cloth.rows": 5}}]})",
+        R"({"scene": "flag", "panes": [{}, {"own": {"air": null}}]})",
+        R"({"scene": "flag", "panes": [{}, {}], "reference": "E"})",
+        R"({"scene": "flag", "panes": [{}, {}], "format": "clothlab/scene/1"})"}) {
+    EXPECT_FALSE(accepts(text)) << text;
+    EXPECT_FALSE(read_comparison(text, "name").comparison) << text;
   }
 }
 

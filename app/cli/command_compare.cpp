@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "compare/builtin_comparisons.h"
+#include "compare/comparison_json.h"
+#include "compare/comparison_report.h"
+#include "console.h"
+#include "integrators/registry.h"
+#include "io/run_folder.h"
+#include "progress.h"
+
+namespace clothlab::cli {
+namespace {
+
+struct LoadedComparison {
+  std::optional<cloth::Comparison> comparison;
+  int exit_code = done;
+};
+
+int list_comparisons(bool as_json) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::string text;
+  for (const cloth::BuiltinComparison& builtin : cloth::builtin_comparisons()) {
+    const cloth::Comparison comparison = cloth::builtin_comparison(builtin.name);
+    list.push_back({{"name", builtin.name}, {"title", comparison.title}});
+    text += fmt::format("{:<20} {}\n", builtin.name, comparison.title);
+  }
+  return print(as_json ? nlohmann::ordered_json{{"comparisons", list}}.dump(2) + "\n" : text);
+}
+
+std::vector<std::string> settings_of(const CompareArguments& arguments) {
+  std::vector<std::string> settings = arguments.settings;
+  if (arguments.duration) settings.push_back(fmt::format("duration={}", *arguments.duration));
+  return settings;
+}
+
+/// A file or a built-in comparison; a file wins.
+LoadedComparison load_file(const CompareArguments& arguments) {
+  const auto overrides = parse_settings(settings_of(arguments));
+  if (!overrides) return {std::nullopt, bad_input};
+  std::string text;
+  std::error_code error;
+  const cloth::BuiltinComparison* builtin = cloth::find_builtin_comparison(arguments.file);
+  const bool is_file = std::filesystem::exists(arguments.file, error) &&
+                       !(builtin && std::filesystem::is_directory(arguments.file, error));
+  if (is_file) {
+    if (const auto failure = cloth::read_text_file(arguments.file, text))
+      return {std::nullopt, report(*failure)};
+  } else if (builtin) {
+    text = builtin->text;
+  } else {
+    say(
+        fmt::format("{}: there is neither a file nor a built-in comparison of this name; 'clothlab-cli "
+                    "compare --list' lists the built-in ones",
+                    arguments.file));
+    return {std::nullopt, io_failed};
+  }
+  cloth::ComparisonReading reading = cloth::read_comparison(text, arguments.file, *overrides);
+  if (!reading.comparison) return {std::nullopt, report(reading.problems)};
+  return {std::move(reading.comparison), done};
+}
+
+/// `--scene S --methods a,b`: a pane for each method, nothing else differs.
+LoadedComparison from_methods(const CompareArguments& arguments) {
+  const auto& known = cloth::integrator_names();
+  for (const std::string& method : arguments.methods)
+    if (std::find(known.begin(), known.end(), method) == known.end()) {
+      say(fmt::format("--methods: \"{}\" is not a method; known are {}", method, fmt::join(known, ", ")));
+      return {std::nullopt, bad_input};
+    }
+  if (arguments.methods.size() < cloth::least_panes || arguments.methods.size() > cloth::most_panes) {
+    say(fmt::format("--methods: {} given; a comparison has {} to {}", arguments.methods.size(),
+                    cloth::least_panes, cloth::most_panes));
+    return {std::nullopt, bad_input};
+  }
+  const LoadedScene loaded = load_scene(arguments.scene, settings_of(arguments));
+  if (!loaded.scene) return {std::nullopt, loaded.exit_code};
+  cloth::Comparison comparison{.title = {}, .scene = *loaded.scene, .panes = {}};
+  comparison.panes = cloth::panes_for(arguments.methods);
+  return {std::move(comparison), done};
+}
+
+LoadedComparison load(const CompareArguments& arguments) {
+  if (arguments.file.empty() == arguments.scene.empty()) {
+    say("compare: give a comparison, or --scene SCENE --methods a,b");
+    return {std::nullopt, bad_input};
+  }
+  LoadedComparison loaded = arguments.file.empty() ? from_methods(arguments) : load_file(arguments);
+  if (!loaded.comparison) return loaded;
+  if (!arguments.reference.empty()) loaded.comparison->reference = arguments.reference;
+  std::vector<cloth::Problem> problems = cloth::find_problems(*loaded.comparison);
+  for (cloth::Problem& problem : problems)
+    problem.place = problem.path == "reference" ? "--reference" : arguments.file + arguments.scene;
+  if (!problems.empty()) return {std::nullopt, report(problems)};
+  return loaded;
+}
+
+std::string command_of(const CompareArguments& arguments) {
+  std::string text = "clothlab-cli compare";
+  if (!arguments.file.empty())
+    text += " " + arguments.file;
+  else
+    text += fmt::format(" --scene {} --methods {}", arguments.scene, fmt::join(arguments.methods, ","));
+  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  if (arguments.duration) text += fmt::format(" --duration {}", *arguments.duration);
+  if (!arguments.reference.empty()) text += " --reference " + arguments.reference;
+  return text + " --out DIR";
+}
+
+std::optional<cloth::IoError> write_reports(const CompareArguments& arguments,
+                                            const cloth::ComparisonRun& run) {
+  const std::filesystem::path folder = arguments.folder;
+  if (auto error = cloth::write_text_file(folder / "summary.json", cloth::comparison_summary(run)))
+    return error;
+  if (auto error = cloth::write_text_file(folder / "compare.svg", cloth::to_svg(cloth::main_plot(run))))
+    return error;
+  return cloth::write_text_file(folder / "report.html", cloth::comparison_page(run, command_of(arguments)));
+}
+
+int finish(const CompareArguments& arguments, const cloth::ComparisonRun& run) {
+  if (run.io_error) return report(*run.io_error);
+  if (!arguments.folder.empty())
+    if (const auto error = write_reports(arguments, run)) return report(*error);
+  if (!run.reference_failure.empty()) say("the reference stopped: " + run.reference_failure);
+  std::string text = arguments.json ? cloth::comparison_summary(run) : cloth::comparison_text(run);
+  if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
+  if (const int printed = print(text); printed != done) return printed;
+  if (run.stopped) return interrupted;
+  return run.has_result() ? done : diverged;
+}
+
+}  // namespace
+
+int compare(const CompareArguments& arguments) {
+  if (arguments.list) return list_comparisons(arguments.json);
+  const LoadedComparison loaded = load(arguments);
+  if (!loaded.comparison) return loaded.exit_code;
+  const cloth::Comparison& comparison = *loaded.comparison;
+
+  listen_for_stop();
+  cloth::ComparisonRun run;
+  {
+    Progress bar;
+    run = cloth::run_comparison(comparison, {.folder = arguments.folder,
+                                             .threads = arguments.threads,
+                                             .progress =
+                                                 [&](double time) {
+                                                   bar.show(time / comparison.scene.duration,
+                                                            fmt::format("t = {:.2f} s", time));
+                                                 },
+                                             .may_go_on = [] { return !stop_is_requested(); }});
+  }
+  return finish(arguments, run);
+}
+
+}  // namespace clothlab::cli

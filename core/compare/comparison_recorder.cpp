@@ -1,0 +1,135 @@
+#include "compare/comparison_recorder.h"
+
+#include <fmt/format.h>
+
+#include "compare/comparison_json.h"
+#include "io/run_folder.h"
+#include "simulation/recorder.h"
+
+namespace cloth {
+namespace {
+
+/// Whether the pane is measured against something.
+bool has_difference(const LockStep& lockstep, std::size_t pane) {
+  const auto reference = lockstep.reference_lane();
+  return reference && *reference != pane;
+}
+
+std::vector<Quantities> quantities_of(const LockStep& lockstep) {
+  std::vector<Quantities> all;
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i)
+    all.push_back(lockstep.lane(i).simulation->quantities());
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> comparison_columns(const LockStep& lockstep) {
+  std::vector<std::string> names{"time_s"};
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    const auto add = [&](const char* name) { names.push_back(lane.name + "_" + name); };
+    const Quantities& quantities = lane.simulation->quantities();
+    add("total_J");
+    add("energy_error_J");
+    add("max_strain");
+    if (quantities.limiter) add("limiter_excess");
+    if (quantities.contact) add("contacts");
+    add("step_time_us");
+    if (!has_difference(lockstep, i)) continue;
+    add("rms_difference_m");
+    add("largest_difference_m");
+  }
+  if (lockstep.comparison().reference == controlled_reference) names.emplace_back("reference_floor_m");
+  return names;
+}
+
+std::vector<std::string> comparison_row(const LockStep& lockstep) {
+  std::vector<std::string> row{csv_number(lockstep.time_of(lockstep.index()))};
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    const auto add = [&](bool there, const auto& text) { row.push_back(there ? text() : std::string()); };
+    const Measurement& m = lane.measurement;
+    const Quantities& quantities = lane.simulation->quantities();
+    const bool going = lane.going();
+    add(going, [&] { return csv_number(m.energy.total()); });
+    add(going, [&] { return csv_number(m.energy_error()); });
+    add(going, [&] { return csv_number(m.strain.maximum()); });
+    if (quantities.limiter) add(going, [&] { return csv_number(m.limiter_excess); });
+    if (quantities.contact) add(going, [&] { return std::to_string(m.contacts); });
+    add(going, [&] { return csv_number(1e6 * lane.step_time); });
+    if (!has_difference(lockstep, i)) continue;
+    const Difference* difference = lockstep.difference(i);
+    add(difference != nullptr, [&] { return csv_number(difference->rms); });
+    add(difference != nullptr, [&] { return csv_number(difference->largest); });
+  }
+  if (lockstep.comparison().reference == controlled_reference)
+    row.push_back(lockstep.floor() ? csv_number(lockstep.floor()->rms) : "");
+  return row;
+}
+
+std::optional<IoError> ComparisonRecorder::open(const std::filesystem::path& folder,
+                                                const LockStep& lockstep) {
+  folder_ = folder;
+  part_ = 0;
+  if (auto error = make_folder(folder)) return error;
+  if (auto error = write_text_file(folder / "comparison.json", write_comparison(as_run(lockstep))))
+    return error;
+  return open_part(lockstep);
+}
+
+std::optional<IoError> ComparisonRecorder::open_part(const LockStep& lockstep) {
+  if (auto error = close()) return error;
+  ++part_;
+  quantities_ = quantities_of(lockstep);
+  reference_ = lockstep.comparison().reference;
+  const auto path = [&](const std::string& name) {
+    return folder_ / (part_ == 1 ? name + ".csv" : fmt::format("{}-{}.csv", name, part_));
+  };
+  panes_.clear();
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
+    panes_.push_back(std::make_unique<CsvFile>());
+    if (auto error = panes_[i]->open(path(lockstep.lane(i).name), record_columns(quantities_[i])))
+      return error;
+  }
+  compare_ = std::make_unique<CsvFile>();
+  return compare_->open(path("compare"), comparison_columns(lockstep));
+}
+
+std::optional<IoError> ComparisonRecorder::add_row(const LockStep& lockstep) {
+  if (quantities_of(lockstep) != quantities_ || lockstep.comparison().reference != reference_)
+    if (auto error = open_part(lockstep)) return error;
+  for (std::size_t i = 0; i < panes_.size(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    if (!lane.going()) continue;
+    if (auto error = panes_[i]->add(record_row(lane.measurement, quantities_[i], lane.step_time)))
+      return error;
+  }
+  return compare_->add(comparison_row(lockstep));
+}
+
+std::optional<IoError> ComparisonRecorder::flush() {
+  for (const auto& pane : panes_)
+    if (auto error = pane->flush()) return error;
+  return compare_ ? compare_->flush() : std::nullopt;
+}
+
+std::optional<IoError> ComparisonRecorder::close() {
+  std::optional<IoError> first;
+  const auto end = [&](CsvFile& file) {
+    auto error = file.is_open() ? file.close() : std::nullopt;
+    if (error && !first) first = std::move(error);
+  };
+  for (const auto& pane : panes_) end(*pane);
+  if (compare_) end(*compare_);
+  return first;
+}
+
+Comparison as_run(const LockStep& lockstep) {
+  Comparison comparison = lockstep.comparison();
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i)
+    set_own(comparison.panes[i], "integrator.time_step", lockstep.lane(i).simulation->time_step());
+  return comparison;
+}
+
+}  // namespace cloth

@@ -1,0 +1,237 @@
+#include "compare/lockstep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "integrators/registry.h"
+#include "simulation/recorder.h"
+#include "simulation/time_step.h"
+
+namespace cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const char* const reference_name = "reference";
+const char* const check_name = "check";
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string notice_of(const Scene& asked, const Simulation& simulation) {
+  std::string notice;
+  if (const double step = resolved_time_step(asked).value(); step != simulation.time_step())
+    notice = fmt::format(
+        "a step of {:.6g} s does not divide the record interval of {:.6g} s: run with {:.6g} s instead", step,
+        asked.record.interval, simulation.time_step());
+  if (const auto& unreachable = simulation.unreachable_rate())
+    notice += (notice.empty() ? "" : "; ") + describe(*unreachable, simulation.system().columns);
+  return notice;
+}
+
+std::string controlled_title(const Scene& scene) {
+  const MethodFacts& facts = facts_of(scene.integrator.method);
+  if (facts.settings == MethodSettings::error_control)
+    return fmt::format("{}, tolerance {:.0e}", facts.title, scene.integrator.tolerance);
+  return fmt::format("{}, step {:.3g} s", facts.title, *scene.integrator.time_step);
+}
+
+}  // namespace
+
+Scene in_lock_step(const Scene& scene) {
+  Scene resolved = scene;
+  resolved.integrator.time_step = step_dividing(scene.record.interval, resolved_time_step(scene).value());
+  return resolved;
+}
+
+LockStep::LockStep(const Comparison& comparison)
+    : comparison_(comparison),
+      interval_(comparison.scene.record.interval),
+      last_index_(steps_to_cover(comparison.scene.duration, interval_)),
+      errors_(comparison.panes.size()) {
+  for (std::size_t i = 0; i < comparison_.panes.size(); ++i)
+    add_lane(comparison_.panes[i].name, title_of(comparison_, i), scene_of(comparison_, i));
+  if (comparison_.reference == controlled_reference) {
+    const ControlledScenes scenes = controlled_scenes(comparison_);
+    add_lane(reference_name, controlled_title(scenes.reference), scenes.reference);
+    add_lane(check_name, controlled_title(scenes.check), scenes.check);
+  }
+  share_pull_strength();
+  compare();
+}
+
+LockStep::~LockStep() = default;
+
+void LockStep::add_lane(const std::string& name, const std::string& title, const Scene& scene) {
+  auto lane = std::make_unique<Lane>();
+  lane->name = name;
+  lane->title = title;
+  lane->simulation = std::make_unique<Simulation>(in_lock_step(scene));
+  lane->steps_each_ = steps_per_row(interval_, lane->simulation->time_step());
+  lane->notice = notice_of(scene, *lane->simulation);
+  arrive(*lane, 0);
+  lanes_.push_back(std::move(lane));
+}
+
+std::optional<std::size_t> LockStep::reference_lane() const {
+  if (comparison_.reference == controlled_reference) return pane_count();
+  return find_pane(comparison_, comparison_.reference);
+}
+
+std::int64_t LockStep::index() const {
+  std::int64_t least = -1, most = 0;
+  for (const auto& lane : lanes_) {
+    most = std::max(most, lane->index);
+    if (lane->going()) least = least < 0 ? lane->index : std::min(least, lane->index);
+  }
+  return least < 0 ? most : least;
+}
+
+bool LockStep::all_stopped() const {
+  return std::none_of(lanes_.begin(), lanes_.begin() + static_cast<std::ptrdiff_t>(pane_count()),
+                      [](const auto& lane) { return lane->going(); });
+}
+
+void LockStep::arrive(Lane& lane, std::int64_t index) {
+  lane.index = index;
+  lane.state = lane.simulation->state();
+  lane.measurement = lane.simulation->measure();
+  lane.max_strain = std::max(lane.max_strain, lane.measurement.strain.maximum());
+  lane.limiter_excess = std::max(lane.limiter_excess, lane.measurement.limiter_excess);
+  lane.step_time = lane.steps_since_ > 0 ? lane.wall_since_ / static_cast<double>(lane.steps_since_) : 0;
+  lane.wall += lane.wall_since_;
+  lane.steps_since_ = 0;
+  lane.wall_since_ = 0;
+}
+
+bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::function<bool()>& may_go_on) {
+  Lane& lane = *lanes_[number];
+  while (lane.going() && lane.index < index) {
+    const std::int64_t next = lane.first_step_ + (lane.index + 1 - lane.first_index_) * lane.steps_each_;
+    const Clock::time_point start = Clock::now();
+    while (!lane.divergence && lane.simulation->state().step < next) {
+      if (may_go_on && !may_go_on()) break;
+      lane.divergence = lane.simulation->step();
+      ++lane.steps_since_;
+    }
+    lane.wall_since_ += seconds_since(start);
+    if (lane.divergence)
+      lane.wall += lane.wall_since_;
+    else if (lane.simulation->state().step < next)
+      return false;
+    else
+      arrive(lane, lane.index + 1);
+  }
+  return true;
+}
+
+void LockStep::measure(Error& error, std::size_t lane, std::size_t against) {
+  const Lane &one = *lanes_[lane], &other = *lanes_[against];
+  error.present = lane != against && one.going() && other.going();
+  if (!error.present) return;
+  assert(one.index == index() && other.index == index());
+  measure_difference(one.state.position, other.state.position, error.difference);
+  if (one.index <= error.counted) return;
+  error.squares += error.difference.rms * error.difference.rms;
+  ++error.times;
+  error.counted = one.index;
+}
+
+void LockStep::compare() {
+  const std::optional<std::size_t> against = reference_lane();
+  if (!against) return;
+  for (std::size_t i = 0; i < errors_.size(); ++i) measure(errors_[i], i, *against);
+  if (*against == pane_count()) measure(floor_, pane_count() + 1, pane_count());
+}
+
+bool LockStep::advance(std::int64_t index, const std::function<bool()>& may_go_on, int threads) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> whole{true};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < lanes_.size(); i = next++)
+      if (!advance_lane(i, index, may_go_on)) whole = false;
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int t = 1; t < std::min(threads, static_cast<int>(lanes_.size())); ++t) helpers.emplace_back(work);
+    work();
+  }
+  if (!whole) return false;
+  compare();
+  return true;
+}
+
+const Difference* LockStep::difference(std::size_t pane) const {
+  return errors_[pane].present ? &errors_[pane].difference : nullptr;
+}
+
+std::optional<double> LockStep::rms_over_time(std::size_t pane) const {
+  const Error& error = errors_[pane];
+  if (error.times == 0) return std::nullopt;
+  return std::sqrt(error.squares / static_cast<double>(error.times));
+}
+
+void LockStep::edit(const Comparison& edited) {
+  assert(acts_at_once(comparison_, edited));
+  if (edited.reference != comparison_.reference) {
+    for (Error& error : errors_) error = {};
+    floor_ = {};
+    lanes_.resize(pane_count());
+  }
+  comparison_ = edited;
+  last_index_ = steps_to_cover(comparison_.scene.duration, interval_);
+  std::vector<Scene> scenes;
+  for (std::size_t i = 0; i < pane_count(); ++i) scenes.push_back(scene_of(comparison_, i));
+  if (lanes_.size() > pane_count()) {
+    ControlledScenes controlled = controlled_scenes(comparison_);
+    scenes.push_back(std::move(controlled.reference));
+    scenes.push_back(std::move(controlled.check));
+  }
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    Lane& lane = *lanes_[i];
+    const Scene& scene = scenes[i];
+    lane.title = i < pane_count() ? title_of(comparison_, i) : controlled_title(scene);
+    if (!lane.going()) continue;
+    lane.simulation->edit(in_lock_step(scene));
+    lane.first_index_ = lane.index;
+    lane.first_step_ = lane.simulation->state().step;
+    lane.steps_each_ = steps_per_row(interval_, lane.simulation->time_step());
+    lane.notice = notice_of(scene, *lane.simulation);
+    lane.measurement = lane.simulation->measure();
+  }
+  share_pull_strength();
+  compare();
+}
+
+void LockStep::set_brush(const std::optional<BrushGust>& brush) {
+  for (const auto& lane : lanes_)
+    if (lane->going()) lane->simulation->set_brush(brush);
+}
+
+void LockStep::set_pull(const std::optional<Pull>& pull) {
+  for (const auto& lane : lanes_)
+    if (lane->going()) lane->simulation->set_pull(pull);
+}
+
+/// A pane beyond its method's limit could bear no hand at all; it must not take it from the others.
+void LockStep::share_pull_strength() {
+  std::optional<PullStrength> weakest;
+  for (const auto& lane : lanes_) {
+    const PullStrength& own = lane->simulation->strongest_pull();
+    if (!lane->going() || !(own.stiffness > 0)) continue;
+    if (!weakest) weakest = own;
+    weakest->stiffness = std::min(weakest->stiffness, own.stiffness);
+    weakest->damping = std::min(weakest->damping, own.damping);
+  }
+  for (const auto& lane : lanes_)
+    if (lane->going()) lane->simulation->limit_pull(weakest);
+}
+
+}  // namespace cloth

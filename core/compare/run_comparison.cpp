@@ -1,0 +1,96 @@
+#include "compare/run_comparison.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "compare/comparison_recorder.h"
+
+namespace cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds flush_interval{200};
+
+void gather(const LockStep& lockstep, ComparisonRun& run) {
+  std::vector<PaneSeries>& series = run.series;
+  const double time = lockstep.time_of(lockstep.index());
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    if (!lane.going()) continue;
+    series[i].time.push_back(time);
+    series[i].energy_error.push_back(lane.measurement.energy_error());
+    series[i].max_strain.push_back(lane.measurement.strain.maximum());
+    if (const Difference* difference = lockstep.difference(i)) {
+      series[i].difference_time.push_back(time);
+      series[i].rms.push_back(difference->rms);
+    }
+  }
+  if (const Difference* floor = lockstep.floor()) {
+    run.floor_series.difference_time.push_back(time);
+    run.floor_series.rms.push_back(floor->rms);
+    run.floor = floor->rms;
+    run.largest_floor = std::max(run.largest_floor, floor->rms);
+  }
+}
+
+void conclude(const LockStep& lockstep, ComparisonRun& run) {
+  run.panes = results_of(lockstep);
+  run.reference = reference_text(lockstep);
+  run.particles = lockstep.lane(0).simulation->system().size();
+  run.columns = lockstep.lane(0).simulation->system().columns;
+  run.simulated = lockstep.time_of(lockstep.index());
+  const auto reference = lockstep.reference_lane();
+  if (!reference) return;
+  const Lane& lane = lockstep.lane(*reference);
+  if (*reference == lockstep.pane_count()) {
+    run.reference_wall = lane.wall;
+    run.check = lockstep.lane(*reference + 1).title;
+  }
+  if (lane.divergence) run.reference_failure = describe(*lane.divergence);
+}
+
+}  // namespace
+
+bool ComparisonRun::has_result() const {
+  const bool any = std::any_of(panes.begin(), panes.end(), [](const PaneResult& p) { return !p.divergence; });
+  return any && reference_failure.empty();
+}
+
+ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptions& options) {
+  LockStep lockstep(comparison);
+  ComparisonRun run;
+  run.comparison = as_run(lockstep);
+  run.threads = options.threads;
+  run.series.resize(lockstep.pane_count());
+  ComparisonRecorder recorder;
+  const auto keep = [&](std::optional<IoError> error) {
+    if (error && !run.io_error) run.io_error = std::move(error);
+    return !run.io_error;
+  };
+  const bool on_disk = !options.folder.empty();
+  const auto add_row = [&] {
+    gather(lockstep, run);
+    return !on_disk || keep(recorder.add_row(lockstep));
+  };
+
+  bool going = (!on_disk || keep(recorder.open(options.folder, lockstep))) && add_row();
+  Clock::time_point flushed = Clock::now();
+  for (std::int64_t k = 1; going && k <= lockstep.last_index() && !lockstep.all_stopped(); ++k) {
+    if (!lockstep.advance(k, options.may_go_on, options.threads)) {
+      run.stopped = true;
+      break;
+    }
+    if (lockstep.all_stopped()) break;
+    going = add_row();
+    if (options.progress) options.progress(lockstep.time_of(k));
+    if (on_disk && Clock::now() - flushed > flush_interval) {
+      going = going && keep(recorder.flush());
+      flushed = Clock::now();
+    }
+  }
+  if (on_disk) keep(recorder.close());
+  conclude(lockstep, run);
+  return run;
+}
+
+}  // namespace cloth

@@ -152,13 +152,13 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
   glClearDepth(1);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE0);
-  glDisable(GL_DEPTH_TEST);
-  draw_background(theme);
-
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   if (has_cloth_) draw_cloth(shot, theme);
   draw_obstacles(shot, theme);
+  glDepthFunc(GL_LEQUAL);  // the background lies as far away as can be: what is covered is not painted
+  draw_background(theme);
+  glDepthFunc(GL_LESS);
 
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the view itself stays opaque

@@ -48,9 +48,6 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   /// The whole picture, without overlays. Sets all the state it needs and leaves depth test and blending off.
   void draw(const Shot& shot, const Theme& theme);
 
-  /// Waits until everything drawn so far is in the framebuffer.
-  void finish() { glFinish(); }
-
  private:
   bool build_programs(QString* problem);
   void make_textures(bool anisotropic);

@@ -1,17 +1,19 @@
-// clothlab-window-bench: what a drawing takes in the real window, its view 900 x 700 px. Prints figures; judges nothing,
-// ends with 0. Needs a display of some 1700 x 900 px (an Xvfb will do).
+// clothlab-window-bench: what a drawing takes in the real window, its view 900 x 700 px. Prints figures;
+// judges nothing, ends with 0. Needs a display of some 1700 x 900 px (an Xvfb will do).
 //
-//     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain] [--seconds 4] [--idle 5] [--json]
+//     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain] [--seconds 4] [--idle 5]
+//     [--json]
 //
 // For each size and look, while the simulation runs beside it as fast as it goes:
-//   drawings/s, interval   how often a new picture of the cloth is in the window, and the time between two (ms)
-//   drawing, upload        ms for a picture until it is complete, of which to give the cloth to OpenGL (medians)
-//   longest                ms of the window's longest event: what a click waits for at worst
+//   drawings/s, interval   how often a new picture of the cloth is in the window, and the time between two
+//   (ms) drawing, upload        ms for a picture until it is complete, of which to give the cloth to OpenGL
+//   (medians) longest                ms of the window's longest event: what a click waits for at worst
 // and with the simulation paused, while pictures made before are shown again one after another:
-//   cpu                    ms of processor time that a picture costs in all of the program's threads. It hardly depends on
+//   cpu                    ms of processor time that a picture costs in all of the program's threads. It
+//   hardly depends on
 //                          what else the machine does, so compare this one between two builds.
-// Then the charts, 900 px wide with a full history: ms to bring all three up to date, and to paint each. At last the
-// paused window: its share of one processor, and its events.
+// Then the charts, 900 px wide with a full history: ms to bring all three up to date, and to paint each. At
+// last the paused window: its share of one processor, and its events.
 #include <fmt/format.h>
 #include <time.h>
 
@@ -134,7 +136,8 @@ class WindowBench {
 
  private:
   struct Live {
-    double per_second, interval, interval_p95, drawing, upload, longest, steps_per_second, chart, chart_updates;
+    double per_second, interval, interval_p95, drawing, upload, longest, steps_per_second, chart,
+        chart_updates;
     EventKind longest_kind;
   };
   struct Replay {
@@ -174,8 +177,9 @@ class WindowBench {
             .longest = application_.longest(),
             .steps_per_second = window_.simulation().status().steps_per_second,
             .chart = median(application_.times({"clothlab::PlotView", QEvent::Paint})),
-            .chart_updates = static_cast<double>(application_.times({"clothlab::ChartPanel", QEvent::Timer}).size()) /
-                             options_.seconds,
+            .chart_updates =
+                static_cast<double>(application_.times({"clothlab::ChartPanel", QEvent::Timer}).size()) /
+                options_.seconds,
             .longest_kind = application_.longest_kind()};
   }
 
@@ -197,7 +201,8 @@ class WindowBench {
   void show_next() {
     if (drawings_.size() >= replayed_drawings) return finished_->quit();
     // Not from within the drawing before.
-    QTimer::singleShot(0, &window_, [this] { window_.view().showFrame(frames_[drawings_.size() % frames_.size()]); });
+    QTimer::singleShot(0, &window_,
+                       [this] { window_.view().showFrame(frames_[drawings_.size() % frames_.size()]); });
   }
 
   TimedApplication& application_;
@@ -230,7 +235,8 @@ json chart_row(TimedApplication& application) {
   std::vector<ChartSample> history;
   for (int i = 0; i < samples; ++i) history.push_back(sample_at(i));
   panel.append(history);
-  for (int i = 0; i < samples; ++i) panel.appendDrawTime(history[static_cast<std::size_t>(i)].time_s, 9 + i % 3);
+  for (int i = 0; i < samples; ++i)
+    panel.appendDrawTime(history[static_cast<std::size_t>(i)].time_s, 9 + i % 3);
   run_events(0.5);
   application.watch();
   for (int i = 0; i < updates; ++i) {
@@ -263,8 +269,8 @@ int run(TimedApplication& application, const Options& options) {
   result["view_px"] = {size.width(), size.height()};
   if (!options.json) {
     fmt::print("view {} x {} px, {}\n\n", size.width(), size.height(), result["renderer"].get<std::string>());
-    fmt::print("{:>4} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>12}\n", "side", "look", "drawings/s",
-               "interval", "p95", "drawing", "upload", "longest", "cpu", "sim steps/s");
+    fmt::print("{:>4} {:<10} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>12}\n", "side", "look",
+               "drawings/s", "interval", "p95", "drawing", "upload", "longest", "cpu", "sim steps/s");
   }
   for (const int side : options.sides)
     for (const std::string& look : options.looks) {
@@ -277,9 +283,10 @@ int run(TimedApplication& application, const Options& options) {
     fmt::print("{}\n", result.dump(2));
     return 0;
   }
-  fmt::print("\ncharts {} px wide, {} samples: {:.2f} ms to bring all three up to date, {:.2f} ms to paint each\n",
-             result["charts"]["width_px"].get<int>(), result["charts"]["samples"].get<int>(),
-             result["charts"]["update_ms"].get<double>(), result["charts"]["repaint_ms_each"].get<double>());
+  fmt::print(
+      "\ncharts {} px wide, {} samples: {:.2f} ms to bring all three up to date, {:.2f} ms to paint each\n",
+      result["charts"]["width_px"].get<int>(), result["charts"]["samples"].get<int>(),
+      result["charts"]["update_ms"].get<double>(), result["charts"]["repaint_ms_each"].get<double>());
   fmt::print("paused for {:.0f} s: {:.2f} % of a processor, {} events\n", options.idle,
              100 * result["idle"]["processor_share"].get<double>(), result["idle"]["events"].get<int>());
   return 0;

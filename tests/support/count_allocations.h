@@ -1,5 +1,5 @@
-// How often and for how much this thread has asked operator new. A program that links count_allocations.cpp has its
-// operator new replaced by one that counts.
+// How often and for how much this thread has asked operator new. A program that links count_allocations.cpp
+// has its operator new replaced by one that counts.
 #pragma once
 
 #include <cstddef>

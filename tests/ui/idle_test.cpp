@@ -31,8 +31,8 @@ class Quiet : public QObject {
 
 constexpr int quiet_ms = 2000, patience_ms = 60000;
 
-/// However slow the machine: sooner or later there are two seconds without an event. What goes on at some rate never
-/// gives them.
+/// However slow the machine: sooner or later there are two seconds without an event. What goes on at some
+/// rate never gives them.
 #define VERIFY_FALLS_QUIET()                                                                     \
   do {                                                                                           \
     Quiet quiet;                                                                                 \

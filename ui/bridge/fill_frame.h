@@ -6,8 +6,8 @@
 
 namespace clothlab {
 
-/// All but `topology`, which the worker counts. `normals` is scratch. Neither allocates when the cloth has the size of the
-/// last time.
+/// All but `topology`, which the worker counts. `normals` is scratch. Neither allocates when the cloth has
+/// the size of the last time.
 void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame);
 
 }  // namespace clothlab

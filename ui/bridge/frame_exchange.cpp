@@ -40,7 +40,8 @@ struct FrameExchange::SlotAllocator {
 
   SlotAllocator(std::shared_ptr<Pool> of, Slot* in) : pool(std::move(of)), slot(in) {}
   template <typename U>
-  SlotAllocator(const SlotAllocator<U>& other) : pool(other.pool), slot(other.slot) {}  // NOLINT: as allocators convert
+  SlotAllocator(const SlotAllocator<U>& other)
+      : pool(other.pool), slot(other.slot) {}  // NOLINT: as allocators convert
 
   T* allocate([[maybe_unused]] std::size_t objects) {
     static_assert(sizeof(T) <= Slot::count_size && alignof(T) <= alignof(std::max_align_t));

@@ -85,7 +85,8 @@ void TransportBar::showStatus(const WorkerStatus& status) {
   else
     rate_->setText(tr("Running"));
   recording_->setVisible(status.recording);
-  if (status.recording) recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
+  if (status.recording)
+    recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
 }
 
 }  // namespace clothlab

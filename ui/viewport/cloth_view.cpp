@@ -46,13 +46,14 @@ ClothView::ClothView(CanvasKind canvas, QWidget* parent) : QWidget(parent) {
     fail(gl_abilities().problem);
     return;
   }
-  canvas_ = make_canvas(canvas, this,
-                        {[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
-                         [this] { drawGl(); }, [this](QPainter& painter) { paintOverlays(painter); },
-                         [this](double milliseconds) {
-                           last_draw_ = milliseconds;
-                           Q_EMIT frameDrawn(milliseconds);
-                         }});
+  canvas_ = make_canvas(
+      canvas, this,
+      {[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
+       [this](bool quick) { drawGl(quick); }, [this](QPainter& painter) { paintOverlays(painter); },
+       [this](double milliseconds) {
+         last_draw_ = milliseconds;
+         Q_EMIT frameDrawn(milliseconds);
+       }});
 }
 
 ClothView::~ClothView() {
@@ -250,7 +251,7 @@ Shot ClothView::shot() const {
   return shot;
 }
 
-void ClothView::drawGl() {
+void ClothView::drawGl(bool quick) {
   if (!renderer_) return;
   advanceTime();
   last_upload_ = 0;
@@ -262,7 +263,9 @@ void ClothView::drawGl() {
     last_upload_ = 1e-6 * static_cast<double>(timer.nsecsElapsed());
     frame_uploaded_ = true;
   }
-  renderer_->draw(shot(), theme());
+  Shot seen = shot();
+  seen.quick = quick;
+  renderer_->draw(seen, theme());
 }
 
 void ClothView::paintOverlays(QPainter& painter) {

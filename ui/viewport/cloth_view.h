@@ -111,7 +111,7 @@ class ClothView : public QWidget {
 
   void initialiseGl();
   void resizeGl(int width, int height);
-  void drawGl();
+  void drawGl(bool quick);
   void redraw();
   void repaintOver();
   void fail(const QString& reason);

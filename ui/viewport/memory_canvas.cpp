@@ -81,7 +81,7 @@ void MemoryCanvas::drawPicture(Quality quality) {
   stale_ = false;  // before drawing, which may ask for the next picture
   (smooth ? multisampled_ : plain_)->bind();
   context_->functions()->glViewport(0, 0, picture_.width(), picture_.height());
-  callbacks_.draw();
+  callbacks_.draw(!smooth);
   if (smooth) {
     QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
     plain_->bind();

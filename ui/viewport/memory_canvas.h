@@ -13,7 +13,7 @@ namespace clothlab {
 
 class MemoryCanvas : public QWidget, public GlCanvas {
  public:
-  static constexpr int samples = 4;        ///< of the smooth picture
+  static constexpr int samples = 4;         ///< of the smooth picture
   static constexpr int rest_time_ms = 150;  ///< without a change, until the picture is made smooth
 
   MemoryCanvas(QWidget* parent, Callbacks callbacks);
@@ -48,8 +48,8 @@ class MemoryCanvas : public QWidget, public GlCanvas {
   bool top_row_first_ = false;  // the driver can read pictures that way round
 
   QImage picture_;
-  bool stale_ = true;   // the scene has changed since the picture
-  QTimer rest_timer_;   // since the last change
+  bool stale_ = true;  // the scene has changed since the picture
+  QTimer rest_timer_;  // since the last change
 };
 
 }  // namespace clothlab

@@ -12,11 +12,12 @@ WindowCanvas::WindowCanvas(QWidget* parent, Callbacks callbacks)
   setAttribute(Qt::WA_TransparentForMouseEvents);
 }
 
-/// A graphics card is not waited for, since waiting would slow it: the time is that of handing the picture over.
+/// A graphics card is not waited for, since waiting would slow it: the time is that of handing the picture
+/// over.
 void WindowCanvas::paintGL() {
   QElapsedTimer timer;
   timer.start();
-  callbacks_.draw();
+  callbacks_.draw(false);
   {
     QPainter painter(this);
     callbacks_.paint_over(painter);

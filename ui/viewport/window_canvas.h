@@ -1,6 +1,6 @@
-// The canvas that a graphics card draws on. It is a widget of its own, inside the view, because in Qt 6.4 any window
-// that contains a QOpenGLWidget crashes on a display without OpenGL, whether that is ever painted or not; so one must
-// only be made where there is OpenGL.
+// The canvas that a graphics card draws on. It is a widget of its own, inside the view, because in Qt 6.4 any
+// window that contains a QOpenGLWidget crashes on a display without OpenGL, whether that is ever painted or
+// not; so one must only be made where there is OpenGL.
 #pragma once
 
 #include <QElapsedTimer>

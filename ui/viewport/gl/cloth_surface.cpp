@@ -31,8 +31,8 @@ void ClothSurface::upload(const ClothFrame& frame) {
 void ClothSurface::upload_moving(const ClothFrame& frame) {
   gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[moving]);
   // Orphaned: the driver may still draw from the old memory and need not be waited for.
-  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(frame.positions) + bytes(frame.normals) + bytes(frame.strain), nullptr,
-                   GL_STREAM_DRAW);
+  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(frame.positions) + bytes(frame.normals) + bytes(frame.strain),
+                   nullptr, GL_STREAM_DRAW);
   GLintptr at = 0;
   for (const std::vector<float>* values : {&frame.positions, &frame.normals, &frame.strain}) {
     gl_.glBufferSubData(GL_ARRAY_BUFFER, at, bytes(*values), values->data());
@@ -48,7 +48,8 @@ void ClothSurface::lay_out_attributes(std::size_t particles) {
     GLint components;
     std::size_t floats_before;
   };
-  const Attribute attributes[] = {{moving, 3, 0}, {moving, 3, 3 * particles}, {moving, 1, 6 * particles}, {cells, 2, 0}};
+  const Attribute attributes[] = {
+      {moving, 3, 0}, {moving, 3, 3 * particles}, {moving, 1, 6 * particles}, {cells, 2, 0}};
   gl_.glBindVertexArray(vertex_array_);
   for (GLuint i = 0; i < std::size(attributes); ++i) {
     gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[attributes[i].buffer]);

@@ -16,8 +16,8 @@ class ClothSurface {
   ClothSurface(const ClothSurface&) = delete;
   ClothSurface& operator=(const ClothSurface&) = delete;
 
-  /// Positions, normals and strain always, into one buffer; cells and indices only when the topology has changed, and
-  /// pins when they have. Allocates only for those.
+  /// Positions, normals and strain always, into one buffer; cells and indices only when the topology has
+  /// changed, and pins when they have. Allocates only for those.
   void upload(const ClothFrame& frame);
   void draw_triangles();
   void draw_pinned_points();

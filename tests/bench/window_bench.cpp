@@ -1,19 +1,20 @@
 // clothlab-window-bench: what a drawing takes in the real window, its view 900 x 700 px. Prints figures;
 // judges nothing, ends with 0. Needs a display of some 1700 x 900 px (an Xvfb will do).
 //
-//     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain] [--seconds 4] [--idle 5]
-//     [--json]
+//     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain]
+//                           [--seconds 4] [--idle 5] [--json]
 //
 // For each size and look, while the simulation runs beside it as fast as it goes:
-//   drawings/s, interval   how often a new picture of the cloth is in the window, and the time between two
-//   (ms) drawing, upload        ms for a picture until it is complete, of which to give the cloth to OpenGL
-//   (medians) longest                ms of the window's longest event: what a click waits for at worst
+//   drawings/s  how often a new picture of the cloth is in the window
+//   interval    ms between two pictures: median, and 95th percentile (p95)
+//   drawing     ms until a picture is complete: median
+//   upload      ms of that for giving a new frame to OpenGL: median
+//   longest     ms of the window's longest event: what a click waits for at worst
 // and with the simulation paused, while pictures made before are shown again one after another:
-//   cpu                    ms of processor time that a picture costs in all of the program's threads. It
-//   hardly depends on
-//                          what else the machine does, so compare this one between two builds.
-// Then the charts, 900 px wide with a full history: ms to bring all three up to date, and to paint each. At
-// last the paused window: its share of one processor, and its events.
+//   cpu         ms of processor time for a picture in all of the program's threads. It hardly depends on
+//               what else the machine does: the figure to compare between two builds.
+// Then the charts, 900 px wide with a full history: ms of processor time to bring all three up to date, and
+// to paint each. At last the paused window: its share of one processor, and its events.
 #include <fmt/format.h>
 #include <time.h>
 
@@ -81,7 +82,8 @@ class WindowBench {
     window_.show();
     QObject::connect(&window_.view(), &ClothView::frameDrawn, &window_, [this](double milliseconds) {
       drawings_.push_back(milliseconds);
-      uploads_.push_back(window_.view().lastUploadMilliseconds());
+      if (const double upload = window_.view().lastUploadMilliseconds(); upload > 0)
+        uploads_.push_back(upload);
       ends_.push_back(1e-6 * static_cast<double>(clock_.nsecsElapsed()));
       if (replaying_) show_next();
     });
@@ -129,7 +131,7 @@ class WindowBench {
     for (const auto& [kind, times] : application_.times()) events += times.size();
     return {{"seconds", options_.idle},
             {"processor_share", used / options_.idle},
-            {"events", events - 1}};  // the timer that ends it
+            {"events", events - std::min<std::size_t>(events, 1)}};  // not the timer that ends it
   }
 
   QSize size_of_view() const { return const_cast<MainWindow&>(window_).view().size(); }

@@ -1,13 +1,13 @@
-// The surface inside the view that its OpenGL picture appears on. There are two, because what is cheap
-// differs:
+// The surface inside the view that its OpenGL picture appears on. There are two, since what is cheap differs:
 //
 //   window  A graphics card draws into the window itself (QOpenGLWidget).
-//   memory  Where the processor draws, a window that contains a QOpenGLWidget is slow as a whole: with every
-//   change of
-//           any label all its pixels go through OpenGL again. So the picture is drawn into memory and put
-//           into the window like any other widget's. It is kept, too: what lies over it changes without
-//           drawing it again. And as multisampling costs a third of a frame there, a running cloth is drawn
-//           without and quickly, and once properly when it rests.
+//   memory  For a processor that draws. A window that contains a QOpenGLWidget is slow there as a whole: with
+//           any label's change all its pixels go through OpenGL again. So the picture is drawn into memory
+//           and put into the window like any other widget's. It is kept, too: what lies over it changes
+//           without drawing it again. And as multisampling costs a third of a frame there, a running cloth
+//           is drawn without and quickly, and once properly when it rests.
+//
+// Either is a child of the view and shows the same picture.
 #pragma once
 
 #include <QImage>
@@ -28,7 +28,7 @@ CanvasKind suitable_canvas();
 class GlCanvas {
  public:
   struct Callbacks {
-    std::function<void()> initialise;                    ///< current, as for `draw`; no context: it failed
+    std::function<void()> initialise;                    ///< with a current context, or none: it failed
     std::function<void(int width, int height)> resized;  ///< device-independent px
     std::function<void(bool quick)> draw;                ///< into the framebuffer bound
     std::function<void(QPainter& painter)> paint_over;   ///< what lies over the picture

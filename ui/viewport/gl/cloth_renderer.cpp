@@ -250,7 +250,7 @@ void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
 }
 
 void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
-  constexpr double small_cell = 8;  // px
+  constexpr double small_cell = 16;  // px
   const bool quick = shot.quick && frugal_ && cell_on_screen(shot) < small_cell;
   QOpenGLShaderProgram& cloth = (quick ? quick_cloth_ : cloth_)[static_cast<std::size_t>(shot.mode)];
   cloth.bind();

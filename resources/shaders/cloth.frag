@@ -1,7 +1,12 @@
 // The cloth, in one of three looks, each compiled by itself: LOOK is 0 woven, 1 wireframe, 2 strain colours. (A processor
-// that stands in for a graphics card would run all the branches of a condition for every pixel.)
+// that stands in for a graphics card would run all the branches of a condition for every pixel.) With QUICK the light
+// comes from the vertices and is a factor to sRGB colours; see cloth.vert.
+#ifdef QUICK
+in vec3 face_light, back_light;
+#else
 in vec3 world;
 in vec3 world_normal;
+#endif
 in float particle_strain;
 in vec2 grid;
 
@@ -9,24 +14,21 @@ out vec4 colour;
 
 #if LOOK == 0
 
-uniform sampler2D weave;
+uniform sampler2D weave;  // linear when sampled; with QUICK as it is stored, sRGB
 uniform vec2 tiles_per_cell;
 
-vec3 seen(vec3 n) {
-  vec3 albedo = texture(weave, grid * tiles_per_cell).rgb;
-  // The back of a cloth is a little duller and cooler than its face.
-  if (!gl_FrontFacing) albedo *= vec3(0.80, 0.84, 0.90);
-  return lit(albedo, n, world, 0.15, 0.20, 0.05);
+vec3 albedo() {
+  return texture(weave, grid * tiles_per_cell).rgb;
 }
 
 #elif LOOK == 1
 
 uniform vec2 last_cell;      // columns - 1, rows - 1
 uniform float line_width;    // px
-uniform vec3 sheet_colour;   // linear
-uniform vec3 thread_colour;  // linear
+uniform vec3 sheet_colour;   // linear; with QUICK the square of sRGB
+uniform vec3 thread_colour;  // likewise
 
-vec3 seen(vec3 n) {
+vec3 albedo() {
   vec2 per_pixel = max(fwidth(grid), vec2(1e-6));  // cells per pixel
   vec2 to_line = abs(fract(grid - 0.5) - 0.5) / per_pixel;
   vec2 to_hem = min(grid, last_cell - grid) / per_pixel;
@@ -37,26 +39,44 @@ vec3 seen(vec3 n) {
   vec2 mean = min(line_width * per_pixel, 1.0);
   line = mix(line, mean, smoothstep(0.22, 0.5, per_pixel));
   float cover = 1.0 - (1.0 - line.x) * (1.0 - line.y);
-  vec3 sheet = gl_FrontFacing ? sheet_colour : 0.82 * sheet_colour;
-  return lit(mix(sheet, thread_colour, cover), n, world, 0.35, 0.1, 0.02);
+  vec3 mixed = mix(sheet_colour, thread_colour, cover);
+#ifdef QUICK
+  return sqrt(mixed);
+#else
+  return mixed;
+#endif
 }
 
 #else
 
-uniform sampler2D strain_palette;  // one row, sRGB
+uniform sampler2D strain_palette;  // one row; linear when sampled; with QUICK as it is stored, sRGB
 uniform float strain_maximum;
 
-vec3 seen(vec3 n) {
+vec3 albedo() {
   float fraction = clamp(particle_strain / strain_maximum, 0.0, 1.0);
-  vec3 albedo = texture(strain_palette, vec2((fraction * 255.0 + 0.5) / 256.0, 0.5)).rgb;
-  // Form is told by a little shading only: colours must stay readable against the bar.
-  float shade = 0.78 + 0.22 * clamp(0.55 + 0.6 * dot(n, key_direction), 0.0, 1.0);
-  return albedo * shade;
+  return texture(strain_palette, vec2((fraction * 255.0 + 0.5) / 256.0, 0.5)).rgb;
 }
 
 #endif
 
+#ifdef QUICK
+
+void main() {
+  colour = vec4(albedo() * (gl_FrontFacing ? face_light : back_light), 1.0);
+}
+
+#else
+
 void main() {
   vec3 n = normalize(gl_FrontFacing ? world_normal : -world_normal);
-  colour = vec4(encode_srgb(seen(n)), 1.0);
+#if LOOK == 0
+  vec3 seen = lit(gl_FrontFacing ? albedo() : back_of_cloth * albedo(), n, world, 0.15, 0.20, 0.05);
+#elif LOOK == 1
+  vec3 seen = lit(gl_FrontFacing ? albedo() : back_of_sheet * albedo(), n, world, 0.35, 0.1, 0.02);
+#else
+  vec3 seen = albedo() * strain_shade(n);
+#endif
+  colour = vec4(encode_srgb(seen), 1.0);
 }
+
+#endif

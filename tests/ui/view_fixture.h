@@ -29,10 +29,12 @@ inline std::shared_ptr<ClothFrame> flat_cloth(std::uint64_t topology = 1, int n 
       const float u = static_cast<float>(c) / static_cast<float>(n - 1),
                   v = static_cast<float>(r) / static_cast<float>(n - 1);
       frame->positions.insert(frame->positions.end(), {u - 0.5F, 1 - v, 0});
+      frame->normals.insert(frame->normals.end(), {0, 0, 1});
       frame->strain.push_back(0.2F * u);
       frame->pinned.push_back(r == 0 && c == 0);
     }
   }
+  frame->largest_strain = 0.2F;
   return frame;
 }
 

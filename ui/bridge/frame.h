@@ -13,7 +13,9 @@ struct ClothFrame {
   std::uint64_t topology = 0;  ///< changes when rows, columns or a new start change the mesh
   int rows = 0, columns = 0;
   std::vector<float> positions;      ///< m; x y z of particle 0, of particle 1, ... (row-major)
+  std::vector<float> normals;        ///< like positions; along the sum of the neighbouring triangles' areas
   std::vector<float> strain;         ///< per particle: largest |d|/L - 1 of its structural and shear springs
+  float largest_strain = 0;          ///< of `strain`, at least 0
   std::vector<std::uint8_t> pinned;  ///< per particle: 1 where pinned
   std::vector<cloth::Obstacle> obstacles;
   double deformation_rate = -1;  ///< negative: the scene has none

@@ -1,24 +1,62 @@
 #include "bridge/frame_exchange.h"
 
+#include <cassert>
+#include <cstddef>
+#include <new>
+
 namespace clothlab {
+
+/// A frame and room for the reference count of whoever holds it.
+struct FrameExchange::Slot {
+  static constexpr std::size_t count_size = 128;  // bytes; checked at compile time below
+  ClothFrame frame;
+  alignas(std::max_align_t) std::byte count[count_size];
+};
+
+/// Slots are given back when their count is, which a shared_ptr does last of all.
+struct FrameExchange::Pool {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Slot>> idle;
+
+  std::unique_ptr<Slot> take() {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return std::make_unique<Slot>();
+    std::unique_ptr<Slot> slot = std::move(idle.back());
+    idle.pop_back();
+    return slot;
+  }
+  void give_back(std::unique_ptr<Slot> slot) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(slot));
+  }
+};
+
+/// Puts the one object that a shared_ptr allocates, its count, into the slot.
+template <typename T>
+struct FrameExchange::SlotAllocator {
+  using value_type = T;
+  std::shared_ptr<Pool> pool;
+  Slot* slot;
+
+  SlotAllocator(std::shared_ptr<Pool> of, Slot* in) : pool(std::move(of)), slot(in) {}
+  template <typename U>
+  SlotAllocator(const SlotAllocator<U>& other)
+      : pool(other.pool), slot(other.slot) {}  // NOLINT: as allocators convert
+
+  T* allocate([[maybe_unused]] std::size_t objects) {
+    static_assert(sizeof(T) <= Slot::count_size && alignof(T) <= alignof(std::max_align_t));
+    assert(objects == 1);
+    return reinterpret_cast<T*>(slot->count);
+  }
+  void deallocate(T*, std::size_t) { pool->give_back(std::unique_ptr<Slot>(slot)); }
+  bool operator==(const SlotAllocator&) const = default;
+};
 
 FrameExchange::FrameExchange() : pool_(std::make_shared<Pool>()) {}
 
 std::shared_ptr<ClothFrame> FrameExchange::blank() {
-  std::unique_ptr<ClothFrame> frame;
-  {
-    const std::lock_guard lock(pool_->mutex);
-    if (!pool_->idle.empty()) {
-      frame = std::move(pool_->idle.back());
-      pool_->idle.pop_back();
-    }
-  }
-  if (!frame) frame = std::make_unique<ClothFrame>();
-  return {frame.release(), [pool = pool_](ClothFrame* used) {
-            std::unique_ptr<ClothFrame> back(used);
-            const std::lock_guard lock(pool->mutex);
-            pool->idle.push_back(std::move(back));
-          }};
+  Slot* slot = pool_->take().release();  // the allocator gives it back
+  return {&slot->frame, [](ClothFrame*) {}, SlotAllocator<ClothFrame>(pool_, slot)};
 }
 
 void FrameExchange::publish(std::shared_ptr<const ClothFrame> frame) {

@@ -1,5 +1,5 @@
 // Frames from the worker to the window: newest wins, and the memory of a frame that nobody looks at any more
-// is used again.
+// is used again, its reference count included: once a few frames have gone round, none allocates.
 #pragma once
 
 #include <memory>
@@ -23,10 +23,11 @@ class FrameExchange {
   std::shared_ptr<const ClothFrame> take();
 
  private:
-  struct Pool {
-    std::mutex mutex;
-    std::vector<std::unique_ptr<ClothFrame>> idle;
-  };
+  struct Slot;
+  struct Pool;
+  template <typename T>
+  struct SlotAllocator;
+
   std::shared_ptr<Pool> pool_;  ///< shared with the frames: one may outlive the exchange
   std::mutex mutex_;
   std::shared_ptr<const ClothFrame> newest_;

@@ -4,9 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-
-#include "measure/strain.h"
+#include "bridge/fill_frame.h"
 #include "scene/scene_checks.h"
 #include "simulation/time_step.h"
 
@@ -332,26 +330,9 @@ void SimulationWorker::end_recording() {
 
 void SimulationWorker::publish_frame() {
   if (!simulation_) return;
-  const cloth::ClothSystem& system = simulation_->system();
-  const cloth::Vec3Field& position = simulation_->state().position;
   const auto frame = frames_.blank();
   frame->topology = topology_;
-  frame->rows = system.rows;
-  frame->columns = system.columns;
-  frame->positions.resize(3 * position.size());
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    frame->positions[3 * i] = static_cast<float>(position.x()[i]);
-    frame->positions[3 * i + 1] = static_cast<float>(position.y()[i]);
-    frame->positions[3 * i + 2] = static_cast<float>(position.z()[i]);
-  }
-  frame->strain.resize(position.size());
-  cloth::particle_strain(system, position, frame->strain);
-  frame->pinned = system.pinned;
-  frame->obstacles = simulation_->scene().obstacles;
-  const auto& deformation = simulation_->scene().deformation;
-  frame->deformation_rate = simulation_->quantities().limiter ? deformation->rate : -1;
-  frame->time = simulation_->time();
-  frame->step = simulation_->state().step;
+  fill_frame(*simulation_, normals_, *frame);
   frames_.publish(frame);
   last_frame_ = Clock::now();
 }

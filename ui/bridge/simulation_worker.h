@@ -143,6 +143,7 @@ class SimulationWorker {
   WorkerPace pace_;
   RateMeter meter_;
   std::uint64_t topology_ = 0;
+  cloth::Vec3Field normals_;                 ///< scratch
   std::optional<ChartSample> first_sample_;  ///< held back until there is a second one: one point is no curve
   double wall_since_row_ = 0;                ///< s
   std::int64_t steps_since_row_ = 0;

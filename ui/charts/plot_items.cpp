@@ -54,22 +54,47 @@ QPolygonF without_needless_points(const QPolygonF& points) {
   return kept;
 }
 
-/// A long zigzag as one path is slow to paint, some 50 ms for a noisy curve: its self-crossings are all
-/// resolved. Line by line takes a fiftieth of that and differs only in the joins. A file gets one path all
-/// the same.
+/// A curve with more samples than pixels goes up and down within each column of pixels. As one path that is
+/// slow to paint, some 50 ms for a noisy curve, since its self-crossings are all resolved; line by line it
+/// takes a tenth of that; and with the steep lines filled as upright bars of whole pixels a tenth again, for
+/// hardly another look.
+void paint_dense(QPainter& painter, const QPolygonF& piece) {
+  constexpr double widest_px = 1.5, least_height_px = 3;
+  const int width = std::max(1, qRound(painter.pen().widthF()));
+  QList<QLineF> lines;
+  QList<QRect> bars;
+  for (qsizetype i = 1; i < piece.size(); ++i) {
+    const QPointF from = piece[i - 1], to = piece[i];
+    const double low = std::min(from.y(), to.y()), high = std::max(from.y(), to.y());
+    if (std::abs(to.x() - from.x()) > widest_px || high - low < least_height_px) {
+      lines << QLineF(from, to);
+      continue;
+    }
+    const int left = static_cast<int>(std::floor((from.x() + to.x() - width) / 2 + 0.5));
+    const int top = static_cast<int>(std::floor(low)), bottom = static_cast<int>(std::ceil(high));
+    bars << QRect(left, top, width, bottom - top);
+  }
+  painter.drawLines(lines);
+  const QPen pen = painter.pen();
+  painter.setRenderHint(QPainter::Antialiasing, false);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(pen.color());
+  painter.drawRects(bars);
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(pen);
+  painter.setRenderHint(QPainter::Antialiasing);
+}
+
+/// A file gets one path all the same.
 void paint_piece(QPainter& painter, const QPolygonF& piece) {
   constexpr qsizetype long_piece = 128;
   const bool on_pixels = painter.paintEngine()->type() == QPaintEngine::Raster;
-  if (piece.size() == 1) {
+  if (piece.size() == 1)
     painter.drawPoint(piece.front());
-  } else if (on_pixels && piece.size() > long_piece) {
-    QList<QLineF> lines;
-    lines.reserve(piece.size());
-    for (qsizetype i = 1; i < piece.size(); ++i) lines << QLineF(piece[i - 1], piece[i]);
-    painter.drawLines(lines);
-  } else {
+  else if (on_pixels && piece.size() > long_piece)
+    paint_dense(painter, piece);
+  else
     painter.drawPolyline(piece);
-  }
 }
 
 QColor see_through(QColor colour, float alpha) {

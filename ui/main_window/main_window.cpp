@@ -192,8 +192,10 @@ void MainWindow::takeStableStep() {
 
 void MainWindow::followStatus(const WorkerStatus& status) {
   play_->setChecked(status.playing);
-  play_->setIcon(icon(status.playing ? "pause" : "play"));
-  play_->setText(status.playing ? tr("Pause") : tr("Play"));
+  if (status.playing != shown_status_.playing) {  // an action tells everybody, whether its icon is new or not
+    play_->setIcon(icon(status.playing ? "pause" : "play"));
+    play_->setText(status.playing ? tr("Pause") : tr("Play"));
+  }
   play_->setEnabled(status.refusal.empty());
   step_->setEnabled(status.refusal.empty());
   transport_->showStatus(status);
@@ -232,7 +234,8 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
 
 void MainWindow::followRecording(const WorkerStatus& status) {
   record_->setChecked(status.recording);
-  record_->setIcon(icon(status.recording ? "stop-record" : "record"));
+  if (status.recording != shown_status_.recording)
+    record_->setIcon(icon(status.recording ? "stop-record" : "record"));
   if (status.recording_error != shown_status_.recording_error && !status.recording_error.empty()) {
     notice_->show("recording", NoticeBar::Level::error,
                   tr("Recording stopped: %1. What was written before is valid.")

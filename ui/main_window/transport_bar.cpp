@@ -2,9 +2,7 @@
 
 #include <QAction>
 #include <QComboBox>
-#include <QFontDatabase>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QToolButton>
 #include <limits>
 
@@ -15,14 +13,6 @@ namespace clothlab {
 namespace {
 
 constexpr double as_fast_as_possible = std::numeric_limits<double>::infinity();
-
-/// Width that does not change while digits do.
-QLabel* number_label(const QString& widest, const QString& name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setMinimumWidth(label->fontMetrics().horizontalAdvance(widest));
-  return label;
-}
 
 QString grouped(double value) {
   const QString digits = QString::number(value, 'f', 0);
@@ -39,9 +29,9 @@ QString grouped(double value) {
 TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
     : QFrame(parent),
       speed_(new QComboBox(this)),
-      time_(number_label("000.000 s", "timeLabel", this)),
-      rate_(number_label("000 000 steps/s, 0.00x real time", "rateLabel", this)),
-      recording_(new QLabel(this)),
+      time_(new Reading("000.000 s", Reading::Look::bold, this)),
+      rate_(new Reading("000 000 steps/s, 0.00x real time", Reading::Look::muted, this)),
+      recording_(new Reading("000 000 rows", Reading::Look::plain, this)),
       gauge_(new StabilityGauge(this)) {
   setObjectName("transportBar");
   auto* row = new QHBoxLayout(this);
@@ -56,15 +46,10 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
   row->addSpacing(spacing);
   row->addWidget(speed_);
   row->addSpacing(spacing);
-  QFont bold = time_->font();
-  bold.setBold(true);
-  time_->setFont(bold);
   time_->setToolTip(tr("Simulated time"));
   row->addWidget(time_);
-  rate_->setProperty("muted", true);
   rate_->setToolTip(tr("Steps per second of the clock, and simulated seconds per second"));
   row->addWidget(rate_, 1);
-  recording_->setObjectName("recordingLabel");
   row->addWidget(recording_);
   row->addSpacing(spacing);
   row->addWidget(gauge_);
@@ -99,7 +84,9 @@ void TransportBar::showStatus(const WorkerStatus& status) {
                        .arg(status.real_time_factor, 0, 'f', 2));
   else
     rate_->setText(tr("Running"));
-  recording_->setText(status.recording ? tr("%1 rows").arg(status.recorded_rows) : QString());
+  recording_->setVisible(status.recording);
+  if (status.recording)
+    recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
 }
 
 }  // namespace clothlab

@@ -4,11 +4,11 @@
 #include <QFrame>
 
 #include "bridge/worker_status.h"
+#include "main_window/reading.h"
 #include "main_window/stability_gauge.h"
 
 class QAction;
 class QComboBox;
-class QLabel;
 
 namespace clothlab {
 
@@ -36,9 +36,9 @@ class TransportBar : public QFrame {
   void fillSpeeds();
 
   QComboBox* speed_;
-  QLabel* time_;
-  QLabel* rate_;
-  QLabel* recording_;
+  Reading* time_;
+  Reading* rate_;
+  Reading* recording_;
   StabilityGauge* gauge_;
 };
 

@@ -4,14 +4,13 @@
 #include <QLabel>
 #include <QOpenGLContext>
 #include <QPainter>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
 
 #include "theme/theme.h"
 #include "viewport/gl/cloth_renderer.h"
 #include "viewport/gl/gl_probe.h"
-#include "viewport/gl/resting_picture.h"
-#include "viewport/gl_canvas.h"
 
 // Outside any namespace, as Qt's macro wants it: a static library's resources are linked only if something
 // asks.
@@ -25,7 +24,8 @@ namespace {
 bool sizes_agree(const ClothFrame& frame) {
   if (frame.rows < 0 || frame.columns < 0) return false;
   const std::size_t count = static_cast<std::size_t>(frame.rows) * static_cast<std::size_t>(frame.columns);
-  return frame.positions.size() == 3 * count && frame.strain.size() == count && frame.pinned.size() == count;
+  return frame.positions.size() == 3 * count && frame.normals.size() == 3 * count &&
+         frame.strain.size() == count && frame.pinned.size() == count;
 }
 
 bool has_cloth(const std::shared_ptr<const ClothFrame>& frame) {
@@ -34,26 +34,26 @@ bool has_cloth(const std::shared_ptr<const ClothFrame>& frame) {
 
 }  // namespace
 
-ClothView::ClothView(QWidget* parent) : QWidget(parent) {
+ClothView::ClothView(QWidget* parent) : ClothView(suitable_canvas(), parent) {}
+
+ClothView::ClothView(CanvasKind canvas, QWidget* parent) : QWidget(parent) {
   load_viewport_resources();
   setMinimumSize(160, 120);
   setMouseTracking(true);
   setFocusPolicy(Qt::ClickFocus);
   clock_.start();
-  rest_timer_.setSingleShot(true);
-  rest_timer_.setInterval(150);
-  connect(&rest_timer_, &QTimer::timeout, this, [this] {
-    smooth_next_ = true;
-    redraw();
-  });
   if (!gl_abilities().usable) {
     fail(gl_abilities().problem);
     return;
   }
-  canvas_ = std::make_unique<GlCanvas>(
-      this, GlCanvas::Callbacks{[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
-                                [this] { paintGl(); }});
-  canvas_->setFormat(surface_format());
+  canvas_ = make_canvas(
+      canvas, this,
+      {[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
+       [this](bool quick) { drawGl(quick); }, [this](QPainter& painter) { paintOverlays(painter); },
+       [this](double milliseconds) {
+         last_draw_ = milliseconds;
+         Q_EMIT frameDrawn(milliseconds);
+       }});
 }
 
 ClothView::~ClothView() {
@@ -62,7 +62,11 @@ ClothView::~ClothView() {
 }
 
 void ClothView::redraw() {
-  if (canvas_) canvas_->update();
+  if (canvas_) canvas_->redraw();
+}
+
+void ClothView::repaintOver() {
+  if (canvas_) canvas_->repaintOver();
 }
 
 QSurfaceFormat ClothView::surface_format() {
@@ -72,13 +76,13 @@ QSurfaceFormat ClothView::surface_format() {
   format.setProfile(QSurfaceFormat::CoreProfile);
   format.setDepthBufferSize(24);
   format.setStencilBufferSize(8);
-  format.setSamples(qGuiApp && gl_abilities().software ? 0 : RestingPicture::samples);
+  format.setSamples(qGuiApp && gl_abilities().software ? 0 : 4);
   return format;
 }
 
 void ClothView::fail(const QString& reason) {
   problem_ = reason;
-  if (canvas_) canvas_->hide();
+  if (canvas_) canvas_->widget().hide();
   if (!problem_label_) {
     problem_label_ = new QLabel(this);
     problem_label_->setAlignment(Qt::AlignCenter);
@@ -112,9 +116,6 @@ void ClothView::showFrame(std::shared_ptr<const ClothFrame> frame) {
   }
   frame_ = std::move(frame);
   frame_uploaded_ = false;
-  largest_strain_ = 0;
-  for (const float strain : frame_->strain)
-    if (strain > largest_strain_) largest_strain_ = strain;  // false for NaN
   learnExtent(new_topology);
   if (new_topology) fitUnmovedCamera();
   redraw();
@@ -139,14 +140,8 @@ void ClothView::learnExtent(bool new_topology) {
 void ClothView::setMode(ViewMode mode) {
   if (mode == mode_) return;
   mode_ = mode;
-  showAnew();
-  Q_EMIT modeChanged(mode);
-}
-
-/// Another look of the same scene.
-void ClothView::showAnew() {
-  if (resting_picture_) resting_picture_->forget();
   redraw();
+  Q_EMIT modeChanged(mode);
 }
 
 // ---- camera
@@ -197,7 +192,7 @@ void ClothView::resetCamera() {
 
 void ClothView::initialiseGl() {
   if (!hasOpenGl()) return;  // it has been tried
-  if (gl_abilities().software) resting_picture_ = std::make_unique<RestingPicture>();
+  if (!canvas_->context()) return fail(tr("This display offers no OpenGL."));
   // A view that moves to another window gets a new context; what lives in the old one goes with it.
   connect(canvas_->context(), &QOpenGLContext::aboutToBeDestroyed, this, &ClothView::releaseRenderer,
           Qt::UniqueConnection);
@@ -220,7 +215,6 @@ void ClothView::initialiseGl() {
 void ClothView::releaseRenderer() {
   if (!renderer_) return;
   canvas_->makeCurrent();
-  resting_picture_.reset();
   renderer_.reset();
   canvas_->doneCurrent();
 }
@@ -235,7 +229,7 @@ void ClothView::advanceTime() {
   clock_.restart();
   if (flight_.flying()) camera_.set_pose(flight_.advance(seconds));
   if (mode_ == ViewMode::strain && frame_) {
-    strain_range_.follow(largest_strain_, frame_->deformation_rate, seconds);
+    strain_range_.follow(frame_->largest_strain, frame_->deformation_rate, seconds);
     if (!strain_range_.settled()) redraw();
   }
   if (flight_.flying()) redraw();
@@ -257,47 +251,28 @@ Shot ClothView::shot() const {
   return shot;
 }
 
-void ClothView::drawScene() {
-  const bool new_frame = frame_ && !frame_uploaded_;
-  if (new_frame) {
+void ClothView::drawGl(bool quick) {
+  if (!renderer_) return;
+  advanceTime();
+  last_upload_ = 0;
+  if (frame_ && !frame_uploaded_) {
+    updateHover();  // the cloth may have moved under a resting cursor
+    QElapsedTimer timer;
+    timer.start();
     renderer_->set_frame(*frame_);
+    last_upload_ = 1e-6 * static_cast<double>(timer.nsecsElapsed());
     frame_uploaded_ = true;
   }
-  const bool moving = new_frame || !(camera_.pose() == drawn_pose_) || !strain_range_.settled();
-  drawn_pose_ = camera_.pose();
-  if (!resting_picture_) return renderer_->draw(shot(), theme());
-
-  const QSize pixels = (QSizeF(size()) * devicePixelRatioF()).toSize();
-  if (moving) resting_picture_->forget();
-  if ((!moving || grabbing_) && smooth_next_ && !resting_picture_->holds(pixels)) {
-    resting_picture_->begin(pixels);
-    renderer_->draw(shot(), theme());
-    resting_picture_->end();
-  }
-  smooth_next_ = false;
-  if (resting_picture_->holds(pixels)) return resting_picture_->show(canvas_->defaultFramebufferObject());
-  renderer_->draw(shot(), theme());
-  rest_timer_.start();
+  Shot seen = shot();
+  seen.quick = quick;
+  renderer_->draw(seen, theme());
 }
 
-void ClothView::paintGl() {
+void ClothView::paintOverlays(QPainter& painter) {
   if (!renderer_) return;
-  QElapsedTimer timer;
-  timer.start();
-  advanceTime();
-  if (!frame_uploaded_) updateHover();  // the cloth may have moved under a resting cursor
-  drawScene();
-  paintOverlays();
-  if (gl_abilities().software) renderer_->finish();
-  last_draw_ = 1e-6 * static_cast<double>(timer.nsecsElapsed());
-  Q_EMIT frameDrawn(last_draw_);
-}
-
-void ClothView::paintOverlays() {
   const Theme& look = theme();
   if (painted_theme_ != &look) overlay_.forget();
   painted_theme_ = &look;
-  QPainter painter(canvas_.get());
   painter.setFont(font());
   if (!has_cloth(frame_)) {
     overlay_.message(painter, size(), look, tr("No cloth yet"), tr("Open a scene, or drop one here."));
@@ -327,18 +302,12 @@ void ClothView::paintHand(QPainter& painter) {
 }
 
 QImage ClothView::grabPicture() {
-  if (hasOpenGl()) {
-    smooth_next_ = grabbing_ = true;
-    QImage picture = canvas_->grabFramebuffer();
-    grabbing_ = false;
-    return picture;
-  }
-  return grab().toImage();
+  return hasOpenGl() ? canvas_->grab() : grab().toImage();
 }
 
 void ClothView::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
-  if (canvas_) canvas_->setGeometry(rect());
+  if (canvas_) canvas_->widget().setGeometry(rect());
 }
 
 void ClothView::changeEvent(QEvent* event) {
@@ -348,7 +317,7 @@ void ClothView::changeEvent(QEvent* event) {
       type != QEvent::LanguageChange)
     return;
   overlay_.forget();
-  showAnew();
+  redraw();
 }
 
 }  // namespace clothlab

@@ -10,7 +10,6 @@
 #include <QElapsedTimer>
 #include <QImage>
 #include <QSurfaceFormat>
-#include <QTimer>
 #include <QWidget>
 #include <memory>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "bridge/frame.h"
 #include "forces/hand.h"
 #include "viewport/camera.h"
+#include "viewport/gl_canvas.h"
 #include "viewport/overlay.h"
 #include "viewport/scene_extent.h"
 #include "viewport/strain_scale.h"
@@ -28,8 +28,6 @@ class QLabel;
 namespace clothlab {
 
 class ClothRenderer;
-class GlCanvas;
-class RestingPicture;
 struct Shot;
 struct Theme;
 
@@ -40,10 +38,10 @@ class ClothView : public QWidget {
 
  public:
   explicit ClothView(QWidget* parent = nullptr);
+  ClothView(CanvasKind canvas, QWidget* parent);
   ~ClothView() override;
 
-  /// OpenGL 3.3 core, 4 samples. Where the processor draws none (once a QGuiApplication is there to ask): the
-  /// view is smoothed there too, but only while it rests.
+  /// OpenGL 3.3 core, 4 samples; where the processor draws (once a QGuiApplication is there to ask) none.
   static QSurfaceFormat surface_format();
 
   /// False: the view shows a message instead of the scene, and takes no mouse.
@@ -81,6 +79,8 @@ class ClothView : public QWidget {
   /// ms spent drawing last time. Where the processor draws, until the picture was complete; a graphics
   /// card is not waited for, since waiting would slow it, so there it is the time to hand the picture over.
   double lastDrawMilliseconds() const { return last_draw_; }
+  /// Of these, for giving a new frame's geometry to OpenGL; 0 where there was none.
+  double lastUploadMilliseconds() const { return last_upload_; }
 
  Q_SIGNALS:
   void openGlFailed(QString reason);
@@ -111,18 +111,17 @@ class ClothView : public QWidget {
 
   void initialiseGl();
   void resizeGl(int width, int height);
-  void paintGl();
+  void drawGl(bool quick);
   void redraw();
+  void repaintOver();
   void fail(const QString& reason);
   void releaseRenderer();
   void learnExtent(bool new_topology);
   void fitUnmovedCamera();
-  void showAnew();
   void flyTo(const CameraPose& pose);
   void advanceTime();
   Shot shot() const;
-  void drawScene();
-  void paintOverlays();
+  void paintOverlays(QPainter& painter);
   void paintHand(QPainter& painter);
   QPointF screenPoint(int particle) const;
 
@@ -141,14 +140,9 @@ class ClothView : public QWidget {
   QLabel* problem_label_ = nullptr;
   std::unique_ptr<GlCanvas> canvas_;  // none without OpenGL
   std::unique_ptr<ClothRenderer> renderer_;
-  std::unique_ptr<RestingPicture> resting_picture_;  // where the processor draws
-  QTimer rest_timer_;                                // since the last movement
-  bool smooth_next_ = false;                         // draw the resting picture
-  bool grabbing_ = false;                            // smooth even if the cloth is moving
 
   std::shared_ptr<const ClothFrame> frame_;
   bool frame_uploaded_ = false;
-  float largest_strain_ = 0;
   std::vector<cloth::Obstacle> known_obstacles_;
   Eigen::AlignedBox3d cloth_reach_, extent_;
   Ground ground_;
@@ -157,14 +151,13 @@ class ClothView : public QWidget {
   CameraFlight flight_;
   bool animated_ = true;
   bool camera_moved_ = false;  // by the user, since the scene was opened
-  CameraPose drawn_pose_;      // what the last picture shows
   QElapsedTimer clock_;        // since the last picture
 
   ViewMode mode_ = ViewMode::textured;
   StrainRange strain_range_;
   Overlay overlay_;
   const Theme* painted_theme_ = nullptr;
-  double last_draw_ = 0;  // ms
+  double last_draw_ = 0, last_upload_ = 0;  // ms
 
   Tool tool_ = Tool::pull;
   Gesture gesture_ = Gesture::none;

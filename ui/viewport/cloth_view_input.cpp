@@ -24,7 +24,7 @@ void ClothView::setTool(Tool tool) {
   endGesture();
   tool_ = tool;
   updateHover();
-  redraw();
+  repaintOver();
   Q_EMIT toolChanged(tool);
 }
 
@@ -32,7 +32,7 @@ void ClothView::setBrushRadius(double pixels) {
   const double radius = std::clamp(pixels, least_brush_radius, most_brush_radius);
   if (radius == brush_radius_) return;
   brush_radius_ = radius;
-  redraw();
+  repaintOver();
   Q_EMIT brushRadiusChanged(radius);
 }
 
@@ -57,7 +57,7 @@ void ClothView::updateHover() {
   if (cursor_inside_ && !brushShown()) found = pick(cursor_);
   if (found != hovered_) {
     hovered_ = found;
-    redraw();
+    repaintOver();
   }
   updateCursor();
 }
@@ -97,7 +97,7 @@ void ClothView::mousePressEvent(QMouseEvent* event) {
   }
   gesture_button_ = event->button();
   updateCursor();
-  redraw();
+  repaintOver();
 }
 
 void ClothView::startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers) {
@@ -147,7 +147,7 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
     case Gesture::pin:
       break;
   }
-  if (gesture_ != Gesture::none || brushShown()) redraw();
+  if (gesture_ != Gesture::none || brushShown()) repaintOver();
 }
 
 void ClothView::mouseReleaseEvent(QMouseEvent* event) {
@@ -162,7 +162,7 @@ void ClothView::endGesture() {
   const Gesture ended = std::exchange(gesture_, Gesture::none);
   grabbed_.reset();
   updateCursor();
-  redraw();
+  repaintOver();
   if (ended == Gesture::pull) Q_EMIT pullEnded();
   if (ended == Gesture::brush) Q_EMIT brushEnded();
 }
@@ -217,7 +217,7 @@ void ClothView::followShift(bool held) {
   if (shift_held_ == held) return;
   shift_held_ = held;
   updateHover();
-  redraw();
+  repaintOver();
 }
 
 /// Shift shows the brush while the cursor is over the view, whichever widget has the keyboard.
@@ -237,7 +237,7 @@ void ClothView::enterEvent(QEnterEvent* event) {
   cursor_ = event->position();
   shift_held_ = QGuiApplication::queryKeyboardModifiers() & Qt::ShiftModifier;
   updateHover();
-  redraw();
+  repaintOver();
 }
 
 void ClothView::leaveEvent(QEvent* event) {
@@ -245,7 +245,7 @@ void ClothView::leaveEvent(QEvent* event) {
   qApp->removeEventFilter(this);
   cursor_inside_ = shift_held_ = false;
   updateHover();
-  redraw();
+  repaintOver();
 }
 
 void ClothView::hideEvent(QHideEvent* event) {

@@ -1,32 +1,59 @@
-// The OpenGL surface inside the view: lends its three callbacks out. It is a widget of its own because in
-// Qt 6.4 any window that contains a QOpenGLWidget crashes on a display without OpenGL, whether that is ever
-// painted or not; so one must only be made where there is OpenGL.
+// The surface inside the view that its OpenGL picture appears on. There are two, since what is cheap differs:
+//
+//   window  A graphics card draws into the window itself (QOpenGLWidget).
+//   memory  For a processor that draws. A window that contains a QOpenGLWidget is slow there as a whole: with
+//           any label's change all its pixels go through OpenGL again. So the picture is drawn into memory
+//           and put into the window like any other widget's. It is kept, too: what lies over it changes
+//           without drawing it again. And as multisampling costs a third of a frame there, a running cloth
+//           is drawn without and quickly, and once properly when it rests.
+//
+// Either is a child of the view and shows the same picture.
 #pragma once
 
-#include <QOpenGLWidget>
+#include <QImage>
 #include <functional>
+#include <memory>
+
+class QOpenGLContext;
+class QPainter;
+class QWidget;
 
 namespace clothlab {
 
-class GlCanvas : public QOpenGLWidget {
+enum class CanvasKind { window, memory };
+
+/// What suits this machine. Needs a QGuiApplication.
+CanvasKind suitable_canvas();
+
+class GlCanvas {
  public:
   struct Callbacks {
-    std::function<void()> initialise;
-    std::function<void(int width, int height)> resize;
-    std::function<void()> paint;
+    std::function<void()> initialise;                    ///< with a current context, or none: it failed
+    std::function<void(int width, int height)> resized;  ///< device-independent px
+    std::function<void(bool quick)> draw;                ///< into the framebuffer bound
+    std::function<void(QPainter& painter)> paint_over;   ///< what lies over the picture
+    std::function<void(double milliseconds)> shown;      ///< after both, and how long they took
   };
 
-  GlCanvas(QWidget* parent, Callbacks callbacks) : QOpenGLWidget(parent), callbacks_(std::move(callbacks)) {
-    setAttribute(Qt::WA_TransparentForMouseEvents);  // the view takes the mouse
-  }
+  virtual ~GlCanvas() = default;
 
- protected:
-  void initializeGL() override { callbacks_.initialise(); }
-  void resizeGL(int width, int height) override { callbacks_.resize(width, height); }
-  void paintGL() override { callbacks_.paint(); }
+  /// Child of the view; owned by the canvas; lets the mouse through.
+  virtual QWidget& widget() = 0;
+  /// None before `initialise` has been called.
+  virtual QOpenGLContext* context() const = 0;
+  virtual void makeCurrent() = 0;
+  virtual void doneCurrent() = 0;
 
- private:
-  Callbacks callbacks_;
+  /// The scene has changed: draws soon. Also from within `draw`, for an animation.
+  virtual void redraw() = 0;
+  /// Only what lies over the picture has changed.
+  virtual void repaintOver() = 0;
+
+  /// The smooth picture as it is now, with what lies over it; in device pixels.
+  virtual QImage grab() = 0;
 };
+
+/// `parent` is the view.
+std::unique_ptr<GlCanvas> make_canvas(CanvasKind kind, QWidget* parent, GlCanvas::Callbacks callbacks);
 
 }  // namespace clothlab

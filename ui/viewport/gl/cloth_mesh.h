@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace clothlab {
@@ -10,9 +9,5 @@ namespace clothlab {
 /// Triangles (a, d, c) and (a, c, b) of each cell a = (r, c), b = (r, c+1), c = (r+1, c+1), d = (r+1, c): the
 /// face of a cloth laid out to the right and downwards looks at the viewer.
 void cloth_triangles(int rows, int columns, std::vector<std::uint32_t>& indices);
-
-/// Vertex normals as the sum of the neighbouring triangles' area vectors, not scaled to unit length (the
-/// shader does). `normals` keeps its memory from call to call.
-void cloth_normals(std::span<const float> positions, int rows, int columns, std::vector<float>& normals);
 
 }  // namespace clothlab

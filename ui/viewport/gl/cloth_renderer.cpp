@@ -59,8 +59,7 @@ QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
 }  // namespace
 
 ClothRenderer::~ClothRenderer() {
-  if (weave_ != 0) glDeleteTextures(1, &weave_);
-  if (palette_ != 0) glDeleteTextures(1, &palette_);
+  if (textures_[weave] != 0) glDeleteTextures(texture_count, textures_);
 }
 
 bool ClothRenderer::initialise(bool frugal, QString* problem) {
@@ -68,29 +67,36 @@ bool ClothRenderer::initialise(bool frugal, QString* problem) {
     *problem = QStringLiteral("the functions of OpenGL 3.3 are missing");
     return false;
   }
+  frugal_ = frugal;
   if (!build_programs(problem)) return false;
   QOpenGLFunctions_3_3_Core& gl = *this;
   surface_ = std::make_unique<ClothSurface>(gl);
   solids_ = std::make_unique<Solids>(gl);
-  make_textures(!frugal);
+  make_textures();
   return true;
 }
 
 bool ClothRenderer::build_programs(QString* problem) {
+  using Light = ShaderPrelude::Light;
   for (std::size_t look = 0; look < cloth_.size(); ++look) {
     const QByteArray definition = "#define LOOK " + QByteArray::number(static_cast<int>(look)) + '\n';
-    if (!build_program(cloth_[look], "cloth.vert", "cloth.frag", {true, definition}, problem)) return false;
+    if (!build_program(cloth_[look], "cloth.vert", "cloth.frag", {Light::fragment, definition}, problem))
+      return false;
+    const QByteArray quick = definition + "#define QUICK\n";
+    if (frugal_ &&
+        !build_program(quick_cloth_[look], "cloth.vert", "cloth.frag", {Light::vertex, quick}, problem))
+      return false;
   }
   return build_program(background_, "background.vert", "background.frag", {}, problem) &&
          build_program(plane_, "plane.vert", "plane.frag", {}, problem) &&
-         build_program(solid_, "solid.vert", "solid.frag", {true}, problem) &&
+         build_program(solid_, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
          build_program(marker_, "marker.vert", "marker.frag", {}, problem);
 }
 
-void ClothRenderer::make_textures(bool anisotropic) {
+void ClothRenderer::make_textures() {
   const QImage tile = weave_tile();
-  glGenTextures(1, &weave_);
-  glBindTexture(GL_TEXTURE_2D, weave_);
+  glGenTextures(texture_count, textures_);
+  glBindTexture(GL_TEXTURE_2D, textures_[weave]);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, tile.width(), tile.height(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
                tile.constBits());
@@ -99,7 +105,7 @@ void ClothRenderer::make_textures(bool anisotropic) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   // The extension's numbers: OpenGL 3.3's own headers do not have them (core since 4.6).
   constexpr GLenum texture_max_anisotropy = 0x84FE, max_texture_max_anisotropy = 0x84FF;
-  if (anisotropic && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
+  if (!frugal_ && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
     GLfloat most = 1;
     glGetFloatv(max_texture_max_anisotropy, &most);
     glTexParameterf(GL_TEXTURE_2D, texture_max_anisotropy, std::min(most, 8.0F));
@@ -113,14 +119,39 @@ void ClothRenderer::make_textures(bool anisotropic) {
     row[4 * i + 2] = static_cast<std::uint8_t>(c.blue());
     row[4 * i + 3] = 255;
   }
-  glGenTextures(1, &palette_);
-  glBindTexture(GL_TEXTURE_2D, palette_);
+  glBindTexture(GL_TEXTURE_2D, textures_[palette]);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, strain_colour_count, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                row.data());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  if (frugal_) {
+    store(weave, stored_weave);
+    store(palette, stored_palette);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // 256 colours are smooth enough
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  }
   glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+/// The same texture with all its levels, but sampled as it is stored. Leaves it bound.
+void ClothRenderer::store(Texture decoded, Texture stored) {
+  std::vector<std::uint8_t> values;
+  for (GLint level = 0;; ++level) {
+    GLint width = 0, height = 0;
+    glBindTexture(GL_TEXTURE_2D, textures_[decoded]);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_WIDTH, &width);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_HEIGHT, &height);
+    if (width == 0 || height == 0) break;
+    values.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    glGetTexImage(GL_TEXTURE_2D, level, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
+    glBindTexture(GL_TEXTURE_2D, textures_[stored]);
+    glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
+  }
+  glBindTexture(GL_TEXTURE_2D, textures_[stored]);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);  // half the work
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
 void ClothRenderer::set_frame(const ClothFrame& frame) {
@@ -152,13 +183,13 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
   glClearDepth(1);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE0);
-  glDisable(GL_DEPTH_TEST);
-  draw_background(theme);
-
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   if (has_cloth_) draw_cloth(shot, theme);
   draw_obstacles(shot, theme);
+  glDepthFunc(GL_LEQUAL);  // the background lies as far away as can be: what is covered is not painted
+  draw_background(theme);
+  glDepthFunc(GL_LESS);
 
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the view itself stays opaque
@@ -219,28 +250,38 @@ void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
 }
 
 void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
-  QOpenGLShaderProgram& cloth = cloth_[static_cast<std::size_t>(shot.mode)];
+  constexpr double small_cell = 16;  // px
+  const bool quick = shot.quick && frugal_ && cell_on_screen(shot) < small_cell;
+  QOpenGLShaderProgram& cloth = (quick ? quick_cloth_ : cloth_)[static_cast<std::size_t>(shot.mode)];
   cloth.bind();
   light(cloth, shot, theme);
   if (shot.mode == ViewMode::textured) {
-    glBindTexture(GL_TEXTURE_2D, weave_);
+    glBindTexture(GL_TEXTURE_2D, textures_[quick ? stored_weave : weave]);
     cloth.setUniformValue("weave", 0);
     cloth.setUniformValue("tiles_per_cell", tiles_per_cell_);
   } else if (shot.mode == ViewMode::wireframe) {
     const QColor sheet = theme.dark ? QColor(0x3C, 0x46, 0x52) : QColor(0xF4, 0xF6, 0xF8);
+    // A quick picture mixes squares of sRGB, which are nearly linear light and cheap to take the root of.
+    const auto mixable = [quick](const QColor& c) {
+      return quick ? as_srgb(c) * as_srgb(c) : linear_light(c);
+    };
     const QColor thread = theme.dark ? QColor(0xB9, 0xC7, 0xD6) : QColor(0x3F, 0x56, 0x6E);
     cloth.setUniformValue("last_cell", QVector2D(number(columns_ - 1), number(rows_ - 1)));
     cloth.setUniformValue("line_width", number(1.25 * shot.pixel_ratio));
-    cloth.setUniformValue("sheet_colour", linear_light(sheet));
-    cloth.setUniformValue("thread_colour", linear_light(thread));
+    cloth.setUniformValue("sheet_colour", mixable(sheet));
+    cloth.setUniformValue("thread_colour", mixable(thread));
   } else {
-    glBindTexture(GL_TEXTURE_2D, palette_);
+    glBindTexture(GL_TEXTURE_2D, textures_[quick ? stored_palette : palette]);
     cloth.setUniformValue("strain_palette", 0);
     cloth.setUniformValue("strain_maximum", number(shot.strain_maximum));
   }
   surface_->draw_triangles();
   glBindTexture(GL_TEXTURE_2D, 0);
   cloth.release();
+}
+
+double ClothRenderer::cell_on_screen(const Shot& shot) const {
+  return cell_length_ / std::max(shot.metres_per_pixel, 1e-12);
 }
 
 void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
@@ -279,9 +320,9 @@ void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
 }
 
 void ClothRenderer::draw_pins(const Shot& shot, const Theme& theme) {
-  const double cell = cell_length_ / std::max(shot.metres_per_pixel, 1e-12);
   // Smaller where a whole edge is pinned, so that the markers stay a row of dots.
-  const double diameter = std::clamp(0.85 * cell, 4 * shot.pixel_ratio, 11 * shot.pixel_ratio);
+  const double diameter =
+      std::clamp(0.85 * cell_on_screen(shot), 4 * shot.pixel_ratio, 11 * shot.pixel_ratio);
   marker_.bind();
   marker_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
   marker_.setUniformValue("diameter", number(diameter));

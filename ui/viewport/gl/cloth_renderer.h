@@ -26,6 +26,9 @@ struct Shot {
   double pixel_ratio = 1;           ///< the picture's pixels per device-independent px
   ViewMode mode = ViewMode::textured;
   double strain_maximum = 0.1;  ///< of the colours' range
+  /// For a picture that is gone in a moment: where the cloth's cells are a few pixels, light is worked out
+  /// per particle instead of per pixel. Has an effect only with a frugal renderer.
+  bool quick = false;
   Ground ground;
   Eigen::AlignedBox3d extent;  ///< m: how large the grid of the ground is drawn, and about where
 };
@@ -48,25 +51,27 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   /// The whole picture, without overlays. Sets all the state it needs and leaves depth test and blending off.
   void draw(const Shot& shot, const Theme& theme);
 
-  /// Waits until everything drawn so far is in the framebuffer.
-  void finish() { glFinish(); }
-
  private:
+  enum Texture { weave, palette, stored_weave, stored_palette, texture_count };
+
   bool build_programs(QString* problem);
-  void make_textures(bool anisotropic);
+  void make_textures();
+  void store(Texture decoded, Texture stored);
   void light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme);
   void draw_background(const Theme& theme);
   void draw_obstacles(const Shot& shot, const Theme& theme);
   void draw_cloth(const Shot& shot, const Theme& theme);
+  double cell_on_screen(const Shot& shot) const;  // px
   void draw_planes(const Shot& shot, const Theme& theme);
   void draw_plane(const Shot& shot, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
   void draw_pins(const Shot& shot, const Theme& theme);
 
   QOpenGLShaderProgram background_, plane_, solid_, marker_;
-  std::array<QOpenGLShaderProgram, 3> cloth_;  // by ViewMode
+  std::array<QOpenGLShaderProgram, 3> cloth_, quick_cloth_;  // by ViewMode; quick_cloth_ only if frugal
   std::unique_ptr<ClothSurface> surface_;
   std::unique_ptr<Solids> solids_;
-  GLuint weave_ = 0, palette_ = 0;
+  GLuint textures_[texture_count] = {};  // the stored ones give sRGB; only if frugal
+  bool frugal_ = false;
 
   bool has_cloth_ = false;
   std::uint64_t topology_ = 0;

@@ -14,15 +14,6 @@ GLsizeiptr bytes(const auto& values) {
 ClothSurface::ClothSurface(QOpenGLFunctions_3_3_Core& gl) : gl_(gl) {
   gl_.glGenVertexArrays(1, &vertex_array_);
   gl_.glGenBuffers(buffer_count, buffers_);
-  gl_.glBindVertexArray(vertex_array_);
-  constexpr int components[] = {3, 3, 1, 2};  // of positions, normals, strain, cells
-  for (GLuint attribute = 0; attribute < 4; ++attribute) {
-    gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[attribute]);
-    gl_.glEnableVertexAttribArray(attribute);
-    gl_.glVertexAttribPointer(attribute, components[attribute], GL_FLOAT, GL_FALSE, 0, nullptr);
-  }
-  gl_.glBindVertexArray(0);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
 ClothSurface::~ClothSurface() {
@@ -30,22 +21,43 @@ ClothSurface::~ClothSurface() {
   gl_.glDeleteBuffers(buffer_count, buffers_);
 }
 
-void ClothSurface::refill(Buffer buffer, const std::vector<float>& values) {
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[buffer]);
-  // Orphaned: the driver may still draw from the old memory and need not be waited for.
-  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(values), nullptr, GL_STREAM_DRAW);
-  gl_.glBufferSubData(GL_ARRAY_BUFFER, 0, bytes(values), values.data());
-}
-
 void ClothSurface::upload(const ClothFrame& frame) {
   const bool new_grid = frame.rows != rows_ || frame.columns != columns_ || frame.topology != topology_;
   if (new_grid) upload_grid(frame);
   if (new_grid || frame.pinned != pinned_flags_) upload_pins(frame);
-  cloth_normals(frame.positions, frame.rows, frame.columns, normal_values_);
-  refill(positions, frame.positions);
-  refill(normals, normal_values_);
-  refill(strain, frame.strain);
+  upload_moving(frame);
+}
+
+void ClothSurface::upload_moving(const ClothFrame& frame) {
+  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[moving]);
+  // Orphaned: the driver may still draw from the old memory and need not be waited for.
+  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(frame.positions) + bytes(frame.normals) + bytes(frame.strain),
+                   nullptr, GL_STREAM_DRAW);
+  GLintptr at = 0;
+  for (const std::vector<float>* values : {&frame.positions, &frame.normals, &frame.strain}) {
+    gl_.glBufferSubData(GL_ARRAY_BUFFER, at, bytes(*values), values->data());
+    at += bytes(*values);
+  }
   gl_.glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+/// Where each attribute of cloth.vert lies.
+void ClothSurface::lay_out_attributes(std::size_t particles) {
+  struct Attribute {
+    Buffer buffer;
+    GLint components;
+    std::size_t floats_before;
+  };
+  const Attribute attributes[] = {
+      {moving, 3, 0}, {moving, 3, 3 * particles}, {moving, 1, 6 * particles}, {cells, 2, 0}};
+  gl_.glBindVertexArray(vertex_array_);
+  for (GLuint i = 0; i < std::size(attributes); ++i) {
+    gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[attributes[i].buffer]);
+    gl_.glEnableVertexAttribArray(i);
+    gl_.glVertexAttribPointer(i, attributes[i].components, GL_FLOAT, GL_FALSE, 0,
+                              reinterpret_cast<const void*>(attributes[i].floats_before * sizeof(float)));
+  }
+  gl_.glBindVertexArray(0);
 }
 
 void ClothSurface::upload_grid(const ClothFrame& frame) {
@@ -60,6 +72,7 @@ void ClothSurface::upload_grid(const ClothFrame& frame) {
   for (int r = 0; r < rows_; ++r)
     for (int c = 0; c < columns_; ++c)
       grid.insert(grid.end(), {static_cast<float>(c), static_cast<float>(r)});
+  lay_out_attributes(grid.size() / 2);
   gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[cells]);
   gl_.glBufferData(GL_ARRAY_BUFFER, bytes(grid), grid.data(), GL_STATIC_DRAW);
   gl_.glBindVertexArray(vertex_array_);

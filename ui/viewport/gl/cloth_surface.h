@@ -16,18 +16,20 @@ class ClothSurface {
   ClothSurface(const ClothSurface&) = delete;
   ClothSurface& operator=(const ClothSurface&) = delete;
 
-  /// Positions, normals and strain always; cells and indices only when the topology has changed.
+  /// Positions, normals and strain always, into one buffer; cells and indices only when the topology has
+  /// changed, and pins when they have. Allocates only for those.
   void upload(const ClothFrame& frame);
   void draw_triangles();
   void draw_pinned_points();
   bool has_pinned_points() const { return pinned_count_ > 0; }
 
  private:
-  enum Buffer { positions, normals, strain, cells, triangles, pinned, buffer_count };
+  enum Buffer { moving, cells, triangles, pinned, buffer_count };
 
   void upload_grid(const ClothFrame& frame);
+  void lay_out_attributes(std::size_t particles);
   void upload_pins(const ClothFrame& frame);
-  void refill(Buffer buffer, const std::vector<float>& values);
+  void upload_moving(const ClothFrame& frame);
 
   QOpenGLFunctions_3_3_Core& gl_;
   GLuint vertex_array_ = 0;
@@ -35,7 +37,6 @@ class ClothSurface {
   int rows_ = 0, columns_ = 0;
   std::uint64_t topology_ = 0;
   GLsizei index_count_ = 0, pinned_count_ = 0;
-  std::vector<float> normal_values_;
   std::vector<std::uint8_t> pinned_flags_;  // as uploaded
   std::vector<std::uint32_t> pinned_indices_;
 };

@@ -17,12 +17,14 @@ QByteArray shader_text(const char* name) {
 
 bool build_program(QOpenGLShaderProgram& program, const char* vertex, const char* fragment,
                    const ShaderPrelude& prelude, QString* problem) {
-  const QByteArray version = "#version 330 core\n";
-  const QByteArray light = prelude.light ? shader_text("light.glsl") : QByteArray();
+  const auto text_of = [&prelude](const char* name, ShaderPrelude::Light stage) {
+    const QByteArray light = prelude.light == stage ? shader_text("light.glsl") : QByteArray();
+    return "#version 330 core\n" + prelude.definitions + light + "#line 1\n" + shader_text(name);
+  };
+  using Light = ShaderPrelude::Light;
   const bool built =
-      program.addShaderFromSourceCode(QOpenGLShader::Vertex, version + shader_text(vertex)) &&
-      program.addShaderFromSourceCode(QOpenGLShader::Fragment, version + prelude.definitions + light +
-                                                                   "#line 1\n" + shader_text(fragment)) &&
+      program.addShaderFromSourceCode(QOpenGLShader::Vertex, text_of(vertex, Light::vertex)) &&
+      program.addShaderFromSourceCode(QOpenGLShader::Fragment, text_of(fragment, Light::fragment)) &&
       program.link();
   if (!built) *problem = QStringLiteral("%1, %2: %3").arg(vertex, fragment, program.log().trimmed());
   return built;

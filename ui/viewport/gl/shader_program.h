@@ -6,10 +6,11 @@
 
 namespace clothlab {
 
-/// What goes before a fragment shader of its own file.
+/// What goes before the shaders' own files.
 struct ShaderPrelude {
-  bool light = false;        ///< light.glsl
-  QByteArray definitions{};  ///< lines of #define
+  enum class Light { nowhere, fragment, vertex };
+  Light light = Light::nowhere;  ///< which of the two has light.glsl
+  QByteArray definitions{};      ///< lines of #define, for both
 };
 
 /// Compiles resources/shaders/`vertex` and `fragment`, each as GLSL 3.30. On failure false, with the

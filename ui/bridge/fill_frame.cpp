@@ -1,0 +1,50 @@
+#include "bridge/fill_frame.h"
+
+#include "cloth/normals.h"
+#include "measure/strain.h"
+
+namespace clothlab {
+namespace {
+
+/// x y z of particle 0, of particle 1, ...
+void interleave(const cloth::Vec3Field& field, std::vector<float>& values) {
+  values.resize(3 * field.size());
+  const double *x = field.x(), *y = field.y(), *z = field.z();
+  float* out = values.data();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    out[3 * i] = static_cast<float>(x[i]);
+    out[3 * i + 1] = static_cast<float>(y[i]);
+    out[3 * i + 2] = static_cast<float>(z[i]);
+  }
+}
+
+float largest_of(const std::vector<float>& strain) {
+  float largest = 0;
+  for (const float value : strain)
+    if (value > largest) largest = value;  // false for NaN
+  return largest;
+}
+
+}  // namespace
+
+void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame) {
+  const cloth::ClothSystem& system = simulation.system();
+  const cloth::Vec3Field& position = simulation.state().position;
+  frame.rows = system.rows;
+  frame.columns = system.columns;
+  interleave(position, frame.positions);
+  if (normals.size() != position.size()) normals = cloth::Vec3Field(position.size());
+  cloth::particle_normals(system.rows, system.columns, position, normals);
+  interleave(normals, frame.normals);
+  frame.strain.resize(position.size());
+  cloth::particle_strain(system, position, frame.strain);
+  frame.largest_strain = largest_of(frame.strain);
+  frame.pinned = system.pinned;
+  frame.obstacles = simulation.scene().obstacles;
+  const auto& deformation = simulation.scene().deformation;
+  frame.deformation_rate = simulation.quantities().limiter ? deformation->rate : -1;
+  frame.time = simulation.time();
+  frame.step = simulation.state().step;
+}
+
+}  // namespace clothlab

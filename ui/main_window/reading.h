@@ -1,0 +1,31 @@
+// A line of text that changes many times a second. A QLabel would have the whole window laid out anew at
+// every text; this keeps the size that its widest text needs.
+#pragma once
+
+#include <QWidget>
+
+namespace clothlab {
+
+class Reading : public QWidget {
+ public:
+  enum class Look { plain, bold, muted };
+
+  Reading(const QString& widest, Look look, QWidget* parent);
+
+  const QString& text() const { return text_; }
+  void setText(const QString& text);
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override { return sizeHint(); }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QFont textFont() const;
+
+  QString widest_, text_;
+  Look look_;
+};
+
+}  // namespace clothlab

@@ -1,7 +1,8 @@
 // The deformation rate, by one of two solvers. Sweeps are Provot's inverse procedure (Provot 1995, section
 // 4): every limited spring longer than (1 + rate) L is shortened to exactly that, by half of the excess at
-// each end or all of it at the free end, over and over. The direct one finds the nearest shape that obeys the
-// rate. Velocities change by (displacement)/h, so that they agree with the positions.
+// each end or all of it at the free end. What that leaves, because neighbours pull on each other, further
+// sweeps take with over-relaxation (Young 1954): nearly twice the excess. The direct solver finds the nearest
+// shape that obeys the rate. Velocities change by (displacement)/h, so that they agree with the positions.
 #pragma once
 
 #include <optional>
@@ -9,6 +10,8 @@
 
 #include "cloth/cloth_system.h"
 #include "limiter/nearest_shape.h"
+#include "limiter/sweep_dispatch.h"
+#include "limiter/sweep_plan.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -21,35 +24,51 @@ struct LimiterReport {
 
 class DeformationLimiter {
  public:
-  DeformationLimiter(const Deformation& deformation, const ClothSystem& system);
+  /// The kernels decide how fast it is, not what comes out.
+  DeformationLimiter(const Deformation& deformation, const ClothSystem& system,
+                     const SweepKernels& kernels = sweep_kernels());
 
   /// True if this deformation limits any spring of this system.
   static bool is_needed(const Deformation& deformation, const ClothSystem& system);
 
   /// The largest (|d| - (1 + rate) L)/L of a limited spring, 0 if none is over. Above the tolerance `apply`
   /// has work.
-  double excess(const ClothSystem& system, const Vec3Field& position) const;
+  double excess(const Vec3Field& position) const;
   bool accepts(double excess) const { return excess <= deformation_.tolerance; }
 
   /// Leaves no excess above the tolerance, or as much as the solver's most sweeps or iterations leave. The
   /// same state gives the same bits: nothing is kept from one call to the next.
   LimiterReport apply(const ClothSystem& system, double time_step, ClothState& state);
 
+  /// Times the excess is what every sweep but the first takes.
+  double relaxation() const { return relaxation_; }
+
   /// Whether the pins are known to make the rate unreachable. "auto" then stays with sweeps.
   void set_unreachable(bool unreachable) { unreachable_ = unreachable; }
 
  private:
-  double sweep(const ClothSystem& system, bool forward, Vec3Field& position) const;
-  bool sweep_all(const ClothSystem& system, LimiterReport& report, Vec3Field& position);
+  void begin_sweeps(int rows);
+  bool has_changed(const SpringBatch& batch, std::int64_t since) const;
+  double shorten(const SpringBatch& batch, double relaxation, Vec3Field& position) const;
+  double sweep(double relaxation, Vec3Field& position);
+  bool sweep_all(LimiterReport& report, Vec3Field& position);
   bool direct_is_cheaper(double remaining_sweeps, int sweeps);
   void solve_directly(const ClothSystem& system, LimiterReport& report, Vec3Field& position);
+  void change_velocity(const ClothSystem& system, double time_step, bool swept, ClothState& state) const;
 
   Deformation deformation_;
-  std::vector<SpringRun> limited_;
+  const SweepKernels* kernels_;
+  std::vector<SpringBatch> pieces_, batches_;
+  double relaxation_;  ///< of all sweeps but the first
   NearestShape nearest_;
   bool unreachable_ = false;
+
+  // Of the present call.
   Vec3Field before_;
-  double direct_cost_ = 0;  ///< of the present call, in sweeps; 0: not estimated yet
+  std::int64_t moves_ = 0;                 ///< batches that moved something
+  std::vector<std::int64_t> last_move_;    ///< of each row of particles, 0 if none
+  std::vector<std::int64_t> found_still_;  ///< of each batch: `moves_` when all was within the limit, or -1
+  double direct_cost_ = 0;                 ///< in sweeps; 0: not estimated yet
 };
 
 /// Two pins further apart than (1 + rate) times the shortest chain of limited springs between them: no motion

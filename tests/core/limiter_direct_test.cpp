@@ -129,7 +129,7 @@ TEST(DirectSolver, ReachesAMillionthOnSixtyFiveSquareByTwoCornersInFortyIteratio
     const ClothSystem system = make_grid(scene.cloth, *scene.springs);
     ClothState state = overstretched(system, random);
     DeformationLimiter limiter(*scene.deformation, system);
-    const double before = limiter.excess(system, state.position);
+    const double before = limiter.excess(state.position);
     EXPECT_GT(before, 0.09);
     const LimiterReport report = limiter.apply(system, step, state);
     std::printf("rate %g: excess %.3g -> %.3g in %d iterations\n", rate, before, report.excess,
@@ -278,8 +278,8 @@ TEST(AutoSolver, SweepsWhereThatIsEnoughAndSolvesDirectlyWhereItIsNot) {
   EXPECT_EQ(stopped.sweeps, 5);
   EXPECT_EQ(stopped.direct_iterations, 0);
   EXPECT_GT(stopped.excess, 1e-4);
-  scene.deformation->max_sweeps = 500;
 
+  scene.deformation->max_sweeps = 50;
   scene.deformation->solver = "sweeps";
   ClothState left = overstretched(system, random);
   const LimiterReport report = DeformationLimiter(*scene.deformation, system).apply(system, step, left);

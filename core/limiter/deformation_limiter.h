@@ -40,6 +40,11 @@ class DeformationLimiter {
   /// same state gives the same bits: nothing is kept from one call to the next.
   LimiterReport apply(const ClothSystem& system, double time_step, ClothState& state);
 
+  /// What the last `apply` gave to the cloth, in J: kinetic, elastic and potential energy after it less
+  /// before, summed over what it moved. `state` and `time_step` are those of that call.
+  double work(const ClothSystem& system, const Vec3& gravity, double time_step,
+              const ClothState& state) const;
+
   /// Times the excess is what every sweep but the first takes.
   double relaxation() const { return relaxation_; }
 
@@ -54,17 +59,20 @@ class DeformationLimiter {
   bool sweep_all(LimiterReport& report, Vec3Field& position);
   bool direct_is_cheaper(double remaining_sweeps, int sweeps);
   void solve_directly(const ClothSystem& system, LimiterReport& report, Vec3Field& position);
-  void change_velocity(const ClothSystem& system, double time_step, bool swept, ClothState& state) const;
+  void change_velocity(const ClothSystem& system, double time_step, ClothState& state) const;
+  bool has_moved(int row) const { return !swept_ || last_move_[static_cast<std::size_t>(row)] > 0; }
 
   Deformation deformation_;
   const SweepKernels* kernels_;
-  std::vector<SpringBatch> pieces_, batches_;
-  double relaxation_;  ///< of all sweeps but the first
+  std::vector<SpringBatch> pieces_, batches_;  ///< of the limited springs
+  std::vector<SpringBatch> elastic_;           ///< pieces of all springs
+  double relaxation_;                          ///< of all sweeps but the first
   NearestShape nearest_;
   bool unreachable_ = false;
 
-  // Of the present call.
+  // Of the present or last call.
   Vec3Field before_;
+  bool swept_ = true;
   std::int64_t moves_ = 0;                 ///< batches that moved something
   std::vector<std::int64_t> last_move_;    ///< of each row of particles, 0 if none
   std::vector<std::int64_t> found_still_;  ///< of each batch: `moves_` when all was within the limit, or -1

@@ -67,22 +67,16 @@ V squared_length(ConstPoints p, long i, long j) {
 }
 
 template <class V>
-double longest(const SpringRow& row, ConstPoints p) {
-  const long first = row.first, end = first + row.count, offset = row.offset;
-  long i = first;
-  double largest = 0;
-  if (row.count >= V::width) {
-    V found = V::broadcast(0);
-    for (; i + V::width <= end; i += V::width)
-      found = V::larger_of(squared_length<V>(p, i, i + offset), found);
-    // The last springs once more, together with those left over.
-    i = end - V::width;
-    largest = largest_lane(V::larger_of(squared_length<V>(p, i, i + offset), found));
-    i = end;
-  }
+double longest(const SpringRow& row, double limit, ConstPoints p) {
+  const long end = row.first + row.count, offset = row.offset;
+  const V squared_limit = V::broadcast(limit * limit);
+  V found = squared_limit;
+  long i = row.first;
+  for (; i + V::width <= end; i += V::width) found = V::larger_of(squared_length<V>(p, i, i + offset), found);
+  double largest = V::any(found.over(squared_limit)) ? largest_lane(found) : 0;
   for (; i < end; ++i) {
     const double squared = squared_length<OneLane>(p, i, i + offset).value;
-    largest = squared > largest ? squared : largest;
+    if (squared > limit * limit) largest = larger(squared, largest);
   }
   return largest;
 }
@@ -153,9 +147,35 @@ double shorten(const SpringRow& row, double limit, double relaxation, Points p) 
   return larger(largest_lane(correction.longest), rest.longest.value);
 }
 
+/// (l1 - L)^2 - (l0 - L)^2 without the difference of two squares
+template <class V>
+V stretching_of(V rest_length, ConstPoints before, ConstPoints after, long i, long j) {
+  const V old_length = squared_length<V>(before, i, j).root(), length = squared_length<V>(after, i, j).root();
+  return (length - old_length) * ((length - rest_length) + (old_length - rest_length));
+}
+
+template <class V>
+double stretching(const SpringRow& row, double rest_length, ConstPoints before, ConstPoints after) {
+  constexpr int parts = 8, registers = parts / V::width;
+  V sum[registers];
+  for (V& part : sum) part = V::broadcast(0);
+  const long end = row.first + row.count, offset = row.offset;
+  long i = row.first;
+  for (; i + parts <= end; i += parts)
+    for (int k = 0; k < registers; ++k) {
+      const long at = i + k * V::width;
+      sum[k] = sum[k] + stretching_of(V::broadcast(rest_length), before, after, at, at + offset);
+    }
+  double s[parts];
+  for (int k = 0; k < registers; ++k) sum[k].store(s + k * V::width);
+  for (int k = 0; i < end; ++i, ++k)
+    s[k] += stretching_of(OneLane{rest_length}, before, after, i, i + offset).value;
+  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
+
 template <class V>
 constexpr SweepKernels kernels_of(const char* instruction_set) {
-  return {instruction_set, longest<V>, shorten<V>};
+  return {instruction_set, longest<V>, shorten<V>, stretching<V>};
 }
 
 }  // namespace

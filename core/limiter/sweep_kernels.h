@@ -28,14 +28,18 @@ struct SpringRow {
 struct SweepKernels {
   const char* instruction_set;
 
-  /// The largest squared length in m^2, 0 if there are no springs. Precondition: stride 1. Not a number is
-  /// passed over.
-  double (*longest)(const SpringRow& row, ConstPoints points);
+  /// The largest squared length in m^2 of the springs longer than `limit` (m), 0 if there are none.
+  /// Precondition: stride 1. What is not a number is passed over.
+  double (*longest)(const SpringRow& row, double limit, ConstPoints points);
 
   /// Takes `relaxation` times the excess from every spring longer than `limit` (m), half of it at each end.
   /// Returns the largest squared length of these before, 0 if there were none. Precondition: no two of the
   /// springs share a particle; the stride is 1, or 2 and the offset 1.
   double (*shorten)(const SpringRow& row, double limit, double relaxation, Points points);
+
+  /// Sum of (l1 - L)^2 - (l0 - L)^2 in m^2, l0 and l1 the lengths before and after, L the rest length.
+  /// Precondition: stride 1. Summed in eight parts whatever the instruction set.
+  double (*stretching)(const SpringRow& row, double rest_length, ConstPoints before, ConstPoints after);
 };
 
 // Each in its own translation unit; null where this program was not built for such a processor.

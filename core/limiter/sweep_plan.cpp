@@ -38,17 +38,18 @@ void append_pieces(const ClothSystem& system, const SpringRun& run, double rate,
       pieces.push_back({.row = {.first = i, .count = 1, .stride = 1, .offset = offset},
                         .ends = *ends,
                         .limit = (1 + rate) * run.rest_length,
-                        .rest_length = run.rest_length});
+                        .rest_length = run.rest_length,
+                        .stiffness = run.stiffness});
     goes_on = ends.has_value();
   }
 }
 
 }  // namespace
 
-std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& limited,
+std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& runs,
                                    double rate) {
   std::vector<SpringBatch> pieces;
-  for (const SpringRun& run : limited) append_pieces(system, run, rate, pieces);
+  for (const SpringRun& run : runs) append_pieces(system, run, rate, pieces);
   for (SpringBatch& piece : pieces) piece = with_rows(piece, system.columns);
   return pieces;
 }

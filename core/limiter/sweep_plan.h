@@ -16,12 +16,13 @@ struct SpringBatch {
   FreeEnds ends = FreeEnds::both;
   double limit = 0;        ///< m, (1 + rate) times the rest length
   double rest_length = 0;  ///< m
+  double stiffness = 0;    ///< N/m
   int low = 0, high = 0;   ///< rows of particles that the springs end in, from `low` to `high`
 };
 
 /// The runs cut where a row of particles ends and where other ends are free, in their order; every piece has
 /// a stride of 1. Springs between two pins are left out: they are not the limiter's to change.
-std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& limited,
+std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& runs,
                                    double rate);
 
 /// The pieces divided into independent springs: those between neighbours into every other one and the rest,

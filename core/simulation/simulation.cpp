@@ -147,10 +147,9 @@ void Simulation::limit_start() {
 void Simulation::limit_deformation() {
   last_limit_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_->excess(state_.position)};
   if (limiter_->accepts(last_limit_.excess)) return;
-  const double before = total_energy();
   limiter_->set_unreachable(unreachable_.has_value());
   last_limit_ = limiter_->apply(system_, time_step_, state_);
-  ledger_.limiter += total_energy() - before;
+  ledger_.limiter += limiter_->work(system_, gravity_of(scene_), time_step_, state_);
   integrator_->forget(Change::state);
 }
 

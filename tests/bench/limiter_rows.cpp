@@ -68,14 +68,15 @@ class RateMeasurement {
   /// Rows of the choices with or without the direct solver, timed against each other and the bare step.
   std::vector<LimiterRow> measure(bool direct) const {
     std::vector<Variant> variants;
-    variants.push_back({{}, std::make_unique<Simulation>(bare_cloth(size_))});
-    if (!direct)
-      variants.push_back({{.rate = rate_},
-                          std::make_unique<Simulation>(limited_cloth(size_, never_exceeded, {"sweeps", 1}))});
+    const auto add = [&](double rate, const LimiterChoice& choice, const Scene& scene) {
+      Variant& variant = variants.emplace_back();
+      variant.row.rate = rate, variant.row.solver = choice.solver, variant.row.max_sweeps = choice.max_sweeps;
+      variant.simulation = std::make_unique<Simulation>(scene);
+    };
+    add(0, {}, bare_cloth(size_));
+    if (!direct) add(rate_, {}, limited_cloth(size_, never_exceeded, {"sweeps", 1}));
     for (const LimiterChoice& choice : options_.choices)
-      if ((choice.solver == "direct") == direct)
-        variants.push_back({{.rate = rate_, .solver = choice.solver, .max_sweeps = choice.max_sweeps},
-                            std::make_unique<Simulation>(limited_cloth(size_, rate_, choice))});
+      if ((choice.solver == "direct") == direct) add(rate_, choice, limited_cloth(size_, rate_, choice));
     return timed(variants, direct ? std::min(direct_repeats, options_.repeats) : options_.repeats);
   }
 

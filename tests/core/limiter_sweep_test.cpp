@@ -8,6 +8,7 @@
 
 #include "cloth/grid.h"
 #include "limiter/deformation_limiter.h"
+#include "measure/energy.h"
 #include "support/scenes.h"
 #include "support/states.h"
 
@@ -53,9 +54,11 @@ using Ends = std::pair<int, int>;
 
 std::multiset<Ends> springs_of(const std::vector<SpringBatch>& batches) {
   std::multiset<Ends> springs;
-  for (const auto& [row, ends, limit, rest_length, low, high] : batches)
+  for (const SpringBatch& batch : batches) {
+    const SpringRow& row = batch.row;
     for (int s = 0; s < row.count; ++s)
       springs.insert({row.first + s * row.stride, row.first + s * row.stride + row.offset});
+  }
   return springs;
 }
 
@@ -148,6 +151,8 @@ TEST_P(EveryInstructionSet, LimitsToTheSameBits) {
       const LimiterReport expected = reference.apply(system, step, plain);
       const LimiterReport report = limiter.apply(system, step, other);
       EXPECT_EQ(plain, other);
+      EXPECT_EQ(reference.work(system, {0, -9.81, 0}, step, plain),
+                limiter.work(system, {0, -9.81, 0}, step, other));
       EXPECT_EQ(report.sweeps, expected.sweeps);
       EXPECT_EQ(report.excess, expected.excess);
       if (rows > 2) {
@@ -240,6 +245,27 @@ TEST(Sweeps, OfAMeshKeepItsLimitAndItsMomentumAndItsPins) {
         EXPECT_EQ(state.position[i], before.position[i]);
         EXPECT_EQ(state.velocity[i], before.velocity[i]);
       }
+  }
+}
+
+TEST(LimiterWork, IsTheEnergyAfterLessThatBefore) {
+  Random random;
+  const Vec3 gravity(1, -9.81, 2);
+  for (const char* solver : {"sweeps", "direct"}) {
+    Scene scene = limited_sheet(13, 21, {NamedPin::top_left, NamedPin::top_right});
+    scene.deformation->solver = solver;
+    const ClothSystem system = make_grid(scene.cloth, *scene.springs);
+    ClothState state = starting_state(system);
+    state.velocity = random.field(state.velocity.size(), 1);
+    for (std::size_t i = 0; i < system.pinned.size(); ++i)
+      if (system.pinned[i]) state.velocity.set(i, Vec3::Zero());
+    for (const std::size_t i : {60u, 95u, 96u}) state.position.add(i, random.vector(0.1));
+    const double before = measure_energy(system, gravity, state).total();
+    DeformationLimiter limiter(*scene.deformation, system);
+    limiter.apply(system, step, state);
+    const double after = measure_energy(system, gravity, state).total();
+    EXPECT_GT(std::abs(after - before), 1e-3);
+    EXPECT_NEAR(limiter.work(system, gravity, step, state), after - before, 1e-12 * after) << solver;
   }
 }
 

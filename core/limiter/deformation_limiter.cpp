@@ -48,13 +48,6 @@ double excess_of(const SpringBatch& batch, double squared_length) {
   return (std::sqrt(squared_length) - batch.limit) / batch.rest_length;
 }
 
-/// That of the model problem, 2/(1 + sin(pi/n)) for n particles along an edge, with the constant that took
-/// the fewest sweeps on hung cloths of 33x33 to 129x129 particles.
-double best_relaxation(int particles) {
-  constexpr double from_measurement = 0.6;
-  return 2 / (1 + from_measurement / std::sqrt(particles));
-}
-
 std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothSystem& system) {
   std::vector<SpringRun> limited;
   for (const SpringRun& run : system.springs)
@@ -72,7 +65,6 @@ DeformationLimiter::DeformationLimiter(const Deformation& deformation, const Clo
       batches_(
           batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate), system.columns)),
       elastic_(pieces_of(system, system.springs, deformation.rate)),
-      relaxation_(best_relaxation(system.size())),
       nearest_(system, limited_runs(deformation, system), deformation.rate) {}
 
 bool DeformationLimiter::is_needed(const Deformation& deformation, const ClothSystem& system) {
@@ -133,7 +125,7 @@ bool DeformationLimiter::sweep_all(LimiterReport& report, Vec3Field& position) {
   direct_cost_ = 0;
   double at_last_guess = 0;
   while (report.sweeps < deformation_.max_sweeps) {
-    const double found = sweep(report.sweeps == 0 ? 1 : relaxation_, position);
+    const double found = sweep(report.sweeps == 0 ? 1 : over_relaxation, position);
     ++report.sweeps;
     // What it found it has changed, and with it the neighbours.
     if (accepts(found) && accepts(report.excess = excess(position))) return true;

@@ -219,7 +219,7 @@ TEST(Sweeps, MoveEverySpringInTheOrderOfTheBatchesPassingOverOnlyWhatIsWithinThe
 
     scene.deformation->max_sweeps = 10;
     DeformationLimiter limiter(*scene.deformation, system);
-    for (int n = 1; n < 10; ++n) plain_sweep(system, batches, limiter.relaxation(), expected);
+    for (int n = 1; n < 10; ++n) plain_sweep(system, batches, DeformationLimiter::over_relaxation, expected);
     limiter.apply(system, step, state);
     EXPECT_LE(largest_distance(state.position, expected), 1e-12);
   }

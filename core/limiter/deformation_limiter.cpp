@@ -6,40 +6,46 @@
 #include <limits>
 
 #include "cloth/grid.h"
+#include "cloth/sums.h"
 
 namespace cloth {
 namespace {
 
 /// What the direct solver takes, in sweeps: factor * (springs it works on)^1.5 / (limited springs). The power
-/// is that of a plane graph's factorisation. Measured on hung cloths of 33x33 to 129x129 particles.
-constexpr double direct_cost_factor = 60;
+/// is that of a plane graph's factorisation. Measured on hung cloths of 33x33 and 65x65 particles, against
+/// sweeps in which nearly every spring is over its limit.
+constexpr double direct_cost_factor = 400;
 
 /// Times `max_sweeps`: what "auto" may spend at most on the direct solver.
-constexpr double direct_budget = 5;
+constexpr double direct_budget = 15;
 
-/// Sweeps before the first guess of how many more are needed: the first ones are not yet typical.
-constexpr int sweeps_before_guess = 4;
+/// With over-relaxation the excess falls in waves: how many more sweeps are needed is told from this many.
+constexpr int sweeps_per_guess = 10;
 
 bool limits(const Deformation& deformation, SpringFamily family) {
   return std::find(deformation.springs.begin(), deformation.springs.end(), name_of(family)) !=
          deformation.springs.end();
 }
 
-/// Shortens one spring if it is too long. Returns its excess before that, relative to the rest length.
-double shorten(const ClothSystem& system, double limit, double rest_length, std::size_t i, std::size_t j,
-               Vec3Field& position) {
-  double *x = position.x(), *y = position.y(), *z = position.z();
-  const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
-  const double squared = dx * dx + dy * dy + dz * dz;
-  if (!(squared > limit * limit)) return 0;
-  const bool free_i = !system.pinned[i], free_j = !system.pinned[j];
-  const double length = std::sqrt(squared);
-  const double excess = (length - limit) / rest_length;
-  if (!free_i && !free_j) return 0;  // both pinned: not the limiter's to change
-  const double share = (length - limit) / length / ((free_i ? 1 : 0) + (free_j ? 1 : 0));
-  if (free_i) x[i] += share * dx, y[i] += share * dy, z[i] += share * dz;
-  if (free_j) x[j] -= share * dx, y[j] -= share * dy, z[j] -= share * dz;
-  return excess;
+/// Shortens springs of which one end is pinned; otherwise as SweepKernels::shorten.
+double shorten_pinned(const SpringBatch& batch, double relaxation, Points p) {
+  double longest = 0;
+  for (int s = 0; s < batch.row.count; ++s) {
+    int still = batch.row.first + s * batch.row.stride, free = still + batch.row.offset;
+    if (batch.ends == FreeEnds::first) std::swap(still, free);
+    const double dx = p.x[still] - p.x[free], dy = p.y[still] - p.y[free], dz = p.z[still] - p.z[free];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    if (!(squared > batch.limit * batch.limit)) continue;
+    longest = std::max(longest, squared);
+    const double length = std::sqrt(squared);
+    const double share = relaxation * ((length - batch.limit) / length);
+    p.x[free] += share * dx, p.y[free] += share * dy, p.z[free] += share * dz;
+  }
+  return longest;
+}
+
+double excess_of(const SpringBatch& batch, double squared_length) {
+  return (std::sqrt(squared_length) - batch.limit) / batch.rest_length;
 }
 
 std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothSystem& system) {
@@ -51,70 +57,88 @@ std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothS
 
 }  // namespace
 
-DeformationLimiter::DeformationLimiter(const Deformation& deformation, const ClothSystem& system)
+DeformationLimiter::DeformationLimiter(const Deformation& deformation, const ClothSystem& system,
+                                       const SweepKernels& kernels)
     : deformation_(deformation),
-      limited_(limited_runs(deformation, system)),
-      nearest_(system, limited_, deformation.rate) {}
+      kernels_(&kernels),
+      pieces_(row_by_row(pieces_of(system, limited_runs(deformation, system), deformation.rate))),
+      batches_(
+          batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate), system.columns)),
+      elastic_(pieces_of(system, system.springs, deformation.rate)),
+      nearest_(system, limited_runs(deformation, system), deformation.rate) {}
 
 bool DeformationLimiter::is_needed(const Deformation& deformation, const ClothSystem& system) {
   return std::any_of(system.springs.begin(), system.springs.end(),
                      [&](const SpringRun& run) { return limits(deformation, run.family); });
 }
 
-double DeformationLimiter::sweep(const ClothSystem& system, bool forward, Vec3Field& position) const {
+void DeformationLimiter::begin_sweeps(int rows) {
+  moves_ = 0;
+  last_move_.assign(static_cast<std::size_t>(rows), 0);
+  found_still_.assign(batches_.size(), -1);
+}
+
+bool DeformationLimiter::has_changed(const SpringBatch& batch, std::int64_t since) const {
+  for (int row = batch.low; row <= batch.high; ++row)
+    if (last_move_[static_cast<std::size_t>(row)] > since) return true;
+  return since < 0;
+}
+
+double DeformationLimiter::shorten(const SpringBatch& batch, double relaxation, Vec3Field& position) const {
+  const Points points{position.x(), position.y(), position.z()};
+  return batch.ends == FreeEnds::both ? kernels_->shorten(batch.row, batch.limit, relaxation, points)
+                                      : shorten_pinned(batch, relaxation, points);
+}
+
+/// Returns the largest excess that it found. Batches that were within their limits and whose particles have
+/// not moved since would find nothing: they are passed over.
+double DeformationLimiter::sweep(double relaxation, Vec3Field& position) {
   double largest = 0;
-  const auto visit = [&](const SpringRun& run) {
-    const double limit = (1 + deformation_.rate) * run.rest_length;
-    for (int s = 0; s < run.count; ++s) {
-      const int i = run.first + (forward ? s : run.count - 1 - s);
-      largest = std::max(largest, shorten(system, limit, run.rest_length, static_cast<std::size_t>(i),
-                                          static_cast<std::size_t>(i + run.offset), position));
+  for (std::size_t k = 0; k < batches_.size(); ++k) {
+    const SpringBatch& batch = batches_[k];
+    if (!has_changed(batch, found_still_[k])) continue;
+    const double squared = shorten(batch, relaxation, position);
+    if (squared > 0) {
+      largest = std::max(largest, excess_of(batch, squared));
+      std::fill(last_move_.begin() + batch.low, last_move_.begin() + batch.high + 1, ++moves_);
+    } else {
+      found_still_[k] = moves_;
     }
-  };
-  if (forward)
-    std::for_each(limited_.begin(), limited_.end(), visit);
-  else
-    std::for_each(limited_.rbegin(), limited_.rend(), visit);
+  }
   return largest;
 }
 
-double DeformationLimiter::excess(const ClothSystem& system, const Vec3Field& position) const {
+double DeformationLimiter::excess(const Vec3Field& position) const {
+  const ConstPoints points{position.x(), position.y(), position.z()};
   double largest = 0;
-  const double *x = position.x(), *y = position.y(), *z = position.z();
-  for (const SpringRun& run : limited_) {
-    const double limit = (1 + deformation_.rate) * run.rest_length;
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int j = i + run.offset;
-      const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
-      const double squared = dx * dx + dy * dy + dz * dz;
-      if (!(squared > limit * limit)) continue;
-      if (system.pinned[static_cast<std::size_t>(i)] && system.pinned[static_cast<std::size_t>(j)]) continue;
-      largest = std::max(largest, (std::sqrt(squared) - limit) / run.rest_length);
-    }
+  for (const SpringBatch& piece : pieces_) {
+    const double squared = kernels_->longest(piece.row, piece.limit, points);
+    if (squared > 0) largest = std::max(largest, excess_of(piece, squared));
   }
   return largest;
 }
 
 /// False when the direct solver is to do it instead; otherwise the tolerance is reached or the sweeps are
 /// used up.
-bool DeformationLimiter::sweep_all(const ClothSystem& system, LimiterReport& report, Vec3Field& position) {
+bool DeformationLimiter::sweep_all(LimiterReport& report, Vec3Field& position) {
   const bool may_give_up = deformation_.solver == "auto" && !unreachable_;
   direct_cost_ = 0;
-  double two_ago = 0, one_ago = 0;
+  double at_last_guess = 0;
   while (report.sweeps < deformation_.max_sweeps) {
-    // Sweeps go there and back: what one direction pushes ahead of itself the other takes up.
-    const double found = sweep(system, report.sweeps % 2 == 0, position);
+    const double found = sweep(report.sweeps == 0 ? 1 : over_relaxation, position);
     ++report.sweeps;
-    if (accepts(found)) return true;
-    if (may_give_up && report.sweeps >= sweeps_before_guess && report.sweeps % 2 == 0) {
-      const double decay = std::log(two_ago / found) / 2;  // per sweep, there and back compared with itself
+    // What it found it has changed, and with it the neighbours.
+    if (accepts(found) && accepts(report.excess = excess(position))) return true;
+    if (report.sweeps % sweeps_per_guess != 0) continue;
+    if (may_give_up && at_last_guess > 0) {
+      const double decay = std::log(at_last_guess / found) / sweeps_per_guess;
       const double remaining = decay > 0 ? std::log(found / deformation_.tolerance) / decay
                                          : std::numeric_limits<double>::infinity();
       if (direct_is_cheaper(remaining, report.sweeps)) return false;
     }
-    two_ago = one_ago;
-    one_ago = found;
+    at_last_guess = found;
   }
+  report.excess = excess(position);
   return true;
 }
 
@@ -123,7 +147,7 @@ bool DeformationLimiter::sweep_all(const ClothSystem& system, LimiterReport& rep
 bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) {
   if (direct_cost_ == 0) {
     double springs = 0;
-    for (const SpringRun& run : limited_) springs += run.count;
+    for (const SpringBatch& piece : pieces_) springs += piece.row.count;
     direct_cost_ =
         direct_cost_factor * std::pow(static_cast<double>(nearest_.working_count(before_)), 1.5) / springs;
   }
@@ -142,18 +166,59 @@ void DeformationLimiter::solve_directly(const ClothSystem& system, LimiterReport
 LimiterReport DeformationLimiter::apply(const ClothSystem& system, double time_step, ClothState& state) {
   LimiterReport report;
   before_ = state.position;
-  const bool swept = deformation_.solver != "direct" && sweep_all(system, report, state.position);
-  if (!swept) {
+  begin_sweeps(system.rows);
+  swept_ = deformation_.solver != "direct" && sweep_all(report, state.position);
+  if (!swept_) {
     state.position = before_;
     solve_directly(system, report, state.position);
+    report.excess = excess(state.position);
   }
-  report.excess = excess(system, state.position);
-
-  const auto x = state.position.flat();
-  const auto x0 = before_.flat();
-  const auto v = state.velocity.flat();
-  for (std::size_t k = 0; k < v.size(); ++k) v[k] += (x[k] - x0[k]) / time_step;
+  change_velocity(system, time_step, state);
   return report;
+}
+
+void DeformationLimiter::change_velocity(const ClothSystem& system, double time_step,
+                                         ClothState& state) const {
+  const double per_step = 1 / time_step;
+  const auto columns = static_cast<std::size_t>(system.columns);
+  const auto change = [&](const double* x, const double* x0, double* v) {
+    for (int row = 0; row < system.rows; ++row) {
+      if (!has_moved(row)) continue;
+      const std::size_t first = static_cast<std::size_t>(row) * columns;
+      for (std::size_t k = first; k < first + columns; ++k) v[k] += (x[k] - x0[k]) * per_step;
+    }
+  };
+  change(state.position.x(), before_.x(), state.velocity.x());
+  change(state.position.y(), before_.y(), state.velocity.y());
+  change(state.position.z(), before_.z(), state.velocity.z());
+}
+
+double DeformationLimiter::work(const ClothSystem& system, const Vec3& gravity, double time_step,
+                                const ClothState& state) const {
+  const double per_step = 1 / time_step;
+  const double* x[] = {state.position.x(), state.position.y(), state.position.z()};
+  const double* x0[] = {before_.x(), before_.y(), before_.z()};
+  const double* v[] = {state.velocity.x(), state.velocity.y(), state.velocity.z()};
+  double work = 0;
+  for (int row = 0; row < system.rows; ++row) {
+    if (!has_moved(row)) continue;
+    const auto first = static_cast<std::size_t>(system.index(row, 0));
+    for (int axis = 0; axis < 3; ++axis)
+      work += ordered_sum(static_cast<std::size_t>(system.columns),
+                          [=, m = system.mass.data() + first, to = x[axis] + first, from = x0[axis] + first,
+                           speed = v[axis] + first, g = gravity[axis]](std::size_t k) {
+                            const double moved = to[k] - from[k], change = moved * per_step;
+                            return m[k] * (change * (speed[k] - 0.5 * change) - g * moved);
+                          });
+  }
+  const ConstPoints before{x0[0], x0[1], x0[2]}, after{x[0], x[1], x[2]};
+  for (const SpringBatch& piece : elastic_) {
+    bool moved = false;
+    for (int row = piece.low; row <= piece.high; ++row) moved = moved || has_moved(row);
+    if (moved)
+      work += 0.5 * piece.stiffness * kernels_->stretching(piece.row, piece.rest_length, before, after);
+  }
+  return work;
 }
 
 namespace {

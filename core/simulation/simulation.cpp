@@ -159,7 +159,7 @@ void Simulation::count_step(const IntegratorReport& report) {
 
 /// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.
 void Simulation::limit_start() {
-  if (!prepare_ || !limiter_ || limiter_->accepts(limiter_->excess(system_, state_.position))) return;
+  if (!prepare_ || !limiter_ || limiter_->accepts(limiter_->excess(state_.position))) return;
   const Vec3Field velocity = state_.velocity;
   limiter_->set_unreachable(unreachable_.has_value());
   limiter_->apply(system_, time_step_, state_);
@@ -167,12 +167,11 @@ void Simulation::limit_start() {
 }
 
 void Simulation::limit_deformation() {
-  last_limit_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_->excess(system_, state_.position)};
+  last_limit_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_->excess(state_.position)};
   if (limiter_->accepts(last_limit_.excess)) return;
-  const double before = total_energy();
   limiter_->set_unreachable(unreachable_.has_value());
   last_limit_ = limiter_->apply(system_, time_step_, state_);
-  ledger_.limiter += total_energy() - before;
+  ledger_.limiter += limiter_->work(system_, gravity_of(scene_), time_step_, state_);
   integrator_->forget(Change::state);
 }
 

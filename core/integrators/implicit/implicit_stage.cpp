@@ -11,7 +11,7 @@
 namespace cloth {
 namespace {
 
-constexpr double linear_tolerance = 1e-4;  // of an iterative solve within an iteration of Newton's method
+constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;      // of the residual along a step that is long enough
 constexpr int most_halvings = 12;
 constexpr double good_enough = 1e-3;  // relative change after the last iteration that is still taken
@@ -42,6 +42,10 @@ void clear_pinned(const ClothSystem& system, Vec3Field& field) {
     if (system.pinned[i]) field.set(i, Vec3::Zero());
 }
 
+double norm_of(const Vec3Field& field) {
+  return std::sqrt(dot(field.flat(), field.flat()));
+}
+
 double work_along(const Vec3Field& direction, const Vec3Field& residual) {
   return dot(direction.flat(), residual.flat());
 }
@@ -63,6 +67,21 @@ void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, cons
   clear_pinned(system, residual_);
 }
 
+/// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model is
+/// worth, which the last fall of the residual tells (Eisenstat and Walker 1996, choice 2). Convergence stays
+/// superlinear, and becomes quadratic where the tightest value is reached.
+void ImplicitStage::choose_forcing() {
+  constexpr double weight = 0.9;
+  const double norm = norm_of(residual_);
+  if (residual_norm_ > 0) {
+    const double ratio = norm / residual_norm_;
+    forcing_ = std::clamp(weight * ratio * ratio, tightest_forcing, loosest_forcing);
+  } else {
+    forcing_ = loosest_forcing;
+  }
+  residual_norm_ = norm;
+}
+
 /// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite, or where
 /// conjugate gradients did not get there.
 bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod method,
@@ -77,10 +96,8 @@ bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod meth
     return true;
   }
   jacobi_.prepare(system, linearisation_);
-  const KrylovReport krylov = conjugate_gradients(
-      [&](const Vec3Field& in, Vec3Field& out) { linearisation_.multiply(system, in, out); },
-      [&](const Vec3Field& in, Vec3Field& out) { jacobi_.solve(in, out); }, right_hand_side, linear_tolerance,
-      downhill_);
+  const KrylovReport krylov =
+      gradients_.solve(system, linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
   report.linear_iterations += krylov.iterations;
   return krylov.converged;
 }
@@ -112,7 +129,7 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
     linear_method_ == LinearMethod::cholesky ? factors_.solve(in, out) : jacobi_.solve(in, out);
   };
   report.linear_iterations +=
-      minimal_residuals(jacobian, preconditioner, right_hand_side, linear_tolerance, direction_).iterations;
+      minimal_residuals(jacobian, preconditioner, right_hand_side, forcing_, direction_).iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
@@ -147,7 +164,9 @@ void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const S
       64 * std::numeric_limits<double>::epsilon() * largest_component(position) / equation.weight;
   double scale = std::max(largest_component(velocity), largest_component(*equation.velocity));
   double relative = 0;
+  residual_norm_ = 0;
   for (int n = 0; n < most_iterations_; ++n) {
+    choose_forcing();
     find_direction(system, forces, equation, velocity, position, report);
     const double change = take_step(system, forces, equation, velocity, position, report);
     ++report.iterations;

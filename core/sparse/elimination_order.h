@@ -1,8 +1,8 @@
 // In which order the unknowns of a sparse symmetric matrix are eliminated decides how many entries its
 // Cholesky factors have. On a grid nested dissection (George 1973) is best up to a constant: a separator,
 // lines of particles that no spring reaches across, is eliminated last, and the halves that it leaves are
-// ordered likewise. Lines may also run along the diagonals: a cloth's springs reach two particles along a row
-// but only one along a diagonal, so that a diagonal separator has fewer particles for its length.
+// ordered likewise. Lines may also run along the diagonals: no spring of a cloth reaches across two
+// neighbouring ones either, and a diagonal has fewer particles for its length than a row.
 #pragma once
 
 #include <array>

@@ -12,9 +12,9 @@ namespace cloth {
 namespace {
 
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
-constexpr double accepted_work = 0.5;      // of the residual along a step that is long enough
-constexpr int most_halvings = 12;
-constexpr double good_enough = 1e-3;  // relative change after the last iteration that is still taken
+constexpr double accepted_work = 0.5;  // of the residual along a step that is long enough
+constexpr int most_trials = 13;        // of a length
+constexpr double good_enough = 1e-3;   // relative change after the last iteration that is still taken
 
 double largest_component(const Vec3Field& field) {
   double largest = 0;
@@ -67,9 +67,9 @@ void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, cons
   clear_pinned(system, residual_);
 }
 
-/// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model is
-/// worth, which the last fall of the residual tells (Eisenstat and Walker 1996, choice 2). Convergence stays
-/// superlinear, and becomes quadratic where the tightest value is reached.
+/// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model
+/// is worth, which the last fall of the residual tells (Eisenstat and Walker 1996, choice 2). Convergence
+/// stays superlinear, and becomes quadratic where the tightest value is reached.
 void ImplicitStage::choose_forcing() {
   constexpr double weight = 0.9;
   const double norm = norm_of(residual_);
@@ -108,7 +108,7 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   const double h = equation.weight;
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
   forces.linearise(position, weights, linearisation_);
-  const LinearMethod method = choose_linear_method(system, weights);
+  const LinearMethod method = choose_linear_method(system, weights).method;
   if (!solve_symmetric(system, method, report)) {
     weights.clamped = true;
     forces.linearise(position, weights, linearisation_);
@@ -133,24 +133,35 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
-/// Goes along the direction, less far where the residual's work along it has grown. Returns the largest
+/// Goes along the direction until the residual's work along it has fallen: less far where it has turned
+/// against the direction, further where it has hardly fallen, as on the way off a saddle. Returns the largest
 /// change.
 double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                                 Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
   start_ = velocity;
   const double before = work_along(direction_, residual_);
-  const double reach = largest_component(direction_);
-  double length = 1;
-  for (int halving = 0;; ++halving) {
+  double near = 0, near_work = before;  // the longest step that was too short
+  std::optional<double> far;            // the shortest that was too long, and its work
+  double far_work = 0, length = 1;
+  for (int trial = 1;; ++trial) {
     velocity = start_;
     add_scaled(length, direction_, velocity);
     evaluate(system, forces, equation, velocity, position, report);
     const double after = work_along(direction_, residual_);
-    if (std::abs(after) <= accepted_work * std::abs(before) || after <= 0 || halving == most_halvings) break;
-    const double secant = std::isfinite(after) ? before / (before - after) : 0;
-    length *= std::clamp(secant, 0.1, 0.5);
+    if (std::abs(after) <= accepted_work * std::abs(before) || trial == most_trials) break;
+    if (after < 0) {
+      near = length, near_work = after;
+    } else {
+      far = length, far_work = after;
+    }
+    if (far) {
+      const double secant = std::isfinite(far_work) ? near_work / (near_work - far_work) : 0;
+      length = near + (*far - near) * std::clamp(secant, 0.1, 0.5);
+    } else {
+      length *= 2;
+    }
   }
-  return length * reach;
+  return length * largest_component(direction_);
 }
 
 void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,

@@ -10,6 +10,7 @@
 // needs no energy, which drag and dampers do not have.
 #pragma once
 
+#include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
 #include "integrators/integrator.h"
 

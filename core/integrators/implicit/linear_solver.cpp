@@ -2,10 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "cloth/sums.h"
 
 namespace cloth {
 namespace {
@@ -130,24 +126,6 @@ void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linear
 
 void BlockJacobi::solve(const Vec3Field& right_hand_side, Vec3Field& solution) const {
   multiply_blocks(inverse_, 0, inverse_.size(), right_hand_side, solution);
-}
-
-LinearMethod choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights) {
-  // ns, measured: factors grow as size^1.75 on a grid; an iteration of conjugate gradients is linear in it.
-  constexpr double factor_cost = 65, factor_growth = 1.75, iteration_cost = 32;
-  // Measured to linear_tolerance of ImplicitStage: as the root of the condition, but however stiff the
-  // springs, a grid has no worse condition than its size gives it.
-  constexpr double iterations_per_root = 1.3, iterations_per_edge = 10;
-  double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
-  for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
-  for (const double mass : system.mass) lightest = std::min(lightest, mass);
-  const double condition = 1 + 12 * weights.position * stiffest / lightest;
-  const double size = system.size();
-  const double iterations =
-      std::min(iterations_per_edge * std::sqrt(size), iterations_per_root * std::sqrt(condition));
-  const double by_factors = factor_cost * std::pow(size, factor_growth);
-  return iterations * iteration_cost * size < by_factors ? LinearMethod::conjugate_gradients
-                                                         : LinearMethod::cholesky;
 }
 
 }  // namespace cloth

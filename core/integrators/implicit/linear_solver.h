@@ -69,10 +69,4 @@ class ConjugateGradients {
 KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& preconditioner,
                                const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
 
-/// How A is solved. Factors cost the same for every stiffness; conjugate gradients cost more the further the
-/// step reaches beyond the fastest oscillation. The rule is a fixed estimate of both from measured costs, so
-/// that the same scene always takes the same way (docs/methods/implicit-euler.md has the measurements).
-enum class LinearMethod { cholesky, conjugate_gradients };
-LinearMethod choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights);
-
 }  // namespace cloth

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cloth/sums.h"
 
@@ -99,6 +100,10 @@ bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod meth
   const KrylovReport krylov =
       gradients_.solve(system, linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
   report.linear_iterations += krylov.iterations;
+  if (krylov.indefinite) {
+    escape_ = gradients_.direction();
+    for (double& value : escape_.flat()) value *= krylov.reach;
+  }
   return krylov.converged;
 }
 
@@ -109,14 +114,22 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
   forces.linearise(position, weights, linearisation_);
   const LinearMethod method = choose_linear_method(system, weights).method;
+  escape_.fill(0);
   if (!solve_symmetric(system, method, report)) {
     weights.clamped = true;
     forces.linearise(position, weights, linearisation_);
     if (!solve_symmetric(system, method, report)) solve_symmetric(system, LinearMethod::cholesky, report);
   }
   direction_ = downhill_;
-  if (!forces.has_asymmetric_part()) return;
+  if (forces.has_asymmetric_part()) correct_direction(system, forces, equation, velocity, position, report);
+  add_escape();
+}
 
+/// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
+void ImplicitStage::correct_direction(const ClothSystem& system, ForceModel& forces,
+                                      const StageEquation& equation, const Vec3Field& velocity,
+                                      const Vec3Field& position, IntegratorReport& report) {
+  const double h = equation.weight;
   Vec3Field turned(velocity.size()), right_hand_side = residual_;
   for (double& value : right_hand_side.flat()) value = -value;
   const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
@@ -131,6 +144,17 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   report.linear_iterations +=
       minimal_residuals(jacobian, preconditioner, right_hand_side, forcing_, direction_).iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
+}
+
+/// Near a saddle the clamped matrix hardly moves along what curves downwards, however far that leads: so the
+/// direction of negative curvature that conjugate gradients met is gone along as well, by its own curvature.
+void ImplicitStage::add_escape() {
+  constexpr double furthest = 4;  // times the rest of the step
+  const double reach = largest_component(escape_);
+  if (!(reach > 0)) return;
+  const double allowed = furthest * largest_component(direction_);
+  const double downwards = work_along(escape_, residual_) < 0 ? 1 : -1;
+  add_scaled(downwards * std::min(1.0, allowed / reach), escape_, direction_);
 }
 
 /// Goes along the direction until the residual's work along it has fallen: less far where it has turned
@@ -167,7 +191,7 @@ double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, c
 void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                           Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
   const std::size_t size = velocity.size();
-  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = start_ = Vec3Field(size);
+  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = escape_ = start_ = Vec3Field(size);
   evaluate(system, forces, equation, velocity, position, report);
 
   // Positions are rounded to eps |x|: velocities that differ by eps |x| / h are the same.

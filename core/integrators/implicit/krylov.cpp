@@ -77,6 +77,7 @@ KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearis
     const double curvature = dot(direction_, image_);
     if (!(curvature > 0)) {
       report.indefinite = true;
+      report.reach = curvature < 0 ? -slope / curvature : 0;
       break;
     }
     const double next = advance(slope / curvature, preconditioner, solution);

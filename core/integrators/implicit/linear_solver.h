@@ -47,6 +47,7 @@ class BlockJacobi {
 struct KrylovReport {
   int iterations = 0;
   bool indefinite = false;  ///< a direction of negative curvature was met
+  double reach = 0;         ///< how far along it the step would be if it curved as much upwards
   bool converged = false;
 };
 
@@ -57,6 +58,9 @@ class ConjugateGradients {
   KrylovReport solve(const ClothSystem& system, const Linearisation& matrix,
                      const BlockJacobi& preconditioner, const Vec3Field& right_hand_side, double tolerance,
                      Vec3Field& solution);
+
+  /// The last direction: that of negative curvature where the solve ended with one.
+  const Vec3Field& direction() const { return direction_; }
 
  private:
   double advance(double length, const BlockJacobi& preconditioner, Vec3Field& solution);

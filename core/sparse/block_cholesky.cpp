@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "cloth/sums.h"
-#include "sparse/dense_front.h"
-
 namespace cloth {
 namespace {
 
@@ -62,7 +59,8 @@ void BlockCholesky::place_entries(const std::vector<Coupling>& couplings) {
 }
 
 void BlockCholesky::plan_memory() {
-  std::size_t kept = 0, stack = 0, highest = 0, tallest = 0;
+  std::size_t kept = 0, stack = 0, highest = 0;
+  tallest_ = 0;
   operations_ = 0;
   for (std::size_t f = 0; f < tree_.fronts.size(); ++f) {
     const Front& front = tree_.fronts[f];
@@ -70,7 +68,7 @@ void BlockCholesky::plan_memory() {
     const std::size_t m = block_ * at(front.height()), w = block_ * at(front.width), r = m - w;
     panel.begin = kept;
     kept += m * w;
-    tallest = std::max(tallest, r);
+    tallest_ = std::max(tallest_, r);
     for (std::size_t j = 0; j < w; ++j) operations_ += 0.5 * static_cast<double>((m - j) * (m - j));
     highest = std::max(highest, stack + r * r);
     for (const int child : panel.children) {
@@ -84,7 +82,6 @@ void BlockCholesky::plan_memory() {
   }
   factors_.resize(kept);
   updates_.resize(highest);
-  below_.resize(tallest);
   unknown_at_.resize(tree_.place.size());
   for (std::size_t i = 0; i < tree_.place.size(); ++i) unknown_at_[at(tree_.place[i])] = i;
 }
@@ -151,51 +148,67 @@ bool BlockCholesky::factorise(std::span<const double> diagonal, std::span<const 
   return true;
 }
 
-/// L x = x for one front's own unknowns, and what follows for those below it.
-void BlockCholesky::eliminate(std::size_t f, double* x) {
-  const Front& front = tree_.fronts[f];
-  const std::size_t m = block_ * at(front.height()), w = block_ * at(front.width);
-  double *own = x + block_ * at(front.first), *below = below_.data();
-  std::fill(below, below + (m - w), 0.0);
-  subtract_solution({factors_.data() + panels_[f].begin, m}, static_cast<int>(m), static_cast<int>(w), own,
-                    below);
-  for (const int row : front.rows)
-    for (std::size_t k = 0; k < block_; ++k) x[block_ * at(row) + k] += *below++;
+namespace {
+
+void add_to(double& to, double from) {
+  to += from;
+}
+void add_to(Quad& to, const Quad& from) {
+  for (int n = 0; n < 4; ++n) to.of[n] += from.of[n];
 }
 
-/// L^T x = x for one front's own unknowns, from those below it.
-void BlockCholesky::substitute(std::size_t f, double* x) {
-  const Front& front = tree_.fronts[f];
-  const std::size_t m = block_ * at(front.height()), w = block_ * at(front.width);
-  double* below = below_.data();
-  for (const int row : front.rows)
-    for (std::size_t k = 0; k < block_; ++k) *below++ = x[block_ * at(row) + k];
-  double* own = x + block_ * at(front.first);
-  for (std::size_t j = w; j-- > 0;) {
-    const double* column = factors_.data() + panels_[f].begin + j * m;
-    const double sum = dot({column + w, m - w}, {below_.data(), m - w}) +
-                       dot({column + j + 1, w - j - 1}, {own + j + 1, w - j - 1});
-    own[j] = (own[j] - sum) / column[j];
+}  // namespace
+
+/// x <- A^-1 x, its numbers in the order of elimination.
+template <class Number>
+void BlockCholesky::solve_ordered(Number* x, std::vector<Number>& below) {
+  below.resize(tallest_);
+  const auto panel = [&](std::size_t f) {
+    const std::size_t m = block_ * at(tree_.fronts[f].height());
+    return DenseBlock{factors_.data() + panels_[f].begin, m};
+  };
+  for (std::size_t f = 0; f < tree_.fronts.size(); ++f) {
+    const Front& front = tree_.fronts[f];
+    const std::size_t m = block_ * at(front.height()), w = block_ * at(front.width);
+    std::fill(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(m - w), Number{});
+    eliminate(panel(f), static_cast<int>(m), static_cast<int>(w), x + block_ * at(front.first), below.data());
+    const Number* from = below.data();
+    for (const int row : front.rows)
+      for (std::size_t k = 0; k < block_; ++k) add_to(x[block_ * at(row) + k], *from++);
+  }
+  for (std::size_t f = tree_.fronts.size(); f-- > 0;) {
+    const Front& front = tree_.fronts[f];
+    const std::size_t m = block_ * at(front.height()), w = block_ * at(front.width);
+    Number* to = below.data();
+    for (const int row : front.rows)
+      for (std::size_t k = 0; k < block_; ++k) *to++ = x[block_ * at(row) + k];
+    substitute(panel(f), static_cast<int>(m), static_cast<int>(w), x + block_ * at(front.first),
+               below.data());
   }
 }
 
 void BlockCholesky::solve(std::span<double> values, int columns) {
   const std::size_t size = block_ * tree_.place.size();
-  assert(values.size() == size * at(columns));
-  ordered_.resize(values.size());
-  const auto for_each = [&](auto visit) {  // of a number of `values` and its place in `ordered_`
-    for (std::size_t n = 0; n < at(columns); ++n)
-      for (std::size_t i = 0; i < tree_.place.size(); ++i)
-        for (std::size_t k = 0; k < block_; ++k)
-          visit(values[n * size + block_ * i + k], ordered_[n * size + block_ * at(tree_.place[i]) + k]);
+  assert(values.size() == size * at(columns) && columns <= 4);
+  const auto for_each = [&](auto visit) {  // of a number's place in `values` and in the order of elimination
+    for (std::size_t i = 0; i < tree_.place.size(); ++i)
+      for (std::size_t k = 0; k < block_; ++k) visit(block_ * i + k, block_ * at(tree_.place[i]) + k);
   };
-  for_each([](double given, double& ordered) { ordered = given; });
-  // Front by front for all right-hand sides: the factors come from memory once for each pass.
-  for (std::size_t f = 0; f < tree_.fronts.size(); ++f)
-    for (std::size_t n = 0; n < at(columns); ++n) eliminate(f, ordered_.data() + n * size);
-  for (std::size_t f = tree_.fronts.size(); f-- > 0;)
-    for (std::size_t n = 0; n < at(columns); ++n) substitute(f, ordered_.data() + n * size);
-  for_each([](double& result, double ordered) { result = ordered; });
+  if (columns == 1) {
+    ordered_.resize(size);
+    for_each([&](std::size_t k, std::size_t place) { ordered_[place] = values[k]; });
+    solve_ordered(ordered_.data(), below_);
+    for_each([&](std::size_t k, std::size_t place) { values[k] = ordered_[place]; });
+    return;
+  }
+  ordered_quads_.assign(size, Quad{});
+  for (int n = 0; n < columns; ++n)
+    for_each(
+        [&](std::size_t k, std::size_t place) { ordered_quads_[place].of[n] = values[k + at(n) * size]; });
+  solve_ordered(ordered_quads_.data(), below_quads_);
+  for (int n = 0; n < columns; ++n)
+    for_each(
+        [&](std::size_t k, std::size_t place) { values[k + at(n) * size] = ordered_quads_[place].of[n]; });
 }
 
 }  // namespace cloth

@@ -11,6 +11,7 @@
 
 #include <span>
 
+#include "sparse/dense_front.h"
 #include "sparse/elimination_tree.h"
 
 namespace cloth {
@@ -28,7 +29,7 @@ class BlockCholesky {
   /// definite; nothing can then be solved.
   bool factorise(std::span<const double> diagonal, std::span<const double> coupling_blocks);
 
-  /// values <- A^-1 values. `columns` right-hand sides one after the other, each block numbers per unknown.
+  /// values <- A^-1 values. Up to four right-hand sides, one after the other, each block numbers per unknown.
   void solve(std::span<double> values, int columns);
 
   int unknowns() const { return static_cast<int>(tree_.place.size()); }
@@ -53,8 +54,8 @@ class BlockCholesky {
   void gather(std::size_t front, std::span<const double> diagonal, std::span<const double> coupling_blocks,
               double* columns) const;
   void add_update(std::size_t child, const double* from, double* columns, double* update) const;
-  void eliminate(std::size_t front, double* x);
-  void substitute(std::size_t front, double* x);
+  template <class Number>
+  void solve_ordered(Number* x, std::vector<Number>& below);
 
   std::size_t block_;
   EliminationTree tree_;
@@ -63,7 +64,9 @@ class BlockCholesky {
   std::vector<Entry> entries_;           ///< front by front: couplings
   std::vector<double> factors_;          ///< the fronts' own columns
   std::vector<double> updates_;          ///< a stack
+  std::size_t tallest_ = 0;              ///< update of a front, in numbers
   std::vector<double> ordered_, below_;  ///< scratch of solve
+  std::vector<Quad> ordered_quads_, below_quads_;
   double operations_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloth/sums.h"
 #include "cloth/vectorised.h"
 
 namespace cloth {
@@ -127,6 +128,33 @@ __attribute__((target("avx512f"))) void subtract_square_avx512(DenseBlock update
 }
 #endif
 
+CLOTH_INLINE void add_product(double& to, double factor, double from) {
+  to += factor * from;
+}
+CLOTH_INLINE void add_product(Quad& to, double factor, const Quad& from) {
+  for (int n = 0; n < 4; ++n) to.of[n] += factor * from.of[n];
+}
+CLOTH_INLINE void divide(double& value, double by) {
+  value /= by;
+}
+CLOTH_INLINE void divide(Quad& value, double by) {
+  for (int n = 0; n < 4; ++n) value.of[n] /= by;
+}
+
+template <class Number>
+CLOTH_INLINE void eliminate_with(DenseBlock front, int height, int width, Number* own, Number* below) {
+  const int rest = height - width;
+  for (int j = 0; j < width; ++j) {
+    const double* __restrict column = front.data + static_cast<std::size_t>(j) * front.stride;
+    divide(own[j], column[j]);
+    const Number value = own[j];
+    Number* __restrict later = own;
+    for (int i = j + 1; i < width; ++i) add_product(later[i], -column[i], value);
+    Number* __restrict to = below;
+    for (int i = 0; i < rest; ++i) add_product(to[i], -column[width + i], value);
+  }
+}
+
 std::vector<DenseKernels> find_kernels() {
   std::vector<DenseKernels> kernels{{"plain", factorise_columns_plain, subtract_square_plain}};
 #if defined(__x86_64__)
@@ -140,15 +168,36 @@ std::vector<DenseKernels> find_kernels() {
 
 }  // namespace
 
-CLOTH_VECTORISED void subtract_solution(DenseBlock front, int height, int width, double* own, double* below) {
-  const int rest = height - width;
-  for (int j = 0; j < width; ++j) {
-    const double* __restrict column = front.data + static_cast<std::size_t>(j) * front.stride;
-    const double value = own[j] /= column[j];
-    double* __restrict later = own;
-    for (int i = j + 1; i < width; ++i) later[i] -= value * column[i];
-    double* __restrict to = below;
-    for (int i = 0; i < rest; ++i) to[i] -= value * column[width + i];
+CLOTH_VECTORISED void eliminate(DenseBlock front, int height, int width, double* own, double* below) {
+  eliminate_with(front, height, width, own, below);
+}
+CLOTH_VECTORISED void eliminate(DenseBlock front, int height, int width, Quad* own, Quad* below) {
+  eliminate_with(front, height, width, own, below);
+}
+
+CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, double* own, const double* below) {
+  for (int j = width; j-- > 0;) {
+    const double* column = front.data + static_cast<std::size_t>(j) * front.stride;
+    const auto later = static_cast<std::size_t>(width - j - 1),
+               rest = static_cast<std::size_t>(height - width);
+    own[j] -= dot({column + width, rest}, {below, rest}) + dot({column + j + 1, later}, {own + j + 1, later});
+    own[j] /= column[j];
+  }
+}
+CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, Quad* own, const Quad* below) {
+  for (int j = width; j-- > 0;) {
+    const double* column = front.data + static_cast<std::size_t>(j) * front.stride;
+    Quad sum[4] = {};  // side by side, since a sum waits for the one before
+    const auto add = [&](const double* factors, const Quad* from, int count) {
+      int i = 0;
+      for (; i + 4 <= count; i += 4)
+        for (int k = 0; k < 4; ++k) add_product(sum[k], factors[i + k], from[i + k]);
+      for (; i < count; ++i) add_product(sum[0], factors[i], from[i]);
+    };
+    add(column + width, below, height - width);
+    add(column + j + 1, own + j + 1, width - j - 1);
+    for (int k = 0; k < 4; ++k) add_product(own[j], -1, sum[k]);
+    divide(own[j], column[j]);
   }
 }
 

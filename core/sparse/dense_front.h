@@ -30,7 +30,17 @@ struct DenseKernels {
 /// Those that this processor has: the plain ones first, the widest last.
 const std::vector<DenseKernels>& dense_kernels();
 
+/// One number of each of up to four right-hand sides, side by side.
+struct Quad {
+  double of[4] = {};
+};
+
 /// With columns so factored: own <- L^-1 own for the first `width` numbers, below -= A own for the others.
-void subtract_solution(DenseBlock front, int height, int width, double* own, double* below);
+void eliminate(DenseBlock front, int height, int width, double* own, double* below);
+void eliminate(DenseBlock front, int height, int width, Quad* own, Quad* below);
+
+/// own <- L^-T (own - A^T below)
+void substitute(DenseBlock front, int height, int width, double* own, const double* below);
+void substitute(DenseBlock front, int height, int width, Quad* own, const Quad* below);
 
 }  // namespace cloth

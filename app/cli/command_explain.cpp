@@ -6,6 +6,8 @@
 #include "cloth/grid.h"
 #include "commands.h"
 #include "console.h"
+#include "integrators/implicit/linear_choice.h"
+#include "integrators/implicit_methods.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "simulation/stages.h"
@@ -22,15 +24,37 @@ struct MethodLimit {
   std::optional<double> auto_step;    ///< s
 };
 
+/// How an implicit method would solve its linear systems in this scene.
+struct LinearSolve {
+  std::string method;
+  cloth::LinearChoice choice;
+};
+
 struct Explanation {
   cloth::Scene scene;
   std::vector<cloth::StageInfo> stages;
   double largest_frequency = 0, guaranteed_frequency = 0, provot_step = 0;
   std::vector<MethodLimit> methods;
+  std::vector<LinearSolve> linear_solves;
 };
 
+std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vector<MethodLimit>& methods) {
+  std::vector<LinearSolve> solves;
+  const cloth::ClothSystem system =
+      cloth::make_grid(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
+  for (const MethodLimit& method : methods) {
+    const auto weight = cloth::stage_weight(method.facts.name);
+    const auto step = scene.integrator.time_step ? scene.integrator.time_step : method.auto_step;
+    if (!weight || !step) continue;
+    const double h = *weight * *step;
+    const cloth::LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
+    solves.push_back({method.facts.name, cloth::choose_linear_method(system, weights)});
+  }
+  return solves;
+}
+
 Explanation explain_scene(const cloth::Scene& scene) {
-  Explanation e{.scene = scene, .stages = cloth::explain_stages(scene), .methods = {}};
+  Explanation e{.scene = scene, .stages = cloth::explain_stages(scene), .methods = {}, .linear_solves = {}};
   if (scene.springs) {
     e.largest_frequency = cloth::largest_frequency(scene.cloth, *scene.springs);
     e.guaranteed_frequency = cloth::guaranteed_frequency(scene.cloth, *scene.springs);
@@ -41,6 +65,7 @@ Explanation explain_scene(const cloth::Scene& scene) {
     automatic.integrator = {facts.name, std::nullopt};
     e.methods.push_back({facts, cloth::stable_step(facts.name, scene), cloth::resolved_time_step(automatic)});
   }
+  e.linear_solves = linear_solves(scene, e.methods);
   return e;
 }
 
@@ -73,6 +98,14 @@ std::string to_text(const Explanation& e) {
                         method.facts.name == e.scene.integrator.method ? "*" : " ", method.facts.name,
                         method.facts.order, evaluations_text(method.facts), step_text(method.stable_step),
                         step_text(method.auto_step));
+  if (!e.linear_solves.empty())
+    text +=
+        fmt::format("\nLinear solves of implicit methods (estimated cost of one; the cheaper is taken)\n");
+  for (const LinearSolve& solve : e.linear_solves)
+    text +=
+        fmt::format("  {:<22} {:<20} factors {:.3g} ms, conjugate gradients {:.3g} ms in {:.0f} iterations\n",
+                    solve.method, cloth::name_of(solve.choice.method), 1e3 * solve.choice.factors,
+                    1e3 * solve.choice.gradients, solve.choice.iterations);
   const auto step = cloth::resolved_time_step(e.scene);
   text += step ? fmt::format("\nRun with {} at {:.6g} s{}\n", e.scene.integrator.method, *step,
                              e.scene.integrator.time_step ? "" : " (auto)")
@@ -93,7 +126,8 @@ std::string to_json(const Explanation& e) {
   json root{{"title", e.scene.title},
             {"stages", json::array()},
             {"springs", json::object()},
-            {"methods", json::array()}};
+            {"methods", json::array()},
+            {"linear_solves", json::array()}};
   for (const cloth::StageInfo& stage : e.stages)
     root["stages"].push_back({{"name", stage.name}, {"in", stage.present}, {"reason", stage.reason}});
   const cloth::ClothSystem system =
@@ -109,6 +143,12 @@ std::string to_json(const Explanation& e) {
                                {"evaluations_per_step", evaluations_json(method.facts)},
                                {"stable_step_s", finite(method.stable_step)},
                                {"auto_step_s", finite(method.auto_step)}});
+  for (const LinearSolve& solve : e.linear_solves)
+    root["linear_solves"].push_back({{"method", solve.method},
+                                     {"solver", cloth::name_of(solve.choice.method)},
+                                     {"factors_s", solve.choice.factors},
+                                     {"conjugate_gradients_s", solve.choice.gradients},
+                                     {"iterations", solve.choice.iterations}});
   root["method"] = e.scene.integrator.method;
   root["time_step_s"] = finite(cloth::resolved_time_step(e.scene));
   return root.dump(2) + "\n";

@@ -61,7 +61,7 @@ void AirForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const 
 void AirForce::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                                  Linearisation& to) const {
   const double along = weights.velocity * air_.drag;
-  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += block_along(0, along, normal_[i]);
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(0, along, normal_[i]));
 }
 
 /// How much the falloff changes where a particle moves by `shift`.

@@ -95,10 +95,10 @@ void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights
                            Linearisation& result) const {
   std::size_t springs = 0;
   for (const SpringRun& run : system_->springs) springs += static_cast<std::size_t>(run.count);
-  result.nodes.resize(position.size());
+  result.nodes.assign(position.size(), {});
   for (std::size_t i = 0; i < position.size(); ++i) {
     const double m = system_->mass[i];
-    result.nodes[i] = {m, 0, 0, m, 0, m};
+    result.nodes.set(i, {m, 0, 0, m, 0, m});
   }
   result.springs.assign(springs, {});
   result.has_compressed = false;

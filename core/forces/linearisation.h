@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "cloth/cloth_system.h"
@@ -43,13 +44,37 @@ struct LinearisationWeights {
   bool clamped = false;  ///< leaves out k (1 - L/|d|) where it is negative: A is then positive definite
 };
 
+/// Many blocks as six contiguous runs (structure of arrays), so that products with them vectorise.
+class SymmetricBlocks {
+ public:
+  void assign(std::size_t size, const SymmetricBlock& block);
+  std::size_t size() const { return runs_[0].size(); }
+  SymmetricBlock operator[](std::size_t i) const {
+    return {runs_[0][i], runs_[1][i], runs_[2][i], runs_[3][i], runs_[4][i], runs_[5][i]};
+  }
+  void set(std::size_t i, const SymmetricBlock& block);
+  void add(std::size_t i, const SymmetricBlock& block);
+  /// xx, xy, xz, yy, yz, zz of all blocks.
+  const std::array<std::vector<double>, 6>& runs() const { return runs_; }
+
+ private:
+  std::array<std::vector<double>, 6> runs_;
+};
+
 struct Linearisation {
-  std::vector<SymmetricBlock> nodes;    ///< one of each particle
-  std::vector<SymmetricBlock> springs;  ///< run after run, in the order of ClothSystem::springs
-  bool has_compressed = false;          ///< a spring is shorter than its rest length: clamping would matter
+  SymmetricBlocks nodes;        ///< one of each particle
+  SymmetricBlocks springs;      ///< run after run, in the order of ClothSystem::springs
+  bool has_compressed = false;  ///< a spring is shorter than its rest length: clamping would matter
 
   /// product = A direction; pinned particles get 0.
   void multiply(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
+
+  /// The same, except that what pinned particles get has no meaning. `direction` is zero on them.
+  void multiply_free(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
 };
+
+/// product = blocks direction, block by block, for the vectors [begin, end).
+void multiply_blocks(const SymmetricBlocks& blocks, std::size_t begin, std::size_t end,
+                     const Vec3Field& direction, Vec3Field& product);
 
 }  // namespace cloth

@@ -26,7 +26,7 @@ void PullForce::add_power(const Vec3Field& velocity, Work& power) const {
 void PullForce::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                                   Linearisation& to) const {
   const double diagonal = weights.position * stiffness_ + weights.velocity * damping_;
-  to.nodes[held()] += {diagonal, 0, 0, diagonal, 0, diagonal};
+  to.nodes.add(held(), {diagonal, 0, 0, diagonal, 0, diagonal});
 }
 
 }  // namespace cloth

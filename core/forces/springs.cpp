@@ -85,7 +85,7 @@ void SpringForce::add_linearisation(const ClothSystem& system, const Vec3Field& 
       const Vec3 d = position[j] - position[i];
       const double length = d.norm();
       if (!(length > 0)) {
-        to.springs[spring] += {k, 0, 0, k, 0, k};
+        to.springs.add(spring, {k, 0, 0, k, 0, k});
         continue;
       }
       double transverse = 1 - run.rest_length / length;
@@ -93,7 +93,7 @@ void SpringForce::add_linearisation(const ClothSystem& system, const Vec3Field& 
         to.has_compressed = true;
         if (weights.clamped) transverse = 0;
       }
-      to.springs[spring] += block_along(k * transverse, k * (1 - transverse), d / length);
+      to.springs.add(spring, block_along(k * transverse, k * (1 - transverse), d / length));
     }
   }
 }
@@ -147,7 +147,7 @@ void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) c
 void SpringDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
                                       const LinearisationWeights& weights, Linearisation& to) const {
   const double along = weights.velocity * damping_;
-  for (std::size_t s = 0; s < to.springs.size(); ++s) to.springs[s] += block_along(0, along, direction_[s]);
+  for (std::size_t s = 0; s < to.springs.size(); ++s) to.springs.add(s, block_along(0, along, direction_[s]));
 }
 
 /// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.

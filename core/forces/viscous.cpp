@@ -24,7 +24,7 @@ void ViscousDamping::add_power(const Vec3Field& velocity, Work& power) const {
 void ViscousDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
                                        const LinearisationWeights& weights, Linearisation& to) const {
   const double diagonal = weights.velocity * coefficient_;
-  for (SymmetricBlock& node : to.nodes) node += {diagonal, 0, 0, diagonal, 0, diagonal};
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, {diagonal, 0, 0, diagonal, 0, diagonal});
 }
 
 }  // namespace cloth

@@ -5,6 +5,10 @@
 
 namespace cloth {
 
+/// What the equations of an implicit method weight forces with, as a part of the step: 1, 1/2 and 2/3.
+/// Nothing for a method that solves no such equations.
+std::optional<double> stage_weight(const std::string& method);
+
 /// v' = v + h a(x', v', t'), x' = x + h v': order 1, damps every oscillation by omega h/2.
 class ImplicitEuler : public Integrator {
  public:

@@ -13,32 +13,49 @@ bool Projective::holds_for(const ClothSystem& system, const Coefficients& number
          held.springs == system.springs && held.mass == system.mass && held.pinned == system.pinned;
 }
 
-Projective::Matrix Projective::assemble() const {
+void Projective::analyse(const ClothSystem& system) {
+  const Coefficients& c = coefficients_;
+  free_.clear();
+  row_.assign(c.pinned.size(), -1);
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    if (c.pinned[i]) continue;
+    row_[i] = static_cast<int>(free_.size());
+    free_.push_back(static_cast<int>(i));
+  }
+  residual_.resize(3 * free_.size());
+
+  std::vector<Coupling> couplings;
+  for (const SpringRun& run : c.springs) {
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const int a = row_[static_cast<std::size_t>(i)], b = row_[static_cast<std::size_t>(i + run.offset)];
+      if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
+    }
+  }
+  std::vector<int> order = elimination_order(system);
+  for (int& particle : order) particle = row_[static_cast<std::size_t>(particle)];
+  factors_.analyse(couplings, order);
+}
+
+bool Projective::factorise() {
   const Coefficients& c = coefficients_;
   const double h = c.step;
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](int i, int j, double value) {
-    const int row = row_[static_cast<std::size_t>(i)], column = row_[static_cast<std::size_t>(j)];
-    if (row >= 0 && column >= 0) entries.emplace_back(row, column, value);
+  std::vector<double> diagonal(free_.size()), off_diagonal;
+  const auto add = [&](int particle, double value) {
+    if (const int row = row_[static_cast<std::size_t>(particle)]; row >= 0)
+      diagonal[static_cast<std::size_t>(row)] += value;
   };
-  for (std::size_t i = 0; i < c.mass.size(); ++i) {
-    const int particle = static_cast<int>(i);
-    add(particle, particle, c.mass[i] + h * c.node_damping);
-  }
-  if (c.held_particle >= 0)
-    add(c.held_particle, c.held_particle, h * c.held_damping + h * h * c.held_stiffness);
+  for (const int i : free_) add(i, c.mass[static_cast<std::size_t>(i)] + h * c.node_damping);
+  if (c.held_particle >= 0) add(c.held_particle, h * c.held_damping + h * h * c.held_stiffness);
   for (const SpringRun& run : c.springs) {
     const double weight = h * c.spring_damping + h * h * run.stiffness;
     for (int i = run.first; i < run.first + run.count; ++i) {
       const int j = i + run.offset;
-      add(i, i, weight), add(j, j, weight);
-      add(i, j, -weight), add(j, i, -weight);
+      add(i, weight), add(j, weight);
+      if (row_[static_cast<std::size_t>(i)] >= 0 && row_[static_cast<std::size_t>(j)] >= 0)
+        off_diagonal.push_back(-weight);
     }
   }
-  const auto size = static_cast<Eigen::Index>(free_.size());
-  Matrix matrix(size, size);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+  return factors_.factorise(diagonal, off_diagonal);
 }
 
 bool Projective::factor(const ClothSystem& system, Coefficients numbers) {
@@ -48,60 +65,25 @@ bool Projective::factor(const ClothSystem& system, Coefficients numbers) {
   numbers.mass = system.mass;
   numbers.pinned = system.pinned;
   coefficients_ = std::move(numbers);
-  if (!same_pattern) {
-    free_.clear();
-    row_.assign(system.pinned.size(), -1);
-    for (std::size_t i = 0; i < row_.size(); ++i) {
-      if (system.pinned[i]) continue;
-      row_[i] = static_cast<int>(free_.size());
-      free_.push_back(static_cast<int>(i));
-    }
-    residual_.resize(static_cast<Eigen::Index>(free_.size()), 3);
-  }
-  factored_ = true;
-  if (free_.empty()) return true;
-  const Matrix matrix = assemble();
-  if (!same_pattern) factors_.analyzePattern(matrix);
-  factors_.factorize(matrix);
-  return factored_ = factors_.info() == Eigen::Success;
-}
-
-/// residual_ <- (L L^T)^-1 residual_, its rows in the order of the factors: x, y and z side by side, so that
-/// every entry of L is read once for the three.
-void Projective::solve() {
-  const Matrix& lower = factors_.matrixL().nestedExpression();  // column by column, the diagonal first
-  const int *begin = lower.outerIndexPtr(), *row = lower.innerIndexPtr();
-  const double* value = lower.valuePtr();
-  double* r = residual_.data();
-  const int size = static_cast<int>(free_.size());
-  for (int j = 0; j < size; ++j) {
-    double* of_j = r + 3 * j;
-    for (int axis = 0; axis < 3; ++axis) of_j[axis] /= value[begin[j]];
-    for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
-      for (int axis = 0; axis < 3; ++axis) r[3 * row[k] + axis] -= value[k] * of_j[axis];
-  }
-  for (int j = size - 1; j >= 0; --j) {
-    double* of_j = r + 3 * j;
-    for (int k = begin[j] + 1; k < begin[j + 1]; ++k)
-      for (int axis = 0; axis < 3; ++axis) of_j[axis] -= value[k] * r[3 * row[k] + axis];
-    for (int axis = 0; axis < 3; ++axis) of_j[axis] /= value[begin[j]];
-  }
+  if (!same_pattern) analyse(system);
+  return factored_ = factorise();
 }
 
 /// velocity -= A^-1 r; returns the largest change of a particle's speed, relative to the largest speed.
 double Projective::correct(const ClothSystem& system, const Vec3Field& start_velocity, double h,
                            Vec3Field& velocity) {
-  const auto& order = factors_.permutationP().indices();
-  const auto place = [&](std::size_t row) { return order[static_cast<Eigen::Index>(row)]; };
-  for (std::size_t row = 0; row < free_.size(); ++row) {
+  const std::size_t size = free_.size();
+  double *x = residual_.data(), *y = x + size, *z = y + size;
+  for (std::size_t row = 0; row < size; ++row) {
     const auto i = static_cast<std::size_t>(free_[row]);
-    residual_.row(place(row)) = system.mass[i] * (velocity[i] - start_velocity[i]) - h * force_[i];
+    const Vec3 r = system.mass[i] * (velocity[i] - start_velocity[i]) - h * force_[i];
+    x[row] = r.x(), y[row] = r.y(), z[row] = r.z();
   }
-  solve();
+  factors_.solve(residual_, 3);
   double change = 0, largest = 0;
-  for (std::size_t row = 0; row < free_.size(); ++row) {
+  for (std::size_t row = 0; row < size; ++row) {
     const auto i = static_cast<std::size_t>(free_[row]);
-    const Vec3 correction = residual_.row(place(row));
+    const Vec3 correction(x[row], y[row], z[row]);
     velocity.add(i, -correction);
     change = std::max(change, correction.squaredNorm());
     largest = std::max(largest, velocity[i].squaredNorm());

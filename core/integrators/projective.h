@@ -18,9 +18,8 @@
 // whatever the shape, and the rest of the iteration contracts; iterates stay bounded in any wind.
 #pragma once
 
-#include <Eigen/SparseCholesky>
-
 #include "integrators/integrator.h"
+#include "sparse/block_cholesky.h"
 
 namespace cloth {
 
@@ -32,8 +31,6 @@ class Projective : public Integrator {
                         ClothState& state, Work& work) override;
 
  private:
-  using Matrix = Eigen::SparseMatrix<double>;
-
   /// All that A consists of.
   struct Coefficients {
     double step = 0;
@@ -48,8 +45,8 @@ class Projective : public Integrator {
 
   bool holds_for(const ClothSystem& system, const Coefficients& numbers) const;
   bool factor(const ClothSystem& system, Coefficients numbers);
-  Matrix assemble() const;
-  void solve();
+  void analyse(const ClothSystem& system);
+  bool factorise();
   double correct(const ClothSystem& system, const Vec3Field& start_velocity, double h, Vec3Field& velocity);
 
   int iterations_;
@@ -57,9 +54,9 @@ class Projective : public Integrator {
   bool factored_ = false;
   std::vector<int> row_;   ///< of A, of each particle; -1 where pinned
   std::vector<int> free_;  ///< the particle of each row
-  Eigen::SimplicialLLT<Matrix> factors_;
+  BlockCholesky factors_{1};
   Vec3Field force_, start_position_, start_velocity_;
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> residual_;  ///< N s
+  std::vector<double> residual_;  ///< N s, of the free particles: x, y, z one after the other
 };
 
 }  // namespace cloth

@@ -76,5 +76,21 @@ TEST(Explain, TakesSettings) {
   EXPECT_EQ(explained("free-fall --set springs.flexion=0")["springs"]["flexion"], 0);
 }
 
+TEST(Explain, SaysHowEveryImplicitMethodWouldSolveItsLinearSystemsAndWhatBothWaysCost) {
+  for (const std::string stiffness : {"1", "1e8"}) {
+    const auto json = explained("corners-free --set springs.structural=" + stiffness);
+    ASSERT_EQ(json["linear_solves"].size(), 3u);  // implicit-euler, implicit-midpoint, bdf2
+    const std::string text = cli("explain corners-free --set springs.structural=" + stiffness).output;
+    for (const auto& solve : json["linear_solves"]) {
+      const double factors = solve["factors_s"], gradients = solve["conjugate_gradients_s"];
+      EXPECT_GT(factors, 0);
+      EXPECT_GT(gradients, 0);
+      EXPECT_EQ(solve["solver"], gradients < factors ? "conjugate gradients" : "factors");
+      EXPECT_NE(text.find(solve["method"].get<std::string>()), std::string::npos);
+    }
+    EXPECT_NE(text.find("Linear solves"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace cloth::test

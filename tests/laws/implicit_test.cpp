@@ -122,6 +122,16 @@ TEST(NewtonsMethod, IsQuadraticOnAStretchedCloth) {
   EXPECT_LE(iterations, 12);  // of a tolerance of 1e-12: a linear rate would take some forty
 }
 
+TEST(NewtonsMethod, LeavesTheSaddlesOfAFlagThatBuckles) {
+  Scene scene = builtin_scene("flag");
+  scene.integrator = {"implicit-midpoint", 0.01};
+  Simulation simulation(scene);
+  for (int n = 0; n < 120; ++n) {
+    const auto stop = simulation.step();
+    ASSERT_FALSE(stop) << describe(*stop);
+  }
+}
+
 TEST(NewtonsMethod, ThatMayNotIterateEnoughStopsWithParticleAndCause) {
   Scene scene = builtin_scene("wind");
   scene.deformation.reset();
@@ -136,6 +146,27 @@ TEST(NewtonsMethod, ThatMayNotIterateEnoughStopsWithParticleAndCause) {
   EXPECT_NE(stop->cause.find("Newton's method did not converge"), std::string::npos);
   EXPECT_NE(describe(*stop).find("stopped in step"), std::string::npos);
   EXPECT_GE(stop->particle, 0);
+}
+
+TEST(LinearChoice, TakesFactorsWhereSpringsAreVeryStiffAndGradientsElsewhere) {
+  const auto chosen = [](int size, double stiffness) {
+    Scene scene = builtin_scene("corners-free");
+    scene.cloth.rows = scene.cloth.columns = size;
+    scene.springs = SpringMaterial{.structural = stiffness, .shear = stiffness, .flexion = stiffness};
+    return choose_linear_method(Simulation(scene).system(), {.position = 1.0 / 3600, .velocity = 1.0 / 60});
+  };
+  EXPECT_EQ(chosen(33, 1).method, LinearMethod::conjugate_gradients);
+  EXPECT_EQ(chosen(33, 1e9).method, LinearMethod::cholesky);
+  for (const int size : {9, 65}) {
+    double before = 0;
+    for (double stiffness = 1; stiffness <= 1e9; stiffness *= 10) {
+      const LinearChoice choice = chosen(size, stiffness);
+      EXPECT_EQ(choice.method == LinearMethod::conjugate_gradients, choice.gradients < choice.factors);
+      EXPECT_EQ(choice.factors, chosen(size, 1).factors) << "whatever the stiffness";
+      EXPECT_GE(choice.gradients, before);
+      before = choice.gradients;
+    }
+  }
 }
 
 class Implicit : public ::testing::TestWithParam<std::string> {};

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cloth/sums.h"
 
 namespace cloth {
 namespace {
 
-constexpr double linear_tolerance = 1e-4;  // of an iterative solve within an iteration of Newton's method
-constexpr double accepted_work = 0.5;      // of the residual along a step that is long enough
-constexpr int most_halvings = 12;
-constexpr double good_enough = 1e-3;  // relative change after the last iteration that is still taken
+constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
+constexpr double accepted_work = 0.5;  // of the residual along a step that is long enough
+constexpr int most_trials = 13;        // of a length
+constexpr double good_enough = 1e-3;   // relative change after the last iteration that is still taken
 
 double largest_component(const Vec3Field& field) {
   double largest = 0;
@@ -42,6 +43,10 @@ void clear_pinned(const ClothSystem& system, Vec3Field& field) {
     if (system.pinned[i]) field.set(i, Vec3::Zero());
 }
 
+double norm_of(const Vec3Field& field) {
+  return std::sqrt(dot(field.flat(), field.flat()));
+}
+
 double work_along(const Vec3Field& direction, const Vec3Field& residual) {
   return dot(direction.flat(), residual.flat());
 }
@@ -63,6 +68,21 @@ void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, cons
   clear_pinned(system, residual_);
 }
 
+/// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model
+/// is worth, which the last fall of the residual tells (Eisenstat and Walker 1996, choice 2). Convergence
+/// stays superlinear, and becomes quadratic where the tightest value is reached.
+void ImplicitStage::choose_forcing() {
+  constexpr double weight = 0.9;
+  const double norm = norm_of(residual_);
+  if (residual_norm_ > 0) {
+    const double ratio = norm / residual_norm_;
+    forcing_ = std::clamp(weight * ratio * ratio, tightest_forcing, loosest_forcing);
+  } else {
+    forcing_ = loosest_forcing;
+  }
+  residual_norm_ = norm;
+}
+
 /// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite, or where
 /// conjugate gradients did not get there.
 bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod method,
@@ -77,11 +97,13 @@ bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod meth
     return true;
   }
   jacobi_.prepare(system, linearisation_);
-  const KrylovReport krylov = conjugate_gradients(
-      [&](const Vec3Field& in, Vec3Field& out) { linearisation_.multiply(system, in, out); },
-      [&](const Vec3Field& in, Vec3Field& out) { jacobi_.solve(in, out); }, right_hand_side, linear_tolerance,
-      downhill_);
+  const KrylovReport krylov =
+      gradients_.solve(system, linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
   report.linear_iterations += krylov.iterations;
+  if (krylov.indefinite) {
+    escape_ = gradients_.direction();
+    for (double& value : escape_.flat()) value *= krylov.reach;
+  }
   return krylov.converged;
 }
 
@@ -91,15 +113,23 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
   const double h = equation.weight;
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
   forces.linearise(position, weights, linearisation_);
-  const LinearMethod method = choose_linear_method(system, weights);
+  const LinearMethod method = choose_linear_method(system, weights).method;
+  escape_.fill(0);
   if (!solve_symmetric(system, method, report)) {
     weights.clamped = true;
     forces.linearise(position, weights, linearisation_);
     if (!solve_symmetric(system, method, report)) solve_symmetric(system, LinearMethod::cholesky, report);
   }
   direction_ = downhill_;
-  if (!forces.has_asymmetric_part()) return;
+  if (forces.has_asymmetric_part()) correct_direction(system, forces, equation, velocity, position, report);
+  add_escape();
+}
 
+/// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
+void ImplicitStage::correct_direction(const ClothSystem& system, ForceModel& forces,
+                                      const StageEquation& equation, const Vec3Field& velocity,
+                                      const Vec3Field& position, IntegratorReport& report) {
+  const double h = equation.weight;
   Vec3Field turned(velocity.size()), right_hand_side = residual_;
   for (double& value : right_hand_side.flat()) value = -value;
   const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
@@ -112,34 +142,56 @@ void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces
     linear_method_ == LinearMethod::cholesky ? factors_.solve(in, out) : jacobi_.solve(in, out);
   };
   report.linear_iterations +=
-      minimal_residuals(jacobian, preconditioner, right_hand_side, linear_tolerance, direction_).iterations;
+      minimal_residuals(jacobian, preconditioner, right_hand_side, forcing_, direction_).iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
-/// Goes along the direction, less far where the residual's work along it has grown. Returns the largest
+/// Near a saddle the clamped matrix hardly moves along what curves downwards, however far that leads: so the
+/// direction of negative curvature that conjugate gradients met is gone along as well, by its own curvature.
+void ImplicitStage::add_escape() {
+  constexpr double furthest = 4;  // times the rest of the step
+  const double reach = largest_component(escape_);
+  if (!(reach > 0)) return;
+  const double allowed = furthest * largest_component(direction_);
+  const double downwards = work_along(escape_, residual_) < 0 ? 1 : -1;
+  add_scaled(downwards * std::min(1.0, allowed / reach), escape_, direction_);
+}
+
+/// Goes along the direction until the residual's work along it has fallen: less far where it has turned
+/// against the direction, further where it has hardly fallen, as on the way off a saddle. Returns the largest
 /// change.
 double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                                 Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
   start_ = velocity;
   const double before = work_along(direction_, residual_);
-  const double reach = largest_component(direction_);
-  double length = 1;
-  for (int halving = 0;; ++halving) {
+  double near = 0, near_work = before;  // the longest step that was too short
+  std::optional<double> far;            // the shortest that was too long, and its work
+  double far_work = 0, length = 1;
+  for (int trial = 1;; ++trial) {
     velocity = start_;
     add_scaled(length, direction_, velocity);
     evaluate(system, forces, equation, velocity, position, report);
     const double after = work_along(direction_, residual_);
-    if (std::abs(after) <= accepted_work * std::abs(before) || after <= 0 || halving == most_halvings) break;
-    const double secant = std::isfinite(after) ? before / (before - after) : 0;
-    length *= std::clamp(secant, 0.1, 0.5);
+    if (std::abs(after) <= accepted_work * std::abs(before) || trial == most_trials) break;
+    if (after < 0) {
+      near = length, near_work = after;
+    } else {
+      far = length, far_work = after;
+    }
+    if (far) {
+      const double secant = std::isfinite(far_work) ? near_work / (near_work - far_work) : 0;
+      length = near + (*far - near) * std::clamp(secant, 0.1, 0.5);
+    } else {
+      length *= 2;
+    }
   }
-  return length * reach;
+  return length * largest_component(direction_);
 }
 
 void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                           Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
   const std::size_t size = velocity.size();
-  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = start_ = Vec3Field(size);
+  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = escape_ = start_ = Vec3Field(size);
   evaluate(system, forces, equation, velocity, position, report);
 
   // Positions are rounded to eps |x|: velocities that differ by eps |x| / h are the same.
@@ -147,7 +199,9 @@ void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const S
       64 * std::numeric_limits<double>::epsilon() * largest_component(position) / equation.weight;
   double scale = std::max(largest_component(velocity), largest_component(*equation.velocity));
   double relative = 0;
+  residual_norm_ = 0;
   for (int n = 0; n < most_iterations_; ++n) {
+    choose_forcing();
     find_direction(system, forces, equation, velocity, position, report);
     const double change = take_step(system, forces, equation, velocity, position, report);
     ++report.iterations;

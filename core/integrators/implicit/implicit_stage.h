@@ -10,6 +10,7 @@
 // needs no energy, which drag and dampers do not have.
 #pragma once
 
+#include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
 #include "integrators/integrator.h"
 
@@ -38,6 +39,10 @@ class ImplicitStage {
                 const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
   void find_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                       const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
+  void choose_forcing();
+  void correct_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
+                         const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
+  void add_escape();
   bool solve_symmetric(const ClothSystem& system, LinearMethod method, IntegratorReport& report);
   double take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
                    Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
@@ -46,9 +51,12 @@ class ImplicitStage {
   int most_iterations_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;
+  ConjugateGradients gradients_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
+  double residual_norm_ = 0;  ///< N s, before the last iteration of this solve; 0: there was none
+  double forcing_ = 0;        ///< tolerance of iterative solves, relative to the residual
   Linearisation linearisation_;
-  Vec3Field force_, residual_, downhill_, direction_, start_;
+  Vec3Field force_, residual_, downhill_, direction_, escape_, start_;
 };
 
 }  // namespace cloth

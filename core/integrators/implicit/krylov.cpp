@@ -1,7 +1,9 @@
 // The two iterative solvers: conjugate gradients, and minimal residuals for what is not symmetric.
+#include <algorithm>
 #include <cmath>
 
 #include "cloth/sums.h"
+#include "cloth/vectorised.h"
 #include "integrators/implicit/linear_solver.h"
 
 namespace cloth {
@@ -10,14 +12,29 @@ namespace {
 constexpr int most_iterations = 2000;
 constexpr int basis_size = 40;  // of minimal residuals, before a restart
 
+CLOTH_VECTORISED double inner_product(std::span<const double> a, std::span<const double> b) {
+  return cloth::dot(a, b);
+}
+
 double dot(const Vec3Field& a, const Vec3Field& b) {
-  return cloth::dot(a.flat(), b.flat());
+  return inner_product(a.flat(), b.flat());
+}
+
+CLOTH_VECTORISED void add_scaled(double scale, std::span<const double> from, std::span<double> to) {
+  const double* __restrict a = from.data();
+  double* __restrict b = to.data();
+  for (std::size_t k = 0; k < to.size(); ++k) b[k] += scale * a[k];
 }
 
 void add_scaled(double scale, const Vec3Field& from, Vec3Field& to) {
-  const auto a = from.flat();
-  const auto b = to.flat();
-  for (std::size_t k = 0; k < b.size(); ++k) b[k] += scale * a[k];
+  add_scaled(scale, from.flat(), to.flat());
+}
+
+/// to = scale * to + from
+CLOTH_VECTORISED void scale_and_add(double scale, std::span<const double> from, std::span<double> to) {
+  const double* __restrict a = from.data();
+  double* __restrict b = to.data();
+  for (std::size_t k = 0; k < to.size(); ++k) b[k] = scale * b[k] + a[k];
 }
 
 void scale_by(double factor, Vec3Field& field) {
@@ -26,29 +43,45 @@ void scale_by(double factor, Vec3Field& field) {
 
 }  // namespace
 
-KrylovReport conjugate_gradients(const LinearMap& matrix, const LinearMap& preconditioner,
-                                 const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution) {
+double ConjugateGradients::advance(double length, const BlockJacobi& preconditioner, Vec3Field& solution) {
+  constexpr std::size_t stretch = 512;  // particles, whose numbers stay in the first cache
+  double slope = 0;
+  const std::size_t size = solution.size();
+  for (std::size_t begin = 0; begin < size; begin += stretch) {
+    const std::size_t count = std::min(stretch, size - begin), end = begin + count;
+    for (std::size_t k = begin; k < begin + 3 * size; k += size) {
+      add_scaled(length, direction_.flat().subspan(k, count), solution.flat().subspan(k, count));
+      add_scaled(-length, image_.flat().subspan(k, count), residual_.flat().subspan(k, count));
+    }
+    multiply_blocks(preconditioner.inverse(), begin, end, residual_, conditioned_);
+    for (std::size_t k = begin; k < begin + 3 * size; k += size)
+      slope += inner_product(residual_.flat().subspan(k, count), conditioned_.flat().subspan(k, count));
+  }
+  return slope;
+}
+
+/// What pinned particles have in the residual means nothing: the preconditioner makes zero of it.
+KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearisation& matrix,
+                                       const BlockJacobi& preconditioner, const Vec3Field& right_hand_side,
+                                       double tolerance, Vec3Field& solution) {
   KrylovReport report;
-  Vec3Field residual = right_hand_side, image(residual.size()), conditioned(residual.size());
+  if (direction_.size() != solution.size()) conditioned_ = direction_ = image_ = Vec3Field(solution.size());
+  residual_ = right_hand_side;
   solution.fill(0);
-  preconditioner(residual, conditioned);
-  Vec3Field direction = conditioned;
-  double slope = dot(residual, conditioned);
+  direction_.fill(0);
+  double slope = advance(0, preconditioner, solution);
+  direction_ = conditioned_;
   const double goal = tolerance * tolerance * slope;
   while (slope > goal && report.iterations < most_iterations) {
-    matrix(direction, image);
-    const double curvature = dot(direction, image);
+    matrix.multiply_free(system, direction_, image_);
+    const double curvature = dot(direction_, image_);
     if (!(curvature > 0)) {
       report.indefinite = true;
+      report.reach = curvature < 0 ? -slope / curvature : 0;
       break;
     }
-    const double length = slope / curvature;
-    add_scaled(length, direction, solution);
-    add_scaled(-length, image, residual);
-    preconditioner(residual, conditioned);
-    const double next = dot(residual, conditioned);
-    scale_by(next / slope, direction);
-    add_scaled(1, conditioned, direction);
+    const double next = advance(slope / curvature, preconditioner, solution);
+    scale_and_add(next / slope, conditioned_.flat(), direction_.flat());
     slope = next;
     ++report.iterations;
   }
@@ -138,9 +171,10 @@ KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& precond
                                const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution) {
   constexpr int most_cycles = 5;
   KrylovReport report;
-  solution.fill(0);
   const double goal = tolerance * std::sqrt(dot(right_hand_side, right_hand_side));
   Vec3Field residual = right_hand_side, image(residual.size());
+  matrix(solution, image);
+  add_scaled(-1, image, residual);
   ResidualCycle cycle(matrix, preconditioner);
   for (int n = 0; n < most_cycles && std::sqrt(dot(residual, residual)) > goal; ++n) {
     report.iterations += cycle.run(residual, goal, solution);

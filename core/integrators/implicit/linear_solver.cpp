@@ -2,29 +2,40 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "cloth/sums.h"
 
 namespace cloth {
 namespace {
 
-/// Where the block of two unknowns stands in the lower triangle, and whether it must be transposed for it.
-struct Place {
-  int row, column;
-};
-Place lower_place(int i, int j) {
-  return i > j ? Place{i, j} : Place{j, i};
-}
+constexpr double smallest_pivot = 1e-12;  // of a 3x3 block, relative to its largest
 
 /// Of a block whose eigenvalues may lie so far apart that the smallest is rounding: that one is then bounded.
-Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& block) {
-  constexpr double smallest = 1e-12;  // relative to the largest
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block);
-  const double floor = smallest * solver.eigenvalues().cwiseAbs().maxCoeff();
+SymmetricBlock bounded_inverse(const SymmetricBlock& block) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block.matrix());
+  const double floor = smallest_pivot * solver.eigenvalues().cwiseAbs().maxCoeff();
   const Vec3 inverse = solver.eigenvalues().cwiseMax(floor).cwiseInverse();
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  const Eigen::Matrix3d m = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
+}
+
+/// By L D L^T of the block.
+SymmetricBlock inverse_of(const SymmetricBlock& a) {
+  const double floor = smallest_pivot * std::max({a.xx, a.yy, a.zz});
+  const double l10 = a.xy / a.xx, l20 = a.xz / a.xx;
+  const double d1 = a.yy - l10 * a.xy;
+  const double l21 = (a.yz - l20 * a.xy) / d1;
+  const double d2 = a.zz - l20 * a.xz - l21 * l21 * d1;
+  if (!(a.xx > floor && d1 > floor && d2 > floor)) return bounded_inverse(a);
+  const double i0 = 1 / a.xx, i1 = 1 / d1, zz = 1 / d2;
+  const double m20 = l10 * l21 - l20;  // of L^-1, whose other entries are -l10 and -l21
+  const double yz = -l21 * zz, xz = m20 * zz;
+  return {i0 + l10 * l10 * i1 + m20 * xz, -l10 * i1 + m20 * yz, xz, i1 - l21 * yz, yz, zz};
+}
+
+/// block -> 3x3 numbers; adds scale * block
+void add_block(double scale, const SymmetricBlock& block, double* to) {
+  const double m[9] = {block.xx, block.xy, block.xz, block.xy, block.yy,
+                       block.yz, block.xz, block.yz, block.zz};
+  for (int k = 0; k < 9; ++k) to[k] += scale * m[k];
 }
 
 }  // namespace
@@ -49,72 +60,53 @@ void CholeskyFactors::analyse(const ClothSystem& system) {
   for (std::size_t i = 0; i < unknown_.size(); ++i)
     if (!system.pinned[i]) unknown_[i] = unknowns++;
 
-  std::vector<Eigen::Triplet<double, int>> entries;
-  const auto add = [&](int row, int column) {
-    for (int b = 0; b < 3; ++b)
-      for (int a = 0; a < 3; ++a)
-        if (row != column || a >= b) entries.emplace_back(3 * row + a, 3 * column + b, 0.0);
-  };
-  for (int k = 0; k < unknowns; ++k) add(k, k);
+  std::vector<Coupling> couplings;
   for (const SpringRun& run : system.springs) {
-    for (int s = 0; s < run.count; ++s) {
-      const int i = unknown_[static_cast<std::size_t>(run.first + s)];
-      const int j = unknown_[static_cast<std::size_t>(run.first + s + run.offset)];
-      if (i < 0 || j < 0) continue;
-      const Place place = lower_place(i, j);
-      add(place.row, place.column);
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const int a = unknown_[static_cast<std::size_t>(i)],
+                b = unknown_[static_cast<std::size_t>(i + run.offset)];
+      if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
     }
   }
-  matrix_.resize(3 * unknowns, 3 * unknowns);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  factors_.analyzePattern(matrix_);
-}
-
-void CholeskyFactors::add_block(int row, int column, const SymmetricBlock& block, double sign) {
-  const double columns[3][3] = {
-      {block.xx, block.xy, block.xz}, {block.xy, block.yy, block.yz}, {block.xz, block.yz, block.zz}};
-  for (int b = 0; b < 3; ++b) {
-    const int first = row == column ? b : 0;  // of the diagonal's block only the lower half is kept
-    const int begin = matrix_.outerIndexPtr()[3 * column + b],
-              end = matrix_.outerIndexPtr()[3 * column + b + 1];
-    const int* rows = matrix_.innerIndexPtr();
-    const auto at = std::lower_bound(rows + begin, rows + end, 3 * row + first) - rows;
-    for (int a = first; a < 3; ++a) matrix_.valuePtr()[at + a - first] += sign * columns[b][a];
-  }
+  std::vector<int> order = elimination_order(system);
+  for (int& particle : order) particle = unknown_[static_cast<std::size_t>(particle)];
+  factors_.analyse(couplings, order);
+  diagonal_.resize(9 * static_cast<std::size_t>(unknowns));
+  off_diagonal_.resize(9 * couplings.size());
+  values_.resize(3 * static_cast<std::size_t>(unknowns));
 }
 
 bool CholeskyFactors::factorise(const ClothSystem& system, const Linearisation& linearisation) {
   if (!fits(system)) analyse(system);
-  std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0);
+  std::fill(diagonal_.begin(), diagonal_.end(), 0.0);
+  std::fill(off_diagonal_.begin(), off_diagonal_.end(), 0.0);
+  const auto on_diagonal = [&](int unknown) { return diagonal_.data() + 9 * unknown; };
   for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) add_block(unknown_[i], unknown_[i], linearisation.nodes[i], 1);
+    if (unknown_[i] >= 0) add_block(1, linearisation.nodes[i], on_diagonal(unknown_[i]));
   std::size_t spring = 0;
+  double* coupling = off_diagonal_.data();
   for (const SpringRun& run : system.springs) {
     for (int s = 0; s < run.count; ++s, ++spring) {
       const int i = unknown_[static_cast<std::size_t>(run.first + s)];
       const int j = unknown_[static_cast<std::size_t>(run.first + s + run.offset)];
-      const SymmetricBlock& block = linearisation.springs[spring];
-      if (i >= 0) add_block(i, i, block, 1);
-      if (j >= 0) add_block(j, j, block, 1);
+      const SymmetricBlock block = linearisation.springs[spring];
+      if (i >= 0) add_block(1, block, on_diagonal(i));
+      if (j >= 0) add_block(1, block, on_diagonal(j));
       if (i < 0 || j < 0) continue;
-      const Place place = lower_place(i, j);
-      add_block(place.row, place.column, block, -1);
+      add_block(-1, block, coupling);
+      coupling += 9;
     }
   }
-  if (matrix_.rows() == 0) return true;
-  factors_.factorize(matrix_);
-  return factors_.info() == Eigen::Success;
+  return factors_.factorise(diagonal_, off_diagonal_);
 }
 
-void CholeskyFactors::solve(const Vec3Field& right_hand_side, Vec3Field& solution) const {
+void CholeskyFactors::solve(const Vec3Field& right_hand_side, Vec3Field& solution) {
+  for (std::size_t i = 0; i < unknown_.size(); ++i)
+    if (unknown_[i] >= 0) Eigen::Map<Vec3>(values_.data() + 3 * unknown_[i]) = right_hand_side[i];
+  factors_.solve(values_, 1);
   solution.fill(0);
-  if (matrix_.rows() == 0) return;
-  Eigen::VectorXd b(matrix_.rows());
   for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) b.segment<3>(3 * unknown_[i]) = right_hand_side[i];
-  const Eigen::VectorXd x = factors_.solve(b);
-  for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) solution.set(i, x.segment<3>(3 * unknown_[i]));
+    if (unknown_[i] >= 0) solution.set(i, Eigen::Map<const Vec3>(values_.data() + 3 * unknown_[i]));
 }
 
 void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linearisation) {
@@ -123,40 +115,17 @@ void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linear
   for (const SpringRun& run : system.springs) {
     for (int s = 0; s < run.count; ++s, ++spring) {
       const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
-      inverse_[i] += linearisation.springs[spring];
-      inverse_[j] += linearisation.springs[spring];
+      const SymmetricBlock block = linearisation.springs[spring];
+      inverse_.add(i, block);
+      inverse_.add(j, block);
     }
   }
-  for (std::size_t i = 0; i < inverse_.size(); ++i) {
-    if (system.pinned[i]) {
-      inverse_[i] = {};
-      continue;
-    }
-    const Eigen::Matrix3d m = inverse_of(inverse_[i].matrix());
-    inverse_[i] = {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
-  }
+  for (std::size_t i = 0; i < inverse_.size(); ++i)
+    inverse_.set(i, system.pinned[i] ? SymmetricBlock{} : inverse_of(inverse_[i]));
 }
 
 void BlockJacobi::solve(const Vec3Field& right_hand_side, Vec3Field& solution) const {
-  for (std::size_t i = 0; i < inverse_.size(); ++i) solution.set(i, inverse_[i] * right_hand_side[i]);
-}
-
-LinearMethod choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights) {
-  // ns, measured: factors grow as size^1.75 on a grid; an iteration of conjugate gradients is linear in it.
-  constexpr double factor_cost = 65, factor_growth = 1.75, iteration_cost = 32;
-  // Measured to linear_tolerance of ImplicitStage: as the root of the condition, but however stiff the
-  // springs, a grid has no worse condition than its size gives it.
-  constexpr double iterations_per_root = 1.3, iterations_per_edge = 10;
-  double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
-  for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
-  for (const double mass : system.mass) lightest = std::min(lightest, mass);
-  const double condition = 1 + 12 * weights.position * stiffest / lightest;
-  const double size = system.size();
-  const double iterations =
-      std::min(iterations_per_edge * std::sqrt(size), iterations_per_root * std::sqrt(condition));
-  const double by_factors = factor_cost * std::pow(size, factor_growth);
-  return iterations * iteration_cost * size < by_factors ? LinearMethod::conjugate_gradients
-                                                         : LinearMethod::cholesky;
+  multiply_blocks(inverse_, 0, inverse_.size(), right_hand_side, solution);
 }
 
 }  // namespace cloth

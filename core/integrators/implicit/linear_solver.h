@@ -2,69 +2,75 @@
 // Jacobian A + h^2 N where a force has an asymmetric part N.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "forces/linearisation.h"
+#include "sparse/block_cholesky.h"
 
 namespace cloth {
 
 /// result = operator(direction). Both have one vector per particle, zero on pins.
 using LinearMap = std::function<void(const Vec3Field& direction, Vec3Field& result)>;
 
-/// Sparse Cholesky factors of A (Eigen's simplicial LLT, fill-reducing order AMD). The pattern is analysed
-/// once and again only when springs or pins change.
+/// Sparse Cholesky factors of A in 3x3 blocks. The pattern is analysed once and again only when springs or
+/// pins change.
 class CholeskyFactors {
  public:
   /// False where A is not positive definite; nothing can then be solved.
   bool factorise(const ClothSystem& system, const Linearisation& linearisation);
-  void solve(const Vec3Field& right_hand_side, Vec3Field& solution) const;
+  void solve(const Vec3Field& right_hand_side, Vec3Field& solution);
 
  private:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
   bool fits(const ClothSystem& system) const;
   void analyse(const ClothSystem& system);
-  void add_block(int row, int column, const SymmetricBlock& block, double sign);
 
   std::vector<std::uint8_t> pinned_;  ///< that the pattern was made for
   std::vector<int> offsets_;          ///< of its spring runs
   std::vector<int> unknown_;          ///< of each particle; -1 where pinned
-  Matrix matrix_;                     ///< its lower triangle
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower> factors_;
+  BlockCholesky factors_{3};
+  std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch
 };
 
-/// The inverses of A's 3x3 diagonal blocks: the preconditioner of iterative solves.
+/// The inverses of A's 3x3 diagonal blocks: the preconditioner of iterative solves. Zero on pins.
 class BlockJacobi {
  public:
   void prepare(const ClothSystem& system, const Linearisation& linearisation);
   void solve(const Vec3Field& right_hand_side, Vec3Field& solution) const;
+  const SymmetricBlocks& inverse() const { return inverse_; }
 
  private:
-  std::vector<SymmetricBlock> inverse_;
+  SymmetricBlocks inverse_;
 };
 
 struct KrylovReport {
   int iterations = 0;
   bool indefinite = false;  ///< a direction of negative curvature was met
+  double reach = 0;         ///< how far along it the step would be if it curved as much upwards
   bool converged = false;
 };
 
 /// Preconditioned conjugate gradients from zero, to `tolerance` relative to the right-hand side in the
-/// preconditioner's norm (Hestenes and Stiefel 1952).
-KrylovReport conjugate_gradients(const LinearMap& matrix, const LinearMap& preconditioner,
-                                 const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
+/// preconditioner's norm (Hestenes and Stiefel 1952). Keeps its vectors from one solve to the next.
+class ConjugateGradients {
+ public:
+  KrylovReport solve(const ClothSystem& system, const Linearisation& matrix,
+                     const BlockJacobi& preconditioner, const Vec3Field& right_hand_side, double tolerance,
+                     Vec3Field& solution);
+
+  /// The last direction: that of negative curvature where the solve ended with one.
+  const Vec3Field& direction() const { return direction_; }
+
+ private:
+  double advance(double length, const BlockJacobi& preconditioner, Vec3Field& solution);
+
+  Vec3Field residual_, conditioned_, direction_, image_;
+};
 
 /// Generalised minimal residuals with a preconditioner on the right, restarted (Saad and Schultz 1986).
-/// Starts from zero; `tolerance` is relative to the right-hand side.
+/// Starts from `solution`; `tolerance` is relative to the right-hand side.
 KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& preconditioner,
                                const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
-
-/// How A is solved. Factors cost the same for every stiffness; conjugate gradients cost more the further the
-/// step reaches beyond the fastest oscillation. The rule is a fixed estimate of both from measured costs, so
-/// that the same scene always takes the same way (docs/methods/implicit-euler.md has the measurements).
-enum class LinearMethod { cholesky, conjugate_gradients };
-LinearMethod choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights);
 
 }  // namespace cloth

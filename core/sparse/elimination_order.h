@@ -1,0 +1,39 @@
+// In which order the unknowns of a sparse symmetric matrix are eliminated decides how many entries its
+// Cholesky factors have. On a grid nested dissection (George 1973) is best up to a constant: a separator,
+// lines of particles that no spring reaches across, is eliminated last, and the halves that it leaves are
+// ordered likewise. Lines may also run along the diagonals: no spring of a cloth reaches across two
+// neighbouring ones either, and a diagonal has fewer particles for its length than a row.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+/// An unordered pair of unknowns that stand in one another's equations.
+using Coupling = std::pair<int, int>;
+
+/// How far couplings reach, in rows, columns, row + column, and row - column: the width of a separator of
+/// lines along which that number is constant.
+struct GridReach {
+  std::array<int, 4> along{};
+};
+
+/// The furthest reach among the springs of a grid of so many columns.
+GridReach reach_of(const std::vector<SpringRun>& springs, int columns);
+
+/// The given particles of a grid, numbered row by row, in the order of elimination.
+std::vector<int> nested_dissection(const std::vector<int>& particles, int columns, const GridReach& reach);
+
+/// The unknowns 0..size of any pattern: approximate minimum degree (Amestoy, Davis, Duff 1996). Couplings may
+/// repeat.
+std::vector<int> minimum_degree(int size, const std::vector<Coupling>& couplings);
+
+/// The free particles of a cloth in the order of elimination for matrices that have a block where a spring
+/// is: nested dissection where springs reach no further than a grid's, minimum degree elsewhere.
+std::vector<int> elimination_order(const ClothSystem& system);
+
+}  // namespace cloth

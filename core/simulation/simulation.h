@@ -14,6 +14,7 @@
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
 #include "measure/energy.h"
+#include "kernels/worker_team.h"
 #include "measure/strain.h"
 #include "simulation/outcome.h"
 
@@ -84,6 +85,11 @@ class Simulation {
   /// Goes back to a checkpoint of this simulation; the scene in force stays as it is.
   void restore(const Checkpoint& checkpoint);
 
+  /// Threads that a step may use, 1 without this call. The motion is the same to the bit.
+  void set_threads(int threads);
+  /// How many a step does use: one where the cloth is too small to share, or the method cannot.
+  int threads() const;
+
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull);
@@ -114,7 +120,7 @@ class Simulation {
   void limit_deformation();
   void resolve_contact();
   double total_energy() const;
-  std::optional<Divergence> find_divergence() const;
+  std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
@@ -124,6 +130,7 @@ class Simulation {
   Preparation prepare_;
   ClothSystem system_;
   ClothState state_;
+  std::unique_ptr<WorkerTeam> team_;  ///< none: one thread
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
@@ -142,6 +149,8 @@ class Simulation {
   std::optional<Pull> pull_;
   double pull_stiffness_ = 0, pull_damping_ = 0;
   double elastic_scale_ = 0;  ///< J, all springs at twice their length
+  double total_mass_ = 0, largest_mass_ = 0;  ///< kg
+  bool was_finite_ = false;  ///< every position was finite after the last step
 };
 
 }  // namespace cloth

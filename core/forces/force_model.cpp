@@ -142,8 +142,7 @@ std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& stat
   if (!can_step() || has_load()) return std::nullopt;
   evaluations_ += 4;
   const auto squares = sweep_->runge_kutta(step, {weight_, viscous_, nullptr}, state);
-  work.damping_loss +=
-      step * viscous_ * (squares[0] / 6 + squares[1] / 3 + squares[2] / 3 + squares[3] / 6);
+  work.damping_loss += step * viscous_ * (squares[0] / 6 + squares[1] / 3 + squares[2] / 3 + squares[3] / 6);
   return squares[4];
 }
 

@@ -104,11 +104,11 @@ class ForceModel {
   std::unique_ptr<GridSweep> sweep_;  ///< computes springs and `weight_` where the cloth is a grid
   std::vector<Force*> beside_sweep_;  ///< those of forces_ that the sweep does not compute
   Force *gravity_force_ = nullptr, *spring_force_ = nullptr, *viscous_force_ = nullptr;  ///< of forces_
-  Vec3 gravity_{0, 0, 0};             ///< m/s^2
-  Vec3 weight_{0, 0, 0};              ///< N, of every particle, where the sweep takes care of gravity
-  double viscous_ = 0;                ///< N s/m, of every particle
+  Vec3 gravity_{0, 0, 0};                                                                ///< m/s^2
+  Vec3 weight_{0, 0, 0};  ///< N, of every particle, where the sweep takes care of gravity
+  double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
-  Vec3Field position_force_;          ///< sized when first needed
+  Vec3Field position_force_;                        ///< sized when first needed
   Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;

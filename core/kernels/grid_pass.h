@@ -5,8 +5,8 @@
 
 namespace cloth::kernels {
 
-/// The six directions of springs, as bits. (row, column) is the particle at the spring's first end, except for
-/// the antidiagonal, which joins (row, column + 1) to (row + 1, column).
+/// The six directions of springs, as bits. (row, column) is the particle at the spring's first end, except
+/// for the antidiagonal, which joins (row, column + 1) to (row + 1, column).
 enum SpringBit : unsigned {
   right_one = 1,
   right_two = 2,
@@ -21,13 +21,13 @@ inline constexpr unsigned structural_springs = right_one | down_one, shear_sprin
 
 /// F_i = (k - k L / |d|) d, d = x_j - x_i; no part along d/|d| where |d| = 0.
 struct SpringKind {
-  double stiffness = 0;       ///< k, N/m
+  double stiffness = 0;     ///< k, N/m
   double rest_tension = 0;  ///< k L, N
 };
 
 struct Grid {
   int rows = 0, columns = 0;
-  unsigned springs = 0;            ///< the directions that exist; families are whole
+  unsigned springs = 0;             ///< the directions that exist; families are whole
   SpringKind kind[spring_kinds]{};  ///< in the order of the bits
 };
 
@@ -57,15 +57,15 @@ struct Pass {
   Grid grid;
   int first = 0, last = 0;
   BandField position, velocity;
-  BandField force;  ///< of Verlet and of evaluate
-  const double* inverse_mass = nullptr;       ///< 1/kg; 0 where pinned
+  BandField force;                                      ///< of Verlet and of evaluate
+  const double* inverse_mass = nullptr;                 ///< 1/kg; 0 where pinned
   const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, of every particle, in addition; may be null
-  double weight[3] = {0, 0, 0};               ///< N, of every particle
-  double damping = 0;                         ///< N s/m, viscous
-  double mass_of_free = 1;                    ///< kg
-  double step = 0;                            ///< s
-  bool drift_first = false;                   ///< explicit Euler: the position follows the old velocity
-  double* scratch = nullptr;                  ///< 64-byte aligned
+  double weight[3] = {0, 0, 0};                         ///< N, of every particle
+  double damping = 0;                                   ///< N s/m, viscous
+  double mass_of_free = 1;                              ///< kg
+  double step = 0;                                      ///< s
+  bool drift_first = false;   ///< explicit Euler: the position follows the old velocity
+  double* scratch = nullptr;  ///< 64-byte aligned
   /// Sums of |v|^2 of each row, one array of `rows` after the other: before the step and after it; of
   /// Runge-Kutta at its four stages and after the step.
   double* squares = nullptr;
@@ -84,8 +84,9 @@ struct GridKernels {
   void (*evaluate)(const Pass& pass);
   /// The sums of |v|^2 as the steps make them, into the place after the step.
   void (*sum_squares)(const Pass& pass);
-  /// 1/sqrt(s) as the springs compute it: result[i] = k - k L / sqrt(s[i]) for `count` numbers, k if s is 0.
-  void (*spring_scale)(const SpringKind& kind, const double* squares, double* result, int count);
+  /// What the springs make of the squares of their lengths: result[i] = k - k L / sqrt(s[i]), k where s[i] is
+  /// zero; the two ways in which the kernels do it.
+  void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);
 };
 
 const GridKernels& portable_grid_kernels();

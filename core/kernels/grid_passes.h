@@ -92,8 +92,8 @@ struct EulerUpdate {
   template <bool Edge>
   CLOTHLAB_INLINE void operator()(int j, int count, const Vector& x, const Vector& spring_force) {
     const Vector v = load_part<Edge>(velocity, j, count);
-    const V h_over_m = Lanes::mul(step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
-                                             : Lanes::load(inverse_mass + j));
+    const V h_over_m = Lanes::mul(
+        step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
     const Vector next = plus(v, h_over_m, minus(spring_force, damping, v));
     before = plus_square(before, v);
     after = plus_square(after, next);
@@ -144,10 +144,11 @@ struct VerletUpdate {
 
 /// v_half = v + h/2 (p - c v) / m, x' = x + h v_half for a row.
 template <bool Edge>
-CLOTHLAB_INLINE void kick_drift_block(const Row& x, const Row& v, const ConstRow& p, const double* inverse_mass,
-                                      V half_step, V step, V damping, int j, int count) {
-  const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
-                                             : Lanes::load(inverse_mass + j));
+CLOTHLAB_INLINE void kick_drift_block(const Row& x, const Row& v, const ConstRow& p,
+                                      const double* inverse_mass, V half_step, V step, V damping, int j,
+                                      int count) {
+  const V scale = Lanes::mul(
+      half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
   const Vector velocity = load_part<Edge>(v, j, count);
   const Vector half = plus(velocity, scale, minus(load_part<Edge>(p, j, count), damping, velocity));
   store<Edge>(v, j, count, half);
@@ -235,16 +236,17 @@ struct StageUpdate {
   bool is_last;
   ConstRow stage_velocity;
   const double* inverse_mass;
-  ConstRow sum_position, sum_velocity;    ///< the state plus the weighted stages so far
+  ConstRow sum_position, sum_velocity;  ///< the state plus the weighted stages so far
   Row next_sum_position, next_sum_velocity;
   ConstRow state_position, state_velocity;
-  Row next_position, next_velocity;       ///< the next stage's, unless this is the last
+  Row next_position, next_velocity;  ///< the next stage's, unless this is the last
   V squares, after;
 
   template <bool Edge>
   CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& spring_force) {
     const Vector v = load_part<Edge>(stage_velocity, j, count);
-    const V inverse = Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j);
+    const V inverse =
+        Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j);
     const Vector a = scaled(inverse, minus(spring_force, damping, v));
     const Vector sum_x = plus(load_part<Edge>(sum_position, j, count), weight, v);
     const Vector sum_v = plus(load_part<Edge>(sum_velocity, j, count), weight, a);
@@ -252,7 +254,8 @@ struct StageUpdate {
     if (is_last) {
       after = plus_square(after, sum_v);
     } else {
-      const Vector x0 = load_part<Edge>(state_position, j, count), v0 = load_part<Edge>(state_velocity, j, count);
+      const Vector x0 = load_part<Edge>(state_position, j, count),
+                   v0 = load_part<Edge>(state_velocity, j, count);
       store<Edge>(next_position, j, count, plus(x0, ahead, v));
       store<Edge>(next_velocity, j, count, plus(v0, ahead, a));
     }
@@ -320,23 +323,28 @@ void runge_kutta_band(const Pass& pass) {
         }
       }
       if (s == 0)
-        chains[s].run(row, own, [&](int r) { return state_row(r, 0); }, update);
+        chains[s].run(
+            row, own, [&](int r) { return state_row(r, 0); }, update);
       else
-        chains[s].run(row, own, [&](int r) { return stage_row(s, r, 0); }, update);
+        chains[s].run(
+            row, own, [&](int r) { return stage_row(s, r, 0); }, update);
       if (own) store_sum(pass, s, row, update.squares);
       if (own && s + 1 == stage_count) store_sum(pass, stage_count, row, update.after);
     }
 }
 
-void spring_scale(const SpringKind& kind, const double* squares, double* result, int count) {
+template <bool Divide>
+void spring_scales(const SpringKind& kind, const double* squares, double* result, int count) {
   const Lanes::Spring spring = Lanes::spring(kind.stiffness, kind.rest_tension);
-  for (int i = 0; i < count; i += Lanes::width)
-    Lanes::store(result + i, Lanes::spring_scale(Lanes::load(squares + i, count - i, Lanes::set(1)), spring),
-                 count - i);
+  for (int i = 0; i < count; i += Lanes::width) {
+    const V s = Lanes::load(squares + i, count - i, Lanes::set(1));
+    Lanes::store(result + i, Lanes::spring_scale<Divide>(s, spring), count - i);
+  }
 }
 
-constexpr GridKernels grid_kernels{euler_band,    verlet_band,      runge_kutta_band,
-                                   evaluate_band, sum_squares_band, spring_scale};
+constexpr GridKernels grid_kernels{euler_band,       verlet_band,
+                                   runge_kutta_band, evaluate_band,
+                                   sum_squares_band, {spring_scales<false>, spring_scales<true>}};
 
 }  // namespace
 }  // namespace cloth::kernels

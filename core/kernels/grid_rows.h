@@ -50,7 +50,8 @@ CLOTHLAB_INLINE void store(const Row& row, int j, const Vector& a) {
 template <bool Edge>
 CLOTHLAB_INLINE void store(const Row& row, int j, int count, const Vector& a) {
   if constexpr (Edge)
-    Lanes::store(row.x + j, a.x, count), Lanes::store(row.y + j, a.y, count), Lanes::store(row.z + j, a.z, count);
+    Lanes::store(row.x + j, a.x, count), Lanes::store(row.y + j, a.y, count),
+        Lanes::store(row.z + j, a.z, count);
   else
     store(row, j, a);
 }
@@ -104,16 +105,16 @@ struct Springs {
   template <unsigned Bit>
   CLOTHLAB_INLINE V scale(const Vector& d) const {
     const V s = Lanes::fma(d.z, d.z, Lanes::fma(d.y, d.y, Lanes::mul(d.x, d.x)));
-    return Lanes::spring_scale(s, kind[__builtin_ctz(Bit)]);
+    return Lanes::spring_scale<(Bit & Lanes::divided) != 0>(s, kind[__builtin_ctz(Bit)]);
   }
 };
 
 /// What a row's springs need beside the method.
 struct RowWork {
   int columns;
-  ConstRow here, below, second;  ///< positions; only those that exist are looked at
+  ConstRow here, below, second;      ///< positions; only those that exist are looked at
   ConstRow load_below, load_second;  ///< null: `weight`
-  Row a, b;                      ///< the buffers
+  Row a, b;                          ///< the buffers
   Vector weight;
   const Springs* springs;
   unsigned present = 0;  ///< this row's directions of springs
@@ -131,9 +132,10 @@ CLOTHLAB_INLINE Vector initial(const ConstRow& load_row, const Vector& weight, i
   return load_row.x ? weight + load_part<Edge>(load_row, j, count) : weight;
 }
 
-/// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so in
-/// all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may lack
-/// columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no force.
+/// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so
+/// in all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may
+/// lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no
+/// force.
 template <bool Full, bool Edge>
 CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const Vector& here, Carry& carry) {
   const Springs& springs = *work.springs;

@@ -89,8 +89,8 @@ std::string instruction_set_problem() {
   const auto set = instruction_set_named(wish());
   if (set && is_supported(*set)) return "";
   return std::string(instruction_set_variable) + "=" + wish() + ": " +
-         (set ? "this processor does not have it" : "no such instruction set") + "; possible here: " +
-         names_of(supported_instruction_sets());
+         (set ? "this processor does not have it" : "no such instruction set") +
+         "; possible here: " + names_of(supported_instruction_sets());
 }
 
 InstructionSet active_instruction_set() {

@@ -3,11 +3,15 @@
 
 #include <immintrin.h>
 
+#include "kernels/grid_pass.h"
+
 namespace cloth::kernels {
 namespace {
 
 struct Lanes {
   static constexpr int width = 4;
+  /// Springs whose roots go through the divider while the others are refined: the two work side by side.
+  static constexpr unsigned divided = right_one | down_one | diagonal;
   using V = __m256d;
   struct Spring {
     V stiffness, rest_tension;
@@ -38,10 +42,11 @@ struct Lanes {
   }
   static Spring spring(double stiffness, double rest_tension) { return {set(stiffness), set(rest_tension)}; }
 
-  [[gnu::noinline]] static V exact_inverse_root(V s) {
+  static V divided_root(V s) {
     const V inverse = _mm256_div_pd(set(1), _mm256_sqrt_pd(s));
     return _mm256_andnot_pd(_mm256_cmp_pd(s, zero(), _CMP_EQ_OQ), inverse);
   }
+  [[gnu::noinline]] static V rarely_divided_root(V s) { return divided_root(s); }
   /// 1/sqrt(s) from the 12-bit seed y of single precision: with e = 1 - s y^2,
   ///     1/sqrt(s) = y (1 - e)^(-1/2) = y (1 + e/2 + 3/8 e^2 + 5/16 e^3 + 35/128 e^4 + ...),
   /// whose rest is below 2^-53. Numbers beyond the range of single precision have no seed; they show in e^2
@@ -52,12 +57,14 @@ struct Lanes {
     const V square = mul(e, e);
     const V in_range = _mm256_cmp_pd(square, set(0x1p-19), _CMP_LT_OQ);
     if (_mm256_movemask_pd(in_range) != 0b1111) [[unlikely]]
-      return exact_inverse_root(s);
+      return rarely_divided_root(s);
     const V high = fma(fma(set(35.0 / 128), e, set(5.0 / 16)), e, set(3.0 / 8));
     return fma(mul(y, e), fma(high, e, set(0.5)), y);
   }
+  template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
-    return fnma(spring.rest_tension, inverse_root(s), spring.stiffness);
+    const V inverse = Divide ? divided_root(s) : inverse_root(s);
+    return fnma(spring.rest_tension, inverse, spring.stiffness);
   }
 };
 

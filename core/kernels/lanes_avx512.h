@@ -3,11 +3,14 @@
 
 #include <immintrin.h>
 
+#include "kernels/grid_pass.h"
+
 namespace cloth::kernels {
 namespace {
 
 struct Lanes {
   static constexpr int width = 8;
+  static constexpr unsigned divided = 0;  ///< see lanes_avx2.h
   using V = __m512d;
   struct Spring {
     V stiffness, rest_tension, half, three_eighths, five_sixteenths;  ///< the last ones times k L
@@ -46,12 +49,18 @@ struct Lanes {
   ///     1/sqrt(s) = y (1 - e)^(-1/2) = y (1 + e/2 + 3/8 e^2 + 5/16 e^3 + ...),
   /// whose rest is below 2^-53. k L is folded into the coefficients. Where s is zero or infinite e is not a
   /// number and nothing is subtracted from k.
+  template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
+    if constexpr (Divide) {
+      const __mmask8 has_length = _mm512_cmp_pd_mask(s, zero(), _CMP_NEQ_UQ);
+      const V part = _mm512_div_pd(spring.rest_tension, _mm512_sqrt_pd(s));
+      return _mm512_mask_sub_pd(spring.stiffness, has_length, spring.stiffness, part);
+    }
     const V y = _mm512_rsqrt14_pd(s);
     const V e = fnma(mul(s, y), y, set(1));
     const __mmask8 has_direction = _mm512_cmp_pd_mask(e, e, _CMP_ORD_Q);
-    const V series =
-        fma(fma(fma(spring.five_sixteenths, e, spring.three_eighths), e, spring.half), e, spring.rest_tension);
+    const V series = fma(fma(fma(spring.five_sixteenths, e, spring.three_eighths), e, spring.half), e,
+                         spring.rest_tension);
     return _mm512_mask3_fnmadd_pd(y, series, spring.stiffness, has_direction);
   }
 };

@@ -10,6 +10,7 @@ namespace {
 
 struct Lanes {
   static constexpr int width = 2;
+  static constexpr unsigned divided = 63;  ///< the springs whose roots are divided, here all
   typedef double V __attribute__((vector_size(16)));
   struct Spring {
     double stiffness, rest_tension;
@@ -40,7 +41,10 @@ struct Lanes {
     const double part = spring.rest_tension / __builtin_sqrt(s);
     return spring.stiffness - (s == 0 ? 0 : part);
   }
-  static V spring_scale(V s, const Spring& spring) { return V{scale_of(s[0], spring), scale_of(s[1], spring)}; }
+  template <bool Divide>
+  static V spring_scale(V s, const Spring& spring) {
+    return V{scale_of(s[0], spring), scale_of(s[1], spring)};
+  }
 };
 
 }  // namespace

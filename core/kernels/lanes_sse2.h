@@ -8,6 +8,7 @@ namespace {
 
 struct Lanes {
   static constexpr int width = 2;
+  static constexpr unsigned divided = 63;  ///< the springs whose roots are divided, here all
   using V = __m128d;
   struct Spring {
     V stiffness, rest_tension;
@@ -36,6 +37,7 @@ struct Lanes {
   static V shift_two(V before, V) { return before; }
   static double sum(V a) { return _mm_cvtsd_f64(a) + _mm_cvtsd_f64(_mm_unpackhi_pd(a, a)); }
   static Spring spring(double stiffness, double rest_tension) { return {set(stiffness), set(rest_tension)}; }
+  template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
     const V part = _mm_div_pd(spring.rest_tension, _mm_sqrt_pd(s));
     return _mm_sub_pd(spring.stiffness, _mm_andnot_pd(_mm_cmpeq_pd(s, zero()), part));

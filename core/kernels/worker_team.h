@@ -23,7 +23,8 @@ class WorkerTeam {
   /// Precondition: shares <= size(), and no two threads call it at once. Jobs must not throw.
   template <class Job>
   void run(int shares, const Job& job) {
-    start(shares, [](const void* context, int share) { (*static_cast<const Job*>(context))(share); }, &job);
+    start(
+        shares, [](const void* context, int share) { (*static_cast<const Job*>(context))(share); }, &job);
   }
 
  private:

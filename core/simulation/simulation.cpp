@@ -7,6 +7,7 @@
 #include "cloth/sums.h"
 #include "forces/gravity.h"
 #include "integrators/registry.h"
+#include "kernels/worker_team.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "simulation/time_step.h"

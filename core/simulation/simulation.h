@@ -14,11 +14,12 @@
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
 #include "measure/energy.h"
-#include "kernels/worker_team.h"
 #include "measure/strain.h"
 #include "simulation/outcome.h"
 
 namespace cloth {
+
+class WorkerTeam;
 
 /// What entered the cloth since t = 0, in J; the loss left it.
 struct EnergyLedger {
@@ -148,9 +149,9 @@ class Simulation {
   std::optional<BrushGust> brush_;
   std::optional<Pull> pull_;
   double pull_stiffness_ = 0, pull_damping_ = 0;
-  double elastic_scale_ = 0;  ///< J, all springs at twice their length
+  double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
-  bool was_finite_ = false;  ///< every position was finite after the last step
+  bool was_finite_ = false;                   ///< every position was finite after the last step
 };
 
 }  // namespace cloth

@@ -222,7 +222,6 @@ TEST_P(ExactMotion, OfAClothWithoutRestLengthsIsFollowed) {
   scene.damping = c * mass;
   Motion collapse{.system = make_grid(scene.cloth, *scene.springs), .scene = scene};
   for (SpringRun& run : collapse.system.springs) run.rest_length = 0;
-  collapse.forces.system_changed();
   collapse.start = starting_state(collapse.system);
   const LinearCloth linear(collapse.system, c, *scene.gravity);
   collapse.time = 0.25;
@@ -279,7 +278,6 @@ TEST_P(ExactMotion, OfAStretchedGridOutOfItsPlaneIsFollowed) {
   scene.cloth.pins = {NamedPin::top_edge, NamedPin::bottom_edge, NamedPin::left_edge, NamedPin::right_edge};
   Motion wave{.system = make_grid(scene.cloth, *scene.springs), .scene = scene};
   for (SpringRun& run : wave.system.springs) run.rest_length /= stretch;
-  wave.forces.system_changed();
   const double qx = pi * p / (inner + 1), qy = pi * q / (inner + 1);
   const double omega =
       std::sqrt((1 - 1 / stretch) / mass *

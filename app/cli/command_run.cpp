@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <thread>
+
 #include "commands.h"
 #include "console.h"
 #include "progress.h"
@@ -21,6 +24,11 @@ int exit_code_of(cloth::Status status) {
   return done;
 }
 
+int threads_for(const RunArguments& arguments) {
+  if (arguments.threads > 0) return arguments.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
@@ -38,10 +46,14 @@ int run(const RunArguments& arguments) {
   cloth::RunResult result;
   {
     Progress bar;
-    result = cloth::run_scene(scene, {.folder = arguments.folder, .progress = [&](double time) {
-                                        bar.show(time / scene.duration, fmt::format("t = {:.2f} s", time));
-                                        return !stop_is_requested();
-                                      }});
+    cloth::RunOptions options;
+    options.folder = arguments.folder;
+    options.threads = threads_for(arguments);
+    options.progress = [&](double time) {
+      bar.show(time / scene.duration, fmt::format("t = {:.2f} s", time));
+      return !stop_is_requested();
+    };
+    result = cloth::run_scene(scene, options);
   }
   const cloth::RunSummary& summary = result.summary;
   if (!summary.notice.empty()) say(summary.notice);

@@ -12,7 +12,7 @@ struct RunArguments {
   std::string scene;
   std::vector<std::string> settings;
   std::string folder;
-  int threads = 1;
+  int threads = 0;  ///< 0: as many as the machine has
   bool json = false;
 };
 int run(const RunArguments& arguments);

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/run_folder.h"
+#include "kernels/instruction_set.h"
 #include "study/reproduce.h"
 #include "study/speed/speed_study.h"
 
@@ -20,7 +21,9 @@ const char* const set_help =
     "repeated";
 const char* const json_help = "Give the result as one JSON object";
 
-const char* const exit_codes =
+const char* const footer =
+    "CLOTHLAB_INSTRUCTION_SET=portable, sse2, avx2 or avx512 in the environment makes the kernels use that "
+    "instruction set instead of the processor's best.\n"
     "Exit codes: 0 done; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
     "on disk); "
     "4 a file could not be read or written; 5 a replay did not end in its session's state; 130 interrupted.";
@@ -193,7 +196,8 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   run->add_option("--out", arguments.run.folder,
                   "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
   run->add_option("--threads", arguments.run.threads,
-                  "Threads to use. This version steps on one thread whatever is asked; summary.json says so")
+                  "Threads that a step may use; without it all cores. The results are the same to the bit. "
+                  "summary.json says how many were used: a small cloth is stepped on one")
       ->check(CLI::Range(1, 1024));
   run->add_flag("--json", arguments.run.json, json_help);
 
@@ -230,13 +234,17 @@ int main(int argc, char** argv) {
       "clothlab-cli"};
   app.require_subcommand(1);
   app.set_version_flag("--version", cloth::version());
-  app.footer(exit_codes);
+  app.footer(footer);
   Arguments arguments;
   add_commands(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? cli::done : cli::bad_input;
+  }
+  if (const std::string problem = cloth::instruction_set_problem(); !problem.empty()) {
+    cli::say(problem);
+    return cli::bad_input;
   }
   if (app.got_subcommand("run")) return cli::run(arguments.run);
   if (app.got_subcommand("replay")) return cli::replay(arguments.replay);

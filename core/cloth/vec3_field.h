@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <vector>
+
+#include "cloth/aligned.h"
 
 namespace cloth {
 
@@ -40,7 +41,7 @@ class Vec3Field {
 
  private:
   std::size_t size_ = 0;
-  std::vector<double> data_;
+  AlignedDoubles data_;
 };
 
 }  // namespace cloth

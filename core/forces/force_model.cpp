@@ -7,24 +7,55 @@
 #include "forces/pull_force.h"
 #include "forces/springs.h"
 #include "forces/viscous.h"
+#include "kernels/grid_sweep.h"
 
 namespace cloth {
+namespace {
 
-ForceModel::ForceModel(const Scene& scene, const ClothSystem& system)
-    : system_(&system), position_force_(static_cast<std::size_t>(system.size())) {
-  if (scene.gravity && scene.gravity->squaredNorm() > 0)
-    forces_.push_back(std::make_unique<Gravity>(*scene.gravity));
-  if (!system.springs.empty()) forces_.push_back(std::make_unique<SpringForce>(system));
-  if (!system.springs.empty() && scene.springs->damping > 0)
-    forces_.push_back(std::make_unique<SpringDamping>(scene.springs->damping));
-  if (scene.damping && *scene.damping > 0)
-    forces_.push_back(std::make_unique<ViscousDamping>(*scene.damping));
-  if (scene.air && scene.air->drag > 0) {
-    auto air = std::make_unique<AirForce>(*scene.air);
-    air_ = air.get();
-    forces_.push_back(std::move(air));
+void clear(Vec3Field& field, std::size_t size) {
+  if (field.size() == size)
+    field.fill(0);
+  else
+    field = Vec3Field(size);
+}
+
+}  // namespace
+
+ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(&system) {
+  const auto keep = [this](auto force) {
+    auto* const kept = force.get();
+    forces_.push_back(std::move(force));
+    return kept;
+  };
+  if (scene.gravity && scene.gravity->squaredNorm() > 0) {
+    gravity_ = *scene.gravity;
+    gravity_force_ = keep(std::make_unique<Gravity>(gravity_));
   }
+  if (!system.springs.empty()) spring_force_ = keep(std::make_unique<SpringForce>(system));
+  if (!system.springs.empty() && scene.springs->damping > 0)
+    keep(std::make_unique<SpringDamping>(scene.springs->damping));
+  if (scene.damping && *scene.damping > 0) {
+    viscous_ = *scene.damping;
+    viscous_force_ = keep(std::make_unique<ViscousDamping>(viscous_));
+  }
+  if (scene.air && scene.air->drag > 0) air_ = keep(std::make_unique<AirForce>(*scene.air));
   note_kinds();
+  system_changed();
+}
+
+void ForceModel::system_changed() {
+  sweep_.reset();
+  weight_ = Vec3::Zero();
+  if (const auto grid = recognise_grid(*system_)) {
+    sweep_ = std::make_unique<GridSweep>(*system_, *grid, common_mass(*system_));
+    sweep_->set_team(team_);
+    if (sweep_->has_common_mass()) weight_ = sweep_->mass() * gravity_;
+  }
+  beside_sweep_.clear();
+  for (const auto& force : forces_)
+    if (force.get() != spring_force_ && force.get() != viscous_force_ &&
+        !(force.get() == gravity_force_ && can_step()))
+      beside_sweep_.push_back(force.get());
 }
 
 ForceModel::~ForceModel() = default;
@@ -32,6 +63,7 @@ ForceModel::ForceModel(ForceModel&&) noexcept = default;
 ForceModel& ForceModel::operator=(ForceModel&&) noexcept = default;
 
 void ForceModel::add(std::unique_ptr<Force> force) {
+  beside_sweep_.push_back(force.get());
   forces_.push_back(std::move(force));
   note_kinds();
 }
@@ -47,14 +79,85 @@ void ForceModel::note_kinds() {
 
 void ForceModel::update(const Vec3Field& position, double time) {
   ++evaluations_;
-  position_force_.fill(0);
+  if (sweep_) {
+    if (has_load())
+      update_load(position, time);
+    else if (position_force_.size() != position.size())
+      position_force_ = Vec3Field(position.size());
+    sweep_->evaluate({weight_, 0, has_load() ? &position_force_ : nullptr}, position, position_force_);
+    return;
+  }
+  clear(position_force_, position.size());
   for (const auto& force : forces_) force->update(*system_, position, time, position_force_);
   if (pull_) pull_->update(*system_, position, time, position_force_);
 }
 
+/// p of what the sweep does not compute.
+void ForceModel::update_load(const Vec3Field& position, double time) {
+  clear(position_force_, position.size());
+  for (Force* force : beside_sweep_) force->update(*system_, position, time, position_force_);
+  if (pull_) pull_->update(*system_, position, time, position_force_);
+}
+
+bool ForceModel::can_step() const {
+  return sweep_ && sweep_->has_common_mass();
+}
+
+std::optional<double> ForceModel::euler_step(double time, double step, bool drift_first, ClothState& state,
+                                             Work& work) {
+  if (!can_step()) return std::nullopt;
+  ++evaluations_;
+  Work power;
+  if (has_load()) {
+    update_load(state.position, time);
+    clear(product_, state.position.size());
+    for (const Force* force : beside_sweep_) {
+      force->add_damping(state.velocity, product_);
+      force->add_power(state.velocity, power);
+    }
+    if (pull_) {
+      pull_->add_damping(state.velocity, product_);
+      pull_->add_power(state.velocity, power);
+    }
+    const auto load = position_force_.flat();
+    const auto damping = product_.flat();
+    for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
+  }
+  const SweepLoads loads{weight_, viscous_, has_load() ? &position_force_ : nullptr};
+  const GridSweep::Squares squares = sweep_->euler(step, drift_first, loads, state);
+  power.damping_loss += viscous_ * squares.before;
+  if (has_power_) work += step * power;
+  return squares.after;
+}
+
+std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
+  if (!can_step() || has_load()) return std::nullopt;
+  ++evaluations_;
+  const double squares = sweep_->verlet(step, {weight_, viscous_, nullptr}, position_force_, state).after;
+  power = Work{.damping_loss = viscous_ * squares};
+  return squares;
+}
+
+std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& state, Work& work) {
+  if (!can_step() || has_load()) return std::nullopt;
+  evaluations_ += 4;
+  const auto squares = sweep_->runge_kutta(step, {weight_, viscous_, nullptr}, state);
+  work.damping_loss += step * viscous_ * (squares[0] / 6 + squares[1] / 3 + squares[2] / 3 + squares[3] / 6);
+  return squares[4];
+}
+
+void ForceModel::set_team(WorkerTeam* team) {
+  team_ = team;
+  if (sweep_) sweep_->set_team(team);
+}
+
+int ForceModel::threads() const {
+  return sweep_ ? sweep_->threads() : 1;
+}
+
 void ForceModel::update_external(const Vec3Field& position, double time) {
   ++evaluations_;
-  position_force_.fill(0);
+  clear(position_force_, position.size());
   for (const auto& force : forces_)
     if (!force->is_internal()) force->update(*system_, position, time, position_force_);
   if (pull_) pull_->update(*system_, position, time, position_force_);
@@ -86,6 +189,10 @@ void ForceModel::force(const Vec3Field& velocity, Vec3Field& result) const {
 
 Work ForceModel::power(const Vec3Field& velocity) const {
   Work power;
+  if (can_step() && !has_load()) {  // to the bits of a whole step
+    if (viscous_ > 0) power.damping_loss = viscous_ * sweep_->squares(velocity);
+    return power;
+  }
   for (const auto& force : forces_) force->add_power(velocity, power);
   if (pull_) pull_->add_power(velocity, power);
   return power;

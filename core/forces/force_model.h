@@ -13,11 +13,15 @@
 namespace cloth {
 
 class AirForce;
+class GridSweep;
+class WorkerTeam;
 
 class ForceModel {
  public:
-  /// Only the forces that the scene has. `system` must outlive the model.
+  /// Only the forces that the scene has. `system` must outlive the model; after a change of its springs or
+  /// masses call system_changed().
   ForceModel(const Scene& scene, const ClothSystem& system);
+  void system_changed();
   ~ForceModel();
   ForceModel(ForceModel&&) noexcept;
   ForceModel& operator=(ForceModel&&) noexcept;
@@ -60,6 +64,23 @@ class ForceModel {
   /// is closed.
   int centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity);
 
+  /// Whole steps, for a cloth whose springs are a grid's and whose particles have one mass: force and motion
+  /// in one pass. Each returns nothing, and has done nothing, where the scene needs more than that; else the
+  /// sum of |v|^2 after the step. Nothing else may be asked until the next update, except after Verlet's,
+  /// which leaves the model at the new positions.
+  ///
+  /// v' = v + h a(x, v, t), x' = x + h v', or with `drift_first` x + h v. Adds the work.
+  std::optional<double> euler_step(double time, double step, bool drift_first, ClothState& state, Work& work);
+  /// From the last update, at the state's position, to the end of the step. `power` becomes that at the end.
+  std::optional<double> verlet_step(double step, ClothState& state, Work& power);
+  /// Kutta's method of order four. Adds the work.
+  std::optional<double> runge_kutta_step(double step, ClothState& state, Work& work);
+
+  /// Threads to share whole steps and evaluations among; null: one. Must outlive its use.
+  void set_team(WorkerTeam* team);
+  /// How many of them are used for this cloth.
+  int threads() const;
+
   /// The hand. A brush without air and a pull on a pinned particle have no effect.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull, double stiffness, double damping);
@@ -68,6 +89,9 @@ class ForceModel {
 
  private:
   void note_kinds();
+  bool has_load() const { return pull_ || !beside_sweep_.empty(); }
+  void update_load(const Vec3Field& position, double time);
+  bool can_step() const;
   void damping_product(const Vec3Field& velocity, Vec3Field& product) const;
   void solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
                       Vec3Field& velocity) const;
@@ -77,9 +101,15 @@ class ForceModel {
   std::vector<std::unique_ptr<Force>> forces_;
   AirForce* air_ = nullptr;  ///< the one of forces_ that feels the brush
   std::unique_ptr<Force> pull_;
-  Vec3Field position_force_;
-  Vec3Field rhs_, residual_, direction_,
-      product_;  ///< scratch of the velocity solve, sized when first needed
+  std::unique_ptr<GridSweep> sweep_;  ///< computes springs and `weight_` where the cloth is a grid
+  std::vector<Force*> beside_sweep_;  ///< those of forces_ that the sweep does not compute
+  Force *gravity_force_ = nullptr, *spring_force_ = nullptr, *viscous_force_ = nullptr;  ///< of forces_
+  Vec3 gravity_{0, 0, 0};                                                                ///< m/s^2
+  Vec3 weight_{0, 0, 0};  ///< N, of every particle, where the sweep takes care of gravity
+  double viscous_ = 0;    ///< N s/m, of every particle
+  WorkerTeam* team_ = nullptr;
+  Vec3Field position_force_;                        ///< sized when first needed
+  Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;
 };

@@ -15,6 +15,8 @@ void evaluate(ForceModel& forces, const StepTimes& times, const ClothState& stat
 
 IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                      ClothState& state, Work& work) {
+  if (const auto squares = forces.euler_step(times.begin, times.step, true, state, work))
+    return {.force_evaluations = 1, .speed_squares = squares};
   evaluate(forces, times, state, force_, work);
   add_scaled(times.step, state.velocity, state.position);
   add_acceleration(system, times.step, force_, state.velocity);
@@ -23,6 +25,8 @@ IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forc
 
 IntegratorReport SemiImplicitEuler::step(const ClothSystem& system, ForceModel& forces,
                                          const StepTimes& times, ClothState& state, Work& work) {
+  if (const auto squares = forces.euler_step(times.begin, times.step, false, state, work))
+    return {.force_evaluations = 1, .speed_squares = squares};
   evaluate(forces, times, state, force_, work);
   add_acceleration(system, times.step, force_, state.velocity);
   add_scaled(times.step, state.velocity, state.position);

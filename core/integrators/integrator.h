@@ -32,6 +32,7 @@ struct IntegratorReport {
   double residual =
       0;  ///< what the last iteration still changed: largest speed, relative to the largest of all
   std::optional<SolverFailure> failure = {};
+  std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, where it is known
 };
 
 /// What has changed behind an integrator's back.

@@ -16,6 +16,8 @@ constexpr std::array<Stage, 4> stages{{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 /
 IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                            ClothState& state, Work& work) {
   const double h = times.step;
+  if (const auto squares = forces.runge_kutta_step(h, state, work))
+    return {.force_evaluations = 4, .speed_squares = squares};
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   stage_position_ = state.position;
   stage_velocity_ = state.velocity;

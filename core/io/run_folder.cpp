@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "kernels/instruction_set.h"
+
 namespace cloth {
 namespace {
 
@@ -145,6 +147,7 @@ std::string summary_json(const RunSummary& s) {
   root["threads"] = s.threads;
   root["host"] = {{"name", host_name()},
                   {"processor", processor()},
+                  {"instruction_set", name_of(active_instruction_set())},
                   {"compiler", CLOTHLAB_COMPILER},
                   {"build", CLOTHLAB_BUILD_TYPE}};
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

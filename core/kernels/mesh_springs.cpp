@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <string_view>
+
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 
@@ -20,10 +20,8 @@ std::vector<const MeshKernel*> supported_mesh_kernels() {
 
 const MeshKernel& chosen_mesh_kernel() {
   const std::vector<const MeshKernel*> kernels = supported_mesh_kernels();
-  if (const char* wanted = std::getenv("CLOTHLAB_INSTRUCTION_SET"))
-    for (const MeshKernel* kernel : kernels)
-      if (std::string_view(kernel->name) == wanted) return *kernel;
-  return *kernels.back();
+  return **std::find_if(kernels.rbegin(), kernels.rend(),
+                        [](const MeshKernel* kernel) { return may_run(kernel->name); });
 }
 
 bool MeshSprings::suits(const ClothSystem& system) {

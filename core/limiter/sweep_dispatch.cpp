@@ -1,5 +1,9 @@
 #include "limiter/sweep_dispatch.h"
 
+#include <algorithm>
+
+#include "kernels/instruction_set.h"
+
 namespace cloth {
 namespace {
 
@@ -24,7 +28,9 @@ const std::vector<const SweepKernels*>& all_sweep_kernels() {
 }
 
 const SweepKernels& sweep_kernels() {
-  return *all_sweep_kernels().back();
+  const std::vector<const SweepKernels*>& kernels = all_sweep_kernels();
+  return **std::find_if(kernels.rbegin(), kernels.rend(),
+                        [](const SweepKernels* kernel) { return may_run(kernel->instruction_set); });
 }
 
 }  // namespace cloth

@@ -84,6 +84,8 @@ class Run {
     summary.method = scene.integrator.method;
     summary.time_step = simulation_.time_step();
     summary.particles = simulation_.system().size();
+    simulation_.set_threads(options_.threads);
+    summary.threads = simulation_.threads();
     if (simulation_.unreachable_rate())
       summary.notice = describe(*simulation_.unreachable_rate(), simulation_.system().columns);
   }

@@ -54,6 +54,7 @@ struct RunOptions {
   std::filesystem::path folder;  ///< empty: leave nothing on disk
   /// Called some ten times a second with the simulated time; false stops the run.
   std::function<bool(double time)> progress;
+  int threads = 1;  ///< that a step may use
 };
 
 struct RunResult {

@@ -19,6 +19,8 @@
 
 namespace cloth {
 
+class WorkerTeam;
+
 /// What entered the cloth since t = 0, in J; the loss left it.
 struct EnergyLedger {
   Work forces;
@@ -103,6 +105,11 @@ class Simulation {
   /// as it is: to go on to the bit it must be the one that was in force at the checkpoint.
   void restore(const Checkpoint& checkpoint);
 
+  /// Threads that a step may use, 1 without this call. The motion is the same to the bit.
+  void set_threads(int threads);
+  /// How many a step does use: one where the cloth is too small to share, or the method cannot.
+  int threads() const;
+
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull);
@@ -141,7 +148,7 @@ class Simulation {
   void limit_deformation();
   void resolve_contact();
   double total_energy() const;
-  std::optional<Divergence> find_divergence() const;
+  std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
@@ -151,6 +158,7 @@ class Simulation {
   Preparation prepare_;
   ClothSystem system_;
   ClothState state_;
+  std::unique_ptr<WorkerTeam> team_;  ///< none: one thread
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
@@ -169,7 +177,9 @@ class Simulation {
   std::optional<Pull> pull_;
   PullStrength strongest_pull_, pull_strength_;
   std::optional<PullStrength> most_pull_;
-  double elastic_scale_ = 0;  ///< J, all springs at twice their length
+  double elastic_scale_ = 0;                  ///< J, all springs at twice their length
+  double total_mass_ = 0, largest_mass_ = 0;  ///< kg
+  bool was_finite_ = false;                   ///< every position was finite after the last step
 };
 
 }  // namespace cloth

@@ -123,7 +123,7 @@ void BlockCholesky::add_update(std::size_t child, const double* from, double* co
 }
 
 bool BlockCholesky::factorise(std::span<const double> diagonal, std::span<const double> coupling_blocks) {
-  const DenseKernels& dense = dense_kernels().back();
+  const DenseKernels& dense = chosen_dense_kernels();
   std::fill(factors_.begin(), factors_.end(), 0.0);
   std::size_t top = 0;  // of the stack of updates
   for (std::size_t f = 0; f < tree_.fronts.size(); ++f) {

@@ -5,6 +5,7 @@
 
 #include "cloth/sums.h"
 #include "cloth/vectorised.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
@@ -204,6 +205,12 @@ CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, Quad* 
 const std::vector<DenseKernels>& dense_kernels() {
   static const std::vector<DenseKernels> kernels = find_kernels();
   return kernels;
+}
+
+const DenseKernels& chosen_dense_kernels() {
+  const std::vector<DenseKernels>& kernels = dense_kernels();
+  return *std::find_if(kernels.rbegin(), kernels.rend(),
+                       [](const DenseKernels& some) { return may_run(some.instruction_set); });
 }
 
 }  // namespace cloth

@@ -29,6 +29,8 @@ struct DenseKernels {
 
 /// Those that this processor has: the plain ones first, the widest last.
 const std::vector<DenseKernels>& dense_kernels();
+/// The widest that may run.
+const DenseKernels& chosen_dense_kernels();
 
 /// One number of each of up to four right-hand sides, side by side.
 struct Quad {

@@ -62,7 +62,12 @@ void expect_followed(const Motion& motion, const std::string& method, double amp
   const double observed = std::log2(coarse / fine);
   std::printf("%s: %d steps, error %.2e of the amplitude, order %.2f\n", method.c_str(), 2 * steps,
               fine / amplitude, observed);
-  EXPECT_NEAR(observed, order, order > 4 ? 0.5 : order > 2 ? 0.25 : 0.15) << method;
+  const double tolerance = order > 4 ? 0.5 : order > 2 ? 0.25 : 0.15;
+  EXPECT_GE(observed, order - tolerance) << method;
+  const double rounding = 1e-12 * amplitude;  // an error this small may vanish faster, by luck
+  if (fine > rounding) {
+    EXPECT_LE(observed, order + tolerance) << method;
+  }
   EXPECT_LE(fine, 0.3 * amplitude) << method;
 }
 

@@ -1,0 +1,229 @@
+// The springs of a grid, row by row, in one pass and in place. Included once for every instruction set, after
+// its Lanes; everything here has internal linkage.
+//
+// Every particle is the first end of at most six springs, to columns and rows ahead of it. A row is taken in
+// blocks of as many columns as there are lanes. What a block's springs do to the next columns moves on within
+// registers, by lanes; what they do to the next two rows waits in two row buffers:
+//
+//     A  the force so far on the row below: from springs of this row and the one above
+//     B  the force so far on the row below that: from springs of this row
+//
+// so that a row's force is complete as soon as the row is done, and whatever the method does with it can be
+// done on the spot: nothing later in the pass looks back at this row. Both begin with the load that is no
+// spring's.
+#pragma once
+
+#include "kernels/grid_pass.h"
+
+#define CLOTHLAB_INLINE [[gnu::always_inline]] inline
+
+namespace cloth::kernels {
+namespace {
+
+using V = Lanes::V;
+
+struct Vector {
+  V x, y, z;
+};
+
+/// Where a row's three components begin.
+struct Row {
+  double *x, *y, *z;
+};
+struct ConstRow {
+  const double *x = nullptr, *y = nullptr, *z = nullptr;
+  ConstRow() = default;
+  ConstRow(Row row) : x(row.x), y(row.y), z(row.z) {}
+  ConstRow(const double* px, const double* py, const double* pz) : x(px), y(py), z(pz) {}
+};
+
+CLOTHLAB_INLINE Vector load(const ConstRow& row, int j) {
+  return {Lanes::load(row.x + j), Lanes::load(row.y + j), Lanes::load(row.z + j)};
+}
+CLOTHLAB_INLINE Vector load(const ConstRow& row, int j, int count, const Vector& otherwise) {
+  return {Lanes::load(row.x + j, count, otherwise.x), Lanes::load(row.y + j, count, otherwise.y),
+          Lanes::load(row.z + j, count, otherwise.z)};
+}
+CLOTHLAB_INLINE void store(const Row& row, int j, const Vector& a) {
+  Lanes::store(row.x + j, a.x), Lanes::store(row.y + j, a.y), Lanes::store(row.z + j, a.z);
+}
+template <bool Edge>
+CLOTHLAB_INLINE void store(const Row& row, int j, int count, const Vector& a) {
+  if constexpr (Edge)
+    Lanes::store(row.x + j, a.x, count), Lanes::store(row.y + j, a.y, count),
+        Lanes::store(row.z + j, a.z, count);
+  else
+    store(row, j, a);
+}
+/// The first `count` lanes, zero in the others.
+template <bool Edge>
+CLOTHLAB_INLINE Vector load_part(const ConstRow& row, int j, int count) {
+  const V zero = Lanes::zero();
+  if constexpr (Edge) return load(row, j, count, {zero, zero, zero});
+  return load(row, j);
+}
+
+CLOTHLAB_INLINE Vector operator-(const Vector& a, const Vector& b) {
+  return {Lanes::sub(a.x, b.x), Lanes::sub(a.y, b.y), Lanes::sub(a.z, b.z)};
+}
+CLOTHLAB_INLINE Vector operator+(const Vector& a, const Vector& b) {
+  return {Lanes::add(a.x, b.x), Lanes::add(a.y, b.y), Lanes::add(a.z, b.z)};
+}
+CLOTHLAB_INLINE Vector scaled(V s, const Vector& a) {
+  return {Lanes::mul(s, a.x), Lanes::mul(s, a.y), Lanes::mul(s, a.z)};
+}
+/// c + s a, and c - s a
+CLOTHLAB_INLINE Vector plus(const Vector& c, V s, const Vector& a) {
+  return {Lanes::fma(s, a.x, c.x), Lanes::fma(s, a.y, c.y), Lanes::fma(s, a.z, c.z)};
+}
+CLOTHLAB_INLINE Vector minus(const Vector& c, V s, const Vector& a) {
+  return {Lanes::fnma(s, a.x, c.x), Lanes::fnma(s, a.y, c.y), Lanes::fnma(s, a.z, c.z)};
+}
+/// sum + |a|^2 lane by lane
+CLOTHLAB_INLINE V plus_square(V sum, const Vector& a) {
+  return Lanes::fma(a.z, a.z, Lanes::fma(a.y, a.y, Lanes::fma(a.x, a.x, sum)));
+}
+CLOTHLAB_INLINE Vector moved_one(const Vector& before, const Vector& now) {
+  return {Lanes::shift_one(before.x, now.x), Lanes::shift_one(before.y, now.y),
+          Lanes::shift_one(before.z, now.z)};
+}
+CLOTHLAB_INLINE Vector moved_two(const Vector& before, const Vector& now) {
+  return {Lanes::shift_two(before.x, now.x), Lanes::shift_two(before.y, now.y),
+          Lanes::shift_two(before.z, now.z)};
+}
+CLOTHLAB_INLINE Vector vector_of(const double* a) {
+  return {Lanes::set(a[0]), Lanes::set(a[1]), Lanes::set(a[2])};
+}
+
+struct Springs {
+  Lanes::Spring kind[spring_kinds];
+  explicit Springs(const Grid& grid) {
+    for (int k = 0; k < spring_kinds; ++k)
+      kind[k] = Lanes::spring(grid.kind[k].stiffness, grid.kind[k].rest_tension);
+  }
+  /// The force on the first end is this times d.
+  template <unsigned Bit>
+  CLOTHLAB_INLINE V scale(const Vector& d) const {
+    const V s = Lanes::fma(d.z, d.z, Lanes::fma(d.y, d.y, Lanes::mul(d.x, d.x)));
+    return Lanes::spring_scale<(Bit & Lanes::divided) != 0>(s, kind[__builtin_ctz(Bit)]);
+  }
+};
+
+/// What a row's springs need beside the method.
+struct RowWork {
+  int columns;
+  ConstRow here, below, second;      ///< positions; only those that exist are looked at
+  ConstRow load_below, load_second;  ///< null: `weight`
+  Row a, b;                          ///< the buffers
+  Vector weight;
+  const Springs* springs;
+  unsigned present = 0;  ///< this row's directions of springs
+  bool has_below = true, has_second = true;
+  bool uses_b = true;  ///< the grid has springs that reach two rows down
+};
+
+/// What springs of earlier columns do to the columns of the next block.
+struct Carry {
+  Vector one, two, one_below;
+};
+
+template <bool Edge>
+CLOTHLAB_INLINE Vector initial(const ConstRow& load_row, const Vector& weight, int j, int count) {
+  return load_row.x ? weight + load_part<Edge>(load_row, j, count) : weight;
+}
+
+/// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so
+/// in all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may
+/// lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no
+/// force.
+template <bool Full, bool Edge>
+CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const Vector& here, Carry& carry) {
+  const Springs& springs = *work.springs;
+  const auto has = [&](unsigned bits) { return Full || (work.present & bits) != 0; };
+  const auto ahead = [&](const ConstRow& row, int columns, const Vector& otherwise) {
+    if constexpr (Edge) return load(row, j + columns, count - columns, otherwise);
+    return load(row, j + columns);
+  };
+  const Vector nothing{Lanes::zero(), Lanes::zero(), Lanes::zero()};
+  const bool has_below = Full || work.has_below;
+  Vector force = load(work.a, j);
+  Vector below_force = nothing;
+  if (Full || (has_below && work.uses_b))
+    below_force = load(work.b, j);
+  else if (has_below)
+    below_force = initial<Edge>(work.load_below, work.weight, j, count);
+  Vector one = nothing, two = nothing, one_below = nothing;  // what moves on to later columns
+
+  Vector right = here;
+  if (has(right_one | antidiagonal)) right = ahead(work.here, 1, here);
+  if (has(right_one)) {
+    const Vector d = right - here;
+    const V s = springs.scale<right_one>(d);
+    force = plus(force, s, d);
+    one = minus(one, s, d);
+  }
+  if (has(right_two)) {
+    const Vector d = ahead(work.here, 2, here) - here;
+    const V s = springs.scale<right_two>(d);
+    force = plus(force, s, d);
+    two = scaled(s, d);
+  }
+  if (Full || (work.has_second && work.uses_b)) {
+    const Vector d = ahead(work.second, 0, here) - here;
+    const V s = springs.scale<down_two>(d);
+    force = plus(force, s, d);
+    store(work.b, j, minus(initial<Edge>(work.load_second, work.weight, j, count), s, d));
+  }
+  Vector below = here;
+  if (has(down_one | antidiagonal)) below = ahead(work.below, 0, here);
+  if (has(down_one)) {
+    const Vector d = below - here;
+    const V s = springs.scale<down_one>(d);
+    force = plus(force, s, d);
+    below_force = minus(below_force, s, d);
+  }
+  if (has(antidiagonal)) {
+    Vector from = right;
+    if constexpr (Edge) from = ahead(work.here, 1, below);
+    const Vector d = below - from;
+    const V s = springs.scale<antidiagonal>(d);
+    one = plus(one, s, d);
+    below_force = minus(below_force, s, d);
+  }
+  if (has(diagonal)) {
+    const Vector d = ahead(work.below, 1, here) - here;
+    const V s = springs.scale<diagonal>(d);
+    force = plus(force, s, d);
+    one_below = scaled(s, d);
+    below_force = below_force - moved_one(carry.one_below, one_below);
+  }
+  if (has(right_one | antidiagonal)) force = force + moved_one(carry.one, one);
+  if (has(right_two)) force = force - moved_two(carry.two, two);
+  if (has_below) store(work.a, j, below_force);
+  carry = {one, two, one_below};
+  return force;
+}
+
+/// One row: its force, and `update(j, count, here, force)` for every block; an update<Edge> is a call
+/// operator with that template argument. A row of another band has no update.
+template <bool Full, class Update>
+CLOTHLAB_INLINE void row_pass(const RowWork& work, bool own, Update& update) {
+  const V zero = Lanes::zero();
+  const Vector nothing{zero, zero, zero};
+  Carry carry{nothing, nothing, nothing};
+  int j = 0;
+  for (; j + Lanes::width + 2 <= work.columns; j += Lanes::width) {
+    const Vector here = load(work.here, j);
+    const Vector force = block_force<Full, false>(work, j, Lanes::width, here, carry);
+    if (Full || own) update.template operator()<false>(j, Lanes::width, here, force);
+  }
+  for (; j < work.columns; j += Lanes::width) {
+    const int count = work.columns - j;
+    const Vector here = load_part<true>(work.here, j, count);
+    const Vector force = block_force<Full, true>(work, j, count, here, carry);
+    if (Full || own) update.template operator()<true>(j, count, here, force);
+  }
+}
+
+}  // namespace
+}  // namespace cloth::kernels

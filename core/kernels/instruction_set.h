@@ -1,0 +1,38 @@
+// Which of the compiled instruction sets the kernels use. One binary holds all of them; the choice is made at
+// run time: the best that the processor has, or what CLOTHLAB_INSTRUCTION_SET or a caller asks for.
+//
+// Two runs on the same set agree to the last bit, on whatever machine and with any number of threads. Sets
+// differ by rounding: `portable` and `sse2` round every product and sum, `avx2` and `avx512` fuse them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cloth {
+
+enum class InstructionSet { portable, sse2, avx2, avx512 };
+
+inline constexpr const char* instruction_set_variable = "CLOTHLAB_INSTRUCTION_SET";
+
+const char* name_of(InstructionSet set);
+std::optional<InstructionSet> instruction_set_named(std::string_view name);
+
+/// Those that this binary and this processor have, from `portable` up. Never empty.
+const std::vector<InstructionSet>& supported_instruction_sets();
+
+/// What is wrong with the environment's wish, in one line; empty if nothing is.
+std::string instruction_set_problem();
+
+/// The set that everything made from now on uses: force models, limiters, solvers. Where the environment's wish cannot be met, the best.
+InstructionSet active_instruction_set();
+
+/// Whether kernels of this name may run: those of a set beyond the active one may not. Kernels that need
+/// nothing beyond the baseline of the processor ("plain", "baseline") always may.
+bool may_run(std::string_view kernels);
+
+/// Overrides the environment; nullopt gives it back. For tests and benchmarks. Precondition: supported.
+void set_instruction_set(std::optional<InstructionSet> set);
+
+}  // namespace cloth

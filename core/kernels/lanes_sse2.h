@@ -1,0 +1,48 @@
+// Two lanes of SSE2, part of every x86-64 processor. What the functions do: lanes_portable.h.
+#pragma once
+
+#include <emmintrin.h>
+
+namespace cloth::kernels {
+namespace {
+
+struct Lanes {
+  static constexpr int width = 2;
+  static constexpr unsigned divided = 63;  ///< the springs whose roots are divided, here all
+  using V = __m128d;
+  struct Spring {
+    V stiffness, rest_tension;
+  };
+
+  static V set(double a) { return _mm_set1_pd(a); }
+  static V zero() { return _mm_setzero_pd(); }
+  static V load(const double* p) { return _mm_loadu_pd(p); }
+  static V load(const double* p, int count, V otherwise) {
+    if (count >= 2) return load(p);
+    return count == 1 ? _mm_loadl_pd(otherwise, p) : otherwise;
+  }
+  static void store(double* p, V a) { _mm_storeu_pd(p, a); }
+  static void store(double* p, V a, int count) {
+    if (count >= 2)
+      store(p, a);
+    else if (count == 1)
+      _mm_store_sd(p, a);
+  }
+  static V add(V a, V b) { return _mm_add_pd(a, b); }
+  static V sub(V a, V b) { return _mm_sub_pd(a, b); }
+  static V mul(V a, V b) { return _mm_mul_pd(a, b); }
+  static V fma(V a, V b, V c) { return _mm_add_pd(_mm_mul_pd(a, b), c); }
+  static V fnma(V a, V b, V c) { return _mm_sub_pd(c, _mm_mul_pd(a, b)); }
+  static V shift_one(V before, V now) { return _mm_shuffle_pd(before, now, 0b01); }
+  static V shift_two(V before, V) { return before; }
+  static double sum(V a) { return _mm_cvtsd_f64(a) + _mm_cvtsd_f64(_mm_unpackhi_pd(a, a)); }
+  static Spring spring(double stiffness, double rest_tension) { return {set(stiffness), set(rest_tension)}; }
+  template <bool Divide>
+  static V spring_scale(V s, const Spring& spring) {
+    const V part = _mm_div_pd(spring.rest_tension, _mm_sqrt_pd(s));
+    return _mm_sub_pd(spring.stiffness, _mm_andnot_pd(_mm_cmpeq_pd(s, zero()), part));
+  }
+};
+
+}  // namespace
+}  // namespace cloth::kernels

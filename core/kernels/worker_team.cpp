@@ -1,0 +1,76 @@
+#include "kernels/worker_team.h"
+
+#include <cassert>
+#include <chrono>
+#if defined(__x86_64__) || defined(_M_X64)
+#include <immintrin.h>
+#endif
+
+namespace cloth {
+namespace {
+
+/// Longer than what lies between two steps, far shorter than what anybody would notice as load.
+constexpr std::chrono::microseconds awake{100};
+
+void relax() {
+#if defined(__x86_64__) || defined(_M_X64)
+  _mm_pause();
+#endif
+}
+
+/// Returns when `value` is no longer `old`: it changes soon, or it may take long.
+template <class T>
+void wait_for_change(const std::atomic<T>& value, T old) {
+  const auto until = std::chrono::steady_clock::now() + awake;
+  do {
+    for (int k = 0; k < 64; ++k) {
+      if (value.load(std::memory_order_acquire) != old) return;
+      relax();
+    }
+  } while (std::chrono::steady_clock::now() < until);
+  value.wait(old, std::memory_order_acquire);
+}
+
+}  // namespace
+
+WorkerTeam::WorkerTeam(int size) {
+  assert(size >= 1);
+  for (int share = 1; share < size; ++share) workers_.emplace_back([this, share] { work(share); });
+}
+
+WorkerTeam::~WorkerTeam() {
+  stops_ = true;
+  job_number_.fetch_add(1, std::memory_order_release);
+  job_number_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void WorkerTeam::start(int shares, Function function, const void* context) {
+  assert(shares <= size());
+  if (shares > 1) {
+    function_ = function;
+    context_ = context;
+    shares_ = shares;
+    at_work_.store(static_cast<int>(workers_.size()), std::memory_order_relaxed);
+    job_number_.fetch_add(1, std::memory_order_release);
+    job_number_.notify_all();
+  }
+  if (shares > 0) function(context, 0);
+  if (shares <= 1) return;
+  for (int left = at_work_.load(std::memory_order_acquire); left != 0;
+       left = at_work_.load(std::memory_order_acquire))
+    wait_for_change(at_work_, left);
+}
+
+void WorkerTeam::work(int share) {
+  std::uint32_t seen = 0;
+  for (;;) {
+    wait_for_change(job_number_, seen);
+    seen = job_number_.load(std::memory_order_acquire);
+    if (stops_) return;
+    if (share < shares_) function_(context_, share);
+    if (at_work_.fetch_sub(1, std::memory_order_acq_rel) == 1) at_work_.notify_one();
+  }
+}
+
+}  // namespace cloth

@@ -134,9 +134,9 @@ TEST(SweepPlan, DoesAGridInAtMostFiveBatchesARow) {
   EXPECT_EQ(batches_of(pieces_of(system, limited(system), 0.1), system.columns).size(), 5u * 5 + 2);
 }
 
-class EveryInstructionSet : public ::testing::TestWithParam<const SweepKernels*> {};
+class EverySweepKernel : public ::testing::TestWithParam<const SweepKernels*> {};
 
-TEST_P(EveryInstructionSet, LimitsToTheSameBits) {
+TEST_P(EverySweepKernel, LimitsToTheSameBits) {
   Random random;
   for (const auto& [rows, columns] : {std::pair{2, 2}, {3, 2}, {4, 5}, {7, 9}, {9, 16}, {6, 17}, {5, 35}})
     for (const std::vector<Pin>& pins : some_pins()) {
@@ -161,7 +161,7 @@ TEST_P(EveryInstructionSet, LimitsToTheSameBits) {
     }
 }
 
-TEST_P(EveryInstructionSet, PassesOverWhatIsNotANumber) {
+TEST_P(EverySweepKernel, PassesOverWhatIsNotANumber) {
   const Scene scene = limited_sheet(3, 35);
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
   for (const int lost : {0, 7, 34, 40}) {
@@ -174,7 +174,7 @@ TEST_P(EveryInstructionSet, PassesOverWhatIsNotANumber) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EveryInstructionSet, ::testing::ValuesIn(all_sweep_kernels()),
+INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EverySweepKernel, ::testing::ValuesIn(all_sweep_kernels()),
                          [](const auto& kernels) { return std::string(kernels.param->instruction_set); });
 
 TEST(SweepKernels, EndWithTheBestSetAndBeginWithThePlainOne) {

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
 
   QCommandLineParser parser;
   parser.setApplicationDescription("A desktop lab for cloth simulation.");
-  parser.addPositionalArgument("scene", "A scene file or the name of a built-in scene.", "[SCENE]");
+  parser.addPositionalArgument("scene", "A scene or session file or the name of a built-in scene.", "[SCENE]");
   parser.addHelpOption();
   parser.addVersionOption();
   parser.process(application);

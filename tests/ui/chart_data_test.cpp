@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "charts/chart_record.h"
 #include "charts/nice_range.h"
 #include "charts/sample_series.h"
 #include "charts/time_view.h"

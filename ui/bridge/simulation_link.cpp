@@ -15,6 +15,7 @@ SimulationLink::SimulationLink(QObject* parent) : QObject(parent) {
 
 void SimulationLink::send(Command command) {
   worker_.send(std::move(command));
+  ++sent_;
   if (!timer_.isActive()) timer_.start();
 }
 

@@ -19,6 +19,8 @@ class SimulationLink : public QObject {
 
   void send(Command command);
   const WorkerStatus& status() const { return status_; }
+  /// Whether the status knows of everything that was sent.
+  bool isUpToDate() const { return status_.commands == sent_; }
 
   /// Waits for the commands sent so far and delivers what they gave. For tests and for orderly ends.
   void settle();
@@ -34,6 +36,7 @@ class SimulationLink : public QObject {
   SimulationWorker worker_;
   QTimer timer_;
   WorkerStatus status_;
+  std::uint64_t sent_ = 0;  ///< commands
 };
 
 }  // namespace clothlab

@@ -95,6 +95,7 @@ void SimulationWorker::run(const std::stop_token& stop) {
       }
     if (status_.playing) play_for_a_moment();
     if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
+    status_.commands += commands.size();
     publish_status();
     if (!commands.empty()) {
       const std::lock_guard lock(mutex_);

@@ -25,6 +25,7 @@ void SimulationWorker::handle(const command::GoTo& go) {
   if (recording_.is_active()) end_recording();
   playing_again_ = false;
   status_.divergence.reset();
+  status_.refusal.clear();  // what was refused is left behind
   status_.session_error.clear();
   ++status_.jumps;
   settle(history_.go_to(*simulation_, go.target, [this] { return may_go_on(); }));

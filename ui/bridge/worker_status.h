@@ -35,14 +35,18 @@ struct WorkerStatus {
   std::string recording_error;
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
 
+  std::uint64_t commands = 0;  ///< sent so far that are carried out, or were overtaken by a later one
+
   HistoryStatus history;
   bool playing_again = false;          ///< what the history has, rather than something new
   std::string session_error;           ///< why the last session was not saved, opened or gone through
   std::optional<bool> session_agrees;  ///< at an opened session's end: whether it came out to the bit
   /// How often the worker itself has changed time or scene: by going back or forth, opening a session, or
-  /// returning from a divergence. A document then takes up `scene`.
+  /// returning from a divergence.
   std::int64_t jumps = 0;
-  std::shared_ptr<const cloth::Scene> scene;  ///< in force
+  /// In force; another pointer when it is another scene. A document takes it up once `commands` says that no
+  /// edit of its own is on the way.
+  std::shared_ptr<const cloth::Scene> scene;
 };
 
 }  // namespace clothlab

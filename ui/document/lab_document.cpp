@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "document/pin_edits.h"
+#include "scene/scene_edits.h"
 
 namespace clothlab {
 namespace {
@@ -16,6 +17,8 @@ using cloth::ParameterInfo;
 using cloth::ParameterValue;
 using cloth::Scene;
 using Effect = SceneChange::Effect;
+
+constexpr int following = -1;  // the drag number of scenes that follow the run
 
 Effect effect_of(cloth::EditCost cost) {
   return cost == cloth::EditCost::restart ? Effect::restart : Effect::live;
@@ -108,13 +111,18 @@ class LabDocument::EditCommand : public QUndoCommand {
         drag_(drag) {}
 
   void undo() override { document_.apply(before_, change_); }
-  void redo() override { document_.apply(after_, change_); }
+  void redo() override {
+    // The run that is followed has its scene already; whoever redoes it later wants it put in force.
+    const bool is_in_force = std::exchange(is_new_, false) && drag_ == following;
+    document_.apply(after_, is_in_force ? SceneChange{Effect::none, change_.path} : change_);
+  }
   int id() const override { return 1; }
 
   bool mergeWith(const QUndoCommand* other) override {
     const auto* next = static_cast<const EditCommand*>(other);
     if (!belongs_to(next->drag_, next->change_.path)) return false;
     after_ = next->after_;
+    change_.effect = std::max(change_.effect, next->change_.effect);
     setObsolete(after_ == before_);
     return true;
   }
@@ -129,6 +137,7 @@ class LabDocument::EditCommand : public QUndoCommand {
   Scene before_, after_;
   SceneChange change_;
   int drag_;
+  bool is_new_ = true;
 };
 
 LabDocument::LabDocument(QObject* parent) : QObject(parent) {
@@ -248,10 +257,20 @@ void LabDocument::togglePin(int row, int column) {
   push(pinned ? tr("Free particle") : tr("Pin particle"), std::move(after), {Effect::live, "cloth.pins"});
 }
 
+void LabDocument::follow(const Scene& scene) {
+  if (edits_between(scene_, scene).empty()) return;
+  drag_ = 0;
+  if (undo_stack_.count() == 0) return apply(scene, {Effect::none, {}});
+  Effect effect = Effect::live;
+  for (const std::string& path : differing_parameters(scene_, scene))
+    effect = std::max(effect, effect_of(find_parameter(scene, path)->info.cost));
+  push(tr("Go to another time"), scene, {effect, {}}, following);
+}
+
 void LabDocument::push(const QString& text, Scene after, SceneChange change, int drag) {
   if (after == scene_) return;
-  undo_stack_.push(
-      new EditCommand(*this, text, sceneBefore(change.path), std::move(after), std::move(change), drag));
+  const Scene before = drag == following ? scene_ : sceneBefore(change.path);
+  undo_stack_.push(new EditCommand(*this, text, before, std::move(after), std::move(change), drag));
 }
 
 void LabDocument::apply(const Scene& target, const SceneChange& change) {

@@ -18,8 +18,9 @@ namespace clothlab {
 /// What an edit asks of a running simulation, from ParameterInfo::cost: the next step takes a live edit over,
 /// a restart needs a new start. A block that comes or goes demands a restart if one of its parameters does.
 struct SceneChange {
-  enum class Effect { live, restart } effect = Effect::live;
-  std::string path;  ///< of the parameter or block; "cloth.pins" for pins
+  /// `none`: the run has it already, see LabDocument::follow().
+  enum class Effect { none, live, restart } effect = Effect::live;
+  std::string path;  ///< of the parameter or block; "cloth.pins" for pins; empty for a scene followed
 };
 
 class LabDocument : public QObject {
@@ -61,6 +62,11 @@ class LabDocument : public QObject {
   void setPins(std::vector<cloth::Pin> pins);
   /// Pins a free particle and frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);
+
+  /// Takes up the scene of a run that has gone back or forth in its own history: one undo step, however often
+  /// it goes to and fro, and none if it comes back to where it was. Without edits to undo, as after opening a
+  /// session, the document just becomes that scene.
+  void follow(const cloth::Scene& scene);
 
  Q_SIGNALS:
   void parameterChanged(const std::string& path);

@@ -11,7 +11,9 @@
 #include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
@@ -54,6 +56,7 @@ MainWindow::~MainWindow() {
 
 void MainWindow::makeLayout() {
   transport_ = new TransportBar({play_, step_, reset_, record_}, this);
+  timeline_ = new Timeline(play_again_, this);
   view_bar_ = new ViewBar(*view_, save_picture_, this);
   view_->setMinimumSize(320, 240);
 
@@ -64,6 +67,7 @@ void MainWindow::makeLayout() {
   column->addWidget(view_bar_);
   column->addWidget(notice_);
   column->addWidget(view_, 1);
+  column->addWidget(timeline_);
   setCentralWidget(middle);
 
   auto* bottom = new QToolBar(tr("Run"), this);
@@ -114,7 +118,8 @@ void MainWindow::connectView() {
                   tr("The view needs OpenGL 3.3, which this machine does not give. Everything else works."));
   });
   connect(view_, &ClothView::frameDrawn, this, [this](double milliseconds) {
-    if (shown_status_.playing) charts_->appendDrawTime(shown_status_.time, milliseconds);
+    if (shown_status_.playing && !shown_status_.playing_again)
+      charts_->appendDrawTime(shown_status_.time, milliseconds);
   });
 }
 
@@ -125,8 +130,12 @@ void MainWindow::connectSimulation() {
   connect(&link_, &SimulationLink::statusChanged, this, &MainWindow::followStatus);
   connect(transport_, &TransportBar::speedChosen, this,
           [this](double factor) { link_.send(command::Speed{factor}); });
-  connect(play_, &QAction::triggered, this,
-          [this](bool play) { play ? link_.send(command::Play{}) : link_.send(command::Pause{}); });
+  connect(&timeline_->track(), &TimelineTrack::timeWanted, this, [this](double time) {
+    paused_again_ = false;
+    link_.send(command::GoTo{{.step = {}, .time = time}});
+  });
+  connect(play_, &QAction::triggered, this, &MainWindow::play);
+  connect(play_again_, &QAction::triggered, this, [this] { link_.send(command::PlayAgain{}); });
   connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
   connect(reset_, &QAction::triggered, this, &MainWindow::restart);
   connect(record_, &QAction::triggered, this, &MainWindow::toggleRecording);
@@ -143,21 +152,44 @@ void MainWindow::takeScene(const OpenedScene& opened) {
   }
   notice_->withdraw("open");
   if (!opened.path.isEmpty()) remember_scene(opened.path);
-  document_.load(*opened.scene, opened.path);
+  session_ = opened.session;
+  document_.load(*opened.scene, opened.session ? QString() : opened.path);
 }
 
 void MainWindow::startSimulation() {
   charts_->clear();
-  link_.send(command::Load{document_.scene()});
+  notice_->withdraw("session");
+  paused_again_ = false;
+  if (session_) {
+    link_.send(command::OpenSession{*std::exchange(session_, std::nullopt)});
+    link_.send(command::PlayAgain{});
+  } else {
+    link_.send(command::Load{document_.scene()});
+  }
   readStability();
 }
 
 void MainWindow::restart() {
   charts_->clear();
+  paused_again_ = false;
   link_.send(command::Restart{});
 }
 
+/// Goes on with what the pause ended; otherwise from here on something new begins.
+void MainWindow::play(bool on) {
+  if (!on) {
+    paused_again_ = shown_status_.playing_again;
+    link_.send(command::Pause{});
+  } else if (std::exchange(paused_again_, false)) {
+    link_.send(command::PlayAgain{});
+  } else {
+    link_.send(command::Play{});
+  }
+}
+
 void MainWindow::followChange(const SceneChange& change) {
+  if (change.effect == SceneChange::Effect::none) return readStability();
+  paused_again_ = false;
   if (change.effect == SceneChange::Effect::live) {
     link_.send(command::Edit{document_.scene()});
     readStability();
@@ -199,6 +231,9 @@ void MainWindow::followStatus(const WorkerStatus& status) {
   play_->setEnabled(status.refusal.empty());
   step_->setEnabled(status.refusal.empty());
   transport_->showStatus(status);
+  timeline_->showStatus(status, link_.isUpToDate());
+  play_again_->setEnabled(status.refusal.empty() && !status.playing &&
+                          status.step < status.history.last_step);
 
   if (!status.refusal.empty())
     notice_->show("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
@@ -212,7 +247,44 @@ void MainWindow::followStatus(const WorkerStatus& status) {
   }
   followDivergence(status);
   followRecording(status);
+  followSession(status);
+  followScene(status);
   shown_status_ = status;
+}
+
+/// The run is at a time when another scene was in force: the document becomes that scene, unless it has edits
+/// of its own on the way.
+void MainWindow::followScene(const WorkerStatus& status) {
+  if (!status.scene || !link_.isUpToDate() || !status.refusal.empty()) return;
+  timeline_->track().setStep(std::max(status.scene->record.interval, status.time_step));
+  if (std::exchange(followed_, status.scene) != status.scene || status.jumps != shown_status_.jumps)
+    document_.follow(*status.scene);
+}
+
+void MainWindow::followSession(const WorkerStatus& status) {
+  if (!status.session_error.empty()) {
+    if (status.session_error != shown_status_.session_error || !saving_session_.isEmpty())
+      notice_->show("session", NoticeBar::Level::error,
+                    tr("Session: %1").arg(QString::fromStdString(status.session_error)));
+    if (link_.isUpToDate()) saving_session_.clear();
+  } else if (!saving_session_.isEmpty() && link_.isUpToDate()) {
+    notice_->show("session", NoticeBar::Level::info,
+                  tr("Saved the session of %1 s in %2")
+                      .arg(status.history.last_time, 0, 'f', 3)
+                      .arg(std::exchange(saving_session_, QString())));
+  }
+  if (!status.session_agrees || status.session_agrees == shown_status_.session_agrees) return;
+  if (*status.session_agrees)
+    notice_->show("session", NoticeBar::Level::info, tr("The session came out the same, to the bit."));
+  else
+    notice_->show("session", NoticeBar::Level::warning,
+                  tr("The session came out different from its file. Another version, compiler or processor "
+                     "may round differently."));
+}
+
+void MainWindow::saveSession(const QString& path) {
+  saving_session_ = path;
+  link_.send(command::SaveSession{path.toStdString()});
 }
 
 void MainWindow::followDivergence(const WorkerStatus& status) {

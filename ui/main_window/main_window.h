@@ -11,6 +11,7 @@
 #include "main_window/notice_bar.h"
 #include "main_window/transport_bar.h"
 #include "params/parameter_panel.h"
+#include "timeline/timeline.h"
 #include "viewport/cloth_view.h"
 
 class QMenu;
@@ -27,12 +28,15 @@ class MainWindow : public QMainWindow {
   explicit MainWindow(QWidget* parent = nullptr);
   ~MainWindow() override;
 
-  /// A file or the name of a built-in scene. What cannot be opened is said in the window, and the scene
-  /// before stays.
+  /// A scene's or a session's file or the name of a built-in scene; a session is played. What cannot be
+  /// opened is said in the window, and the scene before stays.
   void openScene(const QString& name);
 
   /// Records into `folder` until the record action is switched off.
   void startRecording(const QString& folder);
+
+  /// The run so far, with everything that was done to it (docs/sessions.md).
+  void saveSession(const QString& path);
 
   /// Whether closing or opening another scene asks about unsaved changes.
   void setAsksToSave(bool asks) { asks_to_save_ = asks; }
@@ -43,6 +47,7 @@ class MainWindow : public QMainWindow {
   ChartPanel& charts() { return *charts_; }
   ParameterPanel& parameters() { return *parameters_; }
   NoticeBar& notice() { return *notice_; }
+  Timeline& timeline() { return *timeline_; }
 
  protected:
   void closeEvent(QCloseEvent* event) override;
@@ -59,7 +64,10 @@ class MainWindow : public QMainWindow {
   void followChange(const SceneChange& change);
   void startSimulation();
   void restart();
+  void play(bool on);
   void followStatus(const WorkerStatus& status);
+  void followScene(const WorkerStatus& status);
+  void followSession(const WorkerStatus& status);
   void followRecording(const WorkerStatus& status);
   void followDivergence(const WorkerStatus& status);
   void readStability();
@@ -77,6 +85,7 @@ class MainWindow : public QMainWindow {
   void openWithDialog();
   bool save();
   bool saveAs();
+  void saveSessionAs();
   void savePicture();
   void toggleRecording(bool on);
   void showAbout();
@@ -88,11 +97,13 @@ class MainWindow : public QMainWindow {
   ParameterPanel* parameters_ = nullptr;
   NoticeBar* notice_ = nullptr;
   TransportBar* transport_ = nullptr;
+  Timeline* timeline_ = nullptr;
   ViewBar* view_bar_ = nullptr;
   QMenu* recent_menu_ = nullptr;
   QMenu* windows_menu_ = nullptr;
 
   QAction* play_ = nullptr;
+  QAction* play_again_ = nullptr;
   QAction* step_ = nullptr;
   QAction* reset_ = nullptr;
   QAction* record_ = nullptr;
@@ -100,6 +111,10 @@ class MainWindow : public QMainWindow {
   QAction* save_plots_ = nullptr;
 
   WorkerStatus shown_status_;
+  std::shared_ptr<const cloth::Scene> followed_;  ///< the worker's scene that the document knows
+  std::optional<cloth::Session> session_;         ///< to be opened in the place of the document's scene
+  QString saving_session_;                        ///< the file, until it is written
+  bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
   bool asks_to_save_ = true;
 };
 

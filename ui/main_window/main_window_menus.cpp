@@ -19,7 +19,8 @@
 namespace clothlab {
 namespace {
 
-const char* const scene_filter = "Clothlab scenes (*.scene.json *.json);;All files (*)";
+const char* const scene_filter =
+    "Clothlab scenes and sessions (*.scene.json *.session.json *.json);;All files (*)";
 
 QString with_ending(const QString& path, const QString& ending) {
   return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
@@ -40,6 +41,8 @@ void MainWindow::makeActions() {
   };
   play_ = action("play", tr("Play"), tr("Play or pause"), Qt::Key_Space, "play");
   play_->setCheckable(true);
+  play_again_ = action("play-again", tr("Play again"), tr("Play what the timeline has, from here to its end"),
+                       QKeySequence("Shift+Space"), "playAgain");
   step_ = action("step", tr("Step"), tr("One step of the method"), Qt::Key_Period, "step");
   reset_ = action("reset", tr("Reset"), tr("Back to the start, paused"), QKeySequence("Ctrl+R"), "reset");
   record_ = action("record", tr("Record"), tr("Record energy, strain and times to CSV while it runs"),
@@ -57,7 +60,7 @@ void MainWindow::makeMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   QAction* open =
       file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &MainWindow::openWithDialog);
-  open->setToolTip(tr("Open a scene (Ctrl+O)"));
+  open->setToolTip(tr("Open a scene or a session (Ctrl+O)"));
   QMenu* builtin = file->addMenu(tr("Built-in scenes"));
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
     const QString name = QString::fromStdString(scene.name);
@@ -72,6 +75,9 @@ void MainWindow::makeMenus() {
       file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   save_action->setToolTip(tr("Save the scene (Ctrl+S)"));
   file->addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
+  QAction* save_session =
+      file->addAction(tr("Save session as…"), QKeySequence("Ctrl+Alt+S"), this, &MainWindow::saveSessionAs);
+  save_session->setObjectName("saveSession");
   file->addSeparator();
   file->addActions({save_picture_, save_plots_});
   file->addSeparator();
@@ -89,7 +95,7 @@ void MainWindow::makeMenus() {
   edit->addActions({undo, redo});
 
   QMenu* run = menuBar()->addMenu(tr("&Run"));
-  run->addActions({play_, step_, reset_});
+  run->addActions({play_, play_again_, step_, reset_});
   run->addSeparator();
   run->addAction(record_);
 
@@ -130,7 +136,7 @@ void MainWindow::fillRecentMenu() {
 
 void MainWindow::openWithDialog() {
   const QString path =
-      QFileDialog::getOpenFileName(this, tr("Open a scene"), document_.path(), tr(scene_filter));
+      QFileDialog::getOpenFileName(this, tr("Open a scene or a session"), document_.path(), tr(scene_filter));
   if (!path.isEmpty()) openScene(path);
 }
 
@@ -159,6 +165,13 @@ bool MainWindow::saveAs() {
   document_.markSaved(path);
   remember_scene(path);
   return true;
+}
+
+void MainWindow::saveSessionAs() {
+  const QString path = with_ending(QFileDialog::getSaveFileName(this, tr("Save the session"), {},
+                                                                tr("Clothlab sessions (*.session.json)")),
+                                   ".session.json");
+  if (!path.isEmpty()) saveSession(path);
 }
 
 void MainWindow::savePicture() {

@@ -8,6 +8,7 @@
 
 #include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
+#include "simulation/session_json.h"
 
 namespace clothlab {
 namespace {
@@ -15,12 +16,26 @@ namespace {
 constexpr int most_recent = 8;
 const char* const recent_key = "recentScenes";
 
+QString lines_of(const std::vector<cloth::Problem>& problems) {
+  QStringList lines;
+  for (const cloth::Problem& problem : problems) lines << QString::fromStdString(problem.text());
+  return lines.join('\n');
+}
+
 OpenedScene read_text(const std::string& text, const std::string& place, const QString& path) {
   cloth::SceneReading reading = cloth::read_scene(text, place);
-  OpenedScene opened{std::move(reading.scene), path, {}};
-  QStringList lines;
-  for (const cloth::Problem& problem : reading.problems) lines << QString::fromStdString(problem.text());
-  opened.problems = lines.join('\n');
+  return {std::move(reading.scene), {}, path, lines_of(reading.problems)};
+}
+
+/// By custom a session's name tells; where it does not, its first key does.
+bool is_session(const std::string& text, const QString& path) {
+  return path.endsWith(".session.json") || text.find("\"clothlab/session/") != std::string::npos;
+}
+
+OpenedScene read_session_text(const std::string& text, const std::string& place, const QString& path) {
+  cloth::SessionReading reading = cloth::read_session(text, place);
+  OpenedScene opened{{}, std::move(reading.session), path, lines_of(reading.problems)};
+  if (opened.session) opened.scene = opened.session->scene;
   return opened;
 }
 
@@ -29,16 +44,18 @@ OpenedScene read_text(const std::string& text, const std::string& place, const Q
 OpenedScene open_scene_file(const QString& path) {
   std::string text;
   if (const auto error = cloth::read_text_file(path.toStdString(), text))
-    return {std::nullopt, path, QString::fromStdString(error->text())};
-  return read_text(text, QFileInfo(path).fileName().toStdString(), QFileInfo(path).absoluteFilePath());
+    return {{}, {}, path, QString::fromStdString(error->text())};
+  const QFileInfo file(path);
+  const auto read = is_session(text, path) ? read_session_text : read_text;
+  return read(text, file.fileName().toStdString(), file.absoluteFilePath());
 }
 
 OpenedScene open_scene(const QString& name) {
   if (QFileInfo::exists(name)) return open_scene_file(name);
   if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name.toStdString()))
     return read_text(builtin->text, builtin->name, {});
-  return {std::nullopt, name,
-          QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
+  return {
+      {}, {}, name, QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
 }
 
 QString save_scene_file(const cloth::Scene& scene, const QString& path) {

@@ -1,21 +1,23 @@
-// Where scenes come from: files, the built-in ones, and those that were open lately.
+// Where scenes and sessions come from: files, the built-in ones, and those that were open lately.
 #pragma once
 
 #include <QString>
 #include <QStringList>
 #include <optional>
 
-#include "scene/scene.h"
+#include "simulation/session.h"
 
 namespace clothlab {
 
 /// A scene, or why there is none, in words for a person.
 struct OpenedScene {
   std::optional<cloth::Scene> scene;
-  QString path;      ///< of the file; empty for a built-in scene
-  QString problems;  ///< every problem, a line each
+  std::optional<cloth::Session> session;  ///< the file's, where it is a session; `scene` is its start then
+  QString path;                           ///< of the file; empty for a built-in scene
+  QString problems;                       ///< every problem, a line each
 };
 
+/// A scene, or a session (docs/sessions.md), which its text tells.
 OpenedScene open_scene_file(const QString& path);
 
 /// `name` is a file or a built-in scene, as on the command line.

@@ -1,0 +1,212 @@
+// Going back and forth on the timeline, and sessions, as a user does it.
+#include <QFile>
+#include <QLabel>
+#include <QProcess>
+
+#include "simulation/session_json.h"
+#include "window_bench.h"
+
+namespace clothlab::test {
+namespace {
+
+void drag_along(TimelineTrack& track, double from, double to) {
+  const int y = track.height() - 10;
+  const auto place = [&](double time) { return QPoint(qRound(track.placeOf(time)), y); };
+  QTest::mousePress(&track, Qt::LeftButton, {}, place(from));
+  for (int part = 1; part <= 10; ++part) {
+    const QPointF at = place(from + (to - from) * part / 10);
+    QMouseEvent move(QEvent::MouseMove, at, track.mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
+    QApplication::sendEvent(&track, &move);
+    QTest::qWait(15);
+  }
+  QTest::mouseRelease(&track, Qt::LeftButton, {}, place(to));
+}
+
+QString later_text(WindowBench& bench) {
+  auto* label = bench.window.findChild<QLabel*>("timelineLater");
+  return label->isHidden() ? QString() : label->text();
+}
+
+}  // namespace
+
+class TimelineTest : public QObject {
+  Q_OBJECT
+
+ private Q_SLOTS:
+  void initTestCase() {
+    QStandardPaths::setTestModeEnabled(true);
+    QApplication::setOrganizationName("Clothlab");
+    QApplication::setApplicationName("clothlab-timeline-test");
+    apply_theme(*qApp, false);
+  }
+
+  void before_anything_was_played_there_is_nowhere_to_go() {
+    WindowBench bench;
+    QVERIFY(!bench.window.timeline().track().isEnabled());
+    QVERIFY(!bench.action("playAgain")->isEnabled());
+    bench.play_until(0.05);
+    QVERIFY(bench.window.timeline().track().isEnabled());
+  }
+
+  void memory_and_states_are_shown() {
+    WindowBench bench;
+    bench.play_until(0.1);
+    bench.pause();
+    const QString text = bench.window.findChild<QLabel*>("timelineMemory")->text();
+    QVERIFY2(text.contains("MB of 256 MB"), qPrintable(text));
+    QVERIFY2(text.contains(QString("%1 states").arg(bench.status().history.states)), qPrintable(text));
+  }
+
+  void dragging_back_shows_the_earlier_cloth_and_forth_the_later_one() {
+    WindowBench bench;
+    bench.play_until(0.3);
+    bench.pause();
+    const double end = bench.status().time;
+    const auto last = bench.window.view().frame()->positions;
+    TimelineTrack& track = bench.window.timeline().track();
+    drag_along(track, end, 0.1);
+    bench.settle();
+    const double there = bench.status().time;
+    QVERIFY2(std::abs(there - 0.1) < 0.02, qPrintable(QString::number(there)));
+    QCOMPARE(bench.window.view().frame()->step, bench.status().step);
+    QVERIFY(bench.window.view().frame()->positions != last);
+    QCOMPARE(bench.status().history.last_time, end);
+    QVERIFY(!later_text(bench).isEmpty());
+    drag_along(track, there, end);
+    bench.settle();
+    QCOMPARE(bench.status().time, end);
+    QVERIFY(bench.window.view().frame()->positions == last);
+    QVERIFY(later_text(bench).isEmpty());
+  }
+
+  void keys_go_by_record_intervals_and_to_the_ends() {
+    WindowBench bench;
+    bench.play_until(0.1);
+    bench.pause();
+    const double end = bench.status().time;
+    const double interval = bench.window.document().scene().record.interval;
+    TimelineTrack& track = bench.window.timeline().track();
+    track.setFocus();
+    QTest::keyClick(&track, Qt::Key_Home);
+    bench.settle();
+    QCOMPARE(bench.status().step, 0);
+    QTest::keyClick(&track, Qt::Key_Right);
+    QTest::keyClick(&track, Qt::Key_Right);
+    bench.settle();
+    QVERIFY(std::abs(bench.status().time - 2 * interval) <= bench.status().time_step);
+    QTest::keyClick(&track, Qt::Key_Left);
+    bench.settle();
+    QVERIFY(std::abs(bench.status().time - interval) <= bench.status().time_step);
+    QTest::keyClick(&track, Qt::Key_End);
+    bench.settle();
+    QCOMPARE(bench.status().time, end);
+  }
+
+  void playing_on_from_an_earlier_point_drops_the_later_part() {
+    WindowBench bench;
+    bench.play_until(0.4);
+    bench.pause();
+    const double end = bench.status().history.last_time;
+    QTest::keyClick(&bench.window.timeline().track(), Qt::Key_Home);
+    bench.settle();
+    bench.click("stepButton");
+    bench.settle();
+    QVERIFY(bench.status().history.last_time < end / 2);
+    QVERIFY(!bench.action("playAgain")->isEnabled());
+    bench.play_until(0.02);
+    QCOMPARE(bench.status().history.last_time, bench.status().time);
+  }
+
+  void playing_again_keeps_the_later_part_and_stops_at_its_end() {
+    WindowBench bench;
+    bench.play_until(0.2);
+    bench.pause();
+    const double end = bench.status().time;
+    QTest::keyClick(&bench.window.timeline().track(), Qt::Key_Home);
+    bench.settle();
+    bench.action("playAgain")->trigger();
+    QTRY_COMPARE_WITH_TIMEOUT(bench.status().time, end, 30000);
+    bench.settle();
+    QVERIFY(!bench.status().playing);
+    QCOMPARE(bench.status().history.last_time, end);
+  }
+
+  void the_form_shows_what_was_in_force_and_going_there_and_back_is_no_undo_step() {
+    WindowBench bench("corners-free");
+    bench.play_until(0.1);
+    bench.pause();
+    LabDocument& document = bench.window.document();
+    const double before = document.scene().springs->structural;
+    QCOMPARE(document.setParameter("springs.structural", 2 * before), QString());
+    bench.play_until(0.2);
+    bench.pause();
+    QCOMPARE(document.undoStack().count(), 1);
+    TimelineTrack& track = bench.window.timeline().track();
+    QTest::keyClick(&track, Qt::Key_Home);
+    bench.settle();
+    QCOMPARE(document.scene().springs->structural, before);
+    QCOMPARE(document.undoStack().count(), 2);
+    QTest::keyClick(&track, Qt::Key_End);
+    bench.settle();
+    QCOMPARE(document.scene().springs->structural, 2 * before);
+    QCOMPARE(document.undoStack().count(), 1);
+    QVERIFY(bench.status().history.last_time > 0.2);  // looking has dropped nothing
+  }
+
+  void a_session_with_an_edit_in_the_past_comes_out_to_the_bit_here_and_on_the_command_line() {
+    const QString file = folder.filePath("edited.session.json");
+    std::vector<float> ended;
+    {
+      WindowBench bench("corners-free");
+      bench.play_until(0.3);
+      bench.pause();
+      drag_along(bench.window.timeline().track(), bench.status().time, 0.1);
+      bench.settle();
+      const double stiffness = bench.window.document().scene().springs->structural;
+      QCOMPARE(bench.window.document().setParameter("springs.structural", 1.5 * stiffness), QString());
+      bench.settle();
+      QVERIFY(bench.status().history.last_time < 0.15);
+      bench.play_until(0.2);
+      bench.pause();
+      ended = bench.window.view().frame()->positions;
+      bench.window.saveSession(file);
+      bench.settle();
+      QVERIFY2(bench.window.notice().text().contains("Saved"), qPrintable(bench.window.notice().text()));
+    }
+    WindowBench bench;
+    bench.window.openScene(file);
+    QTRY_COMPARE_WITH_TIMEOUT(bench.status().session_agrees, std::optional<bool>(true), 30000);
+    bench.settle();
+    QVERIFY(bench.window.view().frame()->positions == ended);
+    QVERIFY(bench.window.notice().text().contains("to the bit"));
+    QVERIFY(!bench.window.document().isModified());
+    QCOMPARE(bench.window.document().scene(), *bench.status().scene);
+
+    QProcess replay;
+    replay.start(CLOTHLAB_CLI, {"replay", file, "--json"});
+    QVERIFY(replay.waitForFinished(60000));
+    QCOMPARE(replay.exitCode(), 0);  // 5: another end
+    QVERIFY(replay.readAllStandardOutput().replace(' ', "").contains("\"agrees\":true"));
+  }
+
+  void a_session_with_a_problem_says_it_and_keeps_the_scene() {
+    WindowBench bench;
+    const QString name = folder.filePath("bad.session.json");
+    QFile file(name);
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write("{\"scene\": {}, \"steps\": -3}");
+    file.close();
+    bench.window.openScene(name);
+    QCOMPARE(bench.window.notice().cause(), QString("open"));
+    QVERIFY2(bench.window.notice().text().contains("steps"), qPrintable(bench.window.notice().text()));
+    QCOMPARE(bench.window.document().scene().cloth.rows, 33);
+  }
+
+ private:
+  QTemporaryDir folder;
+};
+
+}  // namespace clothlab::test
+
+QTEST_MAIN(clothlab::test::TimelineTest)
+#include "timeline_test.moc"

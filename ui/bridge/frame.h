@@ -14,6 +14,7 @@ struct ClothFrame {
   int rows = 0, columns = 0;
   std::vector<float> positions;      ///< m; x y z of particle 0, of particle 1, ... (row-major)
   std::vector<float> strain;         ///< per particle: largest |d|/L - 1 of its structural and shear springs
+  bool shows_difference = false;     ///< `strain` holds distances from a reference, m, in place of strains
   std::vector<std::uint8_t> pinned;  ///< per particle: 1 where pinned
   std::vector<cloth::Obstacle> obstacles;
   double deformation_rate = -1;  ///< negative: the scene has none

@@ -77,6 +77,8 @@ class MainWindow : public QMainWindow {
   void openWithDialog();
   bool save();
   bool saveAs();
+  void compareMethods();
+  void openComparison();
   void savePicture();
   void toggleRecording(bool on);
   void showAbout();

@@ -143,6 +143,12 @@ void ClothView::setMode(ViewMode mode) {
   Q_EMIT modeChanged(mode);
 }
 
+void ClothView::setColourMaximum(std::optional<double> maximum) {
+  if (maximum == colour_maximum_) return;
+  colour_maximum_ = maximum;
+  if (mode_ == ViewMode::strain) showAnew();
+}
+
 /// Another look of the same scene.
 void ClothView::showAnew() {
   if (resting_picture_) resting_picture_->forget();
@@ -168,7 +174,11 @@ void ClothView::setCameraPose(const CameraPose& pose) {
 
 void ClothView::flyTo(const CameraPose& pose) {
   camera_moved_ = true;
-  if (!animated_) return setCameraPose(pose);
+  if (!animated_) {
+    setCameraPose(pose);
+    Q_EMIT cameraMoved(pose);
+    return;
+  }
   clock_.restart();  // the flight begins now, however long ago the last picture was
   flight_.start(camera_.pose(), pose);
   redraw();
@@ -233,8 +243,11 @@ void ClothView::resizeGl(int width, int height) {
 void ClothView::advanceTime() {
   const double seconds = std::min(1e-9 * static_cast<double>(clock_.nsecsElapsed()), 0.1);
   clock_.restart();
-  if (flight_.flying()) camera_.set_pose(flight_.advance(seconds));
-  if (mode_ == ViewMode::strain && frame_) {
+  if (flight_.flying()) {
+    camera_.set_pose(flight_.advance(seconds));
+    Q_EMIT cameraMoved(camera_.pose());
+  }
+  if (mode_ == ViewMode::strain && frame_ && !colour_maximum_) {
     strain_range_.follow(largest_strain_, frame_->deformation_rate, seconds);
     if (!strain_range_.settled()) redraw();
   }
@@ -251,7 +264,7 @@ Shot ClothView::shot() const {
   shot.pixel_ratio = devicePixelRatioF();
   shot.metres_per_pixel = camera_.metres_per_pixel() / shot.pixel_ratio;
   shot.mode = mode_;
-  shot.strain_maximum = strain_range_.maximum();
+  shot.strain_maximum = colourMaximum();
   shot.ground = ground_;
   shot.extent = extent_;
   return shot;
@@ -263,7 +276,8 @@ void ClothView::drawScene() {
     renderer_->set_frame(*frame_);
     frame_uploaded_ = true;
   }
-  const bool moving = new_frame || !(camera_.pose() == drawn_pose_) || !strain_range_.settled();
+  const bool moving = new_frame || !(camera_.pose() == drawn_pose_) ||
+                      (!colour_maximum_ && !strain_range_.settled());
   drawn_pose_ = camera_.pose();
   if (!resting_picture_) return renderer_->draw(shot(), theme());
 
@@ -303,9 +317,11 @@ void ClothView::paintOverlays() {
     overlay_.message(painter, size(), look, tr("No cloth yet"), tr("Open a scene, or drop one here."));
     return;
   }
+  const auto quantity =
+      frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
   if (mode_ == ViewMode::strain)
-    overlay_.colour_bar(painter, size(), look, strain_range_.maximum(), frame_->deformation_rate);
-  overlay_.mode_name(painter, look, mode_);
+    overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate, quantity);
+  overlay_.mode_name(painter, look, mode_, quantity);
   paintHand(painter);
 }
 

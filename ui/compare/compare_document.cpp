@@ -132,7 +132,7 @@ QString CompareDocument::setOwn(std::size_t pane, const std::string& path, const
   set_own(after.panes[pane], path, value);
   push(tr("Change %1 of %2")
            .arg(QString::fromStdString(parameter->info.label).toLower(),
-                QString::fromStdString(after.panes[pane].name)),
+                QString::fromStdString(comparison_.panes[pane].name)),
        std::move(after));
   return {};
 }
@@ -140,7 +140,7 @@ QString CompareDocument::setOwn(std::size_t pane, const std::string& path, const
 void CompareDocument::useShared(std::size_t pane, const std::string& path) {
   Comparison after = comparison_;
   set_shared(after.panes[pane], path);
-  push(tr("Use the shared value in %1").arg(QString::fromStdString(after.panes[pane].name)),
+  push(tr("Use the shared value in %1").arg(QString::fromStdString(comparison_.panes[pane].name)),
        std::move(after));
 }
 

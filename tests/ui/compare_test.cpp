@@ -275,6 +275,7 @@ class CompareTest : public QObject {
     reference->setFocus();
     QTest::keyClick(reference, Qt::Key_Home);
     QCOMPARE(bench.comparison().reference, std::string("controlled"));
+    bench.window.panes().pane(0).view().setFocus();
     QTest::keyClick(&bench.window, Qt::Key_D);
     QCOMPARE(bench.window.panes().pane(0).view().mode(), ViewMode::strain);
     bench.play_to_the_end();
@@ -328,7 +329,7 @@ class CompareTest : public QObject {
     QTest::keyClick(&table, Qt::Key_C, Qt::ControlModifier);
     const QString text = QApplication::clipboard()->text();
     QCOMPARE(text.count('\n'), 4);
-    QVERIFY(text.startsWith("Pane\tMethod\tStep [ms]\tRMS [mm]"));
+    QVERIFY(text.startsWith("Pane\tMethod\tBy error\tRMS [mm]"));
   }
 
   void recording_writes_the_rows_of_the_command_line() {

@@ -273,7 +273,8 @@ void CompareWorker::take_sample(bool is_start) {
     if (!lane.going()) continue;
     sample.panes[i].total_J = lane.measurement.energy.total();
     sample.panes[i].max_strain = lane.measurement.strain.maximum();
-    if (!is_start) sample.panes[i].step_ms = 1e3 * lane.step_time;
+    if (is_start) continue;  // no step was taken, and all panes are alike
+    sample.panes[i].step_ms = 1e3 * lane.step_time;
     if (const cloth::Difference* difference = lockstep_->difference(i))
       sample.panes[i].rms_m = difference->rms;
   }

@@ -48,6 +48,7 @@ CompareWindow::CompareWindow(QWidget* parent) : QMainWindow(parent) {
   connectPanes();
   connectSimulation();
   ranking_clock_.start();
+  grid_->setFocus();
   updateTitle();
 }
 
@@ -61,7 +62,10 @@ void CompareWindow::makeScopeTabs() {
   scopes_ = new QTabBar(this);
   scopes_->setObjectName("scopes");
   scopes_->setAccessibleName(tr("Whose values the form shows"));
-  scopes_->setExpanding(false);
+  scopes_->setExpanding(true);
+  scopes_->setUsesScrollButtons(false);
+  scopes_->setIconSize({12, 12});
+  scopes_->setStyleSheet("QTabBar::tab { padding: 6px 6px; margin-right: 0; }");
   scope_hint_ = new QLabel(this);
   scope_hint_->setProperty("muted", true);
   scope_hint_->setWordWrap(true);

@@ -14,8 +14,14 @@ constexpr int glide_interval = 16;         // ms
 }  // namespace
 
 PaneGrid::PaneGrid(QWidget* parent)
-    : QWidget(parent), grid_(new QGridLayout(this)), differences_(least_difference) {
+    : QWidget(parent),
+      grid_(new QGridLayout(this)),
+      colour_bar_(new ColourBar(this)),
+      differences_(least_difference) {
   setObjectName("paneGrid");
+  setFocusPolicy(Qt::ClickFocus);
+  grid_->addWidget(colour_bar_, 0, 2, 2, 1);
+  colour_bar_->hide();
   grid_->setContentsMargins(spacing / 2, spacing / 2, spacing / 2, spacing / 2);
   grid_->setSpacing(spacing / 2);
   colour_timer_.setSingleShot(true);
@@ -114,6 +120,10 @@ void PaneGrid::followColours() {
   range.follow(largest, rate, 1e-9 * static_cast<double>(colour_clock_.nsecsElapsed()));
   colour_clock_.restart();
   for (PaneView* pane : panes_) pane->view().setColourMaximum(range.maximum());
+  if (difference)
+    colour_bar_->showRange(tr("Difference [mm]"), range.maximum(), 1000, -1);
+  else
+    colour_bar_->showRange(tr("Strain [%]"), range.maximum(), 100, rate);
   if (!range.settled()) colour_timer_.start();
 }
 
@@ -131,6 +141,7 @@ void PaneGrid::setTool(Tool tool) {
 void PaneGrid::setMode(ViewMode mode) {
   mode_ = mode;
   for (PaneView* pane : panes_) pane->view().setMode(mode);
+  colour_bar_->setVisible(mode == ViewMode::strain);
   followColours();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bridge/compare_worker.h"
+#include "compare/colour_bar.h"
 #include "compare/pane_view.h"
 
 class QGridLayout;
@@ -28,6 +29,7 @@ class PaneGrid : public QWidget {
 
   std::size_t paneCount() const { return panes_.size(); }
   PaneView& pane(std::size_t i) { return *panes_[i]; }
+  const ColourBar& colourBar() const { return *colour_bar_; }
 
   void setTool(Tool tool);
   void setMode(ViewMode mode);
@@ -54,6 +56,7 @@ class PaneGrid : public QWidget {
   void followColours();
 
   QGridLayout* grid_;
+  ColourBar* colour_bar_;
   std::vector<PaneView*> panes_;
   Tool tool_ = Tool::pull;
   ViewMode mode_ = ViewMode::textured;

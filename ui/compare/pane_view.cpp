@@ -76,6 +76,7 @@ QWidget* PaneView::makeHeader() {
   auto* more = new QToolButton(header);
   more->setObjectName("more");
   more->setText(QStringLiteral("⋯"));
+  more->setStyleSheet("QToolButton::menu-indicator { image: none; } QToolButton { padding: 4px 8px; }");
   more->setAccessibleName(tr("Pane"));
   more->setToolTip(tr("Duplicate, remove, make it the reference"));
   more->setPopupMode(QToolButton::InstantPopup);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double last = std::numeric_limits<double>::infinity();  // what is missing sorts behind all values
 
-enum Column { pane, method, step, rms, largest, rms_over_time, by_error, cost, by_cost, evaluations, columns };
+enum Column { pane, method, by_error, rms, largest, by_cost, cost, step, rms_over_time, evaluations, columns };
 
 struct Cell {
   QString text;
@@ -50,6 +50,7 @@ Cell cell_of(const cloth::PaneResult& r, int column, std::size_t place) {
       return millimetres(r.rms_over_time, r.is_reference);
     case by_error: {
       if (r.divergence) return {RankingTable::tr("stopped"), last};
+      if (r.is_reference) return {QStringLiteral("–"), 0};
       return rank_cell(r.error_rank);
     }
     case cost:
@@ -75,25 +76,24 @@ RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
   setObjectName("rankingTable");
   setAccessibleName(tr("Panes ranked by error and by cost"));
   setColumnCount(columns);
-  setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("Step [ms]"), tr("RMS [mm]"), tr("Largest [mm]"),
-                             tr("Over time [mm]"), tr("By error"), tr("Cost [s/s]"), tr("By cost"),
+  setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("By error"), tr("RMS [mm]"), tr("Largest [mm]"),
+                             tr("By cost"), tr("Cost [s/s]"), tr("Step [ms]"), tr("Over time [mm]"),
                              tr("Evaluations/s")});
   const QString tips[columns] = {
       {},
       {},
-      tr("As run: a step divides the record interval"),
+      tr("Rank by the RMS difference now"),
       tr("Root of the mean squared distance of all particles from the reference, now"),
       tr("The largest of these distances, now"),
-      tr("Root of the mean of the squared RMS difference over the times so far"),
-      tr("Rank by the RMS difference now"),
-      tr("Seconds of stepping for each simulated second"),
       tr("Rank by cost"),
+      tr("Seconds of stepping for each simulated second"),
+      tr("As run: a step divides the record interval"),
+      tr("Root of the mean of the squared RMS difference over the times so far"),
       tr("Evaluations of the force for each simulated second")};
   for (int c = 0; c < columns; ++c) horizontalHeaderItem(c)->setToolTip(tips[c]);
   verticalHeader()->hide();
   verticalHeader()->setDefaultSectionSize(26);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  horizontalHeader()->setSectionResizeMode(method, QHeaderView::Stretch);
   horizontalHeader()->setHighlightSections(false);
   setEditTriggers(NoEditTriggers);
   setSelectionBehavior(SelectRows);

@@ -319,8 +319,8 @@ void ClothView::paintOverlays() {
   }
   const auto quantity =
       frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
-  if (mode_ == ViewMode::strain)
-    overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate, quantity);
+  if (mode_ == ViewMode::strain && !colour_maximum_)
+    overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
   overlay_.mode_name(painter, look, mode_, quantity);
   paintHand(painter);
 }

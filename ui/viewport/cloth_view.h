@@ -58,7 +58,8 @@ class ClothView : public QWidget {
 
   ViewMode mode() const { return mode_; }
   void setMode(ViewMode mode);
-  /// The top of the colours' range where several views share one; nothing: the view chooses its own.
+  /// The top of the colours' range where several views share one, and a bar beside them; nothing: the view
+  /// chooses its own and shows it.
   void setColourMaximum(std::optional<double> maximum);
   Tool tool() const { return tool_; }
   void setTool(Tool tool);

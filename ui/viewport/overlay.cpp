@@ -30,9 +30,8 @@ void card(QPainter& painter, const QRectF& area, const Theme& theme) {
   painter.drawRoundedRect(area.adjusted(0.5, 0.5, -0.5, -0.5), 6, 6);
 }
 
-/// Strains in percent, differences in millimetres.
-QString in_shown_unit(double value, Overlay::Quantity quantity) {
-  return QLocale::c().toString((quantity == Overlay::Quantity::strain ? 100 : 1000) * value, 'g', 4);
+QString percent(double strain) {
+  return QLocale::c().toString(100 * strain, 'g', 4);
 }
 
 /// A line that stands out from light and dark alike: a soft dark or light edge under the colour.
@@ -89,15 +88,13 @@ void Overlay::forget() {
 }
 
 void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum,
-                         double deformation_rate, Quantity quantity) {
+                         double deformation_rate) {
   const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
-  const bool has_rate = deformation_rate >= 0 && quantity == Quantity::strain;
-  const QString title = quantity == Quantity::strain ? tr("Strain [%]") : tr("Difference [mm]");
-  const QString rate_text =
-      has_rate ? tr("Limit %1").arg(in_shown_unit(deformation_rate, quantity)) : QString();
+  const bool has_rate = deformation_rate >= 0;
+  const QString rate_text = has_rate ? tr("Limit %1").arg(percent(deformation_rate)) : QString();
   const double line = metrics.height();
   const double text_width =
-      std::max(metrics.horizontalAdvance(title), metrics.horizontalAdvance(rate_text));
+      std::max(metrics.horizontalAdvance(tr("Strain [%]")), metrics.horizontalAdvance(rate_text));
   const double card_width = text_width + 34;
   const double height = std::clamp(size.height() - 2 * spacing - 40, 60.0, 230.0);
   const QRectF area(size.width() - card_width - 2 * spacing, size.height() - height - 2 * spacing, card_width,
@@ -106,7 +103,7 @@ void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double
     card(p, area, theme);
     p.setFont(font_of(p, 0.9, QFont::DemiBold));
     p.setPen(theme.text);
-    p.drawText(area.adjusted(12, 7, 0, 0), Qt::AlignLeft | Qt::AlignTop, title);
+    p.drawText(area.adjusted(12, 7, 0, 0), Qt::AlignLeft | Qt::AlignTop, tr("Strain [%]"));
     p.setFont(font_of(p, 1, QFont::Normal));
     if (has_rate) {
       p.setPen(theme.muted_text);
@@ -129,7 +126,7 @@ void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double
       p.drawLine(QPointF(bar.right() + 3, y), QPointF(bar.right() + 7, y));
       p.setPen(theme.text);
       p.drawText(QRectF(bar.right() + 11, y - line / 2, area.right() - bar.right() - 14, line),
-                 Qt::AlignLeft | Qt::AlignVCenter, in_shown_unit(tick, quantity));
+                 Qt::AlignLeft | Qt::AlignVCenter, percent(tick));
     }
     if (rate_shown) {
       const double y = y_of(deformation_rate);
@@ -143,7 +140,7 @@ void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double
       p.drawPath(mark);
     }
   };
-  bar_.lay(view, area, {maximum, deformation_rate, static_cast<double>(quantity)}, paint);
+  bar_.lay(view, area, {maximum, deformation_rate}, paint);
 }
 
 void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quantity quantity) {

@@ -50,8 +50,7 @@ class Overlay {
   /// What colours stand for: strains, pure numbers, or differences from a reference, m.
   enum class Quantity { strain, difference };
 
-  void colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum, double deformation_rate,
-                  Quantity quantity);
+  void colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum, double deformation_rate);
   void mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quantity quantity);
   void brush(QPainter& view, const Theme& theme, const Brush& brush);
   void ring(QPainter& view, const Theme& theme, QPointF at, Ring ring);

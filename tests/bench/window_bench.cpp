@@ -1,7 +1,8 @@
 // clothlab-window-bench: how long the window's events and pictures take with a cloth running. Prints figures;
 // judges nothing. Needs a display.
 //
-//     clothlab-window-bench [PARTICLES PER SIDE] [SECONDS]
+//     clothlab-window-bench [PARTICLES PER SIDE] [SECONDS] [PANES]
+#include <QAction>
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QStandardPaths>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/compare_window.h"
 #include "main_window/main_window.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
@@ -79,45 +81,86 @@ void print_busiest(const TimedApplication& application, double seconds) {
     std::printf("%5.1f %%%s\n", 0.1 * busiest[i].first / seconds, busiest[i].second.c_str());
 }
 
+struct Bench {
+  TimedApplication& application;
+  int side;
+  double seconds;
+  std::vector<double> drawings;
+
+  void watch(clothlab::ClothView& view) {
+    QObject::connect(&view, &clothlab::ClothView::frameDrawn, &application, [this](double milliseconds) {
+      if (application.watching) drawings.push_back(milliseconds);
+    });
+  }
+
+  void run() {
+    constexpr int warm_up = 2000;  // ms
+    QTimer::singleShot(warm_up, &application, [this] { application.watching = true; });
+    QTimer::singleShot(warm_up + static_cast<int>(1000 * seconds), &application, &QApplication::quit);
+    QApplication::exec();
+    application.watching = false;
+  }
+
+  void print(const clothlab::ClothView& view, int views) const {
+    std::printf("cloth %d x %d, %d view%s of %d x %d px, %.0f s\n", side, side, views, views == 1 ? "" : "s",
+                view.width(), view.height(), seconds);
+    std::printf("drawings per second   %8.1f\n", static_cast<double>(drawings.size()) / seconds);
+    std::printf("drawing, ms           %8.2f median, %.2f lower and %.2f upper quartile\n",
+                quantile(drawings, 0.5), quantile(drawings, 0.25), quantile(drawings, 0.75));
+    std::printf("longest event, ms     %8.1f of %ld (type %d to %s)\n", application.longest,
+                application.events, application.longest_type, application.longest_receiver);
+  }
+};
+
+void bench_one(Bench& bench) {
+  clothlab::MainWindow window;
+  window.setAsksToSave(false);
+  window.show();
+  cloth::Scene scene = cloth::builtin_scene("wind");
+  scene.cloth.rows = scene.cloth.columns = bench.side;
+  window.document().load(scene);
+  bench.watch(window.view());
+  window.simulation().send(clothlab::command::Play{});
+  bench.run();
+  bench.print(window.view(), 1);
+  const clothlab::WorkerStatus status = window.simulation().status();
+  std::printf("simulation            %8.0f steps/s, %.3f x real time\n", status.steps_per_second,
+              status.real_time_factor);
+}
+
+void bench_panes(Bench& bench, int panes) {
+  clothlab::CompareWindow window;
+  window.setAsksToSave(false);
+  window.show();
+  cloth::Comparison comparison{.title = {}, .scene = cloth::builtin_scene("wind"), .panes = {}};
+  comparison.scene.cloth.rows = comparison.scene.cloth.columns = bench.side;
+  comparison.scene.duration = 1000;
+  comparison.reference = "A";
+  const std::vector<std::string> methods{"verlet", "semi-implicit-euler", "rk4", "verlet"};
+  comparison.panes = cloth::panes_for({methods.begin(), methods.begin() + panes});
+  window.document().load(comparison);
+  window.findChild<QAction*>("modeDifference")->trigger();
+  for (std::size_t i = 0; i < window.panes().paneCount(); ++i) bench.watch(window.panes().pane(i).view());
+  window.simulation().send(clothlab::compare_command::Play{});
+  bench.run();
+  bench.print(window.panes().pane(0).view(), panes);
+  std::printf("simulation            %8.3f s\n", window.simulation().status().time);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   TimedApplication application(argc, argv);
   QStandardPaths::setTestModeEnabled(true);
-  const int side = argc > 1 ? std::max(2, std::atoi(argv[1])) : 128;
-  const double seconds = argc > 2 ? std::atof(argv[2]) : 10;
-
+  Bench bench{
+      application, argc > 1 ? std::max(2, std::atoi(argv[1])) : 128, argc > 2 ? std::atof(argv[2]) : 10, {}};
+  const int panes = argc > 3 ? std::clamp(std::atoi(argv[3]), 1, 4) : 1;
   QSurfaceFormat::setDefaultFormat(clothlab::ClothView::surface_format());
   clothlab::apply_theme(application);
-  clothlab::MainWindow window;
-  window.setAsksToSave(false);
-  window.show();
-
-  cloth::Scene scene = cloth::builtin_scene("wind");
-  scene.cloth.rows = scene.cloth.columns = side;
-  window.document().load(scene);
-
-  std::vector<double> drawings;
-  QObject::connect(&window.view(), &clothlab::ClothView::frameDrawn, &application, [&](double milliseconds) {
-    if (application.watching) drawings.push_back(milliseconds);
-  });
-  constexpr int warm_up = 2000;  // ms
-  window.simulation().send(clothlab::command::Play{});
-  QTimer::singleShot(warm_up, &application, [&] { application.watching = true; });
-  QTimer::singleShot(warm_up + static_cast<int>(1000 * seconds), &application, &QApplication::quit);
-  QApplication::exec();
-  application.watching = false;
-
-  const clothlab::WorkerStatus status = window.simulation().status();
-  std::printf("cloth %d x %d, view %d x %d px, %.0f s\n", side, side, window.view().width(),
-              window.view().height(), seconds);
-  std::printf("drawings per second   %8.1f\n", static_cast<double>(drawings.size()) / seconds);
-  std::printf("drawing, ms           %8.2f median, %.2f lower and %.2f upper quartile\n",
-              quantile(drawings, 0.5), quantile(drawings, 0.25), quantile(drawings, 0.75));
-  std::printf("longest event, ms     %8.1f of %ld (type %d to %s)\n", application.longest, application.events,
-              application.longest_type, application.longest_receiver);
-  std::printf("simulation            %8.0f steps/s, %.3f x real time\n", status.steps_per_second,
-              status.real_time_factor);
-  print_busiest(application, seconds);
+  if (panes == 1)
+    bench_one(bench);
+  else
+    bench_panes(bench, panes);
+  print_busiest(application, bench.seconds);
   return 0;
 }

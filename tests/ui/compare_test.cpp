@@ -85,7 +85,8 @@ class CompareBench {
   void choose(std::size_t pane, const char* name) { part<QAction>(pane, name)->trigger(); }
 
   QWidget* editor(const char* path, const char* name) {
-    auto* editor = window.parameters().findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
+    auto* editor =
+        window.parameters().findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
     return editor ? editor->findChild<QWidget*>(QLatin1String(name)) : nullptr;
   }
 

@@ -24,7 +24,7 @@ struct PaneSample {
 
 struct CompareSample {
   double time_s = 0;
-  bool is_start = false;  ///< of a new run: what came before belongs to another
+  bool is_start = false;                            ///< of a new run: what came before belongs to another
   std::array<PaneSample, cloth::most_panes> panes;  ///< in the order of the comparison's panes
 };
 

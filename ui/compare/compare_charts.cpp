@@ -169,8 +169,7 @@ void CompareCharts::refresh() {
 void CompareCharts::readAt(std::optional<double> time_s) {
   cursor_ = time_s;
   std::optional<double> at;
-  if (time_s && !record_.samples.empty())
-    at = record_.samples.time(record_.samples.nearest(*time_s));
+  if (time_s && !record_.samples.empty()) at = record_.samples.time(record_.samples.nearest(*time_s));
   for (LiveChart* chart : charts_) chart->read(record_, at);
 }
 

@@ -134,9 +134,8 @@ void CompareWindow::connectPanes() {
     if (path == "integrator.time_step") grid_->pane(pane).showStepRule(rule);
     if (rule.isEmpty()) grid_->showComparison(document_.comparison());
   };
-  connect(grid_, &PaneGrid::methodChosen, this, [tell](std::size_t pane, const std::string& method) {
-    tell(pane, "integrator.method", method);
-  });
+  connect(grid_, &PaneGrid::methodChosen, this,
+          [tell](std::size_t pane, const std::string& method) { tell(pane, "integrator.method", method); });
   connect(grid_, &PaneGrid::stepChosen, this, [tell](std::size_t pane, const cloth::ParameterValue& step) {
     tell(pane, "integrator.time_step", step);
   });
@@ -206,8 +205,9 @@ void CompareWindow::showScope() {
   const auto scope = document_.scope();
   scopes_->setCurrentIndex(scope ? static_cast<int>(*scope) + 1 : 0);
   scope_hint_->setText(
-      scope ? tr("What you change here becomes pane %1's own.").arg(QString::fromStdString(panes[*scope].name))
-            : tr("What all panes share. A pane keeps the values that it has of its own."));
+      scope
+          ? tr("What you change here becomes pane %1's own.").arg(QString::fromStdString(panes[*scope].name))
+          : tr("What all panes share. A pane keeps the values that it has of its own."));
   parameters_->setBlocksEditable(!scope);
   showOwnership();
 }
@@ -269,9 +269,12 @@ void CompareWindow::brush(const cloth::BrushGust& gust) {
 }
 
 void CompareWindow::followStatus(const CompareStatus& status) {
-  play_->setChecked(status.playing);
-  play_->setIcon(icon(status.playing ? "pause" : "play"));
-  play_->setText(status.playing ? tr("Pause") : tr("Play"));
+  // An action that is told what it knows still has its bar laid out anew, and with it the whole window.
+  if (play_->isChecked() != status.playing || shown_status_.playing != status.playing) {
+    play_->setChecked(status.playing);
+    play_->setIcon(icon(status.playing ? "pause" : "play"));
+    play_->setText(status.playing ? tr("Pause") : tr("Play"));
+  }
   play_->setEnabled(status.refusal.empty());
   step_->setEnabled(status.refusal.empty());
   time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
@@ -281,7 +284,8 @@ void CompareWindow::followStatus(const CompareStatus& status) {
     rate_->setText(status.time > 0 && status.time >= status.duration ? tr("Finished") : tr("Paused"));
 
   grid_->showResults(status);
-  if (!status.playing || ranking_clock_.elapsed() > ranking_interval) {
+  const bool news = status.time != shown_status_.time || status.panes.size() != shown_status_.panes.size();
+  if (!status.playing || (news && ranking_clock_.elapsed() > ranking_interval)) {
     ranking_->showResults(status.panes);
     ranking_clock_.restart();
   }
@@ -300,8 +304,10 @@ void CompareWindow::followStatus(const CompareStatus& status) {
 }
 
 void CompareWindow::followRecording(const CompareStatus& status) {
-  record_->setChecked(status.recording);
-  record_->setIcon(icon(status.recording ? "stop-record" : "record"));
+  if (record_->isChecked() != status.recording || shown_status_.recording != status.recording) {
+    record_->setChecked(status.recording);
+    record_->setIcon(icon(status.recording ? "stop-record" : "record"));
+  }
   if (status.recording_error != shown_status_.recording_error && !status.recording_error.empty()) {
     notice_->show("recording", NoticeBar::Level::error,
                   tr("Recording stopped: %1. What was written before is valid.")

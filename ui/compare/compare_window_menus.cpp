@@ -110,21 +110,21 @@ void CompareWindow::makeViewBar() {
   const auto tool = [&](Tool which, QAction* action) {
     connect(action, &QAction::triggered, this, [this, which] { grid_->setTool(which); });
   };
-  tool(Tool::pull, choice(tools, "pull", tr("Pull"), tr("Drag a particle in all panes; beside the cloth: orbit"),
-                          "1", "toolPull", true));
-  tool(Tool::brush, choice(tools, "brush", tr("Wind brush"), tr("Drag to blow on all panes"), "2", "toolBrush",
-                           false));
-  tool(Tool::pin,
-       choice(tools, "pin", tr("Pin"), tr("Click a particle to pin or free it in all panes"), "3", "toolPin",
-              false));
+  tool(Tool::pull,
+       choice(tools, "pull", tr("Pull"), tr("Drag a particle in all panes; beside the cloth: orbit"), "1",
+              "toolPull", true));
+  tool(Tool::brush,
+       choice(tools, "brush", tr("Wind brush"), tr("Drag to blow on all panes"), "2", "toolBrush", false));
+  tool(Tool::pin, choice(tools, "pin", tr("Pin"), tr("Click a particle to pin or free it in all panes"), "3",
+                         "toolPin", false));
   bar->addSeparator();
   auto* modes = new QActionGroup(this);
   const auto mode = [&](ViewMode which, Colouring colouring, QAction* action) {
-    connect(action, &QAction::triggered, this,
-            [this, which, colouring] { setColouring(which, colouring); });
+    connect(action, &QAction::triggered, this, [this, which, colouring] { setColouring(which, colouring); });
   };
   mode(ViewMode::textured, Colouring::strain,
-       choice(modes, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T", "modeTextured", true));
+       choice(modes, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T", "modeTextured",
+              true));
   mode(ViewMode::wireframe, Colouring::strain,
        choice(modes, "view-wireframe", tr("Wireframe"), tr("The grid of structural springs"), "W",
               "modeWireframe", false));
@@ -146,8 +146,7 @@ void CompareWindow::makeViewBar() {
       {CameraPreset::top, tr("Top")},     {CameraPreset::isometric, tr("Isometric")}};
   int key = 0;
   for (const auto& [preset, name] : presets) {
-    QAction* action =
-        camera->addAction(name, this, [this, which = preset] { grid_->setPreset(which); });
+    QAction* action = camera->addAction(name, this, [this, which = preset] { grid_->setPreset(which); });
     action->setShortcut(QStringLiteral("F%1").arg(++key));
   }
   auto* look = new QToolButton(bar);
@@ -190,9 +189,8 @@ void CompareWindow::makeTransport() {
     speed_->addItem(tr("%1x").arg(factor), factor);
   speed_->addItem(tr("Fastest"), std::numeric_limits<double>::infinity());
   speed_->setCurrentIndex(3);
-  connect(speed_, &QComboBox::currentIndexChanged, this, [this](int index) {
-    link_.send(compare_command::Speed{speed_->itemData(index).toDouble()});
-  });
+  connect(speed_, &QComboBox::currentIndexChanged, this,
+          [this](int index) { link_.send(compare_command::Speed{speed_->itemData(index).toDouble()}); });
   row->addWidget(speed_);
   row->addSpacing(spacing);
   time_ = new QLabel(frame);

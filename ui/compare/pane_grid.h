@@ -4,6 +4,7 @@
 #include <QElapsedTimer>
 #include <QTimer>
 #include <QWidget>
+#include <array>
 #include <vector>
 
 #include "bridge/compare_worker.h"
@@ -52,17 +53,24 @@ class PaneGrid : public QWidget {
  private:
   void addPane();
   void layOut();
+  void followPlaying(bool playing);
+  void showNextFrame();
   void followCamera(const ClothView& moved, const CameraPose& pose);
   void followColours();
 
   QGridLayout* grid_;
   ColourBar* colour_bar_;
   std::vector<PaneView*> panes_;
+  std::array<std::shared_ptr<const ClothFrame>, cloth::most_panes> pending_;  ///< frames not shown yet
+  QTimer turn_timer_;         ///< when the next pane's turn comes
+  std::size_t turn_ = 0;      ///< the pane that was drawn last
+  bool takes_turns_ = false;  ///< panes are drawn one after the other
+  bool playing_ = false;
   Tool tool_ = Tool::pull;
   ViewMode mode_ = ViewMode::textured;
   StrainRange strains_;
   StrainRange differences_;
-  QTimer colour_timer_;        ///< while the range glides
+  QTimer colour_timer_;         ///< while the range glides
   QElapsedTimer colour_clock_;  ///< since the range was followed last
 };
 

@@ -22,6 +22,10 @@ namespace {
 
 constexpr int frame_width = 2;  // px
 
+void set_text(QLabel& label, const QString& text) {
+  if (label.text() != text) label.setText(text);
+}
+
 QString millimetres(double metres) {
   return QString::number(1e3 * metres, 'g', 3);
 }
@@ -169,14 +173,15 @@ void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, b
 }
 
 void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
-  cost_->setText(result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
-  difference_->setText(difference_text(result, has_reference));
-  difference_->setToolTip(result.notice.empty() ? difference_->text() : QString::fromStdString(result.notice));
+  set_text(*cost_, result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
+  set_text(*difference_, difference_text(result, has_reference));
+  difference_->setToolTip(result.notice.empty() ? difference_->text()
+                                                : QString::fromStdString(result.notice));
   const QString why =
       result.divergence
           ? tr("Stopped: it %1.").arg(QString::fromStdString(cloth::describe(*result.divergence)))
           : QString();
-  if (stopped_->text() != why) stopped_->setText(why);
+  set_text(*stopped_, why);
   stopped_->setVisible(result.divergence.has_value());
   difference_->setVisible(!result.divergence);
 }

@@ -14,7 +14,19 @@ namespace {
 
 constexpr double last = std::numeric_limits<double>::infinity();  // what is missing sorts behind all values
 
-enum Column { pane, method, by_error, rms, largest, by_cost, cost, step, rms_over_time, evaluations, columns };
+enum Column {
+  pane,
+  method,
+  by_error,
+  rms,
+  largest,
+  by_cost,
+  cost,
+  step,
+  rms_over_time,
+  evaluations,
+  columns
+};
 
 struct Cell {
   QString text;

@@ -104,8 +104,8 @@ void MainWindow::makeMenus() {
   run->addAction(record_);
 
   QMenu* compare = menuBar()->addMenu(tr("&Compare"));
-  QAction* methods = compare->addAction(tr("Compare methods"), QKeySequence("Ctrl+M"), this,
-                                        &MainWindow::compareMethods);
+  QAction* methods =
+      compare->addAction(tr("Compare methods"), QKeySequence("Ctrl+M"), this, &MainWindow::compareMethods);
   methods->setObjectName("compareMethods");
   methods->setToolTip(tr("This scene by its method and by two others, side by side"));
   compare->addAction(tr("Open comparison…"), this, &MainWindow::openComparison);

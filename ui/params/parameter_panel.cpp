@@ -203,7 +203,8 @@ ParameterEditor* ParameterPanel::editor(const std::string& path) const {
 }
 
 void ParameterPanel::applyNotes(ParameterEditor& which) {
-  if (const auto note = notes_.find(which.path()); note != notes_.end()) which.setNote(note->second.text, note->second.button);
+  if (const auto note = notes_.find(which.path()); note != notes_.end())
+    which.setNote(note->second.text, note->second.button);
   const auto value = auto_values_.find(which.path());
   auto* number = qobject_cast<NumberEditor*>(&which);
   if (number && value != auto_values_.end()) number->setAutoValue(value->second);

@@ -149,6 +149,13 @@ void ClothView::setColourMaximum(std::optional<double> maximum) {
   if (mode_ == ViewMode::strain) showAnew();
 }
 
+void ClothView::setRestDelay(int milliseconds) {
+  smooths_at_rest_ = milliseconds >= 0;
+  if (!smooths_at_rest_) return rest_timer_.stop();
+  rest_timer_.setInterval(milliseconds);
+  if (resting_picture_) rest_timer_.start();
+}
+
 /// Another look of the same scene.
 void ClothView::showAnew() {
   if (resting_picture_) resting_picture_->forget();
@@ -276,8 +283,8 @@ void ClothView::drawScene() {
     renderer_->set_frame(*frame_);
     frame_uploaded_ = true;
   }
-  const bool moving = new_frame || !(camera_.pose() == drawn_pose_) ||
-                      (!colour_maximum_ && !strain_range_.settled());
+  const bool moving =
+      new_frame || !(camera_.pose() == drawn_pose_) || (!colour_maximum_ && !strain_range_.settled());
   drawn_pose_ = camera_.pose();
   if (!resting_picture_) return renderer_->draw(shot(), theme());
 
@@ -291,7 +298,7 @@ void ClothView::drawScene() {
   smooth_next_ = false;
   if (resting_picture_->holds(pixels)) return resting_picture_->show(canvas_->defaultFramebufferObject());
   renderer_->draw(shot(), theme());
-  rest_timer_.start();
+  if (smooths_at_rest_) rest_timer_.start();
 }
 
 void ClothView::paintGl() {
@@ -317,8 +324,7 @@ void ClothView::paintOverlays() {
     overlay_.message(painter, size(), look, tr("No cloth yet"), tr("Open a scene, or drop one here."));
     return;
   }
-  const auto quantity =
-      frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
+  const auto quantity = frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
   if (mode_ == ViewMode::strain && !colour_maximum_)
     overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
   overlay_.mode_name(painter, look, mode_, quantity);

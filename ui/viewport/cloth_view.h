@@ -80,6 +80,10 @@ class ClothView : public QWidget {
   double brushSpeedPerPixel() const { return brush_speed_per_pixel_; }  ///< m/s per px of displacement
   void setBrushSpeedPerPixel(double speed) { brush_speed_per_pixel_ = speed; }
 
+  /// Where the processor draws: how long after the last movement (ms) the view is drawn once more, smoothly;
+  /// negative: not at all.
+  void setRestDelay(int milliseconds);
+
   /// The view with its overlays, in device pixels.
   QImage grabPicture();
   /// ms spent drawing last time. Where the processor draws, until the picture was complete; a graphics
@@ -149,8 +153,9 @@ class ClothView : public QWidget {
   std::unique_ptr<ClothRenderer> renderer_;
   std::unique_ptr<RestingPicture> resting_picture_;  // where the processor draws
   QTimer rest_timer_;                                // since the last movement
-  bool smooth_next_ = false;                         // draw the resting picture
-  bool grabbing_ = false;                            // smooth even if the cloth is moving
+  bool smooths_at_rest_ = true;
+  bool smooth_next_ = false;  // draw the resting picture
+  bool grabbing_ = false;     // smooth even if the cloth is moving
 
   std::shared_ptr<const ClothFrame> frame_;
   bool frame_uploaded_ = false;

@@ -4,6 +4,8 @@
 #include <QSurfaceFormat>
 #include <clocale>
 
+#include "compare/compare_window.h"
+#include "compare/comparison_files.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
 #include "scene/builtin_scenes.h"
@@ -20,7 +22,9 @@ int main(int argc, char** argv) {
 
   QCommandLineParser parser;
   parser.setApplicationDescription("A desktop lab for cloth simulation.");
-  parser.addPositionalArgument("scene", "A scene or session file or the name of a built-in scene.", "[SCENE]");
+  parser.addPositionalArgument("file",
+                               "A scene, session or comparison (.compare.json), or the name of a built-in one.",
+                               "[SCENE|SESSION|COMPARISON]");
   parser.addHelpOption();
   parser.addVersionOption();
   parser.process(application);
@@ -29,9 +33,16 @@ int main(int argc, char** argv) {
   clothlab::apply_theme(application);
   application.setWindowIcon(clothlab::icon("clothlab"));
 
+  const QString wanted = parser.positionalArguments().value(0);
+  if (clothlab::is_comparison_name(wanted)) {
+    clothlab::CompareWindow window;
+    window.show();
+    window.openComparison(wanted);
+    return QApplication::exec();
+  }
   clothlab::MainWindow window;
   window.show();
   window.openScene(cloth::default_scene_name);
-  if (!parser.positionalArguments().isEmpty()) window.openScene(parser.positionalArguments().front());
+  if (!wanted.isEmpty()) window.openScene(wanted);
   return QApplication::exec();
 }

@@ -1,5 +1,7 @@
 #include "bridge/fill_frame.h"
 
+#include <algorithm>
+
 #include "cloth/normals.h"
 #include "measure/strain.h"
 
@@ -28,8 +30,22 @@ float largest_of(const std::vector<float>& strain) {
 }  // namespace
 
 void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame) {
+  fill_frame(simulation, simulation.state(), normals, frame);
+}
+
+void show_difference(const std::vector<float>& distance, ClothFrame& frame) {
+  frame.shows_difference = true;
+  if (distance.empty())
+    std::fill(frame.strain.begin(), frame.strain.end(), 0.0F);
+  else
+    frame.strain = distance;
+  frame.largest_strain = largest_of(frame.strain);
+}
+
+void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& state,
+                cloth::Vec3Field& normals, ClothFrame& frame) {
   const cloth::ClothSystem& system = simulation.system();
-  const cloth::Vec3Field& position = simulation.state().position;
+  const cloth::Vec3Field& position = state.position;
   frame.rows = system.rows;
   frame.columns = system.columns;
   interleave(position, frame.positions);
@@ -43,8 +59,9 @@ void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, 
   frame.obstacles = simulation.scene().obstacles;
   const auto& deformation = simulation.scene().deformation;
   frame.deformation_rate = simulation.quantities().limiter ? deformation->rate : -1;
-  frame.time = simulation.time();
-  frame.step = simulation.state().step;
+  frame.time = state.time;
+  frame.step = state.step;
+  frame.shows_difference = false;
 }
 
 }  // namespace clothlab

@@ -6,8 +6,14 @@
 
 namespace clothlab {
 
-/// All but `topology`, which the worker counts. `normals` is scratch. Neither allocates when the cloth has
+/// All but `topology`, which the worker counts, and `shows_difference`. The state may be an earlier one of the
+/// simulation. `normals` is scratch. Neither allocates when the cloth has
 /// the size of the last time.
+void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& state,
+                cloth::Vec3Field& normals, ClothFrame& frame);
 void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame);
+
+/// Colours the frame by these distances from a reference in m, one of each particle; empty: there are none.
+void show_difference(const std::vector<float>& distance, ClothFrame& frame);
 
 }  // namespace clothlab

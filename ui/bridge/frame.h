@@ -16,6 +16,7 @@ struct ClothFrame {
   std::vector<float> normals;        ///< like positions; along the sum of the neighbouring triangles' areas
   std::vector<float> strain;         ///< per particle: largest |d|/L - 1 of its structural and shear springs
   float largest_strain = 0;          ///< of `strain`, at least 0
+  bool shows_difference = false;     ///< `strain` holds distances from a reference, m, in place of strains
   std::vector<std::uint8_t> pinned;  ///< per particle: 1 where pinned
   std::vector<cloth::Obstacle> obstacles;
   double deformation_rate = -1;  ///< negative: the scene has none

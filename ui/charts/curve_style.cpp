@@ -17,6 +17,10 @@ void paint_marker(QPainter& painter, QPointF at, Marker marker, const QColor& fi
   } else if (marker == Marker::square) {
     const double s = 0.88 * r;  // looks as large as the circle
     painter.drawRect(QRectF(at.x() - s, at.y() - s, 2 * s, 2 * s));
+  } else if (marker == Marker::diamond) {
+    const double d = 1.2 * r;
+    painter.drawPolygon(
+        QPolygonF({{at.x(), at.y() - d}, {at.x() + d, at.y()}, {at.x(), at.y() + d}, {at.x() - d, at.y()}}));
   } else {
     const double w = 1.15 * r;
     painter.drawPolygon(QPolygonF(

@@ -12,7 +12,7 @@ class QPainter;
 
 namespace clothlab {
 
-enum class Marker { none, circle, square, triangle };
+enum class Marker { none, circle, square, triangle, diamond };
 
 struct CurveStyle {
   QColor Theme::*colour = nullptr;

@@ -53,6 +53,7 @@ class LabDocument : public QObject {
   /// Between the two, edits of one parameter are one undo step, and none at all if the value comes back.
   void beginDrag();
   void endDrag();
+  int presentDrag() const { return drag_; }  ///< its number; 0: none
 
   /// By the path of a cloth::BlockOffer ("air", "sphere"); false if the scene is not offered it.
   bool addBlock(const std::string& offer_path);

@@ -86,6 +86,8 @@ class MainWindow : public QMainWindow {
   bool save();
   bool saveAs();
   void saveSessionAs();
+  void compareMethods();
+  void openComparison();
   void savePicture();
   void toggleRecording(bool on);
   void showAbout();

@@ -9,6 +9,8 @@
 #include <QToolBar>
 #include <QToolButton>
 
+#include "compare/builtin_comparisons.h"
+#include "compare/compare_window.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
 #include "main_window/scene_library.h"
@@ -24,6 +26,14 @@ const char* const scene_filter =
 
 QString with_ending(const QString& path, const QString& ending) {
   return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
+}
+
+/// A window of its own that outlives this one and goes when it is closed.
+CompareWindow* new_compare_window() {
+  auto* window = new CompareWindow;
+  window->setAttribute(Qt::WA_DeleteOnClose);
+  window->show();
+  return window;
 }
 
 }  // namespace
@@ -99,6 +109,19 @@ void MainWindow::makeMenus() {
   run->addSeparator();
   run->addAction(record_);
 
+  QMenu* compare = menuBar()->addMenu(tr("&Compare"));
+  QAction* methods =
+      compare->addAction(tr("Compare methods"), QKeySequence("Ctrl+M"), this, &MainWindow::compareMethods);
+  methods->setObjectName("compareMethods");
+  methods->setToolTip(tr("This scene by its method and by two others, side by side"));
+  compare->addAction(tr("Open comparison…"), this, &MainWindow::openComparison);
+  QMenu* comparisons = compare->addMenu(tr("Built-in comparisons"));
+  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
+    const QString name = QString::fromStdString(comparison.name);
+    comparisons->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
+                           [name] { new_compare_window()->openComparison(name); });
+  }
+
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);
   view->addSeparator();
@@ -172,6 +195,17 @@ void MainWindow::saveSessionAs() {
                                                                 tr("Clothlab sessions (*.session.json)")),
                                    ".session.json");
   if (!path.isEmpty()) saveSession(path);
+}
+
+void MainWindow::compareMethods() {
+  link_.send(command::Pause{});
+  new_compare_window()->compareScene(document_.scene());
+}
+
+void MainWindow::openComparison() {
+  const QString path = QFileDialog::getOpenFileName(this, tr("Open a comparison"), {},
+                                                    tr("Clothlab comparisons (*.compare.json)"));
+  if (!path.isEmpty()) new_compare_window()->openComparison(path);
 }
 
 void MainWindow::savePicture() {

@@ -99,10 +99,19 @@ void ParameterEditor::makeMessages(QVBoxLayout& column) {
   rule_->setProperty("state", "error");
   note_ = message_label(this, "note");
   note_->setProperty("muted", true);
-  for (QLabel* label : {rule_, note_}) {
-    label->setFont(smaller(label->font()));
-    column.addWidget(label);
-  }
+  for (QLabel* label : {rule_, note_}) label->setFont(smaller(label->font()));
+  note_button_ = new QToolButton(this);
+  note_button_->setObjectName("noteButton");
+  note_button_->setFont(note_->font());
+  note_button_->setFocusPolicy(Qt::TabFocus);
+  note_button_->hide();
+  connect(note_button_, &QToolButton::clicked, this, &ParameterEditor::noteButtonClicked);
+  auto* note_row = new QHBoxLayout;
+  note_row->setSpacing(spacing);
+  note_row->addWidget(note_, 1);
+  note_row->addWidget(note_button_);
+  column.addWidget(rule_);
+  column.addLayout(note_row);
 }
 
 void ParameterEditor::name(QWidget& part, const QString& object_name, const QString& suffix) {
@@ -157,9 +166,12 @@ void ParameterEditor::showRule(const QString& rule) {
   rule_->setText(kept ? tr("%1. Still %2.").arg(sentence, value_in_words(info(), *kept)) : sentence);
 }
 
-void ParameterEditor::setNote(const QString& note) {
+void ParameterEditor::setNote(const QString& note, const QString& button) {
   note_->setText(note);
   note_->setVisible(!note.isEmpty());
+  note_button_->setText(button);
+  note_button_->setAccessibleName(QStringLiteral("%1: %2").arg(QString::fromStdString(info().label), button));
+  note_button_->setVisible(!button.isEmpty());
 }
 
 ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent) {

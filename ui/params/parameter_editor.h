@@ -28,7 +28,7 @@ class ParameterEditor : public QWidget {
   void refresh();
   /// Asks again what the default is: an obstacle's goes with the size of the cloth.
   void refreshDefault();
-  void setNote(const QString& note);
+  void setNote(const QString& note, const QString& button = {});
   /// For a parameter alone in its section, whose head then says label and unit.
   void hideTitle();
 
@@ -36,6 +36,9 @@ class ParameterEditor : public QWidget {
   virtual QList<QWidget*> tabStops() const = 0;
   /// Forgets what is being typed; the editor is about to go.
   virtual void abandonEdits() {}
+
+ Q_SIGNALS:
+  void noteButtonClicked();
 
  protected:
   ParameterEditor(LabDocument& document, cloth::Parameter parameter, QWidget* parent);
@@ -74,6 +77,7 @@ class ParameterEditor : public QWidget {
   QToolButton* reset_ = nullptr;
   QLabel* rule_ = nullptr;
   QLabel* note_ = nullptr;
+  QToolButton* note_button_ = nullptr;
 };
 
 /// The editor for the parameter's kind.

@@ -135,7 +135,13 @@ ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
   });
   connect(section, &ParameterSection::removeRequested, this,
           [this, path = block.path] { document_.removeBlock(path); });
-  for (const cloth::Parameter& parameter : block.parameters) applyNotes(*section->editor(parameter.path));
+  section->setRemovable(blocks_editable_);
+  for (const cloth::Parameter& parameter : block.parameters) {
+    ParameterEditor* made = section->editor(parameter.path);
+    applyNotes(*made);
+    connect(made, &ParameterEditor::noteButtonClicked, this,
+            [this, path = parameter.path] { Q_EMIT noteButtonClicked(path); });
+  }
   return section;
 }
 
@@ -197,15 +203,28 @@ ParameterEditor* ParameterPanel::editor(const std::string& path) const {
 }
 
 void ParameterPanel::applyNotes(ParameterEditor& which) {
-  if (const auto note = notes_.find(which.path()); note != notes_.end()) which.setNote(note->second);
+  if (const auto note = notes_.find(which.path()); note != notes_.end())
+    which.setNote(note->second.text, note->second.button);
   const auto value = auto_values_.find(which.path());
   auto* number = qobject_cast<NumberEditor*>(&which);
   if (number && value != auto_values_.end()) number->setAutoValue(value->second);
 }
 
-void ParameterPanel::setNote(const std::string& path, const QString& note) {
-  notes_[path] = note;
-  if (ParameterEditor* found = editor(path)) found->setNote(note);
+void ParameterPanel::setNote(const std::string& path, const QString& note, const QString& button) {
+  if (notes_[path] == Note{note, button}) return;
+  notes_[path] = {note, button};
+  if (ParameterEditor* found = editor(path)) found->setNote(note, button);
+}
+
+void ParameterPanel::clearNotes() {
+  for (auto& [path, note] : std::exchange(notes_, {}))
+    if (ParameterEditor* found = editor(path)) found->setNote({});
+}
+
+void ParameterPanel::setBlocksEditable(bool editable) {
+  blocks_editable_ = editable;
+  add_->setVisible(editable);
+  for (ParameterSection* section : sections_) section->setRemovable(editable);
 }
 
 void ParameterPanel::setAutoValue(const std::string& path, std::optional<double> value) {

@@ -28,7 +28,12 @@ class ParameterPanel : public QWidget {
   explicit ParameterPanel(LabDocument& document, QWidget* parent = nullptr);
 
   /// A muted line below a parameter, present or future; empty takes it away.
-  void setNote(const std::string& path, const QString& note);
+  /// With a `button` beside it, which noteButtonClicked tells of.
+  void setNote(const std::string& path, const QString& note, const QString& button = {});
+  void clearNotes();
+
+  /// Whether blocks may come and go; they may unless told otherwise.
+  void setBlocksEditable(bool editable);
 
   /// What "auto" comes to at present for a parameter that allows it, in its unit.
   void setAutoValue(const std::string& path, std::optional<double> value);
@@ -39,6 +44,9 @@ class ParameterPanel : public QWidget {
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
+
+ Q_SIGNALS:
+  void noteButtonClicked(const std::string& path);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -64,7 +72,12 @@ class ParameterPanel : public QWidget {
   QVBoxLayout* column_ = nullptr;
   std::vector<ParameterSection*> sections_;
   std::set<std::string> collapsed_;
-  std::map<std::string, QString> notes_;
+  struct Note {
+    QString text, button;
+    bool operator==(const Note&) const = default;
+  };
+  std::map<std::string, Note> notes_;
+  bool blocks_editable_ = true;
   std::map<std::string, double> auto_values_;
 };
 

@@ -86,6 +86,10 @@ bool ParameterSection::isCollapsed() const {
   return !head_->isChecked();
 }
 
+void ParameterSection::setRemovable(bool removable) {
+  if (cross_) cross_->setVisible(removable);
+}
+
 void ParameterSection::refresh() {
   for (ParameterEditor* editor : editors_) editor->refresh();
 }

@@ -28,6 +28,8 @@ class ParameterSection : public QWidget {
 
   void setCollapsed(bool collapsed);
   bool isCollapsed() const;
+  /// Shows the cross of a block that may go, or hides it.
+  void setRemovable(bool removable);
 
   void refresh();
   ParameterEditor* editor(const std::string& path) const;

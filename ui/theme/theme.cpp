@@ -4,6 +4,7 @@
 #include <QStyleFactory>
 #include <optional>
 
+#include "report/palette.h"
 #include "theme/follow_desktop.h"
 #include "theme/style_sheet.h"
 
@@ -23,6 +24,14 @@ bool desktop_is_dark() {
   if (const std::optional<bool> preference = portal_prefers_dark()) return *preference;
   QApplication::setPalette(QPalette());
   return is_dark(QApplication::palette());
+}
+
+void colour_panes(Theme& t) {
+  int series = 0;
+  for (QColor* colour : {&t.pane_a, &t.pane_b, &t.pane_c, &t.pane_d}) {
+    const cloth::Colour own = cloth::style_of_series(series++).colour;
+    *colour = QColor(QString::fromStdString(t.dark ? own.dark : own.light));
+  }
 }
 
 Theme make_light() {
@@ -51,6 +60,7 @@ Theme make_light() {
   t.limit = "#bd8040";
   t.step_time = "#2596bd";
   t.draw_time = "#57620f";
+  colour_panes(t);
   return t;
 }
 
@@ -80,6 +90,7 @@ Theme make_dark() {
   t.limit = "#d9ab18";
   t.step_time = "#48ceff";
   t.draw_time = "#e4f06a";
+  colour_panes(t);
   return t;
 }
 

@@ -20,6 +20,7 @@ struct Theme {
   QColor view_top, view_bottom;  ///< background gradient behind the cloth
   /// Curves, colour-blind safe (Okabe and Ito 2008, adjusted for contrast with the panel).
   QColor kinetic, elastic, gravity, total, strain, limit, step_time, draw_time;
+  QColor pane_a, pane_b, pane_c, pane_d;  ///< of a comparison: the colours of its reports and plots
 };
 
 /// The set for the application's present palette (or for an explicit choice).

@@ -144,6 +144,16 @@ void ClothView::setMode(ViewMode mode) {
   Q_EMIT modeChanged(mode);
 }
 
+void ClothView::setColourMaximum(std::optional<double> maximum) {
+  if (maximum == colour_maximum_) return;
+  colour_maximum_ = maximum;
+  if (mode_ == ViewMode::strain) redraw();
+}
+
+void ClothView::setRestDelay(int milliseconds) {
+  if (canvas_) canvas_->setRestDelay(milliseconds);
+}
+
 // ---- camera
 // -------------------------------------------------------------------------------------------------------
 
@@ -163,7 +173,11 @@ void ClothView::setCameraPose(const CameraPose& pose) {
 
 void ClothView::flyTo(const CameraPose& pose) {
   camera_moved_ = true;
-  if (!animated_) return setCameraPose(pose);
+  if (!animated_) {
+    setCameraPose(pose);
+    Q_EMIT cameraMoved(pose);
+    return;
+  }
   clock_.restart();  // the flight begins now, however long ago the last picture was
   flight_.start(camera_.pose(), pose);
   redraw();
@@ -227,8 +241,11 @@ void ClothView::resizeGl(int width, int height) {
 void ClothView::advanceTime() {
   const double seconds = std::min(1e-9 * static_cast<double>(clock_.nsecsElapsed()), 0.1);
   clock_.restart();
-  if (flight_.flying()) camera_.set_pose(flight_.advance(seconds));
-  if (mode_ == ViewMode::strain && frame_) {
+  if (flight_.flying()) {
+    camera_.set_pose(flight_.advance(seconds));
+    Q_EMIT cameraMoved(camera_.pose());
+  }
+  if (mode_ == ViewMode::strain && frame_ && !colour_maximum_) {
     strain_range_.follow(frame_->largest_strain, frame_->deformation_rate, seconds);
     if (!strain_range_.settled()) redraw();
   }
@@ -245,7 +262,7 @@ Shot ClothView::shot() const {
   shot.pixel_ratio = devicePixelRatioF();
   shot.metres_per_pixel = camera_.metres_per_pixel() / shot.pixel_ratio;
   shot.mode = mode_;
-  shot.strain_maximum = strain_range_.maximum();
+  shot.strain_maximum = colourMaximum();
   shot.ground = ground_;
   shot.extent = extent_;
   return shot;
@@ -278,9 +295,10 @@ void ClothView::paintOverlays(QPainter& painter) {
     overlay_.message(painter, size(), look, tr("No cloth yet"), tr("Open a scene, or drop one here."));
     return;
   }
-  if (mode_ == ViewMode::strain)
-    overlay_.colour_bar(painter, size(), look, strain_range_.maximum(), frame_->deformation_rate);
-  overlay_.mode_name(painter, look, mode_);
+  const auto quantity = frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
+  if (mode_ == ViewMode::strain && !colour_maximum_)
+    overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
+  overlay_.mode_name(painter, look, mode_, quantity);
   paintHand(painter);
 }
 

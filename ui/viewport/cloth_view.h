@@ -56,11 +56,15 @@ class ClothView : public QWidget {
 
   ViewMode mode() const { return mode_; }
   void setMode(ViewMode mode);
+  /// The top of the colours' range where several views share one, and a bar beside them; nothing: the view
+  /// chooses its own and shows it.
+  void setColourMaximum(std::optional<double> maximum);
   Tool tool() const { return tool_; }
   void setTool(Tool tool);
 
   const Camera& camera() const { return camera_; }
   void setCameraPose(const CameraPose& pose);
+  bool cameraWasMoved() const { return camera_moved_; }  ///< by the user, since resetCamera()
   void frameAll();
   void setPreset(CameraPreset preset);
   /// For a newly opened scene: the next frame is framed, and every new topology until the user moves the
@@ -73,6 +77,10 @@ class ClothView : public QWidget {
   void setBrushRadius(double pixels);
   double brushSpeedPerPixel() const { return brush_speed_per_pixel_; }  ///< m/s per px of displacement
   void setBrushSpeedPerPixel(double speed) { brush_speed_per_pixel_ = speed; }
+
+  /// Where the processor draws: how long after the last movement (ms) the view is drawn once more, smoothly;
+  /// negative: not at all.
+  void setRestDelay(int milliseconds);
 
   /// The view with its overlays, in device pixels.
   QImage grabPicture();
@@ -93,6 +101,7 @@ class ClothView : public QWidget {
   void pinToggled(int particle);
   void toolChanged(clothlab::Tool tool);
   void modeChanged(clothlab::ViewMode mode);
+  void cameraMoved(const clothlab::CameraPose& pose);  ///< by the user, also on the way of a flight
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -121,6 +130,7 @@ class ClothView : public QWidget {
   void flyTo(const CameraPose& pose);
   void advanceTime();
   Shot shot() const;
+  double colourMaximum() const { return colour_maximum_.value_or(strain_range_.maximum()); }
   void paintOverlays(QPainter& painter);
   void paintHand(QPainter& painter);
   QPointF screenPoint(int particle) const;
@@ -155,6 +165,7 @@ class ClothView : public QWidget {
 
   ViewMode mode_ = ViewMode::textured;
   StrainRange strain_range_;
+  std::optional<double> colour_maximum_;
   Overlay overlay_;
   const Theme* painted_theme_ = nullptr;
   double last_draw_ = 0, last_upload_ = 0;  // ms

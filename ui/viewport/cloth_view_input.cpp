@@ -174,6 +174,7 @@ void ClothView::moveCamera(QPointF by) {
     camera_.pan(by.x(), by.y());
   else
     camera_.orbit(by.x(), by.y());
+  Q_EMIT cameraMoved(camera_.pose());
 }
 
 void ClothView::sendPull() {
@@ -206,6 +207,7 @@ void ClothView::wheelEvent(QWheelEvent* event) {
   flight_.stop();
   camera_moved_ = true;
   camera_.zoom(std::pow(1.18, notches), as_vector(event->position()));
+  Q_EMIT cameraMoved(camera_.pose());
   updateHover();
   redraw();
 }

@@ -49,6 +49,10 @@ class GlCanvas {
   /// Only what lies over the picture has changed.
   virtual void repaintOver() = 0;
 
+  /// Where the processor draws: how long after the last change (ms) the picture is made smooth; negative: not
+  /// at all.
+  virtual void setRestDelay(int) {}
+
   /// The smooth picture as it is now, with what lies over it; in device pixels.
   virtual QImage grab() = 0;
 };

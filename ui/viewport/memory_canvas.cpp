@@ -66,6 +66,14 @@ void MemoryCanvas::redraw() {
   update();
 }
 
+void MemoryCanvas::setRestDelay(int milliseconds) {
+  smooths_at_rest_ = milliseconds >= 0;
+  rest_timer_.stop();
+  if (!smooths_at_rest_) return;
+  rest_timer_.setInterval(milliseconds);
+  rest_timer_.start();
+}
+
 void MemoryCanvas::drawPicture(Quality quality) {
   if (!initialise()) return;
   makeCurrent();
@@ -87,7 +95,7 @@ void MemoryCanvas::drawPicture(Quality quality) {
     plain_->bind();
   }
   readPicture();
-  if (!smooth && !stale_) rest_timer_.start();
+  if (!smooth && !stale_ && smooths_at_rest_) rest_timer_.start();
 }
 
 void MemoryCanvas::readPicture() {

@@ -25,6 +25,7 @@ class MemoryCanvas : public QWidget, public GlCanvas {
   void doneCurrent() override { context_->doneCurrent(); }
   void redraw() override;
   void repaintOver() override { update(); }
+  void setRestDelay(int milliseconds) override;
   QImage grab() override;
 
  protected:
@@ -50,6 +51,7 @@ class MemoryCanvas : public QWidget, public GlCanvas {
   QImage picture_;
   bool stale_ = true;  // the scene has changed since the picture
   QTimer rest_timer_;  // since the last change
+  bool smooths_at_rest_ = true;
 };
 
 }  // namespace clothlab

@@ -143,13 +143,14 @@ void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double
   bar_.lay(view, area, {maximum, deformation_rate}, paint);
 }
 
-void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode) {
-  const QString name = mode == ViewMode::textured    ? tr("Textured")
-                       : mode == ViewMode::wireframe ? tr("Wireframe")
-                                                     : tr("Strain");
+void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quantity quantity) {
+  const QString name = mode == ViewMode::textured         ? tr("Textured")
+                       : mode == ViewMode::wireframe      ? tr("Wireframe")
+                       : quantity == Quantity::difference ? tr("Difference")
+                                                          : tr("Strain");
   const QFontMetricsF metrics(font_of(view, 0.9, QFont::Medium), view.device());
   const QRectF area(2 * spacing, 2 * spacing, metrics.horizontalAdvance(name) + 20, metrics.height() + 8);
-  mode_.lay(view, area, {static_cast<double>(mode)}, [&](QPainter& p) {
+  mode_.lay(view, area, {static_cast<double>(mode), static_cast<double>(quantity)}, [&](QPainter& p) {
     card(p, area, theme);
     p.setFont(font_of(p, 0.9, QFont::Medium));
     p.setPen(theme.muted_text);

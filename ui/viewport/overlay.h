@@ -47,8 +47,11 @@ class Overlay {
   /// Everything is painted anew, as after a change of theme.
   void forget();
 
+  /// What colours stand for: strains, pure numbers, or differences from a reference, m.
+  enum class Quantity { strain, difference };
+
   void colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum, double deformation_rate);
-  void mode_name(QPainter& view, const Theme& theme, ViewMode mode);
+  void mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quantity quantity);
   void brush(QPainter& view, const Theme& theme, const Brush& brush);
   void ring(QPainter& view, const Theme& theme, QPointF at, Ring ring);
   void pull_line(QPainter& view, const Theme& theme, QPointF particle, QPointF cursor);

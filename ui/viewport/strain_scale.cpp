@@ -6,7 +6,7 @@
 namespace clothlab {
 namespace {
 
-constexpr double least_range = 1e-3, most_range = 1e3;
+constexpr double most_range = 1e3;
 constexpr double glide_time = 0.12;    // s, to come 1/e nearer
 constexpr double patience = 1.5;       // s, of low strain before the range shrinks
 constexpr double low_enough = 0.4;     // of the range
@@ -29,8 +29,8 @@ QColor strain_colour(double fraction) {
   return strain_colours()[static_cast<std::size_t>(std::lround(x * (strain_colour_count - 1)))];
 }
 
-double round_maximum(double value) {
-  const double clamped = std::isfinite(value) ? std::clamp(value, least_range, most_range) : most_range;
+double round_maximum(double value, double least) {
+  const double clamped = std::isfinite(value) ? std::clamp(value, least, most_range) : most_range;
   const double decade = std::pow(10, std::floor(std::log10(clamped) + 1e-9));
   for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
     if (step * decade >= clamped * (1 - 1e-6)) return step * decade;  // strains come in single precision
@@ -51,10 +51,10 @@ std::vector<double> round_ticks(double maximum) {
 }
 
 void StrainRange::follow(double largest, double deformation_rate, double seconds) {
-  double wanted = round_maximum(largest);
+  double wanted = round_maximum(largest, least_);
   // A little more than the rate, so that its mark does not sit on the end of the bar.
   if (deformation_rate > 0 && deformation_rate <= rate_in_sight * wanted)
-    wanted = std::max(wanted, round_maximum(1.1 * deformation_rate));
+    wanted = std::max(wanted, round_maximum(1.1 * deformation_rate, least_));
   if (!started_) {
     started_ = true;
     target_ = shown_ = wanted;

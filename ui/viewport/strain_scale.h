@@ -22,23 +22,28 @@ QColor strain_colour(double fraction);
 /// frame to frame.
 class StrainRange {
  public:
+  static constexpr double least_strain = 1e-3;
+
+  /// The bar never ends below `least`.
+  explicit StrainRange(double least = least_strain) : least_(least), target_(10 * least), shown_(target_) {}
+
   /// `largest` strain now (pure number), the scene's deformation rate (negative: none), `seconds` since last
   /// time.
   void follow(double largest, double deformation_rate, double seconds);
-  void reset() { *this = StrainRange(); }
+  void reset() { *this = StrainRange(least_); }
 
   double maximum() const { return shown_; }  ///< what the colours use now
   double target() const { return target_; }  ///< the round number it glides to
   bool settled() const { return shown_ == target_; }
 
  private:
-  double target_ = 0.01, shown_ = 0.01;
+  double least_, target_, shown_;
   double seconds_below_ = 0;
   bool started_ = false;
 };
 
-/// The least of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value`.
-double round_maximum(double value);
+/// The least of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` or `least`.
+double round_maximum(double value, double least = StrainRange::least_strain);
 
 /// Four to seven round ticks from 0 up to `maximum`.
 std::vector<double> round_ticks(double maximum);

@@ -1,0 +1,402 @@
+// What a user does with methods side by side, by real clicks, keys and drags.
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QLabel>
+#include <QMenu>
+#include <QMouseEvent>
+#include <QPushButton>
+#include <QStandardPaths>
+#include <QTabBar>
+#include <QTemporaryDir>
+#include <QToolButton>
+#include <QtTest>
+#include <cmath>
+
+#include "compare/compare_window.h"
+#include "compare/comparison_json.h"
+#include "compare/run_comparison.h"
+#include "io/csv.h"
+#include "io/run_folder.h"
+#include "main_window/main_window.h"
+#include "params/exact_field.h"
+#include "scene/builtin_scenes.h"
+#include "theme/theme.h"
+#include "viewport/picking.h"
+
+namespace clothlab::test {
+namespace {
+
+cloth::Comparison small_comparison(const std::vector<std::string>& methods = {"verlet", "rk4"}) {
+  cloth::Comparison comparison;
+  comparison.scene = cloth::builtin_scene("wind");
+  comparison.scene.cloth.columns = comparison.scene.cloth.rows = 9;
+  comparison.scene.duration = 0.3;
+  comparison.panes = cloth::panes_for(methods);
+  comparison.reference = "A";
+  return comparison;
+}
+
+std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path& path) {
+  std::string text;
+  cloth::read_text_file(path, text);
+  const cloth::CsvTable table = cloth::parse_csv(text);
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& row : table.rows) {
+    rows.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c)
+      if (table.header[c].find("step_time_us") == std::string::npos) rows.back().push_back(row[c]);
+  }
+  return rows;
+}
+
+void drag(QWidget* on, QPoint from, QPoint to, Qt::MouseButton button = Qt::LeftButton) {
+  QTest::mousePress(on, button, Qt::NoModifier, from);
+  for (int part = 1; part <= 8; ++part) {
+    const QPointF at = QPointF(from) + (QPointF(to) - QPointF(from)) * part / 8.0;
+    QMouseEvent move(QEvent::MouseMove, at, on->mapToGlobal(at), Qt::NoButton, button, Qt::NoModifier);
+    QApplication::sendEvent(on, &move);
+    QTest::qWait(15);
+  }
+  QTest::mouseRelease(on, button, Qt::NoModifier, to);
+}
+
+/// A comparison's window on the display with a hand on it.
+class CompareBench {
+ public:
+  explicit CompareBench(const cloth::Comparison& comparison = small_comparison()) {
+    window.setAsksToSave(false);
+    window.show();
+    if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
+    window.document().load(comparison);
+    window.simulation().settle();
+  }
+
+  const CompareStatus& status() { return window.simulation().status(); }
+  const cloth::Comparison& comparison() { return window.document().comparison(); }
+  void settle() { window.simulation().settle(); }
+  QAction* action(const char* name) { return window.findChild<QAction*>(QLatin1String(name)); }
+
+  template <class Widget>
+  Widget* part(std::size_t pane, const char* name) {
+    return window.panes().pane(pane).findChild<Widget*>(QLatin1String(name));
+  }
+  /// From the pane's menu.
+  void choose(std::size_t pane, const char* name) { part<QAction>(pane, name)->trigger(); }
+
+  QWidget* editor(const char* path, const char* name) {
+    auto* editor =
+        window.parameters().findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
+    return editor ? editor->findChild<QWidget*>(QLatin1String(name)) : nullptr;
+  }
+
+  /// Clicks the tab: 0 is what all share, 1 pane A.
+  void scope(int tab) {
+    auto* tabs = window.findChild<QTabBar*>("scopes");
+    QTest::mouseClick(tabs, Qt::LeftButton, Qt::NoModifier, tabs->tabRect(tab).center());
+  }
+
+  void type_step(std::size_t pane, const QString& text) {
+    auto* field = part<ExactField>(pane, "step");
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClicks(field, text);
+    QTest::keyClick(field, Qt::Key_Return);
+  }
+
+  void play_to_the_end() {
+    window.findChild<QComboBox*>("speed")->setCurrentIndex(7);  // fastest
+    QTest::mouseClick(window.findChild<QToolButton*>("playButton"), Qt::LeftButton);
+    settle();
+    QTRY_VERIFY_WITH_TIMEOUT(!status().playing, 120000);
+    settle();
+  }
+
+  CompareWindow window;
+};
+
+}  // namespace
+
+class CompareTest : public QObject {
+  Q_OBJECT
+
+ private Q_SLOTS:
+  void initTestCase() {
+    QStandardPaths::setTestModeEnabled(true);
+    QApplication::setOrganizationName("Clothlab");
+    QApplication::setApplicationName("clothlab-compare-test");
+    apply_theme(*qApp, false);
+  }
+
+  void the_main_window_compares_the_scene_being_edited_with_two_other_methods() {
+    MainWindow window;
+    window.setAsksToSave(false);
+    window.show();
+    QVERIFY(QTest::qWaitForWindowActive(&window));
+    window.openScene("corners-free");
+    window.document().setParameter("springs.structural", 123.0);
+    window.findChild<QAction*>("compareMethods")->trigger();
+    CompareWindow* compare = nullptr;
+    for (QWidget* top : QApplication::topLevelWidgets())
+      if (auto* found = qobject_cast<CompareWindow*>(top)) compare = found;
+    QVERIFY(compare);
+    compare->simulation().settle();
+    const cloth::Comparison& comparison = compare->document().comparison();
+    QCOMPARE(comparison.scene, window.document().scene());
+    QCOMPARE(comparison.panes.size(), std::size_t{3});
+    QCOMPARE(compare->panes().paneCount(), std::size_t{3});
+    QVERIFY(compare->simulation().status().refusal.empty());
+    compare->setAsksToSave(false);
+    compare->close();
+  }
+
+  void panes_show_what_lock_step_computes_to_the_bit() {
+    CompareBench bench;
+    bench.play_to_the_end();
+    cloth::LockStep expected(small_comparison());
+    for (std::int64_t k = 1; k <= expected.last_index(); ++k) QVERIFY(expected.advance(k));
+    for (std::size_t pane = 0; pane < 2; ++pane) {
+      const auto& shown = bench.window.panes().pane(pane).view().frame();
+      const cloth::Vec3Field& position = expected.lane(pane).state.position;
+      QCOMPARE(shown->positions.size(), 3 * position.size());
+      for (std::size_t i = 0; i < position.size(); ++i)
+        QCOMPARE(shown->positions[3 * i + 1], static_cast<float>(position.y()[i]));
+    }
+    QCOMPARE(*bench.status().panes[1].rms, expected.difference(1)->rms);
+    QVERIFY(bench.part<QLabel>(1, "difference")->text().startsWith("RMS "));
+    QCOMPARE(bench.part<QLabel>(0, "difference")->text(), QString("Reference"));
+    QVERIFY(bench.part<QLabel>(0, "cost")->text().endsWith("s/s"));
+  }
+
+  void dragging_a_shared_slider_acts_on_all_panes_and_is_one_undo_step() {
+    CompareBench bench;
+    auto* slider = bench.editor("springs.structural", "slider");
+    QVERIFY(slider);
+    const double before = bench.comparison().scene.springs->structural;
+    const int y = slider->height() / 2;
+    drag(slider, {slider->width() * 2 / 5, y}, {slider->width() * 3 / 5, y});
+    const double after = bench.comparison().scene.springs->structural;
+    QVERIFY(after != before);
+    QCOMPARE(bench.window.document().undoStack().count(), 1);
+    bench.settle();
+    QCOMPARE(bench.status().comparison->scene.springs->structural, after);
+    bench.action("undo")->trigger();
+    QCOMPARE(bench.comparison().scene.springs->structural, before);
+    QCOMPARE(bench.window.document().form().scene().springs->structural, before);
+    bench.action("redo")->trigger();
+    bench.settle();
+    QCOMPARE(bench.status().comparison->scene.springs->structural, after);
+  }
+
+  void a_value_changed_with_a_pane_chosen_is_its_own_until_it_is_shared_again() {
+    CompareBench bench;
+    bench.scope(2);  // B
+    QCOMPARE(bench.window.document().scope(), std::optional<std::size_t>(1));
+    auto* field = qobject_cast<ExactField*>(bench.editor("springs.structural", "field"));
+    QVERIFY(field);
+    const double shared = bench.comparison().scene.springs->structural;
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClicks(field, "77");
+    QTest::keyClick(field, Qt::Key_Return);
+    QCOMPARE(bench.comparison().scene.springs->structural, shared);
+    QCOMPARE(scene_of(bench.comparison(), 0).springs->structural, shared);
+    QCOMPARE(scene_of(bench.comparison(), 1).springs->structural, 77.0);
+    auto* note = qobject_cast<QLabel*>(bench.editor("springs.structural", "note"));
+    QVERIFY(note->text().startsWith("Own value"));
+
+    bench.scope(0);
+    note = qobject_cast<QLabel*>(bench.editor("springs.structural", "note"));
+    QVERIFY2(note->text().contains("B 77"), qPrintable(note->text()));
+    bench.settle();
+    QCOMPARE(bench.status().comparison->panes[1].own.size(), std::size_t{2});
+
+    bench.scope(2);
+    QTest::mouseClick(bench.editor("springs.structural", "noteButton"), Qt::LeftButton);
+    QCOMPARE(scene_of(bench.comparison(), 1).springs->structural, shared);
+    QCOMPARE(bench.window.document().form().scene().springs->structural, shared);
+  }
+
+  void method_and_step_are_changed_in_the_head_of_a_pane() {
+    CompareBench bench;
+    auto* method = bench.part<QComboBox>(1, "method");
+    QCOMPARE(method->currentText(), QString("Runge-Kutta 4"));
+    method->setFocus();
+    QTest::keyClick(method, Qt::Key_Up);  // Verlet
+    QCOMPARE(method->currentText(), QString("Verlet"));
+    QCOMPARE(scene_of(bench.comparison(), 1).integrator.method, std::string("verlet"));
+    bench.type_step(1, "0.25 ms");
+    QCOMPARE(*scene_of(bench.comparison(), 1).integrator.time_step, 0.00025);
+    bench.type_step(1, "nonsense");
+    QCOMPARE(*scene_of(bench.comparison(), 1).integrator.time_step, 0.00025);
+    bench.type_step(1, "auto");
+    QVERIFY(!scene_of(bench.comparison(), 1).integrator.time_step);
+    bench.settle();
+    QVERIFY(bench.status().refusal.empty());
+  }
+
+  void a_pane_is_duplicated_and_removed_and_keeps_its_name_and_colour() {
+    CompareBench bench(small_comparison({"verlet", "rk4", "semi-implicit-euler"}));
+    bench.choose(1, "duplicate");
+    QCOMPARE(bench.window.panes().paneCount(), std::size_t{4});
+    QCOMPARE(bench.comparison().panes[2].name, std::string("D"));
+    QCOMPARE(bench.comparison().panes[2].own, bench.comparison().panes[1].own);
+    QVERIFY(!bench.part<QAction>(0, "duplicate")->isEnabled());
+    bench.settle();
+    QCOMPARE(bench.status().panes.size(), std::size_t{4});
+    bench.choose(1, "removePane");
+    QCOMPARE(bench.window.panes().paneCount(), std::size_t{3});
+    QCOMPARE(bench.comparison().panes[1].name, std::string("D"));
+    bench.settle();
+    QCOMPARE(bench.status().panes[1].style, 3);
+    bench.action("undo")->trigger();
+    QCOMPARE(bench.window.panes().paneCount(), std::size_t{4});
+  }
+
+  void a_pane_that_diverges_says_why_and_the_others_go_on() {
+    cloth::Comparison comparison = small_comparison({"rk4", "explicit-euler"});
+    cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
+    CompareBench bench(comparison);
+    bench.play_to_the_end();
+    auto* why = bench.part<QLabel>(1, "stopped");
+    QVERIFY(why->isVisible());
+    QVERIFY2(why->text().startsWith("Stopped: it "), qPrintable(why->text()));
+    QVERIFY(!bench.part<QLabel>(0, "stopped")->isVisible());
+    QCOMPARE(bench.status().panes[0].simulated, bench.status().duration);
+    QCOMPARE(bench.window.ranking().item(1, 0)->text(), QString("B"));  // stopped ones come last
+  }
+
+  void the_reference_is_chosen_and_differences_colour_the_cloth() {
+    CompareBench bench;
+    auto* reference = bench.window.findChild<QComboBox*>("reference");
+    QCOMPARE(reference->currentText(), QString("Pane A"));
+    bench.choose(1, "makeReference");
+    QCOMPARE(bench.comparison().reference, std::string("B"));
+    QCOMPARE(reference->currentText(), QString("Pane B"));
+    reference->setFocus();
+    QTest::keyClick(reference, Qt::Key_Home);
+    QCOMPARE(bench.comparison().reference, std::string("controlled"));
+    bench.window.panes().pane(0).view().setFocus();
+    QTest::keyClick(&bench.window, Qt::Key_D);
+    QCOMPARE(bench.window.panes().pane(0).view().mode(), ViewMode::strain);
+    bench.play_to_the_end();
+    const auto& frame = bench.window.panes().pane(0).view().frame();
+    QVERIFY(frame->shows_difference);
+    QCOMPARE(*std::max_element(frame->strain.begin(), frame->strain.end()),
+             static_cast<float>(*bench.status().panes[0].largest));
+    QVERIFY(bench.status().floor.has_value());
+  }
+
+  void one_camera_moves_in_all_panes() {
+    CompareBench bench;
+    ClothView& first = bench.window.panes().pane(0).view();
+    if (!first.hasOpenGl()) QSKIP("no OpenGL here");
+    drag(&first, {20, 60}, {90, 80}, Qt::RightButton);
+    QVERIFY(!(first.camera().pose() == CameraPose()));
+    QCOMPARE(bench.window.panes().pane(1).view().camera().pose() == first.camera().pose(), true);
+    bench.choose(0, "duplicate");
+    QVERIFY(bench.window.panes().pane(2).view().camera().pose() == first.camera().pose());
+  }
+
+  void a_hand_and_pins_act_on_all_panes_alike() {
+    cloth::Comparison comparison = small_comparison({"verlet", "verlet"});
+    CompareBench bench(comparison);
+    ClothView& view = bench.window.panes().pane(1).view();
+    if (!view.hasOpenGl()) QSKIP("no OpenGL here");
+    QTest::qWait(100);
+    const int particle = 4 * 9 + 4;
+    const Eigen::Vector2d p = view.camera().project(particle_position(*view.frame(), particle));
+    const QPoint at(qRound(p.x()), qRound(p.y()));
+    bench.action("play")->trigger();
+    drag(&view, at, at + QPoint(30, -20));
+    bench.action("toolPin")->trigger();
+    bench.settle();
+    QTest::mouseClick(&view, Qt::LeftButton, Qt::NoModifier, at);
+    bench.action("play")->trigger();
+    bench.settle();
+    QCOMPARE(bench.status().panes[1].rms.value_or(-1), 0.0);  // the same hand at the same times
+  }
+
+  void the_table_ranks_sorts_and_copies() {
+    CompareBench bench(small_comparison({"rk4", "verlet", "semi-implicit-euler"}));
+    bench.play_to_the_end();
+    RankingTable& table = bench.window.ranking();
+    QCOMPARE(table.rowCount(), 3);
+    const auto order = cloth::ranked(bench.status().panes);
+    for (int row = 0; row < 3; ++row)
+      QCOMPARE(table.item(row, 0)->text().toStdString(),
+               bench.status().panes[order[static_cast<std::size_t>(row)]].name);
+    table.setFocus();
+    QTest::keyClick(&table, Qt::Key_C, Qt::ControlModifier);
+    const QString text = QApplication::clipboard()->text();
+    QCOMPARE(text.count('\n'), 4);
+    QVERIFY(text.startsWith("Pane\tMethod\tBy error\tRMS [mm]"));
+  }
+
+  void recording_writes_the_rows_of_the_command_line() {
+    QTemporaryDir folder;
+    CompareBench bench;
+    bench.window.startRecording(folder.filePath("window"));
+    bench.play_to_the_end();
+    QVERIFY(!bench.status().recording);
+    const std::filesystem::path alone = folder.filePath("alone").toStdString();
+    cloth::run_comparison(small_comparison(), {.folder = alone, .progress = {}, .may_go_on = {}});
+    const std::filesystem::path window = folder.filePath("window").toStdString();
+    for (const char* file : {"A.csv", "B.csv", "compare.csv"}) {
+      QCOMPARE(timeless_rows(window / file).size(), std::size_t{31});
+      QVERIFY2(timeless_rows(window / file) == timeless_rows(alone / file), file);
+    }
+  }
+
+  void a_comparison_is_saved_and_opened_again() {
+    QTemporaryDir folder;
+    CompareBench bench;
+    bench.choose(0, "duplicate");
+    QVERIFY(bench.window.document().isModified());
+    const QString path = folder.filePath("mine.compare.json");
+    QVERIFY(bench.window.saveTo(path));
+    QVERIFY(!bench.window.document().isModified());
+    const cloth::Comparison saved = bench.comparison();
+    CompareBench again;
+    again.window.openComparison(path);
+    again.settle();
+    QCOMPARE(again.comparison(), saved);
+    QCOMPARE(again.window.panes().paneCount(), std::size_t{3});
+    again.window.openComparison(folder.filePath("missing.compare.json"));
+    QVERIFY(again.window.notice().text().contains("missing.compare.json"));
+    QCOMPARE(again.comparison(), saved);
+  }
+
+  /// Prints; how fast the machine is is no law.
+  void the_windows_thread_stays_free_with_four_large_panes() {
+    cloth::Comparison comparison = small_comparison({"verlet", "semi-implicit-euler", "rk4", "verlet"});
+    comparison.scene = cloth::builtin_scene("corners-free");
+    comparison.scene.cloth.rows = comparison.scene.cloth.columns = 128;
+    CompareBench bench(comparison);
+    bench.window.findChild<QAction*>("modeStrain")->trigger();
+    double longest = 0;
+    QElapsedTimer whole;
+    whole.start();
+    QTimer beat;
+    QElapsedTimer since;
+    since.start();
+    beat.setTimerType(Qt::PreciseTimer);
+    connect(&beat, &QTimer::timeout, this, [&] {
+      longest = std::max(longest, 1e-6 * static_cast<double>(since.nsecsElapsed()));
+      since.restart();
+    });
+    beat.start(0);  // between any two events
+    bench.action("play")->trigger();
+    QTest::qWait(4000);
+    bench.action("play")->trigger();
+    beat.stop();
+    qInfo("four panes of 128 x 128 for %.1f s: %.3f s simulated, longest event %.0f ms",
+          1e-3 * static_cast<double>(whole.elapsed()), bench.status().time, longest);
+    QVERIFY(bench.status().refusal.empty());
+  }
+};
+
+}  // namespace clothlab::test
+
+QTEST_MAIN(clothlab::test::CompareTest)
+#include "compare_test.moc"

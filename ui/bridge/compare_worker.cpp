@@ -1,0 +1,339 @@
+#include "bridge/compare_worker.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "bridge/fill_frame.h"
+
+namespace clothlab {
+namespace {
+
+using Clock = WorkerPace::Clock;
+
+constexpr auto frame_interval = std::chrono::milliseconds(14);
+constexpr auto flush_interval = std::chrono::milliseconds(500);
+constexpr std::size_t most_samples = 1 << 18;
+
+/// Where cores are few, the window draws first. The threads that the panes run on inherit it.
+void yield_to_the_window() {
+  constexpr int niceness = 5;
+  [[maybe_unused]] const int set = ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
+}
+
+int threads_for(int wanted) {
+  if (wanted > 0) return wanted;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+}
+
+/// Whether the command has to wait for a common time.
+bool acts_on_the_panes(const CompareCommand& command) {
+  using namespace compare_command;
+  return std::holds_alternative<Edit>(command) || std::holds_alternative<SingleStep>(command) ||
+         std::holds_alternative<Brush>(command) || std::holds_alternative<Pull>(command) ||
+         std::holds_alternative<StartRecording>(command) || std::holds_alternative<StopRecording>(command);
+}
+
+/// Of several of one kind only the newest counts: a slider or a hand moves faster than panes do.
+bool is_overtaken_by(const CompareCommand& command, const CompareCommand& next) {
+  using namespace compare_command;
+  return command.index() == next.index() &&
+         (std::holds_alternative<Load>(command) || std::holds_alternative<Edit>(command) ||
+          std::holds_alternative<Brush>(command) || std::holds_alternative<Pull>(command));
+}
+
+}  // namespace
+
+CompareWorker::CompareWorker(int threads)
+    : threads_(threads_for(threads)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+CompareWorker::~CompareWorker() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void CompareWorker::send(CompareCommand command) {
+  {
+    const std::lock_guard lock(mutex_);
+    inbox_.push_back(std::move(command));
+    ++sent_;
+    busy_ = true;
+    has_mail_ = true;
+  }
+  wake_.notify_one();
+}
+
+std::vector<CompareSample> CompareWorker::take_samples() {
+  const std::lock_guard lock(mutex_);
+  return std::move(samples_);
+}
+
+CompareStatus CompareWorker::status() const {
+  const std::lock_guard lock(mutex_);
+  return shared_status_;
+}
+
+void CompareWorker::wait_until_idle() {
+  std::unique_lock lock(mutex_);
+  idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
+}
+
+void CompareWorker::run(const std::stop_token& stop) {
+  yield_to_the_window();
+  while (!stop.stop_requested()) {
+    wait_for_work(stop);
+    handle_waiting();
+    if (status_.playing || under_way_) play_for_a_moment();
+    publish_status();
+    const std::lock_guard lock(mutex_);
+    busy_ = has_work() || !inbox_.empty();
+    if (done_ == handled_ || under_way_) continue;
+    done_ = handled_;
+    idle_.notify_all();
+  }
+  end_recording();
+}
+
+bool CompareWorker::has_work() const {
+  return status_.playing || under_way_ || !waiting_.empty();
+}
+
+/// Until there is a command, or the panes are due at their next common time. Takes the commands in.
+void CompareWorker::wait_for_work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  const auto has_command = [this] { return !inbox_.empty(); };
+  if (!has_work()) {
+    wake_.wait(lock, stop, has_command);
+  } else if (waiting_.empty() && !under_way_) {
+    const auto due = pace_.due_time(lockstep_->time_of(lockstep_->index() + 1));
+    if (due > Clock::now()) wake_.wait_until(lock, stop, due, has_command);
+  }
+  std::move(inbox_.begin(), inbox_.end(), std::back_inserter(waiting_));
+  inbox_.clear();
+  has_mail_ = false;
+}
+
+/// In their order, up to the first one that has to wait for a common time.
+void CompareWorker::handle_waiting() {
+  while (!waiting_.empty()) {
+    if (waiting_.size() > 1 && is_overtaken_by(waiting_[0], waiting_[1])) {
+      waiting_.pop_front();
+      ++handled_;
+      continue;
+    }
+    if (under_way_ && acts_on_the_panes(waiting_.front())) return;
+    const CompareCommand command = std::move(waiting_.front());
+    waiting_.pop_front();
+    std::visit([this](const auto& c) { handle(c); }, command);
+    ++handled_;
+  }
+}
+
+void CompareWorker::handle(const compare_command::Load& load) {
+  status_.playing = false;
+  start(load.comparison);
+}
+
+void CompareWorker::handle(const compare_command::Restart&) {
+  if (!lockstep_) return;
+  status_.playing = false;
+  start(cloth::Comparison(lockstep_->comparison()));
+}
+
+void CompareWorker::start(const cloth::Comparison& comparison) {
+  end_recording();
+  status_.refusal.clear();
+  if (const auto problems = cloth::find_problems(comparison); !problems.empty()) {
+    status_.refusal = problems.front().text();
+    status_.playing = false;
+    return;
+  }
+  under_way_.reset();
+  lockstep_ = std::make_unique<cloth::LockStep>(comparison);
+  ++topology_;
+  pace_.restart(0, Clock::now());
+  meter_.restart(0, Clock::now());
+  {
+    const std::lock_guard lock(mutex_);
+    samples_.clear();  // of the run before
+  }
+  take_sample(true);
+  publish_frames();
+}
+
+void CompareWorker::handle(const compare_command::Edit& edit) {
+  if (!lockstep_) return start(edit.comparison);
+  status_.refusal.clear();
+  if (const auto problems = cloth::find_problems(edit.comparison); !problems.empty()) {
+    status_.refusal = problems.front().text();
+    return;
+  }
+  if (!cloth::acts_at_once(lockstep_->comparison(), edit.comparison)) return start(edit.comparison);
+  lockstep_->edit(edit.comparison);
+  publish_frames();
+}
+
+void CompareWorker::handle(const compare_command::Play&) {
+  if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
+  status_.playing = true;
+  const double now = lockstep_->time_of(lockstep_->index());
+  pace_.restart(now, Clock::now());
+  meter_.restart(now, Clock::now());
+}
+
+void CompareWorker::handle(const compare_command::Pause&) {
+  status_.playing = false;
+}
+
+void CompareWorker::handle(const compare_command::SingleStep&) {
+  status_.playing = false;
+  if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
+  under_way_ = lockstep_->index() + 1;
+}
+
+void CompareWorker::handle(const compare_command::Speed& speed) {
+  status_.speed = speed.factor;
+  pace_.set_speed(speed.factor, lockstep_ ? lockstep_->time_of(lockstep_->index()) : 0, Clock::now());
+}
+
+void CompareWorker::handle(const compare_command::Brush& brush) {
+  if (lockstep_) lockstep_->set_brush(brush.gust);
+}
+
+void CompareWorker::handle(const compare_command::Pull& pull) {
+  if (lockstep_) lockstep_->set_pull(pull.pull);
+}
+
+void CompareWorker::handle(const compare_command::Colour& colour) {
+  colouring_ = colour.by;
+  if (lockstep_) publish_frames();
+}
+
+void CompareWorker::handle(const compare_command::StartRecording& start) {
+  end_recording();
+  if (!lockstep_) return;
+  status_.recording_error.clear();
+  status_.recording_folder = start.folder;
+  status_.recorded_rows = 0;
+  recorder_.emplace();
+  note_record(recorder_->open(start.folder, *lockstep_));
+  if (!recorder_) return;
+  note_record(recorder_->add_row(*lockstep_));
+  ++status_.recorded_rows;
+}
+
+void CompareWorker::handle(const compare_command::StopRecording&) {
+  end_recording();
+}
+
+/// To the next common time, if it is due, or as far as it goes until there is a command.
+void CompareWorker::play_for_a_moment() {
+  if (!under_way_) {
+    const std::int64_t next = lockstep_->index() + 1;
+    if (!pace_.is_due(lockstep_->time_of(next), Clock::now())) return;
+    under_way_ = next;
+  }
+  const std::stop_token stop = thread_.get_stop_token();
+  const auto may_go_on = [this, &stop] { return !has_mail_ && !stop.stop_requested(); };
+  if (!lockstep_->advance(*under_way_, may_go_on, threads_)) return;
+  under_way_.reset();
+  arrive();
+}
+
+void CompareWorker::arrive() {
+  const double time = lockstep_->time_of(lockstep_->index());
+  meter_.count(time, Clock::now());
+  if (lockstep_->all_stopped()) {
+    status_.playing = false;
+    end_recording();
+    publish_frames();
+    return;
+  }
+  take_sample(false);
+  if (recorder_) {
+    note_record(recorder_->add_row(*lockstep_));
+    ++status_.recorded_rows;
+  }
+  if (recorder_ && Clock::now() - last_flush_ > flush_interval) {
+    note_record(recorder_->flush());
+    last_flush_ = Clock::now();
+  }
+  if (lockstep_->index() == lockstep_->last_index()) {
+    status_.playing = false;
+    end_recording();
+  }
+  if (!status_.playing || Clock::now() - last_frame_ >= frame_interval) publish_frames();
+}
+
+void CompareWorker::take_sample(bool is_start) {
+  CompareSample sample{.time_s = lockstep_->time_of(lockstep_->index()), .is_start = is_start, .panes = {}};
+  for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) {
+    const cloth::Lane& lane = lockstep_->lane(i);
+    if (!lane.going()) continue;
+    sample.panes[i].total_J = lane.measurement.energy.total();
+    sample.panes[i].max_strain = lane.measurement.strain.maximum();
+    if (is_start) continue;  // no step was taken, and all panes are alike
+    sample.panes[i].step_ms = 1e3 * lane.step_time;
+    if (const cloth::Difference* difference = lockstep_->difference(i))
+      sample.panes[i].rms_m = difference->rms;
+  }
+  const std::lock_guard lock(mutex_);
+  if (samples_.size() < most_samples)
+    samples_.push_back(sample);
+  else
+    ++status_.lost_samples;
+}
+
+void CompareWorker::note_record(const std::optional<cloth::IoError>& error) {
+  if (!error) return;
+  status_.recording_error = error->text();
+  end_recording();
+}
+
+void CompareWorker::end_recording() {
+  if (!recorder_) return;
+  const auto error = recorder_->close();
+  if (error && status_.recording_error.empty()) status_.recording_error = error->text();
+  recorder_.reset();
+}
+
+void CompareWorker::publish_frames() {
+  for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) publish_frame(i);
+  last_frame_ = Clock::now();
+}
+
+void CompareWorker::publish_frame(std::size_t pane) {
+  const cloth::Lane& lane = lockstep_->lane(pane);
+  const auto frame = frames_[pane].blank();
+  frame->topology = topology_;
+  fill_frame(*lane.simulation, lane.state, normals_, *frame);
+  if (colouring_ == Colouring::difference) {
+    static const std::vector<float> none;
+    const cloth::Difference* difference = lockstep_->difference(pane);
+    show_difference(difference ? difference->distance : none, *frame);
+  }
+  frames_[pane].publish(frame);
+}
+
+void CompareWorker::publish_status() {
+  status_.threads = threads_;
+  status_.recording = recorder_.has_value();
+  status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
+  if (lockstep_ && !under_way_) {
+    status_.time = lockstep_->time_of(lockstep_->index());
+    status_.duration = lockstep_->time_of(lockstep_->last_index());
+    if (!status_.comparison || *status_.comparison != lockstep_->comparison())
+      status_.comparison = std::make_shared<cloth::Comparison>(lockstep_->comparison());
+    status_.panes = cloth::results_of(*lockstep_);
+    status_.reference = cloth::reference_text(*lockstep_);
+    const auto reference = lockstep_->reference_lane();
+    const bool failed = reference && !lockstep_->lane(*reference).going();
+    status_.reference_failure = failed ? cloth::describe(*lockstep_->lane(*reference).divergence) : "";
+    status_.floor = lockstep_->floor() ? std::optional(lockstep_->floor()->rms) : std::nullopt;
+  }
+  const std::lock_guard lock(mutex_);
+  shared_status_ = status_;
+}
+
+}  // namespace clothlab

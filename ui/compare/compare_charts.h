@@ -1,0 +1,64 @@
+// The charts of a comparison: total energy, maximum strain, step time and difference from the reference over
+// simulated time, a curve for each pane in its colour and marker.
+#pragma once
+
+#include <QTimer>
+#include <QWidget>
+#include <memory>
+#include <vector>
+
+#include "bridge/compare_status.h"
+#include "charts/live_chart.h"
+#include "charts/time_view.h"
+
+namespace clothlab {
+
+class CompareCharts : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CompareCharts(QWidget* parent = nullptr);
+  ~CompareCharts() override;
+
+  /// Begins anew with the curves of these panes.
+  void setPanes(const cloth::Comparison& comparison);
+  void append(const std::vector<CompareSample>& samples);
+
+  const ChartRecord& record() const { return record_; }
+  LiveChart* chart(const QString& key) const;
+
+  QSize sizeHint() const override { return {400, 600}; }
+  QSize minimumSizeHint() const override { return {280, 320}; }
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  struct Curves {
+    std::vector<int> styles;
+    std::vector<QString> names;
+    bool operator==(const Curves&) const = default;
+  };
+
+  void makeCharts();
+  void connectChart(LiveChart* chart);
+  void follow();
+  void changeLater();
+  void refresh();
+  void layOut();
+  void readAt(std::optional<double> time_s);
+
+  Curves curves_;
+  std::vector<std::unique_ptr<ChartSpec>> specs_;  ///< charts refer to them
+  std::vector<LiveChart*> charts_;
+  ChartRecord record_;
+  TimeView time_;
+  QTimer timer_;
+  std::optional<double> cursor_;  ///< s
+  double gutter_ = 0;             ///< px, the same in all charts
+};
+
+}  // namespace clothlab

@@ -1,0 +1,70 @@
+// The comparison being edited, its file and its undo history. Every edit is an undoable command. The form
+// edits one scene at a time, that of the scope: what all panes share, or one pane's; an edit of a pane's
+// becomes its own value.
+#pragma once
+
+#include <QUndoStack>
+#include <optional>
+
+#include "compare/comparison.h"
+#include "document/lab_document.h"
+
+namespace clothlab {
+
+class CompareDocument : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit CompareDocument(QObject* parent = nullptr);
+  ~CompareDocument() override;
+
+  const cloth::Comparison& comparison() const { return comparison_; }
+  std::size_t paneCount() const { return comparison_.panes.size(); }
+  QUndoStack& undoStack() { return undo_stack_; }
+  QString path() const { return path_; }  ///< of the file; empty for one that was never saved
+  QString title() const;                  ///< the comparison's, else the scene's, else "Untitled"
+  bool isModified() const { return changed_since_load_ || !undo_stack_.isClean(); }
+
+  /// Takes another comparison over and forgets the history. `unsaved`: it lies in no file yet.
+  void load(cloth::Comparison comparison, const QString& path = {}, bool unsaved = false);
+  void markSaved(const QString& path);
+
+  /// The scene that the form edits, and whose it is: a pane's index, or nothing for what all share.
+  LabDocument& form() { return form_; }
+  std::optional<std::size_t> scope() const { return scope_; }
+  void setScope(std::optional<std::size_t> pane);
+
+  /// The rule that the value breaks, or an empty string when done.
+  QString setOwn(std::size_t pane, const std::string& path, const cloth::ParameterValue& value);
+  /// The pane has the shared value again.
+  void useShared(std::size_t pane, const std::string& path);
+  void duplicatePane(std::size_t pane);  ///< nothing if there are most_panes
+  void removePane(std::size_t pane);     ///< nothing if there are least_panes
+  void setReference(const std::string& reference);
+  void togglePin(int row, int column);
+
+ Q_SIGNALS:
+  void changed();       ///< by an edit, undo or redo
+  void loaded();        ///< the whole comparison is new
+  void scopeChanged();  ///< also when the scope's pane went
+  void titleChanged();
+  void modifiedChanged(bool modified);
+
+ private:
+  class EditCommand;
+
+  void takeFormEdit(const SceneChange& change);
+  void push(const QString& text, cloth::Comparison after, int drag = 0, const std::string& place = {});
+  void apply(const cloth::Comparison& target);
+  void showScope();
+
+  cloth::Comparison comparison_;
+  QString path_;
+  bool changed_since_load_ = false;
+  QUndoStack undo_stack_;
+  LabDocument form_;
+  std::optional<std::size_t> scope_;
+  bool following_form_ = false;  ///< the form has the edit already
+};
+
+}  // namespace clothlab

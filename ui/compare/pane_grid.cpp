@@ -1,0 +1,199 @@
+#include "compare/pane_grid.h"
+
+#include <QGridLayout>
+#include <algorithm>
+#include <utility>
+
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr double least_difference = 1e-9;  // m, at the top of the colours
+constexpr int glide_interval = 16;         // ms
+constexpr double most_drawing = 20;        // ms of all panes together in one event
+constexpr int turn_interval = 8;           // ms from one pane's drawing to the next one's
+constexpr int rest_delay = 150;            // ms from one pane's smooth picture to the next one's
+
+}  // namespace
+
+PaneGrid::PaneGrid(QWidget* parent)
+    : QWidget(parent),
+      grid_(new QGridLayout(this)),
+      colour_bar_(new ColourBar(this)),
+      differences_(least_difference) {
+  setObjectName("paneGrid");
+  setFocusPolicy(Qt::ClickFocus);
+  grid_->addWidget(colour_bar_, 0, 2, 2, 1);
+  colour_bar_->hide();
+  grid_->setContentsMargins(spacing / 2, spacing / 2, spacing / 2, spacing / 2);
+  grid_->setSpacing(spacing / 2);
+  // At once: a window that gets its first OpenGL view after it was shown is made anew.
+  while (panes_.size() < cloth::least_panes) addPane();
+  layOut();
+  colour_timer_.setSingleShot(true);
+  colour_timer_.setInterval(glide_interval);
+  connect(&colour_timer_, &QTimer::timeout, this, &PaneGrid::followColours);
+  turn_timer_.setSingleShot(true);
+  turn_timer_.setInterval(turn_interval);
+  connect(&turn_timer_, &QTimer::timeout, this, &PaneGrid::showNextFrame);
+  colour_clock_.start();
+}
+
+void PaneGrid::showComparison(const cloth::Comparison& comparison) {
+  const std::size_t count = comparison.panes.size(), before = panes_.size();
+  while (panes_.size() < count) addPane();
+  while (panes_.size() > count) {
+    panes_.back()->hide();  // it may be the sender of the signal that led here
+    grid_->removeWidget(panes_.back());
+    panes_.back()->disconnect(this);
+    panes_.back()->view().disconnect(this);
+    panes_.back()->deleteLater();
+    panes_.pop_back();
+  }
+  if (count != before) layOut();
+  for (std::size_t i = 0; i < count; ++i)
+    panes_[i]->showPane(comparison, i, count<cloth::most_panes, count> cloth::least_panes);
+}
+
+void PaneGrid::addPane() {
+  auto* pane = new PaneView(this);
+  ClothView* view = &pane->view();
+  view->setTool(tool_);
+  view->setRestDelay(playing_ ? -1 : rest_delay * static_cast<int>(panes_.size() + 1));
+  view->setMode(mode_);
+  if (!panes_.empty()) {
+    ClothView& first = panes_.front()->view();
+    view->setAnimated(first.animated());
+    if (first.cameraWasMoved()) view->setCameraPose(first.camera().pose());
+  }
+  const std::size_t i = panes_.size();
+  panes_.push_back(pane);
+  connect(pane, &PaneView::methodChosen, this,
+          [this, i](const std::string& method) { Q_EMIT methodChosen(i, method); });
+  connect(pane, &PaneView::stepChosen, this,
+          [this, i](const cloth::ParameterValue& step) { Q_EMIT stepChosen(i, step); });
+  connect(pane, &PaneView::duplicateWanted, this, [this, i] { Q_EMIT duplicateWanted(i); });
+  connect(pane, &PaneView::removeWanted, this, [this, i] { Q_EMIT removeWanted(i); });
+  connect(pane, &PaneView::referenceWanted, this, [this, i] { Q_EMIT referenceWanted(i); });
+  connect(view, &ClothView::pullChanged, this, &PaneGrid::pullChanged);
+  connect(view, &ClothView::pullEnded, this, &PaneGrid::pullEnded);
+  connect(view, &ClothView::brushChanged, this, &PaneGrid::brushChanged);
+  connect(view, &ClothView::brushEnded, this, &PaneGrid::brushEnded);
+  connect(view, &ClothView::pinToggled, this, &PaneGrid::pinToggled);
+  connect(view, &ClothView::cameraMoved, this,
+          [this, view](const CameraPose& pose) { followCamera(*view, pose); });
+}
+
+/// Two panes beside each other; three and four in two rows.
+void PaneGrid::layOut() {
+  for (PaneView* pane : panes_) grid_->removeWidget(pane);
+  for (std::size_t i = 0; i < panes_.size(); ++i) {
+    const int row = static_cast<int>(i) / 2, column = static_cast<int>(i) % 2;
+    grid_->addWidget(panes_[i], row, column);
+    panes_[i]->show();
+  }
+  for (int line = 0; line < 2; ++line) {
+    grid_->setColumnStretch(line, 1);
+    grid_->setRowStretch(line, line == 0 || panes_.size() > 2 ? 1 : 0);
+  }
+}
+
+void PaneGrid::followCamera(const ClothView& moved, const CameraPose& pose) {
+  for (PaneView* pane : panes_)
+    if (&pane->view() != &moved) pane->view().setCameraPose(pose);
+}
+
+void PaneGrid::showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame) {
+  if (pane >= panes_.size()) return;
+  pending_[pane] = std::move(frame);
+  if (!takes_turns_)
+    panes_[pane]->view().showFrame(std::exchange(pending_[pane], nullptr));
+  else if (!turn_timer_.isActive())
+    turn_timer_.start();
+}
+
+/// All panes in one event would hold the window's thread for as long as their drawings take together. Where
+/// that is long, each has an event of its own; what is shown at rest is of one time.
+void PaneGrid::showNextFrame() {
+  for (std::size_t i = 1; i <= panes_.size(); ++i) {
+    const std::size_t next = (turn_ + i) % panes_.size();
+    if (!pending_[next]) continue;
+    turn_ = next;
+    panes_[next]->view().showFrame(std::exchange(pending_[next], nullptr));
+    turn_timer_.start();
+    return;
+  }
+}
+
+void PaneGrid::followPlaying(bool playing) {
+  double together = 0;  // ms
+  for (PaneView* pane : panes_) together += pane->view().lastDrawMilliseconds();
+  takes_turns_ = playing && together > most_drawing;
+  if (!takes_turns_)
+    for (std::size_t i = 0; i < panes_.size(); ++i)
+      if (pending_[i]) panes_[i]->view().showFrame(std::exchange(pending_[i], nullptr));
+  if (playing == playing_) return;
+  playing_ = playing;
+  int delay = 0;
+  for (PaneView* pane : panes_) pane->view().setRestDelay(playing ? -1 : delay += rest_delay);
+}
+
+void PaneGrid::showResults(const CompareStatus& status) {
+  const bool has_reference = status.comparison && status.comparison->reference != cloth::no_reference;
+  for (std::size_t i = 0; i < std::min(panes_.size(), status.panes.size()); ++i)
+    panes_[i]->showResult(status.panes[i], has_reference);
+  followPlaying(status.playing);
+  followColours();
+}
+
+/// The same colour is the same value in all panes.
+void PaneGrid::followColours() {
+  if (mode_ != ViewMode::strain) return;
+  double largest = 0, rate = -1;
+  bool difference = false;
+  for (PaneView* pane : panes_) {
+    const auto& frame = pane->view().frame();
+    if (!frame) continue;
+    for (const float value : frame->strain) largest = std::max(largest, static_cast<double>(value));
+    difference = frame->shows_difference;
+    if (!difference) rate = std::max(rate, frame->deformation_rate);
+  }
+  StrainRange& range = difference ? differences_ : strains_;
+  range.follow(largest, rate, 1e-9 * static_cast<double>(colour_clock_.nsecsElapsed()));
+  colour_clock_.restart();
+  for (PaneView* pane : panes_) pane->view().setColourMaximum(range.maximum());
+  if (difference)
+    colour_bar_->showRange(tr("Difference [mm]"), range.maximum(), 1000, -1);
+  else
+    colour_bar_->showRange(tr("Strain [%]"), range.maximum(), 100, rate);
+  if (!range.settled()) colour_timer_.start();
+}
+
+void PaneGrid::resetCamera() {
+  strains_.reset();
+  differences_.reset();
+  for (PaneView* pane : panes_) pane->view().resetCamera();
+}
+
+void PaneGrid::setTool(Tool tool) {
+  tool_ = tool;
+  for (PaneView* pane : panes_) pane->view().setTool(tool);
+}
+
+void PaneGrid::setMode(ViewMode mode) {
+  mode_ = mode;
+  for (PaneView* pane : panes_) pane->view().setMode(mode);
+  colour_bar_->setVisible(mode == ViewMode::strain);
+  followColours();
+}
+
+void PaneGrid::setPreset(CameraPreset preset) {
+  if (!panes_.empty()) panes_.front()->view().setPreset(preset);  // the others follow
+}
+
+void PaneGrid::frameAll() {
+  if (!panes_.empty()) panes_.front()->view().frameAll();
+}
+
+}  // namespace clothlab

@@ -1,0 +1,77 @@
+// The panes side by side: one camera, one tool, one way of colouring and one range of colours for all.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QTimer>
+#include <QWidget>
+#include <array>
+#include <vector>
+
+#include "bridge/compare_worker.h"
+#include "compare/colour_bar.h"
+#include "compare/pane_view.h"
+
+class QGridLayout;
+
+namespace clothlab {
+
+class PaneGrid : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PaneGrid(QWidget* parent = nullptr);
+
+  /// As many panes as the comparison has, each with what it is.
+  void showComparison(const cloth::Comparison& comparison);
+  void showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame);
+  void showResults(const CompareStatus& status);
+  /// The next frames are framed, as for another scene.
+  void resetCamera();
+
+  std::size_t paneCount() const { return panes_.size(); }
+  PaneView& pane(std::size_t i) { return *panes_[i]; }
+  const ColourBar& colourBar() const { return *colour_bar_; }
+
+  void setTool(Tool tool);
+  void setMode(ViewMode mode);
+  ViewMode mode() const { return mode_; }
+  void setPreset(CameraPreset preset);
+  void frameAll();
+
+ Q_SIGNALS:
+  void methodChosen(std::size_t pane, const std::string& method);
+  void stepChosen(std::size_t pane, const cloth::ParameterValue& step);
+  void duplicateWanted(std::size_t pane);
+  void removeWanted(std::size_t pane);
+  void referenceWanted(std::size_t pane);
+  void pullChanged(const cloth::Pull& pull);
+  void pullEnded();
+  void brushChanged(const cloth::BrushGust& gust);
+  void brushEnded();
+  void pinToggled(int particle);
+
+ private:
+  void addPane();
+  void layOut();
+  void followPlaying(bool playing);
+  void showNextFrame();
+  void followCamera(const ClothView& moved, const CameraPose& pose);
+  void followColours();
+
+  QGridLayout* grid_;
+  ColourBar* colour_bar_;
+  std::vector<PaneView*> panes_;
+  std::array<std::shared_ptr<const ClothFrame>, cloth::most_panes> pending_;  ///< frames not shown yet
+  QTimer turn_timer_;         ///< when the next pane's turn comes
+  std::size_t turn_ = 0;      ///< the pane that was drawn last
+  bool takes_turns_ = false;  ///< panes are drawn one after the other
+  bool playing_ = false;
+  Tool tool_ = Tool::pull;
+  ViewMode mode_ = ViewMode::textured;
+  StrainRange strains_;
+  StrainRange differences_;
+  QTimer colour_timer_;         ///< while the range glides
+  QElapsedTimer colour_clock_;  ///< since the range was followed last
+};
+
+}  // namespace clothlab

@@ -1,0 +1,206 @@
+#include "compare/pane_view.h"
+
+#include <QAction>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QSignalBlocker>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "compare/pane_style.h"
+#include "integrators/registry.h"
+#include "main_window/stability_gauge.h"
+#include "params/exact_field.h"
+#include "params/number_text.h"
+#include "params/panel_parts.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int frame_width = 2;  // px
+
+void set_text(QLabel& label, const QString& text) {
+  if (label.text() != text) label.setText(text);
+}
+
+QString millimetres(double metres) {
+  return QString::number(1e3 * metres, 'g', 3);
+}
+
+QString difference_text(const cloth::PaneResult& result, bool has_reference) {
+  if (result.is_reference) return PaneView::tr("Reference");
+  if (!has_reference) return PaneView::tr("No reference");
+  if (!result.rms) return PaneView::tr("No difference measured");
+  const QString text =
+      PaneView::tr("RMS %1 mm, largest %2 mm").arg(millimetres(*result.rms), millimetres(*result.largest));
+  return result.below_floor ? PaneView::tr("%1 (as close as the reference can tell)").arg(text) : text;
+}
+
+}  // namespace
+
+PaneView::PaneView(QWidget* parent)
+    : QFrame(parent),
+      view_(new ClothView(this)),
+      badge_(new PaneBadge(this)),
+      method_(new QuietCombo(this)),
+      step_(new ExactField(this)),
+      gauge_(new StabilityGauge(this)),
+      cost_(new QLabel(this)),
+      difference_(new ElidedLabel(this)),
+      stopped_(new QLabel(this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(frame_width, frame_width, frame_width, frame_width);
+  column->setSpacing(0);
+  column->addWidget(makeHeader());
+  column->addWidget(view_, 1);
+  view_->setMinimumSize(160, 100);
+
+  connect(method_, &QComboBox::activated, this,
+          [this](int index) { Q_EMIT methodChosen(method_->itemData(index).toString().toStdString()); });
+  connect(step_, &ExactField::committed, this, &PaneView::takeStep);
+}
+
+QWidget* PaneView::makeHeader() {
+  auto* header = new QWidget(this);
+  auto* column = new QVBoxLayout(header);
+  column->setContentsMargins(spacing, spacing / 2, spacing / 2, spacing / 2);
+  column->setSpacing(spacing / 4);
+
+  method_->setObjectName("method");
+  method_->setAccessibleName(tr("Method"));
+  for (const cloth::MethodFacts& facts : cloth::integrator_facts())
+    method_->addItem(QString::fromStdString(facts.title), QString::fromStdString(facts.name));
+  step_->setObjectName("step");
+  step_->setUnit("s");
+  step_->setAccessibleName(tr("Time step"));
+  step_->setFixedWidth(104);
+  auto* more = new QToolButton(header);
+  more->setObjectName("more");
+  more->setText(QStringLiteral("⋯"));
+  more->setStyleSheet("QToolButton::menu-indicator { image: none; } QToolButton { padding: 4px 8px; }");
+  more->setAccessibleName(tr("Pane"));
+  more->setToolTip(tr("Duplicate, remove, make it the reference"));
+  more->setPopupMode(QToolButton::InstantPopup);
+  makeMenu(*more);
+  auto* first = new QHBoxLayout;
+  first->setSpacing(spacing / 2);
+  first->addWidget(badge_);
+  first->addWidget(method_, 1);
+  first->addWidget(step_);
+  first->addWidget(more);
+  column->addLayout(first);
+
+  auto* second = new QHBoxLayout;
+  second->addWidget(gauge_, 1);
+  cost_->setObjectName("cost");
+  cost_->setProperty("muted", true);
+  cost_->setToolTip(tr("Seconds of stepping for each simulated second"));
+  second->addWidget(cost_);
+  second->addSpacing(spacing / 2);
+  column->addLayout(second);
+
+  difference_->setObjectName("difference");
+  column->addWidget(difference_);
+  stopped_->setObjectName("stopped");
+  stopped_->setProperty("state", "error");
+  stopped_->setWordWrap(true);
+  stopped_->hide();
+  column->addWidget(stopped_);
+  return header;
+}
+
+void PaneView::makeMenu(QToolButton& button) {
+  auto* menu = new QMenu(&button);
+  duplicate_ = menu->addAction(tr("Duplicate"), this, &PaneView::duplicateWanted);
+  duplicate_->setObjectName("duplicate");
+  remove_ = menu->addAction(tr("Remove"), this, &PaneView::removeWanted);
+  remove_->setObjectName("removePane");
+  menu->addSeparator();
+  make_reference_ = menu->addAction(tr("Measure the others against it"), this, &PaneView::referenceWanted);
+  make_reference_->setObjectName("makeReference");
+  make_reference_->setCheckable(true);
+  button.setMenu(menu);
+}
+
+void PaneView::takeStep(const QString& text) {
+  const QString typed = text.trimmed().toLower();
+  if (typed.isEmpty() || typed == "auto") {
+    Q_EMIT stepChosen(std::string("auto"));
+    return;
+  }
+  auto step = number_from(typed, "s");
+  if (!step)
+    if (const auto milliseconds = number_from(typed, "ms")) step = 1e-3 * *milliseconds;
+  if (step)
+    Q_EMIT stepChosen(*step);
+  else
+    showStepRule(tr("must be a number of seconds or \"auto\""));
+}
+
+void PaneView::showStepRule(const QString& rule) {
+  step_->setInvalid(!rule.isEmpty());
+  step_->setToolTip(rule.isEmpty() ? tr("Time step of this pane: a number of seconds, or \"auto\"") : rule);
+}
+
+void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow,
+                        bool can_shrink) {
+  const cloth::Pane& shown = comparison.panes[pane];
+  const cloth::Scene scene = scene_of(comparison, pane);
+  style_ = style_of(shown);
+  setObjectName("pane:" + QString::fromStdString(shown.name));
+  badge_->setPane(style_, QString::fromStdString(shown.name));
+  badge_->setToolTip(QString::fromStdString(title_of(comparison, pane)));
+  {
+    const QSignalBlocker quiet(method_);
+    method_->setCurrentIndex(method_->findData(QString::fromStdString(scene.integrator.method)));
+  }
+  const StabilityReading reading = read_stability(scene);
+  if (!step_->hasPendingText()) {
+    showStepRule({});
+    if (scene.integrator.time_step)
+      step_->showValue(*scene.integrator.time_step);
+    else
+      step_->showNothing(tr("auto"));
+  }
+  gauge_->setReading(reading);
+  duplicate_->setEnabled(can_grow);
+  remove_->setEnabled(can_shrink);
+  make_reference_->setChecked(comparison.reference == shown.name);
+  dress();
+}
+
+void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
+  set_text(*cost_, result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
+  set_text(*difference_, difference_text(result, has_reference));
+  difference_->setToolTip(result.notice.empty() ? difference_->text()
+                                                : QString::fromStdString(result.notice));
+  const QString why =
+      result.divergence
+          ? tr("Stopped: it %1.").arg(QString::fromStdString(cloth::describe(*result.divergence)))
+          : QString();
+  set_text(*stopped_, why);
+  stopped_->setVisible(result.divergence.has_value());
+  difference_->setVisible(!result.divergence);
+}
+
+void PaneView::dress() {
+  update();
+  badge_->update();
+}
+
+void PaneView::changeEvent(QEvent* event) {
+  QFrame::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange) dress();
+}
+
+void PaneView::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.fillRect(rect(), theme().panel);
+  painter.setPen(QPen(pane_colour(style_), frame_width));
+  painter.drawRect(QRectF(rect()).adjusted(1, 1, -1, -1));
+}
+
+}  // namespace clothlab

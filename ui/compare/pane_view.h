@@ -1,0 +1,68 @@
+// One pane: the cloth, and above it the pane's letter, method, step, stability, cost and difference from the
+// reference.
+#pragma once
+
+#include <QFrame>
+
+#include "compare/comparison.h"
+#include "compare/ranking.h"
+#include "viewport/cloth_view.h"
+
+class QAction;
+class QComboBox;
+class QLabel;
+class QToolButton;
+
+namespace clothlab {
+
+class ExactField;
+class PaneBadge;
+class StabilityGauge;
+
+class PaneView : public QFrame {
+  Q_OBJECT
+
+ public:
+  explicit PaneView(QWidget* parent = nullptr);
+
+  ClothView& view() { return *view_; }
+
+  /// What the pane is. `can_grow`, `can_shrink`: whether there may be another pane, or one less.
+  void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow, bool can_shrink);
+  /// How it goes.
+  void showResult(const cloth::PaneResult& result, bool has_reference);
+  /// Why the last step typed is not in force; empty: it is.
+  void showStepRule(const QString& rule);
+
+ Q_SIGNALS:
+  void methodChosen(const std::string& method);
+  void stepChosen(const cloth::ParameterValue& step);
+  void duplicateWanted();
+  void removeWanted();
+  void referenceWanted();
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void changeEvent(QEvent* event) override;
+
+ private:
+  QWidget* makeHeader();
+  void makeMenu(QToolButton& button);
+  void takeStep(const QString& text);
+  void dress();
+
+  int style_ = 0;
+  ClothView* view_;
+  PaneBadge* badge_;
+  QComboBox* method_;
+  ExactField* step_;
+  StabilityGauge* gauge_;
+  QLabel* cost_;
+  QLabel* difference_;
+  QLabel* stopped_;
+  QAction* duplicate_;
+  QAction* remove_;
+  QAction* make_reference_;
+};
+
+}  // namespace clothlab

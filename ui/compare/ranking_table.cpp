@@ -1,0 +1,171 @@
+#include "compare/ranking_table.h"
+
+#include <QClipboard>
+#include <QGuiApplication>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <algorithm>
+#include <limits>
+
+#include "compare/pane_style.h"
+
+namespace clothlab {
+namespace {
+
+constexpr double last = std::numeric_limits<double>::infinity();  // what is missing sorts behind all values
+
+enum Column {
+  pane,
+  method,
+  by_error,
+  rms,
+  largest,
+  by_cost,
+  cost,
+  step,
+  rms_over_time,
+  evaluations,
+  columns
+};
+
+struct Cell {
+  QString text;
+  double key;
+};
+
+Cell number(double value, int digits = 3) {
+  return {QString::number(value, 'g', digits), value};
+}
+
+Cell millimetres(const std::optional<double>& metres, bool is_reference) {
+  if (is_reference) return {RankingTable::tr("reference"), -1};
+  return metres ? number(1e3 * *metres) : Cell{QStringLiteral("–"), last};
+}
+
+Cell rank_cell(int rank) {
+  return rank > 0 ? Cell{QString::number(rank), static_cast<double>(rank)} : Cell{QStringLiteral("–"), last};
+}
+
+Cell cell_of(const cloth::PaneResult& r, int column, std::size_t place) {
+  switch (column) {
+    case pane:
+      return {QString::fromStdString(r.name), static_cast<double>(r.style)};
+    case method:
+      return {QString::fromStdString(r.title), static_cast<double>(place)};
+    case step:
+      return number(1e3 * r.time_step, 4);
+    case rms:
+      return millimetres(r.rms, r.is_reference);
+    case largest:
+      return millimetres(r.largest, r.is_reference);
+    case rms_over_time:
+      return millimetres(r.rms_over_time, r.is_reference);
+    case by_error: {
+      if (r.divergence) return {RankingTable::tr("stopped"), last};
+      if (r.is_reference) return {QStringLiteral("–"), 0};
+      return rank_cell(r.error_rank);
+    }
+    case cost:
+      return r.simulated > 0 ? number(r.cost()) : Cell{QStringLiteral("–"), last};
+    case by_cost:
+      return rank_cell(r.cost_rank);
+    default:
+      return {QString::number(r.evaluations_each_second(), 'f', 0), r.evaluations_each_second()};
+  }
+}
+
+/// Sorts by a number behind the text.
+class KeyedItem : public QTableWidgetItem {
+ public:
+  bool operator<(const QTableWidgetItem& other) const override {
+    return data(Qt::UserRole).toDouble() < other.data(Qt::UserRole).toDouble();
+  }
+};
+
+}  // namespace
+
+RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
+  setObjectName("rankingTable");
+  setAccessibleName(tr("Panes ranked by error and by cost"));
+  setColumnCount(columns);
+  setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("By error"), tr("RMS [mm]"), tr("Largest [mm]"),
+                             tr("By cost"), tr("Cost [s/s]"), tr("Step [ms]"), tr("Over time [mm]"),
+                             tr("Evaluations/s")});
+  const QString tips[columns] = {
+      {},
+      {},
+      tr("Rank by the RMS difference now"),
+      tr("Root of the mean squared distance of all particles from the reference, now"),
+      tr("The largest of these distances, now"),
+      tr("Rank by cost"),
+      tr("Seconds of stepping for each simulated second"),
+      tr("As run: a step divides the record interval"),
+      tr("Root of the mean of the squared RMS difference over the times so far"),
+      tr("Evaluations of the force for each simulated second")};
+  for (int c = 0; c < columns; ++c) horizontalHeaderItem(c)->setToolTip(tips[c]);
+  verticalHeader()->hide();
+  verticalHeader()->setDefaultSectionSize(26);
+  horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  horizontalHeader()->setHighlightSections(false);
+  setEditTriggers(NoEditTriggers);
+  setSelectionBehavior(SelectRows);
+  setShowGrid(false);
+  setFrameShape(NoFrame);
+  setWordWrap(false);
+  setSortingEnabled(true);
+  sortByColumn(by_error, Qt::AscendingOrder);
+}
+
+void RankingTable::showResults(const std::vector<cloth::PaneResult>& results) {
+  results_ = results;
+  setSortingEnabled(false);  // rows must not move while they are filled
+  if (rowCount() != static_cast<int>(results.size())) setRowCount(static_cast<int>(results.size()));
+  const std::vector<std::size_t> order = cloth::ranked(results);
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    const cloth::PaneResult& result = results[order[row]];
+    for (int column = 0; column < columns; ++column) {
+      QTableWidgetItem* shown = item(static_cast<int>(row), column);
+      if (!shown) {
+        shown = new KeyedItem;
+        shown->setTextAlignment(column <= method ? Qt::AlignLeft | Qt::AlignVCenter
+                                                 : Qt::AlignRight | Qt::AlignVCenter);
+        setItem(static_cast<int>(row), column, shown);
+      }
+      const Cell cell = cell_of(result, column, order[row]);
+      shown->setText(cell.text);
+      shown->setData(Qt::UserRole, cell.key);
+      if (column == pane) shown->setIcon(pane_icon(result.style));
+      shown->setForeground(result.divergence ? theme().error : theme().text);
+    }
+  }
+  setSortingEnabled(true);
+}
+
+QString RankingTable::asText() const {
+  QStringList lines, head;
+  for (int c = 0; c < columns; ++c) head << horizontalHeaderItem(c)->text();
+  lines << head.join('\t');
+  for (int row = 0; row < rowCount(); ++row) {
+    QStringList cells;
+    for (int c = 0; c < columns; ++c) cells << item(row, c)->text();
+    lines << cells.join('\t');
+  }
+  return lines.join('\n') + '\n';
+}
+
+void RankingTable::copy() const {
+  QGuiApplication::clipboard()->setText(asText());
+}
+
+void RankingTable::keyPressEvent(QKeyEvent* event) {
+  if (event->matches(QKeySequence::Copy)) return copy();
+  QTableWidget::keyPressEvent(event);
+}
+
+void RankingTable::changeEvent(QEvent* event) {
+  QTableWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange && !results_.empty())
+    showResults(std::vector<cloth::PaneResult>(results_));
+}
+
+}  // namespace clothlab

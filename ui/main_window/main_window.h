@@ -13,11 +13,13 @@
 #include "params/parameter_panel.h"
 #include "viewport/cloth_view.h"
 
+class QDockWidget;
 class QMenu;
 
 namespace clothlab {
 
 struct OpenedScene;
+class StudiesPanel;
 class ViewBar;
 
 class MainWindow : public QMainWindow {
@@ -43,6 +45,8 @@ class MainWindow : public QMainWindow {
   ChartPanel& charts() { return *charts_; }
   ParameterPanel& parameters() { return *parameters_; }
   NoticeBar& notice() { return *notice_; }
+  StudiesPanel& studies() { return *studies_; }
+  void showStudies();
 
  protected:
   void closeEvent(QCloseEvent* event) override;
@@ -69,6 +73,8 @@ class MainWindow : public QMainWindow {
   bool hasAir() const;
   void updateTitle();
   bool mayLoseChanges();
+  bool mayStopStudy();
+  void openRun(const cloth::Scene& scene, const QString& note);
 
   // main_window_menus.cpp
   void makeActions();
@@ -87,6 +93,8 @@ class MainWindow : public QMainWindow {
   ChartPanel* charts_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   NoticeBar* notice_ = nullptr;
+  StudiesPanel* studies_ = nullptr;
+  QDockWidget* studies_dock_ = nullptr;
   TransportBar* transport_ = nullptr;
   ViewBar* view_bar_ = nullptr;
   QMenu* recent_menu_ = nullptr;

@@ -92,6 +92,9 @@ void MainWindow::makeMenus() {
   run->addActions({play_, step_, reset_});
   run->addSeparator();
   run->addAction(record_);
+  run->addSeparator();
+  run->addAction(icon("chart"), tr("Studies…"), QKeySequence("Ctrl+T"), this, &MainWindow::showStudies)
+      ->setObjectName("studies");
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);

@@ -126,16 +126,17 @@ void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
 void add_extremes(CLI::App& app, cli::ExtremesArguments& arguments) {
   CLI::App* extremes = app.add_subcommand(
       "extremes", "Stiff and extreme cases, every method on each: a fixed list, or a scene pushed");
-  extremes->add_option("scene", arguments.scene,
-                       "A scene to push in one thing at a time; without it the fixed list of cases");
-  extremes->add_option("--set", arguments.settings, set_help)->allow_extra_args(false);
+  CLI::Option* scene = extremes->add_option(
+      "scene", arguments.scene, "A scene to push in one thing at a time; without it the fixed list of cases");
+  extremes->add_option("--set", arguments.settings, set_help)->allow_extra_args(false)->needs(scene);
   extremes->add_option("--methods", arguments.methods, "Methods, between commas; all without");
   extremes->add_option("--cases", arguments.cases, "Cases, between commas; all without");
   extremes->add_option("--out", arguments.folder,
                        "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
   CLI::Option* extremes_json = extremes->add_flag("--json", arguments.json, json_help);
   extremes->add_flag("--markdown", arguments.markdown, "Print the table as Markdown")
-      ->excludes(extremes_json);
+      ->excludes(extremes_json)
+      ->excludes(scene);
 }
 
 void add_study(CLI::App& app, cli::StudyArguments& arguments) {

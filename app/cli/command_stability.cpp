@@ -9,6 +9,7 @@
 #include "io/run_folder.h"
 #include "progress.h"
 #include "study/stability_report.h"
+#include "study/study_folder.h"
 
 namespace clothlab::cli {
 namespace {
@@ -65,16 +66,6 @@ std::string command_text(const StabilityArguments& arguments) {
   return text + " --out " + arguments.folder;
 }
 
-std::optional<cloth::IoError> write_files(const StabilityArguments& arguments, const cloth::StabilityMap& map,
-                                          double wall) {
-  const std::filesystem::path folder = arguments.folder;
-  const std::string svg = cloth::to_svg(cloth::stability_heat_map(map));
-  if (auto error = cloth::write_text_file(folder / "stability.csv", cloth::stability_csv(map))) return error;
-  if (auto error = cloth::write_text_file(folder / "stability.svg", svg)) return error;
-  return cloth::write_text_file(folder / "report.html",
-                                cloth::stability_page(map, svg, command_text(arguments), wall));
-}
-
 }  // namespace
 
 int stability(const StabilityArguments& arguments) {
@@ -98,7 +89,8 @@ int stability(const StabilityArguments& arguments) {
     map = cloth::run_stability_map(*loaded.scene, options);
   }
   const double wall = seconds_since(start);
-  if (const auto error = write_files(arguments, map, wall)) return report(*error);
+  if (const auto error = cloth::write_study(arguments.folder, map, command_text(arguments), wall))
+    return report(*error);
   const int printed =
       print(arguments.json ? cloth::stability_json(map)
                            : cloth::stability_text(map) +

@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "commands.h"
 #include "console.h"
 #include "integrators/registry.h"
 #include "io/run_folder.h"
 #include "progress.h"
-#include "study/work_precision_report.h"
+#include "study/study_folder.h"
 #include "study/work_precision_tables.h"
 
 namespace clothlab::cli {
@@ -34,19 +35,6 @@ std::string command_of(const WorkPrecisionArguments& arguments) {
   return text + " --out DIR";
 }
 
-std::optional<cloth::IoError> write_files(const WorkPrecisionArguments& arguments,
-                                          const cloth::WorkPrecision& study) {
-  const std::filesystem::path folder = arguments.folder;
-  if (auto error = cloth::make_folder(folder)) return error;
-  if (auto error = cloth::write_csv(folder / "work_precision.csv", cloth::run_table(study))) return error;
-  if (auto error = cloth::write_csv(folder / "work_precision_samples.csv", cloth::sample_table(study)))
-    return error;
-  const std::string svg = cloth::to_svg(cloth::error_plot(study, cloth::PlotAgainst::run_time));
-  if (auto error = cloth::write_text_file(folder / "work_precision.svg", svg)) return error;
-  return cloth::write_text_file(folder / "report.html",
-                                cloth::work_precision_page(study, command_of(arguments)));
-}
-
 }  // namespace
 
 int work_precision(const WorkPrecisionArguments& arguments) {
@@ -57,6 +45,7 @@ int work_precision(const WorkPrecisionArguments& arguments) {
     if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
 
   listen_for_stop();
+  const auto start = std::chrono::steady_clock::now();
   cloth::WorkPrecision study;
   {
     Progress bar;
@@ -69,8 +58,10 @@ int work_precision(const WorkPrecisionArguments& arguments) {
                                                       return !stop_is_requested();
                                                     }});
   }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!arguments.folder.empty())
-    if (const auto error = write_files(arguments, study)) return report(*error);
+    if (const auto error = cloth::write_study(arguments.folder, study, command_of(arguments), wall.count()))
+      return report(*error);
   const bool has_reference = study.reference.failure.empty();
   if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
   std::string text = arguments.json ? cloth::work_precision_json(study) : cloth::work_precision_text(study);

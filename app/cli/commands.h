@@ -65,11 +65,19 @@ struct StabilityArguments {
 int stability(const StabilityArguments& arguments);
 
 struct ExtremesArguments {
+  std::string scene;  ///< to push; empty: the fixed list
+  std::vector<std::string> settings;
   std::string methods, cases;  ///< names between commas; empty: all
   std::string folder;
   bool json = false, markdown = false;
 };
 int extremes(const ExtremesArguments& arguments);
+
+struct StudyArguments {
+  std::string folder;
+  bool json = false, csv = false;
+};
+int study(const StudyArguments& arguments);
 
 struct ReproduceArguments {
   std::string folder;

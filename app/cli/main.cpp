@@ -37,6 +37,7 @@ struct Arguments {
   bool comparison_schema = false;
   cli::StabilityArguments stability;
   cli::ExtremesArguments extremes;
+  cli::StudyArguments study;
   cli::ReproduceArguments reproduce;
   cli::WorkPrecisionArguments work_precision;
   cli::BenchArguments bench;
@@ -53,8 +54,8 @@ void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
       ->check(CLI::Range(5, 1000))
       ->capture_default_str();
   study->add_option("--out", arguments.folder,
-                    "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg and "
-                    "report.html; made if missing");
+                    "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg, "
+                    "study.json and report.html; made if missing");
   study->add_flag("--json", arguments.json, json_help);
 }
 
@@ -120,20 +121,33 @@ void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
       "Run the whole grid; without it larger ones are run with 16 x 16 of the same particles");
   stability
       ->add_option("--out", arguments.folder,
-                   "Folder for stability.csv, stability.svg and report.html; made if missing")
+                   "Folder for stability.csv, stability.svg, study.json and report.html; made if missing")
       ->required();
   stability->add_flag("--json", arguments.json, json_help);
 }
 
 void add_extremes(CLI::App& app, cli::ExtremesArguments& arguments) {
-  CLI::App* extremes =
-      app.add_subcommand("extremes", "The fixed list of stiff and extreme cases, every method on each");
+  CLI::App* extremes = app.add_subcommand(
+      "extremes", "Stiff and extreme cases, every method on each: a fixed list, or a scene pushed");
+  CLI::Option* scene = extremes->add_option(
+      "scene", arguments.scene, "A scene to push in one thing at a time; without it the fixed list of cases");
+  extremes->add_option("--set", arguments.settings, set_help)->allow_extra_args(false)->needs(scene);
   extremes->add_option("--methods", arguments.methods, "Methods, between commas; all without");
   extremes->add_option("--cases", arguments.cases, "Cases, between commas; all without");
-  extremes->add_option("--out", arguments.folder, "Folder for extremes.csv and report.html; made if missing");
+  extremes->add_option("--out", arguments.folder,
+                       "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
   CLI::Option* extremes_json = extremes->add_flag("--json", arguments.json, json_help);
   extremes->add_flag("--markdown", arguments.markdown, "Print the table as Markdown")
-      ->excludes(extremes_json);
+      ->excludes(extremes_json)
+      ->excludes(scene);
+}
+
+void add_study(CLI::App& app, cli::StudyArguments& arguments) {
+  CLI::App* study = app.add_subcommand(
+      "study", "Print the table of a study's folder, whether the command line or the window wrote it");
+  study->add_option("folder", arguments.folder, "A folder with a study.json")->required();
+  CLI::Option* json = study->add_flag("--json", arguments.json, json_help);
+  study->add_flag("--csv", arguments.csv, "Print every run as CSV")->excludes(json);
 }
 
 void add_reproduce(CLI::App& app, cli::ReproduceArguments& arguments) {
@@ -218,6 +232,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   add_work_precision(app, arguments.work_precision);
   add_stability(app, arguments.stability);
   add_extremes(app, arguments.extremes);
+  add_study(app, arguments.study);
   add_reproduce(app, arguments.reproduce);
   add_bench(app, arguments.bench);
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the scene file");
@@ -253,6 +268,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("compare")) return cli::compare(arguments.compare);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);
   if (app.got_subcommand("extremes")) return cli::extremes(arguments.extremes);
+  if (app.got_subcommand("study")) return cli::study(arguments.study);
   if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("work-precision")) return cli::work_precision(arguments.work_precision);
   if (app.got_subcommand("bench")) return cli::bench(arguments.bench);

@@ -72,16 +72,17 @@ struct LegendItem {
 class Drawing {
  public:
   explicit Drawing(const HeatMap& map);
-  std::string svg();
+  double height() const { return height_; }
+  void draw(PlotCanvas& svg);
 
  private:
   void lay_out_legend();
   Box frame_of(std::size_t panel) const;
-  void draw_panel(SvgWriter& svg, std::size_t index);
-  void draw_cells(SvgWriter& svg, const HeatPanel& panel) const;
-  void draw_marks(SvgWriter& svg, const HeatPanel& panel, int class_index) const;
-  void draw_curves(SvgWriter& svg, const HeatPanel& panel, const Box& frame) const;
-  void draw_legend(SvgWriter& svg) const;
+  void draw_panel(PlotCanvas& svg, std::size_t index);
+  void draw_cells(PlotCanvas& svg, const HeatPanel& panel) const;
+  void draw_marks(PlotCanvas& svg, const HeatPanel& panel, int class_index) const;
+  void draw_curves(PlotCanvas& svg, const HeatPanel& panel, const Box& frame) const;
+  void draw_legend(PlotCanvas& svg) const;
 
   Box cell_box(std::size_t ix, std::size_t iy) const {
     return {x_.place(x_edges_[ix]), y_.place(y_edges_[iy + 1]), x_.place(x_edges_[ix + 1]),
@@ -112,7 +113,7 @@ Drawing::Drawing(const HeatMap& map)
   left_ = plot_margin + widest_tick(y_.ticks(y_tick_spacing)) + 34;
   side_ = (map.width - plot_margin - left_ - panel_gap * double(columns_ - 1)) / double(columns_);
   side_ = std::max(side_, 60.0);
-  panel_height_ = std::min(side_, 420.0);
+  panel_height_ = std::min(side_, map.highest);
   top_ = titles_height(map.title, map.subtitle, map.width) + legend_height_;
   const double row_height = panel_title + panel_height_ + axis_space;
   bottom_ = top_ + row_height * double(rows_) + title_space;
@@ -157,7 +158,7 @@ Box Drawing::frame_of(std::size_t panel) const {
   return {left, top, left + side_, top + panel_height_};
 }
 
-void Drawing::draw_cells(SvgWriter& svg, const HeatPanel& panel) const {
+void Drawing::draw_cells(PlotCanvas& svg, const HeatPanel& panel) const {
   if (!has_cells()) return;
   const std::size_t nx = map_.x_values.size(), ny = map_.y_values.size();
   assert(panel.cells.size() == nx * ny);
@@ -172,14 +173,15 @@ void Drawing::draw_cells(SvgWriter& svg, const HeatPanel& panel) const {
                                   value_line(map_.y, map_.y_values[i / nx]) + "\n" + style.name +
                                   (cell.note.empty() ? "" : "\n" + cell.note);
       // A hair wider and higher: no paper shines through between neighbours.
-      svg.rect({box.left, box.top}, box.width() + 0.3, box.height() + 0.3, {}, tooltip);
+      svg.rect({box.left, box.top}, box.width() + 0.3, box.height() + 0.3, {},
+               {(panel.title.empty() ? "" : panel.title + "\n") + tooltip, cell.tag});
     }
     svg.end_group();
     draw_marks(svg, panel, c);
   }
 }
 
-void Drawing::draw_marks(SvgWriter& svg, const HeatPanel& panel, int class_index) const {
+void Drawing::draw_marks(PlotCanvas& svg, const HeatPanel& panel, int class_index) const {
   const ClassStyle& style = map_.classes[std::size_t(class_index)];
   if (style.mark == CellMark::none) return;
   const std::size_t nx = map_.x_values.size(), ny = map_.y_values.size();
@@ -198,7 +200,7 @@ void Drawing::draw_marks(SvgWriter& svg, const HeatPanel& panel, int class_index
   svg.end_group();
 }
 
-void Drawing::draw_curves(SvgWriter& svg, const HeatPanel& panel, const Box& frame) const {
+void Drawing::draw_curves(PlotCanvas& svg, const HeatPanel& panel, const Box& frame) const {
   svg.begin_group("curves", {}, true);
   for (const OverlayCurve& curve : panel.curves) {
     std::string data;
@@ -218,7 +220,7 @@ void Drawing::draw_curves(SvgWriter& svg, const HeatPanel& panel, const Box& fra
   svg.end_group();
 }
 
-void Drawing::draw_panel(SvgWriter& svg, std::size_t index) {
+void Drawing::draw_panel(PlotCanvas& svg, std::size_t index) {
   const HeatPanel& panel = map_.panels[index];
   const Box frame = frame_of(index);
   x_.set_places(frame.left, frame.right);
@@ -233,7 +235,7 @@ void Drawing::draw_panel(SvgWriter& svg, std::size_t index) {
   svg.end_group();
 }
 
-void Drawing::draw_legend(SvgWriter& svg) const {
+void Drawing::draw_legend(PlotCanvas& svg) const {
   const double top = titles_height(map_.title, map_.subtitle, map_.width);
   svg.begin_group("legend");
   for (const LegendItem& item : legend_) {
@@ -252,8 +254,7 @@ void Drawing::draw_legend(SvgWriter& svg) const {
   svg.end_group();
 }
 
-std::string Drawing::svg() {
-  SvgWriter svg(map_.width, height_, map_.title.empty() ? "Map" : map_.title);
+void Drawing::draw(PlotCanvas& svg) {
   draw_titles(svg, map_.title, map_.subtitle, map_.width);
   draw_legend(svg);
   for (std::size_t i = 0; i < map_.panels.size(); ++i) draw_panel(svg, i);
@@ -261,13 +262,29 @@ std::string Drawing::svg() {
   svg.text({middle, bottom_ - 6},
            {.text = axis_title(map_.x, x_.tick_exponent()), .size = label_size, .anchor = Anchor::middle});
   draw_caption(svg, map_.caption, bottom_, map_.width);
-  return svg.finish();
 }
 
 }  // namespace
 
+void draw_cell_mark(PlotCanvas& canvas, const ClassStyle& style, SvgPoint centre, double radius) {
+  canvas.begin_group("marks", {}, true);
+  canvas.path(mark_path(style.mark, centre, radius), mark_style(style, 1.4));
+  canvas.end_group();
+}
+
+double height_of(const HeatMap& map) {
+  return Drawing(map).height();
+}
+
+void draw(PlotCanvas& canvas, const HeatMap& map) {
+  Drawing(map).draw(canvas);
+}
+
 std::string to_svg(const HeatMap& map) {
-  return Drawing(map).svg();
+  Drawing drawing(map);
+  SvgWriter svg(map.width, drawing.height(), map.title.empty() ? "Map" : map.title);
+  drawing.draw(svg);
+  return svg.finish();
 }
 
 }  // namespace cloth

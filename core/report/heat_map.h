@@ -7,12 +7,14 @@
 
 #include "report/axis.h"
 #include "report/palette.h"
+#include "report/svg.h"
 
 namespace cloth {
 
 struct HeatCell {
   int class_index = 0;  // of HeatMap::classes; outside of them: not computed, drawn empty
   std::string note{};   // tooltip after x, y and the class
+  int tag = -1;         // of its SvgTip
 };
 
 /// A line over the cells, in the axes' units. Where it leaves the panel or cannot be shown it is broken.
@@ -38,9 +40,17 @@ struct HeatMap {
   std::vector<double> x_values{}, y_values{};  // the cells' middles, ascending; positive where logarithmic
   std::vector<ClassStyle> classes = run_classes();
   std::vector<HeatPanel> panels{};
-  int columns = 3;     // panels beside each other; further ones go below
-  double width = 960;  // of the whole picture [px]
+  int columns = 3;       // panels beside each other; further ones go below
+  double width = 960;    // of the whole picture [px]
+  double highest = 420;  // of a panel; otherwise as high as wide [px]
 };
+
+/// The mark of a class in the middle of a cell or a legend's swatch.
+void draw_cell_mark(PlotCanvas& canvas, const ClassStyle& style, SvgPoint centre, double radius);
+
+/// The height of the whole picture [px].
+double height_of(const HeatMap& map);
+void draw(PlotCanvas& canvas, const HeatMap& map);
 
 /// A complete SVG document that needs nothing else. The same text for the same map.
 std::string to_svg(const HeatMap& map);

@@ -24,7 +24,7 @@ SvgStyle hollow_style(const Colour& colour) {
   return {.fill = page_colours().surface, .stroke = colour, .stroke_width = 1.7};
 }
 
-void draw_floor(SvgWriter& svg, const LineLayout& layout) {
+void draw_floor(PlotCanvas& svg, const LineLayout& layout) {
   if (!layout.has_floor()) return;
   const Box& frame = layout.frame;
   const double y = layout.place_y(layout.plot.floor->y);
@@ -35,7 +35,7 @@ void draw_floor(SvgWriter& svg, const LineLayout& layout) {
 }
 
 /// Below its edge, or above where the grey is too thin for text.
-void draw_floor_label(SvgWriter& svg, const LineLayout& layout) {
+void draw_floor_label(PlotCanvas& svg, const LineLayout& layout) {
   if (!layout.has_floor()) return;
   const double y = layout.place_y(layout.plot.floor->y);
   const bool inside = layout.frame.bottom - y > 20;
@@ -46,7 +46,7 @@ void draw_floor_label(SvgWriter& svg, const LineLayout& layout) {
 }
 
 /// The baseline of a line's label: at one of both ends or in the middle, where it covers least.
-void draw_line_label(SvgWriter& svg, const LineLayout& layout, const ReferenceLine& line, double at,
+void draw_line_label(PlotCanvas& svg, const LineLayout& layout, const ReferenceLine& line, double at,
                      const std::vector<Box>& data) {
   const Box& frame = layout.frame;
   const bool across = line.direction == ReferenceLine::Direction::horizontal;
@@ -66,7 +66,7 @@ void draw_line_label(SvgWriter& svg, const LineLayout& layout, const ReferenceLi
   svg.text(across ? SvgPoint{best, at - 5} : SvgPoint{at - 5, best}, text);
 }
 
-void draw_reference_lines(SvgWriter& svg, const LineLayout& layout) {
+void draw_reference_lines(PlotCanvas& svg, const LineLayout& layout) {
   const Box& frame = layout.frame;
   const SvgStyle style{.stroke = page_colours().muted, .stroke_width = 1.2, .dash = Dash::dash_dotted};
   const std::vector<Box> data = layout.data_boxes();
@@ -84,7 +84,7 @@ void draw_reference_lines(SvgWriter& svg, const LineLayout& layout) {
   svg.end_group();
 }
 
-void draw_best(SvgWriter& svg, const LineLayout& layout) {
+void draw_best(PlotCanvas& svg, const LineLayout& layout) {
   if (layout.plot.best_line.empty()) return;
   const double lowest = layout.has_floor() ? layout.place_y(layout.plot.floor->y) : layout.frame.bottom;
   std::vector<SvgPoint> points;
@@ -107,7 +107,7 @@ void draw_best(SvgWriter& svg, const LineLayout& layout) {
   svg.end_group();
 }
 
-void draw_error_bars(SvgWriter& svg, const LineLayout& layout, const PlotPoint& point,
+void draw_error_bars(PlotCanvas& svg, const LineLayout& layout, const PlotPoint& point,
                      const SvgStyle& style) {
   const auto drawable = [](AxisScale scale, const std::optional<std::pair<double, double>>& range) {
     return range && can_show(scale, range->first) && can_show(scale, range->second);
@@ -127,7 +127,7 @@ void draw_error_bars(SvgWriter& svg, const LineLayout& layout, const PlotPoint& 
   svg.path(data, style);
 }
 
-void draw_series(SvgWriter& svg, const LineLayout& layout, std::size_t index) {
+void draw_series(PlotCanvas& svg, const LineLayout& layout, std::size_t index) {
   const LinePlot& plot = layout.plot;
   const PlotSeries& series = plot.series[index];
   const SeriesStyle look = layout.style_of(index);
@@ -144,12 +144,12 @@ void draw_series(SvgWriter& svg, const LineLayout& layout, std::size_t index) {
     tooltip += value_line(plot.x, point.x) + "\n" + value_line(plot.y, point.y);
     if (!point.note.empty()) tooltip += "\n" + point.note;
     svg.marker(look.marker, {layout.x.place(point.x), layout.y.place(point.y)}, marker_radius,
-               marker_style(look), tooltip);
+               marker_style(look), {tooltip, point.tag});
   }
   svg.end_group();
 }
 
-void draw_failures(SvgWriter& svg, const LineLayout& layout) {
+void draw_failures(PlotCanvas& svg, const LineLayout& layout) {
   if (layout.failures.empty()) return;
   const Box& frame = layout.frame;
   svg.begin_group("failed");
@@ -165,12 +165,12 @@ void draw_failures(SvgWriter& svg, const LineLayout& layout) {
       tooltip += "\n" + value_line(layout.plot.x, failure.point->x);
     if (!failure.point->cause.empty()) tooltip += "\n" + failure.point->cause;
     svg.marker(look.marker, {failure.x, frame.top - 3 - (failure.row + 0.5) * failure_row},
-               marker_radius - 0.4, hollow_style(look.colour), tooltip);
+               marker_radius - 0.4, hollow_style(look.colour), {tooltip, failure.point->tag});
   }
   svg.end_group();
 }
 
-void draw_triangles(SvgWriter& svg, const LineLayout& layout) {
+void draw_triangles(PlotCanvas& svg, const LineLayout& layout) {
   svg.begin_group("slopes");
   for (const PlacedTriangle& triangle :
        place_triangles(layout.plot.triangles, layout.x, layout.y, layout.frame, layout.occupied())) {
@@ -181,7 +181,7 @@ void draw_triangles(SvgWriter& svg, const LineLayout& layout) {
   svg.end_group();
 }
 
-void draw_swatch(SvgWriter& svg, const LineLayout& layout, const LegendEntry& entry, SvgPoint centre) {
+void draw_swatch(PlotCanvas& svg, const LineLayout& layout, const LegendEntry& entry, SvgPoint centre) {
   const SvgPoint left{centre.x - swatch_half, centre.y}, right{centre.x + swatch_half, centre.y};
   if (entry.kind == LegendEntry::Kind::best) {
     svg.line(left, right, best_style());
@@ -196,7 +196,7 @@ void draw_swatch(SvgWriter& svg, const LineLayout& layout, const LegendEntry& en
   }
 }
 
-void draw_legend(SvgWriter& svg, const LineLayout& layout) {
+void draw_legend(PlotCanvas& svg, const LineLayout& layout) {
   const double left = layout.legend_left + legend_swatch_width;
   double y = layout.lane_top;
   svg.begin_group("legend");
@@ -217,9 +217,12 @@ void draw_legend(SvgWriter& svg, const LineLayout& layout) {
 
 }  // namespace
 
-std::string to_svg(const LinePlot& plot) {
+double height_of(const LinePlot& plot) {
+  return LineLayout(plot).height;
+}
+
+void draw(PlotCanvas& svg, const LinePlot& plot) {
   const LineLayout layout(plot);
-  SvgWriter svg(plot.width, layout.height, plot.title.empty() ? "Plot" : plot.title);
   draw_titles(svg, plot.title, plot.subtitle, plot.width);
   draw_floor(svg, layout);
   draw_x_axis(svg, layout.x, axis_title(plot.x, layout.x.tick_exponent()), layout.frame, true);
@@ -242,6 +245,11 @@ std::string to_svg(const LinePlot& plot) {
   draw_legend(svg, layout);
   draw_caption(svg, layout.caption, layout.height - caption_height(layout.caption, plot.width) - 4,
                plot.width);
+}
+
+std::string to_svg(const LinePlot& plot) {
+  SvgWriter svg(plot.width, height_of(plot), plot.title.empty() ? "Plot" : plot.title);
+  draw(svg, plot);
   return svg.finish();
 }
 

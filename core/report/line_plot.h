@@ -8,6 +8,7 @@
 
 #include "report/axis.h"
 #include "report/palette.h"
+#include "report/svg.h"
 
 namespace cloth {
 
@@ -17,6 +18,7 @@ struct PlotPoint {
   double x = 0, y = 0;
   std::optional<std::pair<double, double>> x_range{}, y_range{};  // error bars from .first to .second
   std::string note{};                                             // lines of the tooltip after name, x and y
+  int tag = -1;                                                   // of its SvgTip
 };
 
 /// A run without a result: drawn in the row of failures above the plot, at x if that can be shown, else at
@@ -24,6 +26,7 @@ struct PlotPoint {
 struct FailedPoint {
   double x = 0;
   std::string cause{};
+  int tag = -1;  // of its SvgTip
 };
 
 struct PlotSeries {
@@ -67,6 +70,10 @@ struct LinePlot {
   double width = 960;        // of the whole picture [px]
   double plot_height = 440;  // of the axes' frame [px]
 };
+
+/// The height of the whole picture [px]: titles, legend and caption take what they need.
+double height_of(const LinePlot& plot);
+void draw(PlotCanvas& canvas, const LinePlot& plot);
 
 /// A complete SVG document that needs nothing else. The same text for the same plot.
 std::string to_svg(const LinePlot& plot);

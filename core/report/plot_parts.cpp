@@ -63,7 +63,7 @@ double titles_height(const std::string& title, const std::string& subtitle, doub
   return height + (title.empty() && subtitle.empty() ? 0 : 10);
 }
 
-void draw_titles(SvgWriter& svg, const std::string& title, const std::string& subtitle, double width) {
+void draw_titles(PlotCanvas& svg, const std::string& title, const std::string& subtitle, double width) {
   double y = plot_margin;
   for (const std::string& line : wrapped(title, title_size * 1.08, inner(width))) {
     svg.text({plot_margin, y + 16}, {.text = line, .size = title_size, .bold = true});
@@ -84,7 +84,7 @@ double caption_height(const std::vector<std::string>& paragraphs, double width) 
   return height > 0 ? height + 8 : 0;
 }
 
-void draw_caption(SvgWriter& svg, const std::vector<std::string>& paragraphs, double top, double width) {
+void draw_caption(PlotCanvas& svg, const std::vector<std::string>& paragraphs, double top, double width) {
   double y = top + 8;
   for (const std::string& paragraph : paragraphs) {
     const std::vector<std::string> lines = wrapped(paragraph, caption_size, inner(width));
@@ -107,7 +107,7 @@ double widest_tick(const std::vector<Tick>& ticks) {
   return widest;
 }
 
-void draw_x_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid) {
+void draw_x_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid) {
   svg.begin_group("x-axis");
   std::vector<Tick> ticks = map.ticks(x_tick_spacing);
   const double needed = widest_tick(ticks) + 14;
@@ -129,7 +129,7 @@ void draw_x_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, c
   svg.end_group();
 }
 
-void draw_y_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid) {
+void draw_y_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid) {
   svg.begin_group("y-axis");
   const std::vector<Tick> ticks = map.ticks(y_tick_spacing);
   for (const Tick& tick : ticks) {

@@ -30,18 +30,18 @@ constexpr double plot_margin = 16;                                      // aroun
 
 /// The height that titles take from the top of the drawing, without and with drawing them.
 double titles_height(const std::string& title, const std::string& subtitle, double width);
-void draw_titles(SvgWriter& svg, const std::string& title, const std::string& subtitle, double width);
+void draw_titles(PlotCanvas& svg, const std::string& title, const std::string& subtitle, double width);
 
 double caption_height(const std::vector<std::string>& paragraphs, double width);
-void draw_caption(SvgWriter& svg, const std::vector<std::string>& paragraphs, double top, double width);
+void draw_caption(PlotCanvas& svg, const std::vector<std::string>& paragraphs, double top, double width);
 
 double tick_width(const Tick& tick);
 double widest_tick(const std::vector<Tick>& ticks);
 
 /// Grid lines, ticks and labels below the frame; the title too unless it is empty.
-void draw_x_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid);
+void draw_x_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid);
 /// The same on the left of the frame.
-void draw_y_axis(SvgWriter& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid);
+void draw_y_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, const Box& frame, bool grid);
 
 /// "run time: 0.0123 s"
 std::string value_line(const Axis& axis, double value);

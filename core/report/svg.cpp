@@ -217,24 +217,19 @@ void SvgWriter::element(std::string_view name, const std::string& attributes, co
     out_ += fmt::format("><title>{}</title></{}>\n", xml_escaped(tooltip), name);
 }
 
-void SvgWriter::line(SvgPoint from, SvgPoint to, const SvgStyle& style) {
-  path(path_through({from, to}), style);
-}
-
-void SvgWriter::path(const std::string& data, const SvgStyle& style, const std::string& tooltip) {
+void SvgWriter::path(const std::string& data, const SvgStyle& style, const SvgTip& tip) {
   if (data.empty()) return;
   const bool open = !style.fill && style.stroke;
   element("path", attribute("d", data) + (open ? attribute("fill", "none") : "") + attributes_of(style),
-          tooltip);
+          tip.text);
 }
 
-void SvgWriter::rect(SvgPoint corner, double width, double height, const SvgStyle& style,
-                     const std::string& tooltip) {
+void SvgWriter::rect(SvgPoint corner, double width, double height, const SvgStyle& style, const SvgTip& tip) {
   element("rect",
           number_attribute("x", corner.x) + number_attribute("y", corner.y) +
               number_attribute("width", width) + number_attribute("height", height) +
               (style.fill || !style.stroke ? "" : attribute("fill", "none")) + attributes_of(style),
-          tooltip);
+          tip.text);
 }
 
 void SvgWriter::text(SvgPoint baseline, const SvgText& text) {
@@ -259,8 +254,8 @@ void SvgWriter::text(SvgPoint baseline, const SvgText& text) {
 }
 
 void SvgWriter::marker(Marker marker, SvgPoint centre, double radius, const SvgStyle& style,
-                       const std::string& tooltip) {
-  path(marker_path(marker, centre, radius), style, tooltip);
+                       const SvgTip& tip) {
+  path(marker_path(marker, centre, radius), style, tip);
 }
 
 void SvgWriter::begin_group(const std::string& name, const SvgStyle& style, bool untouchable, bool crisp) {

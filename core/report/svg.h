@@ -56,24 +56,51 @@ std::string path_through(const std::vector<SvgPoint>& points, bool closed = fals
 std::string marker_path(Marker marker, SvgPoint centre, double radius);
 bool is_stroke_only(Marker marker);
 
-class SvgWriter {
+/// What the pointer finds at a shape: lines of text, and the plot's own number for what is drawn there.
+struct SvgTip {
+  SvgTip() = default;
+  SvgTip(std::string lines, int number = -1) : text(std::move(lines)), tag(number) {}
+  SvgTip(const char* lines) : text(lines) {}
+  std::string text{};
+  int tag = -1;  ///< -1: none
+};
+
+/// What plots are drawn on: an SVG document here, the painter of a window elsewhere. Coordinates in px, y
+/// downwards.
+class PlotCanvas {
+ public:
+  virtual ~PlotCanvas() = default;
+  /// `data` as path_through and marker_path write it.
+  virtual void path(const std::string& data, const SvgStyle& style, const SvgTip& tip = {}) = 0;
+  virtual void rect(SvgPoint corner, double width, double height, const SvgStyle& style,
+                    const SvgTip& tip = {}) = 0;
+  virtual void text(SvgPoint baseline, const SvgText& text) = 0;
+  virtual void marker(Marker marker, SvgPoint centre, double radius, const SvgStyle& style,
+                      const SvgTip& tip = {}) = 0;
+
+  /// The style holds for what is inside unless that has its own. `untouchable`: the pointer goes through it.
+  /// `crisp`: no soft edges, so that neighbours join without a seam.
+  virtual void begin_group(const std::string& name, const SvgStyle& style = {}, bool untouchable = false,
+                           bool crisp = false) = 0;
+  virtual void end_group() = 0;
+
+  void line(SvgPoint from, SvgPoint to, const SvgStyle& style) { path(path_through({from, to}), style); }
+};
+
+class SvgWriter : public PlotCanvas {
  public:
   /// `description` tells what the drawing shows to who cannot see it.
   SvgWriter(double width, double height, const std::string& description);
 
-  void line(SvgPoint from, SvgPoint to, const SvgStyle& style);
-  void path(const std::string& data, const SvgStyle& style, const std::string& tooltip = {});
+  void path(const std::string& data, const SvgStyle& style, const SvgTip& tip = {}) override;
   void rect(SvgPoint corner, double width, double height, const SvgStyle& style,
-            const std::string& tooltip = {});
-  void text(SvgPoint baseline, const SvgText& text);
+            const SvgTip& tip = {}) override;
+  void text(SvgPoint baseline, const SvgText& text) override;
   void marker(Marker marker, SvgPoint centre, double radius, const SvgStyle& style,
-              const std::string& tooltip = {});
-
-  /// The style holds for what is inside unless that has its own. `untouchable`: the pointer goes through it.
-  /// `crisp`: no soft edges, so that neighbours join without a seam.
+              const SvgTip& tip = {}) override;
   void begin_group(const std::string& name, const SvgStyle& style = {}, bool untouchable = false,
-                   bool crisp = false);
-  void end_group();
+                   bool crisp = false) override;
+  void end_group() override;
 
   /// The document. Groups must be closed.
   std::string finish();

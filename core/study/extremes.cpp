@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "integrators/registry.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -35,8 +36,7 @@ class CellRun {
       divergence_ = simulation_.step();
       if (divergence_) break;
       cell.steps = simulation_.state().step;
-      if (cell.steps % stride_ != 0 && cell.steps != last_) continue;
-      record();
+      if (cell.steps % stride_ == 0 || cell.steps == last_) record();
       if (keep_going && !keep_going()) break;
     }
     cell.max_strain = max_strain_;
@@ -171,6 +171,43 @@ ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
   cell = CellRun(extreme, scene, *time_step).to_end(std::move(cell), keep_going);
   cell.wall = seconds_since(start);
   return cell;
+}
+
+const ExtremeCell* ExtremesTable::cell(std::size_t extreme, std::size_t method) const {
+  const std::size_t index = extreme * methods.size() + method;
+  return index < cells.size() ? &cells[index] : nullptr;
+}
+
+ExtremesTable empty_table(const ExtremesOptions& options) {
+  const auto is_asked = [](const std::vector<std::string>& asked, const std::string& name) {
+    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+  };
+  ExtremesTable table;
+  table.scene = options.scene;
+  for (const ExtremeCase& extreme : options.scene ? extreme_cases_of(*options.scene) : extreme_cases())
+    if (is_asked(options.cases, extreme.name)) table.cases.push_back(extreme);
+  for (const std::string& method : integrator_names())
+    if (is_asked(options.methods, method)) table.methods.push_back(method);
+  return table;
+}
+
+ExtremesTable run_extremes(const ExtremesOptions& options) {
+  ExtremesTable table = empty_table(options);
+  const double all = static_cast<double>(table.cases.size() * table.methods.size());
+  const auto goes_on = [&options] {
+    return !options.stop.stop_requested() && (!options.keep_going || options.keep_going());
+  };
+  for (const ExtremeCase& extreme : table.cases)
+    for (const std::string& method : table.methods) {
+      const StudyProgress progress{static_cast<double>(table.cells.size()) / all,
+                                   extreme.name + ", " + method};
+      if (options.progress && !options.progress(progress)) return table;
+      ExtremeCell cell = run_extreme(extreme, method, goes_on);
+      if (!goes_on()) return table;  // half a cell is none
+      table.cells.push_back(std::move(cell));
+      if (options.partial) options.partial(table);
+    }
+  return table;
 }
 
 }  // namespace cloth

@@ -7,10 +7,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "simulation/simulation.h"
+#include "study/study_progress.h"
 
 namespace cloth {
 
@@ -34,6 +37,10 @@ struct ExtremeCase {
 /// In the order of the table.
 const std::vector<ExtremeCase>& extreme_cases();
 
+/// Cases made of a scene, each pushed in one thing: its springs' stiffness, its step, its mass, its damping,
+/// its wind, its deformation rate. A cell has as many steps as half of the scene's duration, at most 300.
+std::vector<ExtremeCase> extreme_cases_of(const Scene& scene);
+
 /// Of every random start in the list.
 inline constexpr std::uint64_t extreme_seed = 19950517;
 
@@ -55,8 +62,35 @@ struct ExtremeCell {
 /// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the records of the second
 /// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
 /// the start and all works into the cloth by more than the threshold, losses by damping not counted.
-/// `keep_going` is asked at every record; false ends the run.
+/// `keep_going` is asked after every step; false ends the run.
 ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
                         const std::function<bool()>& keep_going = {});
+
+/// Case after case, each with every method; an interrupted run has fewer cells.
+struct ExtremesTable {
+  std::optional<Scene> scene;  ///< that the cases are made of; none: the fixed list
+  std::vector<ExtremeCase> cases;
+  std::vector<std::string> methods;
+  std::vector<ExtremeCell> cells;
+
+  /// Null where it was not run.
+  const ExtremeCell* cell(std::size_t extreme, std::size_t method) const;
+  bool is_complete() const { return cells.size() == cases.size() * methods.size(); }
+};
+
+struct ExtremesOptions {
+  std::optional<Scene> scene{};                          ///< push this one; none: the fixed list
+  std::vector<std::string> methods{};                    ///< empty: all
+  std::vector<std::string> cases{};                      ///< empty: all
+  std::function<bool(const StudyProgress&)> progress{};  ///< before each cell; false stops the study
+  /// The table so far, after every cell; the last is what is returned.
+  std::function<void(const ExtremesTable&)> partial{};
+  std::stop_token stop{};              ///< looked at after every step; half a cell is none
+  std::function<bool()> keep_going{};  ///< likewise, for who has no stop token; false stops the study
+};
+
+/// The cases and methods that are asked for, in the list's order; no cells yet.
+ExtremesTable empty_table(const ExtremesOptions& options);
+ExtremesTable run_extremes(const ExtremesOptions& options);
 
 }  // namespace cloth

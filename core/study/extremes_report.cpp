@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "io/csv.h"
 #include "report/html_page.h"
@@ -260,11 +261,6 @@ This page is the output of `clothlab-cli extremes --markdown`. An asterisk: the 
 
 }  // namespace
 
-const ExtremeCell* ExtremesTable::cell(std::size_t extreme, std::size_t method) const {
-  const std::size_t index = extreme * methods.size() + method;
-  return index < cells.size() ? &cells[index] : nullptr;
-}
-
 std::string count_of_statuses(const ExtremesTable& table) {
   std::string text;
   for (const ExtremeStatus status : extreme_statuses()) {
@@ -276,7 +272,8 @@ std::string count_of_statuses(const ExtremesTable& table) {
 }
 
 std::vector<std::string> extremes_columns() {
-  return {"case", "method", "status", "detail", "steps", "max_strain", "energy_ratio", "wall_s"};
+  return {"case",       "method",       "status", "detail",      "steps",
+          "max_strain", "energy_ratio", "wall_s", "time_step_s", "ended_early"};
 }
 
 std::vector<std::string> extremes_row(const ExtremeCell& cell) {
@@ -287,7 +284,44 @@ std::vector<std::string> extremes_row(const ExtremeCell& cell) {
           std::to_string(cell.steps),
           csv_number(cell.max_strain),
           csv_number(cell.energy_ratio),
-          csv_number(cell.wall)};
+          csv_number(cell.wall),
+          csv_number(cell.time_step),
+          cell.ended_early ? "1" : "0"};
+}
+
+CategoryMap extremes_map(const ExtremesTable& table) {
+  static const std::vector<ClassStyle> classes = [] {
+    const auto& runs = run_classes();
+    const auto look = [&](RunClass run_class) { return runs[static_cast<std::size_t>(run_class)]; };
+    std::vector<ClassStyle> styles;
+    for (const ExtremeStatus status : extreme_statuses()) {
+      ClassStyle style = look(status == ExtremeStatus::stable          ? RunClass::accurate
+                              : status == ExtremeStatus::energy_growth ? RunClass::energy_growth
+                              : status == ExtremeStatus::diverged      ? RunClass::diverged
+                              : status == ExtremeStatus::solver_failed ? RunClass::solver_failed
+                                                                       : RunClass::stable_but_inaccurate);
+      style.name = name_of(status);
+      if (status == ExtremeStatus::refused) style.colour = page_colours().band, style.mark = CellMark::slash;
+      styles.push_back(std::move(style));
+    }
+    return styles;
+  }();
+  CategoryMap map{.title = "Stiff and extreme cases"};
+  map.subtitle = table.scene ? table.scene->title : "the fixed list, 9 x 9 particles";
+  map.classes = classes;
+  for (const ExtremeCase& extreme : table.cases) map.columns.push_back(extreme.name);
+  for (const std::string& method : table.methods) map.rows.push_back(method);
+  map.cells.resize(map.rows.size() * map.columns.size());
+  for (std::size_t c = 0; c < table.cases.size(); ++c)
+    for (std::size_t m = 0; m < table.methods.size(); ++m)
+      if (const ExtremeCell* cell = table.cell(c, m)) {
+        const std::string note = cell->detail + (cell->detail.empty() ? "" : "\n") +
+                                 fmt::format("step {:.4g} s, {} steps, {:.2g} s of run time", cell->time_step,
+                                             cell->steps, cell->wall);
+        map.cells[m * table.cases.size() + c] = {static_cast<int>(cell->status), note,
+                                                 static_cast<int>(c * table.methods.size() + m)};
+      }
+  return map;
 }
 
 std::string extremes_text(const ExtremesTable& table) {
@@ -305,6 +339,28 @@ std::string extremes_text(const ExtremesTable& table) {
                         ExtremeCase{}.most_evaluations);
   return text + fmt::format("{}{} cells: {}; seed of random starts {}\n", any ? "\n" : "", table.cells.size(),
                             count_of_statuses(table), extreme_seed);
+}
+
+std::string extremes_json(const ExtremesTable& table) {
+  using json = nlohmann::ordered_json;
+  json root{{"complete", table.is_complete()},
+            {"seed", extreme_seed},
+            {"cases", json::array()},
+            {"methods", table.methods},
+            {"cells", json::array()}};
+  for (const ExtremeCase& extreme : table.cases)
+    root["cases"].push_back({{"name", extreme.name}, {"what", extreme.what}});
+  for (const ExtremeCell& cell : table.cells)
+    root["cells"].push_back({{"case", cell.case_name},
+                             {"method", cell.method},
+                             {"status", name_of(cell.status)},
+                             {"detail", cell.detail},
+                             {"time_step_s", cell.time_step},
+                             {"steps", cell.steps},
+                             {"max_strain", cell.max_strain},
+                             {"energy_ratio", cell.energy_ratio},
+                             {"wall_s", cell.wall}});
+  return root.dump(2) + "\n";
 }
 
 std::string extremes_markdown(const ExtremesTable& table) {

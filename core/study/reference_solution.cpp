@@ -146,7 +146,7 @@ StateDifference difference(const std::vector<ClothState>& a, const std::vector<C
 }
 
 ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
-                               const ReferenceProgress& progress) {
+                               const ReferenceProgress& progress, const std::stop_token& stop) {
   ReferenceSolution solution;
   ClothMotion motion(scene);
   const Derivative f = [&](double time, const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
@@ -165,8 +165,8 @@ ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
   std::vector<ClothState> check;
   for (int k = 1; k <= samples; ++k) {
     const double begin = horizon * (k - 1) / samples, end = horizon * k / samples;
-    auto failure = collocation.advance(f, begin, end, steps, first);
-    if (!failure) failure = extrapolation.advance(f, begin, end, second);
+    auto failure = collocation.advance(f, begin, end, steps, first, stop);
+    if (!failure) failure = extrapolation.advance(f, begin, end, second, stop);
     if (failure) solution.failure = *failure;
     if (!failure && progress && !progress(static_cast<double>(k) / samples)) solution.failure = "stopped";
     if (!solution.failure.empty()) return solution;
@@ -181,7 +181,7 @@ ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
 }
 
 ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples, std::int64_t steps,
-                                const ReferenceProgress& progress) {
+                                const ReferenceProgress& progress, const std::stop_token& stop) {
   ReferenceSolution solution;
   solution.smooth = false;
   solution.first = fmt::format("{} with the same limiter and contact in {} steps", loop_method, steps);
@@ -193,8 +193,12 @@ ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples,
   Simulation first(fine), second(coarse);
   std::vector<ClothState> check;
   const auto advance = [&](Simulation& simulation, std::int64_t to) {
-    while (solution.failure.empty() && simulation.state().step < to)
-      if (const auto divergence = simulation.step()) solution.failure = describe(*divergence);
+    while (solution.failure.empty() && simulation.state().step < to) {
+      if (stop.stop_requested())
+        solution.failure = "stopped";
+      else if (const auto divergence = simulation.step())
+        solution.failure = describe(*divergence);
+    }
   };
   for (int k = 1; k <= samples && solution.failure.empty(); ++k) {
     for (int part = 1; part <= 10 && solution.failure.empty(); ++part) {  // so that it can be stopped soon

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -66,12 +67,13 @@ using ReferenceProgress = std::function<bool(double)>;
 /// By collocation of order 12, which rounds least, checked by extrapolation at a tolerance of 1e-13. The
 /// excited frequency is the root mean square of d(acceleration)/dt over that of the acceleration, masses as
 /// weights: that of the one oscillation if there is one, else near the fastest of those that carry weight.
+/// `stop` is looked at before each step.
 ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
-                               const ReferenceProgress& progress = {});
+                               const ReferenceProgress& progress = {}, const std::stop_token& stop = {});
 
 /// By the loop with Verlet in `steps` steps, checked with half as many. Precondition: 2 * samples divides
 /// `steps`.
 ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples, std::int64_t steps,
-                                const ReferenceProgress& progress = {});
+                                const ReferenceProgress& progress = {}, const std::stop_token& stop = {});
 
 }  // namespace cloth

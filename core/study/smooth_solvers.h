@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ class Extrapolation {
   /// `tolerance` is of |error_k| / scale_k in each step; 1e-13 is within reach.
   Extrapolation(double tolerance, Eigen::VectorXd scale) : tolerance_(tolerance), scale_(std::move(scale)) {}
 
-  /// y(begin) becomes y(end); the reason if it cannot: the step would vanish, or y is not finite.
-  std::optional<std::string> advance(const Derivative& f, double begin, double end, Eigen::VectorXd& y);
+  /// y(begin) becomes y(end); the reason if it cannot: the step would vanish, y is not finite, or "stopped",
+  /// which is looked at before each step.
+  std::optional<std::string> advance(const Derivative& f, double begin, double end, Eigen::VectorXd& y,
+                                     const std::stop_token& stop = {});
 
  private:
   void midpoint_rule(const Derivative& f, double begin, double step, int parts, const Eigen::VectorXd& y,
@@ -45,9 +48,9 @@ class Collocation {
   static constexpr int stages = 6;
   explicit Collocation(Eigen::VectorXd scale);
 
-  /// `steps` equal steps; the reason if the iteration does not converge.
+  /// `steps` equal steps; the reason if the iteration does not converge, or "stopped".
   std::optional<std::string> advance(const Derivative& f, double begin, double end, int steps,
-                                     Eigen::VectorXd& y);
+                                     Eigen::VectorXd& y, const std::stop_token& stop = {});
 
  private:
   bool solve_stages(const Derivative& f, double begin, double step, const Eigen::VectorXd& y);

@@ -100,11 +100,18 @@ class MapRunner {
   StabilityMap run();
 
  private:
-  void lay_out(MethodMap& map);
+  bool lay_out(MethodMap& map);
   bool run_cells(MethodMap& map);
   bool measure_limits(MethodMap& map);
   bool narrow(const std::string& method, MeasuredLimit& limit);
   StabilityCell run_at(const std::string& method, double x, double y);
+  bool keep_on() {
+    if (options_.stop.stop_requested()) return false;
+    return ++questions_ % steps_between_questions != 0 || report(done_ / work_);
+  }
+  void tell() const {
+    if (options_.partial) options_.partial(map_);
+  }
   bool report(double part) { return !options_.progress || options_.progress(std::min(1.0, part)); }
 
   bool x_is_step() const { return options_.x.path == time_step_path; }
@@ -114,19 +121,22 @@ class MapRunner {
   const StabilityOptions& options_;
   std::vector<double> x_values_, y_values_;
   double work_ = 0, done_ = 0;
+  std::int64_t questions_ = 0;
+  StabilityMap map_;
 };
 
 StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
-  StabilityCell cell = run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion,
-                                [this] { return report(done_ / work_); });
+  StabilityCell cell =
+      run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion, [this] { return keep_on(); });
   cell.x = x;
   cell.y = y;
   return cell;
 }
 
 /// Fills in what is known without running: the limits, and how long each cell will take.
-void MapRunner::lay_out(MethodMap& map) {
+bool MapRunner::lay_out(MethodMap& map) {
   for (const double y : y_values_) {
+    if (options_.stop.stop_requested()) return false;
     PredictedLimits row_limits;  // a time step does not change them
     for (std::size_t ix = 0; ix < x_values_.size(); ++ix) {
       const Scene scene = cell_scene(scene_, options_, map.method, x_values_[ix], y);
@@ -139,6 +149,7 @@ void MapRunner::lay_out(MethodMap& map) {
       map.cells.push_back(std::move(cell));
     }
   }
+  return true;
 }
 
 bool MapRunner::run_cells(MethodMap& map) {
@@ -150,6 +161,7 @@ bool MapRunner::run_cells(MethodMap& map) {
     result.limits = limits;
     cell = std::move(result);
     done_ += work;
+    tell();
     if (!report(done_ / work_)) return false;
   }
   return true;
@@ -186,31 +198,35 @@ bool MapRunner::measure_limits(MethodMap& map) {
     }
     if (!narrow(map.method, limit)) return false;
     map.measured.push_back(limit);
+    tell();
   }
   return true;
 }
 
 StabilityMap MapRunner::run() {
-  StabilityMap map{.scene = scene_, .options = options_};
-  map.options.progress = {};
-  x_values_ = map.x_values = values_of(options_.x);
-  y_values_ = map.y_values = values_of(options_.y);
+  map_ = {.scene = scene_, .options = options_};
+  map_.options.progress = {};
+  map_.options.partial = {};
+  map_.options.stop = {};
+  x_values_ = map_.x_values = values_of(options_.x);
+  y_values_ = map_.y_values = values_of(options_.y);
   const Scene example =
       cell_scene(scene_, options_, options_.methods.front(), x_values_.front(), y_values_.front());
-  map.rows = example.cloth.rows;
-  map.columns = example.cloth.columns;
+  map_.rows = example.cloth.rows;
+  map_.columns = example.cloth.columns;
   for (const std::string& method : options_.methods) {
-    map.methods.push_back({method, {}, {}});
-    lay_out(map.methods.back());
+    map_.methods.push_back({method, {}, {}});
+    map_.complete = map_.complete && lay_out(map_.methods.back());
   }
-  if (x_is_step() || y_is_step()) work_ *= 1.2;  // for the limits' own runs
+  const bool has_limits = x_is_step() || y_is_step();
+  if (has_limits) work_ *= 1.2;  // for the limits' own runs
   work_ = std::max(work_, 1.0);
-  for (MethodMap& method : map.methods)
-    if (!run_cells(method) || ((x_is_step() || y_is_step()) && !measure_limits(method))) {
-      map.complete = false;
-      break;
-    }
-  return map;
+  for (MethodMap& method : map_.methods) {
+    map_.complete = map_.complete && run_cells(method) && (!has_limits || measure_limits(method));
+    if (!map_.complete) break;
+  }
+  tell();
+  return std::move(map_);
 }
 
 }  // namespace
@@ -326,7 +342,7 @@ StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion,
   std::optional<Divergence> divergence;
   while (!divergence && run.state().step < steps) {
     divergence = run.step();
-    if (keep_on && run.state().step % steps_between_questions == 0 && !keep_on()) return cell;
+    if (keep_on && !keep_on()) return cell;
     if (run.state().step % stride == 0 && !divergence)
       samples.push_back({run.time(), run.measure().energy_error()});
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace cloth {
 /// Grids with more rows or columns than this are run with this many, unless full size is asked for.
 inline constexpr int study_grid = 16;
 
+struct StabilityMap;
+
 struct StabilityOptions {
   std::vector<std::string> methods{};
   StudyAxis x{}, y{};
@@ -22,6 +25,9 @@ struct StabilityOptions {
   bool full_size = false;
   /// Called between and within cells with the part that is done, 0 to 1; false stops the study.
   std::function<bool(double part)> progress{};
+  /// The map so far, after every finished cell and measured limit; the last is what is returned.
+  std::function<void(const StabilityMap&)> partial{};
+  std::stop_token stop{};  ///< looked at before every step; stops like `progress`
 };
 
 /// The step that is predicted to be the longest stable one, in s; 0: none is stable; infinity: any.
@@ -97,7 +103,7 @@ Scene cell_scene(const Scene& scene, const StabilityOptions& options, const std:
 
 PredictedLimits predict_limits(const Scene& cell);
 
-/// One run, judged. `keep_on` is asked now and then; after false the cell's status is not_run.
+/// One run, judged. `keep_on` is asked after every step; after false the cell's status is not_run.
 StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion,
                        const std::function<bool()>& keep_on = {});
 

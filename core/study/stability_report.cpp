@@ -176,16 +176,16 @@ std::string status_of(const StabilityCell& cell) {
 std::string stability_csv(const StabilityMap& map) {
   std::string text =
       "method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,"
-      "time_step_s,growth_rate_per_s,steps,detail\r\n";
+      "time_step_s,growth_rate_per_s,steps,detail,wanted_steps\r\n";
   for (const MethodMap& method : map.methods)
     for (const StabilityCell& cell : method.cells) {
       const bool run = cell.status == CellStatus::run;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_field(method.method),
-                          csv_number(cell.x), csv_number(cell.y), status_of(cell),
-                          run ? csv_limit(cell.energy_ratio) : "", csv_limit(cell.limits.predicted),
-                          csv_limit(cell.limits.guaranteed), csv_limit(cell.limits.provot),
-                          csv_limit(cell.limits.spectrum), csv_number(cell.time_step),
-                          run ? csv_number(cell.growth_rate) : "", cell.steps, csv_field(cell.detail));
+      text += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_field(method.method), csv_number(cell.x),
+          csv_number(cell.y), status_of(cell), run ? csv_limit(cell.energy_ratio) : "",
+          csv_limit(cell.limits.predicted), csv_limit(cell.limits.guaranteed), csv_limit(cell.limits.provot),
+          csv_limit(cell.limits.spectrum), csv_number(cell.time_step),
+          run ? csv_number(cell.growth_rate) : "", cell.steps, csv_field(cell.detail), cell.wanted_steps);
     }
   return text;
 }
@@ -239,10 +239,15 @@ HeatMap stability_heat_map(const StabilityMap& map) {
   heat.y = plot_axis(map.options.y, map.scene);
   heat.x_values = map.x_values;
   heat.y_values = map.y_values;
+  int run = 0;  // counted over all methods
   heat.columns = map.options.methods.size() == 4 || map.options.methods.size() < 3 ? 2 : 3;
   for (const MethodMap& method : map.methods) {
     HeatPanel panel{.title = facts_of(method.method).title, .cells = {}, .curves = {}};
-    for (const StabilityCell& cell : method.cells) panel.cells.push_back(heat_cell(cell));
+    for (const StabilityCell& cell : method.cells) {
+      panel.cells.push_back(heat_cell(cell));
+      panel.cells.back().tag = cell.status == CellStatus::run ? run : -1;
+      ++run;
+    }
     panel.cells.resize(cell_count(map), HeatCell{.class_index = -1});
     const auto add = [&](const char* label, Dash dash, LimitOf limit) {
       auto points = limit_curve(map, method, limit);

@@ -14,7 +14,7 @@ namespace cloth {
 std::string status_of(const StabilityCell& cell);
 
 /// method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,time_step_s,
-/// growth_rate_per_s,steps,detail; a row for each cell, method after method, from the lowest y.
+/// growth_rate_per_s,steps,detail,wanted_steps; a row for each cell, method after method, from the lowest y.
 std::string stability_csv(const StabilityMap& map);
 
 std::size_t count_of(const MethodMap& method, RunClass run_class);

@@ -20,9 +20,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// One untimed run: errors at the fixed times, counts, and how it ended.
 class UntimedPass {
  public:
-  UntimedPass(const WorkPrecision& study, const StepLadder& ladder) : study_(study), ladder_(ladder) {}
+  UntimedPass(const WorkPrecision& study, const StepLadder& ladder, const std::stop_token& stop)
+      : study_(study), ladder_(ladder), stop_(stop) {}
 
-  /// nullopt if `go_on` said false before the end.
+  /// nullopt if it was stopped before the end, or `go_on` said false.
   std::optional<WorkPrecisionRun> run(int rung, const std::function<bool()>& go_on) const {
     Simulation simulation(scene_at(study_.scene, ladder_, rung, study_.horizon));
     WorkPrecisionRun result{.rung = rung, .tolerance = ladder_.tolerance(rung), .samples = {}};
@@ -31,6 +32,7 @@ class UntimedPass {
     std::optional<Divergence> divergence;
     for (int k = 0; k < study_.samples && !divergence; ++k) {
       for (std::int64_t n = 0; n < stride && !divergence; ++n) {
+        if (stop_.stop_requested()) return std::nullopt;
         divergence = simulation.step();
         result.limiter_iterations += simulation.last_limit().direct_iterations;
       }
@@ -66,6 +68,7 @@ class UntimedPass {
 
   const WorkPrecision& study_;
   const StepLadder& ladder_;
+  const std::stop_token& stop_;
 };
 
 int repeats_of(const WorkPrecisionRun& run, int repeats) {
@@ -106,6 +109,12 @@ WorkPrecisionRun refused_run(const MethodStudy& method, int rung, double horizon
   return run;
 }
 
+void tell(WorkPrecision& study, const WorkPrecisionOptions& options) {
+  if (!options.partial) return;
+  conclude(study);
+  options.partial(study);
+}
+
 /// Measures rung by rung, all methods before the next rung, so that what the budget cannot hold are the
 /// finest runs.
 class Measuring {
@@ -134,16 +143,18 @@ class Measuring {
     const auto sharing = static_cast<double>(std::count(active_.begin(), active_.end(), true));
     if (cost > left / (reached(method) < promised_rungs ? std::min(2.0, sharing) : sharing)) {
       method.runs.push_back(refused_run(method, rung, study_.horizon, cost, left));
+      tell(study_, options_);
       active_[m] = false;
       return true;
     }
     const std::string text = fmt::format("measuring {}", method.ladder.facts.name);
-    const auto run = UntimedPass(study_, method.ladder).run(rung, [&] {
+    const auto run = UntimedPass(study_, method.ladder, options_.stop).run(rung, [&] {
       return !options_.progress || options_.progress({0.1 + 0.15 * study_.estimated / study_.budget, text});
     });
     if (!run) return false;
     study_.estimated += whole_cost(*run, study_.repeats);
     method.runs.push_back(*run);
+    tell(study_, options_);
     return true;
   }
 
@@ -160,12 +171,16 @@ class Measuring {
   std::vector<bool> active_;
 };
 
-double seconds_of(const WorkPrecision& study, const StepLadder& ladder, int rung) {
+/// nullopt if it was stopped.
+std::optional<double> seconds_of(const WorkPrecision& study, const StepLadder& ladder, int rung,
+                                 const std::stop_token& stop) {
   Simulation simulation(scene_at(study.scene, ladder, rung, study.horizon));
   const std::int64_t steps = ladder.steps(rung);
   const auto start = std::chrono::steady_clock::now();
-  for (std::int64_t n = 0; n < steps; ++n)
+  for (std::int64_t n = 0; n < steps; ++n) {
+    if (stop.stop_requested()) return std::nullopt;
     if (simulation.step()) break;
+  }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -203,38 +218,22 @@ bool time_all(WorkPrecision& study, const WorkPrecisionOptions& options) {
           fmt::format("timing {}, repeat {} of {}", method->ladder.facts.name, repeat, most);
       if (options.progress && !options.progress({0.25 + 0.75 * spent / std::max(total, 1e-9), text}))
         return false;
-      run->samples.push_back({repeat, static_cast<int>(k) + 1, seconds_of(study, method->ladder, run->rung)});
+      const auto seconds = seconds_of(study, method->ladder, run->rung, options.stop);
+      if (!seconds) return false;
+      run->samples.push_back({repeat, static_cast<int>(k) + 1, *seconds});
       spent += run->estimated;
+      tell(study, options);
     }
   }
   return true;
-}
-
-void conclude(WorkPrecision& study) {
-  for (MethodStudy& method : study.methods) {
-    std::vector<OrderPoint> position, velocity;
-    for (WorkPrecisionRun& run : method.runs) {
-      run.time = spread_of(run.samples);
-      if (!run.reached_horizon() || run.rung < 0) continue;
-      position.push_back({run.time_step, run.error.rms_position});
-      velocity.push_back({run.time_step, run.error.rms_velocity});
-    }
-    OrderRule rule = order_rule(method.ladder.facts.order);
-    rule.excited_frequency = study.reference.excited_frequency;
-    rule.floor = study.reference.floor.rms_position;
-    rule.scale = study.diagonal;
-    method.order = estimate_order(position, rule);
-    rule.floor = study.reference.floor.rms_velocity;
-    rule.scale = study.diagonal / study.horizon;
-    method.velocity_order = estimate_order(velocity, rule);
-  }
 }
 
 ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecisionOptions& options) {
   const ReferenceProgress progress = [&](double part) {
     return !options.progress || options.progress({0.1 * part, "solving the reference"});
   };
-  if (is_smooth(study.scene)) return solve_smooth(study.scene, study.horizon, study.samples, progress);
+  if (is_smooth(study.scene))
+    return solve_smooth(study.scene, study.horizon, study.samples, progress, options.stop);
   // As fine as a third of the budget allows, at most 64 times the finest step that the ladders plan.
   std::int64_t finest = 0;
   for (const MethodStudy& method : study.methods)
@@ -246,7 +245,7 @@ ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecision
   while (ratio > 4 && static_cast<double>(finest) * ratio > most) ratio /= 2;
   const std::int64_t unit = 2 * study.samples;
   const std::int64_t steps = std::max<std::int64_t>(finest, unit) * ratio / unit * unit;
-  return solve_by_loop(study.scene, study.horizon, study.samples, steps, progress);
+  return solve_by_loop(study.scene, study.horizon, study.samples, steps, progress, options.stop);
 }
 
 }  // namespace
@@ -292,11 +291,40 @@ TimeSpread spread_of(const std::vector<TimedSample>& samples) {
   return {seconds.front(), at(0.25), at(0.5), at(0.75)};
 }
 
+void conclude(WorkPrecision& study) {
+  for (MethodStudy& method : study.methods) {
+    std::vector<OrderPoint> position, velocity;
+    for (WorkPrecisionRun& run : method.runs) {
+      run.time = spread_of(run.samples);
+      if (!run.reached_horizon() || run.rung < 0) continue;
+      position.push_back({run.time_step, run.error.rms_position});
+      velocity.push_back({run.time_step, run.error.rms_velocity});
+    }
+    OrderRule rule = order_rule(method.ladder.facts.order);
+    rule.excited_frequency = study.reference.excited_frequency;
+    rule.floor = study.reference.floor.rms_position;
+    rule.scale = study.diagonal;
+    method.order = estimate_order(position, rule);
+    rule.floor = study.reference.floor.rms_velocity;
+    rule.scale = study.diagonal / study.horizon;
+    method.velocity_order = estimate_order(velocity, rule);
+  }
+}
+
+Scene studied_scene(const Scene& scene) {
+  Scene studied = scene;
+  if (studied.deformation)
+    studied.deformation->tolerance = std::min(scene.deformation->tolerance, limiter_tolerance);
+  return studied;
+}
+
+Scene scene_of(const WorkPrecision& study, const MethodStudy& method, const WorkPrecisionRun& run) {
+  return scene_at(study.scene, method.ladder, run.rung, study.horizon);
+}
+
 WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study;
-  study.scene = scene;
-  if (scene.deformation)
-    study.scene.deformation->tolerance = std::min(scene.deformation->tolerance, limiter_tolerance);
+  study.scene = studied_scene(scene);
   study.particles = scene.cloth.rows * scene.cloth.columns;
   study.diagonal = std::hypot(scene.cloth.width, scene.cloth.height);
   study.repeats = options.repeats;
@@ -315,6 +343,7 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
   }
   study.estimated = estimated_seconds(study.particles, {.force_evaluations = study.reference.evaluations}, 0);
   study.stopped = !Measuring(study, options).all() || !time_all(study, options);
+  tell(study, options);
   conclude(study);
   return study;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,11 @@
 #include "study/order_estimate.h"
 #include "study/reference_solution.h"
 #include "study/step_ladder.h"
+#include "study/study_progress.h"
 
 namespace cloth {
 
-struct StudyProgress {
-  double fraction = 0;  ///< of the whole study, by estimated cost
-  std::string text;     ///< what is being done
-};
+struct WorkPrecision;
 
 struct WorkPrecisionOptions {
   std::vector<std::string> methods;  ///< of integrator_names(); empty: all
@@ -25,6 +24,9 @@ struct WorkPrecisionOptions {
   int steps_per_method = 7;          ///< runs that must reach the horizon, if the budget lasts
   double budget = 200;  ///< estimated s, see estimated_seconds: what does not fit is refused and says so
   std::function<bool(const StudyProgress&)> progress;  ///< false stops the study; what is finished is kept
+  /// The study so far, after every finished run and every timed repeat of one; the last is what is returned.
+  std::function<void(const WorkPrecision&)> partial{};
+  std::stop_token stop{};  ///< looked at before every step, the timed ones too; stops like `progress`
 };
 
 enum class RunStatus { stable, energy_growth, diverged, solver_failed, refused };
@@ -79,6 +81,15 @@ struct WorkPrecision {
 /// What the counted work should take on a machine of today, in s: decides what fits the budget, the same way
 /// on every machine. It is no measurement.
 double estimated_seconds(int particles, const StepCount& count, std::int64_t limiter_iterations);
+
+/// Fills in times and orders from the samples and errors of the runs.
+void conclude(WorkPrecision& study);
+
+/// The scene of one run, as it was run.
+Scene scene_of(const WorkPrecision& study, const MethodStudy& method, const WorkPrecisionRun& run);
+
+/// The scene as it is studied: the limiter's tolerance is below the errors of time.
+Scene studied_scene(const Scene& scene);
 
 /// Quartiles are interpolated.
 TimeSpread spread_of(const std::vector<TimedSample>& samples);

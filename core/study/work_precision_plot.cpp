@@ -62,21 +62,24 @@ std::string legend_of(const MethodStudy& method, bool smooth) {
   return text;
 }
 
-PlotSeries series_of(const WorkPrecision& study, const MethodStudy& method, PlotAgainst against) {
+PlotSeries series_of(const WorkPrecision& study, const MethodStudy& method, PlotAgainst against,
+                     int first_run) {
   PlotSeries series{.name = method.ladder.facts.title, .detail = legend_of(method, study.reference.smooth)};
   const auto& names = integrator_names();
   series.style =
       static_cast<int>(std::find(names.begin(), names.end(), method.ladder.facts.name) - names.begin());
   for (const WorkPrecisionRun& run : method.runs) {
+    const int tag = first_run + static_cast<int>(&run - method.runs.data());
     if (!run.reached_horizon()) {
       const std::string cause = std::string(name_of(run.status)) + ": " + run.detail;
       series.failed.push_back(
           {run.status == RunStatus::refused && against != PlotAgainst::step ? 0 : abscissa(run, against),
-           cause});
+           cause, run.status == RunStatus::refused ? -1 : tag});
       continue;
     }
     if (against == PlotAgainst::run_time && run.samples.empty()) continue;
-    PlotPoint point{.x = abscissa(run, against), .y = run.error.rms_position, .note = note_of(run)};
+    PlotPoint point{
+        .x = abscissa(run, against), .y = run.error.rms_position, .note = note_of(run), .tag = tag};
     if (against == PlotAgainst::run_time) point.x_range = {run.time.least, run.time.upper_quartile};
     series.points.push_back(point);
   }
@@ -121,7 +124,11 @@ LinePlot error_plot(const WorkPrecision& study, PlotAgainst against) {
   plot.caption = caption_of(study, against);
   plot.x = axis_of(against);
   plot.y = {.label = "RMS position error", .unit = "m", .scale = AxisScale::logarithmic};
-  for (const MethodStudy& method : study.methods) plot.series.push_back(series_of(study, method, against));
+  int run = 0;  // counted over all methods
+  for (const MethodStudy& method : study.methods) {
+    plot.series.push_back(series_of(study, method, against, run));
+    run += static_cast<int>(method.runs.size());
+  }
   if (const double floor = 10 * study.reference.floor.rms_position; floor > 0) {
     plot.floor = PlotFloor{floor, "within ten times what the two references differ by"};
     plot.y.low = floor / 100;  // room for its label

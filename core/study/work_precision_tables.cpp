@@ -55,7 +55,8 @@ std::vector<std::string> run_row(const WorkPrecision& study, const MethodStudy& 
           std::to_string(run.samples.size()),
           number_or_empty(run.tolerance, run.tolerance > 0),
           number_or_empty(method.ladder.limit.value_or(NAN)),
-          run.detail};
+          run.detail,
+          std::to_string(run.rung)};
 }
 
 json run_json(const WorkPrecisionRun& run) {
@@ -143,7 +144,8 @@ CsvTable run_table(const WorkPrecision& study) {
                   "repeats",
                   "tolerance",
                   "stable_step_s",
-                  "detail"},
+                  "detail",
+                  "rung"},
                  {}};
   for (const MethodStudy& method : study.methods)
     for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(run_row(study, method, run));

@@ -25,7 +25,8 @@ TEST(Extremes, LeaveATableWithTheColumnsOfTheManual) {
   EXPECT_EQ(result.exit_code, 0) << "cells that diverge are the result, not a failure: " << result.errors;
   const CsvTable table = parse_csv(content_of(folder / "result/extremes.csv"));
   EXPECT_EQ(table.header, (std::vector<std::string>{"case", "method", "status", "detail", "steps",
-                                                    "max_strain", "energy_ratio", "wall_s"}));
+                                                    "max_strain", "energy_ratio", "wall_s",
+                                                    "time_step_s", "ended_early"}));
   ASSERT_EQ(table.rows.size(), 4u);
   EXPECT_EQ(table.rows[0][0], "step-1s");  // the list's order, and the methods'
   EXPECT_EQ(table.rows[0][1], "explicit-euler");

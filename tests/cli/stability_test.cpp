@@ -21,7 +21,7 @@ std::string small_map(const TemporaryFolder& folder) {
          (folder / "map").string() + "' ";
 }
 
-TEST(Stability, LeavesItsThreeFilesAndSaysTheLimits) {
+TEST(Stability, LeavesItsFilesAndSaysTheLimits) {
   const TemporaryFolder folder;
   const CommandResult result = cli(small_map(folder));
   EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -31,7 +31,7 @@ TEST(Stability, LeavesItsThreeFilesAndSaysTheLimits) {
   std::set<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "map"))
     files.insert(entry.path().filename());
-  EXPECT_EQ(files, std::set<std::string>({"stability.csv", "stability.svg", "report.html"}));
+  EXPECT_EQ(files, std::set<std::string>({"stability.csv", "stability.svg", "study.json", "report.html"}));
   EXPECT_EQ(parse_csv(content_of(folder / "map/stability.csv")).rows.size(), 6u);
   const std::string page = content_of(folder / "map/report.html");
   for (const char* part : {"<svg", "The criterion", "clothlab-cli stability corners-free", "Predicted"})

@@ -150,7 +150,8 @@ TEST(StabilityMap, IsTheSameTwiceAndHasItsColumns) {
                                          "time_step_s",
                                          "growth_rate_per_s",
                                          "steps",
-                                         "detail"};
+                                         "detail",
+                                         "wanted_steps"};
   EXPECT_EQ(table.header, columns);
   EXPECT_EQ(table.rows.size(), 6u * 3);
   std::set<std::string> statuses;

@@ -18,6 +18,7 @@
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
+#include "studies/studies_panel.h"
 #include "theme/theme.h"
 
 namespace clothlab {
@@ -25,6 +26,7 @@ namespace {
 
 constexpr QSize pleasant_size{1440, 900};
 constexpr int parameters_width = 330, charts_width = 400;  // px
+constexpr int studies_height = 400;                        // px
 constexpr int title_bar_height = 32;                       // px, at least what a desktop puts above a window
 
 }  // namespace
@@ -39,6 +41,7 @@ MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   charts_ = new ChartPanel(this);
   parameters_ = new ParameterPanel(document_, this);
   notice_ = new NoticeBar(this);
+  studies_ = new StudiesPanel(document_, this);
   makeActions();
   makeLayout();
   makeMenus();
@@ -88,7 +91,29 @@ void MainWindow::makeLayout() {
   QDockWidget* left = dock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
   QDockWidget* right = dock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
+  studies_dock_ = new QDockWidget(tr("Studies"), this);
+  studies_dock_->setObjectName("studiesDock");
+  studies_dock_->setWidget(studies_);
+  addDockWidget(Qt::BottomDockWidgetArea, studies_dock_);
+  studies_dock_->hide();
+  connect(studies_, &StudiesPanel::runOpened, this, &MainWindow::openRun);
   view_->setFocus();
+}
+
+void MainWindow::showStudies() {
+  const bool was_hidden = studies_dock_->isHidden();
+  studies_dock_->show();
+  studies_dock_->raise();
+  if (was_hidden) resizeDocks({studies_dock_}, {studies_height}, Qt::Vertical);
+}
+
+void MainWindow::openRun(const cloth::Scene& scene, const QString& note) {
+  if (!mayLoseChanges()) return;
+  document_.load(scene);
+  if (note.isEmpty())
+    notice_->withdraw("run");
+  else
+    notice_->show("run", NoticeBar::Level::info, note);
 }
 
 void MainWindow::connectDocument() {
@@ -362,11 +387,20 @@ bool MainWindow::mayLoseChanges() {
   return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
 }
 
+bool MainWindow::mayStopStudy() {
+  if (!studies_->isRunning()) return true;
+  return QMessageBox::question(this, tr("A study is running"),
+                               tr("A study is running. Stop it and close? What is finished is kept."),
+                               QMessageBox::Close | QMessageBox::Cancel,
+                               QMessageBox::Cancel) == QMessageBox::Close;
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!mayLoseChanges()) {
+  if (!mayStopStudy() || !mayLoseChanges()) {
     event->ignore();
     return;
   }
+  studies_->stop();
   link_.send(command::Pause{});
   link_.send(command::StopRecording{});
   event->accept();

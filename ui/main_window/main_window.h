@@ -14,11 +14,13 @@
 #include "timeline/timeline.h"
 #include "viewport/cloth_view.h"
 
+class QDockWidget;
 class QMenu;
 
 namespace clothlab {
 
 struct OpenedScene;
+class StudiesPanel;
 class ViewBar;
 
 class MainWindow : public QMainWindow {
@@ -48,6 +50,8 @@ class MainWindow : public QMainWindow {
   ParameterPanel& parameters() { return *parameters_; }
   NoticeBar& notice() { return *notice_; }
   Timeline& timeline() { return *timeline_; }
+  StudiesPanel& studies() { return *studies_; }
+  void showStudies();
 
  protected:
   void closeEvent(QCloseEvent* event) override;
@@ -77,6 +81,8 @@ class MainWindow : public QMainWindow {
   bool hasAir() const;
   void updateTitle();
   bool mayLoseChanges();
+  bool mayStopStudy();
+  void openRun(const cloth::Scene& scene, const QString& note);
 
   // main_window_menus.cpp
   void makeActions();
@@ -98,6 +104,8 @@ class MainWindow : public QMainWindow {
   ChartPanel* charts_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   NoticeBar* notice_ = nullptr;
+  StudiesPanel* studies_ = nullptr;
+  QDockWidget* studies_dock_ = nullptr;
   TransportBar* transport_ = nullptr;
   Timeline* timeline_ = nullptr;
   ViewBar* view_bar_ = nullptr;

@@ -108,6 +108,9 @@ void MainWindow::makeMenus() {
   run->addActions({play_, play_again_, step_, reset_});
   run->addSeparator();
   run->addAction(record_);
+  run->addSeparator();
+  run->addAction(icon("chart"), tr("Studies…"), QKeySequence("Ctrl+T"), this, &MainWindow::showStudies)
+      ->setObjectName("studies");
 
   QMenu* compare = menuBar()->addMenu(tr("&Compare"));
   QAction* methods =

@@ -1,0 +1,68 @@
+// A study as a folder, written and read by the command line and the window alike: its tables as CSV, its
+// diagram as SVG, report.html, and study.json, which says what was studied.
+//
+//     if (auto error = write_study(folder, map, command, wall)) ...
+//     StudyReading reading = read_study(folder);
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "io/line_file.h"
+#include "study/extremes.h"
+#include "study/stability_map.h"
+#include "study/work_precision.h"
+
+namespace cloth {
+
+inline constexpr const char* study_format = "clothlab/study/1";
+
+using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable>;
+
+struct Study {
+  StudyTable table;
+  std::string command;  ///< what made it
+  double wall = 0;      ///< s
+};
+
+/// "work-precision", "stability", "extremes": the command's name.
+const char* kind_of(const StudyTable& table);
+
+/// The scene's title, or what the fixed list is.
+std::string title_of(const StudyTable& table);
+
+/// Whether it came to its end.
+bool is_complete(const StudyTable& table);
+
+/// Makes the folder and writes or replaces its files, each of them old or new, never half.
+std::optional<IoError> write_study(const std::filesystem::path& folder, const WorkPrecision& study,
+                                   const std::string& command, double wall);
+std::optional<IoError> write_study(const std::filesystem::path& folder, const StabilityMap& map,
+                                   const std::string& command, double wall);
+std::optional<IoError> write_study(const std::filesystem::path& folder, const ExtremesTable& table,
+                                   const std::string& command, double wall);
+std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study);
+
+/// Only study.json: what a folder begins with.
+std::optional<IoError> write_study_json(const std::filesystem::path& folder, const StudyTable& table,
+                                        const std::string& command, double wall);
+
+/// The same table that was written, but for the states of a reference and estimated costs. Exactly one of the
+/// two is there.
+struct StudyReading {
+  std::optional<Study> study;
+  std::string problem;  ///< file, place and rule
+};
+StudyReading read_study(const std::filesystem::path& folder);
+
+/// For a terminal, as the study's own command prints it.
+std::string study_text(const StudyTable& table);
+std::string study_json_text(const StudyTable& table);  ///< as with --json
+
+/// The table that a folder of this kind keeps its rows in: "work_precision.csv".
+const char* csv_name(const StudyTable& table);
+std::string study_csv(const StudyTable& table);
+
+}  // namespace cloth

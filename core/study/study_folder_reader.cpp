@@ -1,0 +1,335 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "integrators/registry.h"
+#include "io/csv.h"
+#include "io/run_folder.h"
+#include "scene/scene_json.h"
+#include "study/stability_report.h"
+#include "study/study_folder.h"
+
+namespace cloth {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// What is wrong with a folder, on its way to the reader's caller; never leaves this file.
+struct BadFolder {
+  std::string problem;
+};
+
+/// A CSV file of the folder, by row and column name.
+class Rows {
+ public:
+  Rows(const std::filesystem::path& folder, const char* name) : name_(name) {
+    std::string text;
+    if (const auto error = read_text_file(folder / name, text)) throw BadFolder{error->text()};
+    table_ = parse_csv(text);
+    for (std::size_t k = 0; k < table_.header.size(); ++k) columns_[table_.header[k]] = k;
+  }
+
+  std::size_t size() const { return table_.rows.size(); }
+  std::string text(std::size_t row, const char* column) const {
+    const auto at = columns_.find(column);
+    if (at == columns_.end()) throw BadFolder{fmt::format("{}: has no column \"{}\"", name_, column)};
+    const auto& fields = table_.rows[row];
+    if (at->second >= fields.size()) throw bad(row, column, "", "is missing");
+    return fields[at->second];
+  }
+  /// `empty`: the value of an empty field; none: it may not be empty.
+  double number(std::size_t row, const char* column, std::optional<double> empty = {}) const {
+    const std::string field = text(row, column);
+    if (field.empty() && empty) return *empty;
+    double value = 0;
+    const char* end = field.data() + field.size();
+    const auto [last, error] = std::from_chars(field.data(), end, value);
+    if (error != std::errc() || last != end || field.empty())
+      throw bad(row, column, field, "must be a number");
+    return value;
+  }
+  std::int64_t count(std::size_t row, const char* column) const {
+    const double value = number(row, column, 0.0);
+    if (!(std::abs(value) < 1e18)) throw bad(row, column, text(row, column), "must be a whole number");
+    return static_cast<std::int64_t>(value);
+  }
+  BadFolder bad(std::size_t row, const char* column, const std::string& value, const char* rule) const {
+    return {fmt::format("{}, line {}, {}: \"{}\" {}", name_, row + 2, column, value, rule)};
+  }
+
+ private:
+  std::string name_;
+  CsvTable table_;
+  std::map<std::string, std::size_t> columns_;
+};
+
+double number_or(const json& value, double otherwise) {
+  return value.is_null() ? otherwise : value.get<double>();
+}
+
+std::vector<std::string> methods_of(const json& options) {
+  auto methods = options.at("methods").get<std::vector<std::string>>();
+  const auto& known = integrator_names();
+  for (const std::string& method : methods)
+    if (std::find(known.begin(), known.end(), method) == known.end())
+      throw BadFolder{fmt::format("study.json: options.methods: \"{}\" is not a method", method)};
+  if (methods.empty()) throw BadFolder{"study.json: options.methods: must not be empty"};
+  return methods;
+}
+
+Scene scene_of(const json& root) {
+  SceneReading reading = read_scene(root.at("scene").dump(), "study.json, scene");
+  if (!reading.scene) throw BadFolder{reading.problems.front().text()};
+  return std::move(*reading.scene);
+}
+
+template <class Status>
+Status status_named(const Rows& rows, std::size_t row, const std::vector<Status>& known) {
+  const std::string name = rows.text(row, "status");
+  for (const Status status : known)
+    if (name == name_of(status)) return status;
+  throw rows.bad(row, "status", name, "is not a status");
+}
+
+StateDifference difference_of(const json& value) {
+  return {value.at("rms_position_m").get<double>(), value.at("largest_position_m").get<double>(),
+          value.at("rms_velocity_m_s").get<double>()};
+}
+
+WorkPrecisionRun read_run(const Rows& rows, std::size_t row) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  WorkPrecisionRun run;
+  run.rung = static_cast<int>(rows.count(row, "rung"));
+  if (run.rung < -1 || run.rung > 60)
+    throw rows.bad(row, "rung", rows.text(row, "rung"), "must be from -1 to 60");
+  run.tolerance = rows.number(row, "tolerance", 0);
+  run.time_step = rows.number(row, "time_step", nan);
+  run.steps = rows.count(row, "steps");
+  run.count.force_evaluations = rows.count(row, "force_evaluations");
+  run.count.factorisations = rows.count(row, "factorisations");
+  run.count.iterations = rows.count(row, "iterations");
+  run.count.linear_iterations = rows.count(row, "linear_iterations");
+  run.count.velocity_iterations = rows.count(row, "velocity_iterations");
+  run.count.limiter_sweeps = rows.count(row, "limiter_sweeps");
+  run.count.rejected_steps = rows.count(row, "rejected_steps");
+  run.limiter_iterations = rows.count(row, "limiter_iterations");
+  run.error = {rows.number(row, "rms_error_m", nan), rows.number(row, "largest_error_m", nan),
+               rows.number(row, "rms_velocity_error_m_s", nan)};
+  run.energy_error = rows.number(row, "energy_error_J", nan);
+  run.status = status_named<RunStatus>(rows, row,
+                                       {RunStatus::stable, RunStatus::energy_growth, RunStatus::diverged,
+                                        RunStatus::solver_failed, RunStatus::refused});
+  run.detail = rows.text(row, "detail");
+  return run;
+}
+
+/// What names a run in both tables.
+std::string key_of(const Rows& rows, std::size_t row) {
+  return rows.text(row, "method") + "|" + rows.text(row, "time_step") + "|" + rows.text(row, "steps") + "|" +
+         rows.text(row, "tolerance");
+}
+
+WorkPrecision read_work_precision(const std::filesystem::path& folder, const json& root) {
+  WorkPrecision study;
+  study.scene = scene_of(root);
+  study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
+  study.diagonal = std::hypot(study.scene.cloth.width, study.scene.cloth.height);
+  const json& options = root.at("options");
+  const double horizon = options.at("horizon_s").get<double>();
+  if (!(horizon > 0)) throw BadFolder{"study.json: options.horizon_s: must be > 0"};
+  study.repeats = options.at("repeats").get<int>();
+  study.budget = options.at("budget_s").get<double>();
+  study.estimated = root.at("estimated_s").get<double>();
+  study.stopped = !root.at("complete").get<bool>();
+  const json& reference = root.at("reference");
+  study.reference = {.states = {},
+                     .floor = difference_of(reference.at("floor")),
+                     .excited_frequency = reference.at("excited_frequency_per_s").get<double>(),
+                     .largest_kinetic = reference.at("largest_kinetic_J").get<double>(),
+                     .smooth = reference.at("smooth").get<bool>(),
+                     .first = reference.at("first").get<std::string>(),
+                     .second = reference.at("second").get<std::string>(),
+                     .evaluations = reference.at("evaluations").get<std::int64_t>(),
+                     .failure = reference.at("failure").get<std::string>()};
+  Ladders ladders = make_ladders(study.scene, methods_of(options), horizon);
+  study.horizon = ladders.horizon;
+  study.samples = ladders.samples;
+  for (StepLadder& ladder : ladders.methods)
+    study.methods.push_back({.ladder = std::move(ladder), .runs = {}, .order = {}, .velocity_order = {}});
+
+  const Rows rows(folder, "work_precision.csv");
+  std::map<std::string, std::pair<std::size_t, std::size_t>> places;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::string method = rows.text(row, "method");
+    const auto at = std::find_if(study.methods.begin(), study.methods.end(),
+                                 [&](const MethodStudy& known) { return known.ladder.facts.name == method; });
+    if (at == study.methods.end()) throw rows.bad(row, "method", method, "is not in study.json");
+    places[key_of(rows, row)] = {static_cast<std::size_t>(at - study.methods.begin()), at->runs.size()};
+    at->runs.push_back(read_run(rows, row));
+  }
+  const Rows samples(folder, "work_precision_samples.csv");
+  for (std::size_t row = 0; row < samples.size(); ++row) {
+    const auto at = places.find(key_of(samples, row));
+    if (at == places.end()) throw samples.bad(row, "method", samples.text(row, "method"), "has no such run");
+    study.methods[at->second.first].runs[at->second.second].samples.push_back(
+        {static_cast<int>(samples.count(row, "repeat")), static_cast<int>(samples.count(row, "turn")),
+         samples.number(row, "wall_s")});
+  }
+  conclude(study);
+  return study;
+}
+
+StudyAxis axis_of(const json& value) {
+  StudyAxis axis{.path = value.at("path").get<std::string>(),
+                 .low = value.at("low").get<double>(),
+                 .high = value.at("high").get<double>(),
+                 .count = value.at("count").get<int>(),
+                 .scale = value.at("logarithmic").get<bool>() ? AxisScale::logarithmic : AxisScale::linear};
+  const auto checked =
+      parse_axis(axis_text(axis), "study.json, axis");  // the same rules as on the command line
+  if (const auto* problem = std::get_if<Problem>(&checked)) throw BadFolder{problem->text()};
+  return axis;
+}
+
+StabilityOptions options_of(const json& value) {
+  StabilityOptions options{.methods = methods_of(value),
+                           .x = axis_of(value.at("x")),
+                           .y = axis_of(value.at("y")),
+                           .full_size = value.at("full_size").get<bool>()};
+  const json& criterion = value.at("criterion");
+  options.criterion = {.periods = criterion.at("periods").get<double>(),
+                       .least_steps = criterion.at("least_steps").get<int>(),
+                       .most_steps = criterion.at("most_steps").get<int>(),
+                       .perturbation = criterion.at("perturbation").get<double>(),
+                       .perturbation_seed = criterion.at("perturbation_seed").get<unsigned>(),
+                       .growth = criterion.at("growth").get<double>(),
+                       .growth_factor = criterion.at("growth_factor").get<double>(),
+                       .accuracy = criterion.at("accuracy").get<double>()};
+  return options;
+}
+
+StabilityCell read_cell(const Rows& rows, std::size_t row) {
+  StabilityCell cell;
+  cell.x = rows.number(row, "x");
+  cell.y = rows.number(row, "y");
+  cell.energy_ratio = rows.number(row, "energy_ratio", 0);
+  cell.growth_rate = rows.number(row, "growth_rate_per_s", 0);
+  cell.time_step = rows.number(row, "time_step_s");
+  cell.steps = rows.count(row, "steps");
+  cell.wanted_steps = rows.count(row, "wanted_steps");
+  cell.detail = rows.text(row, "detail");
+  cell.limits = {rows.number(row, "predicted_limit_s"), rows.number(row, "guaranteed_limit_s"),
+                 rows.number(row, "provot_s"), rows.number(row, "spectrum_limit_s")};
+  const std::string status = rows.text(row, "status");
+  for (const CellStatus general : {CellStatus::not_run, CellStatus::refused, CellStatus::run})
+    for (int run_class = 0; run_class < static_cast<int>(run_classes().size()); ++run_class) {
+      cell.status = general;
+      cell.run_class = static_cast<RunClass>(general == CellStatus::run ? run_class : 0);
+      if (status_of(cell) == status) return cell;
+    }
+  throw rows.bad(row, "status", status, "is not a status");
+}
+
+StabilityMap read_stability(const std::filesystem::path& folder, const json& root) {
+  StabilityMap map;
+  map.scene = scene_of(root);
+  map.options = options_of(root.at("options"));
+  const auto problems = find_problems(map.scene, map.options);
+  if (!problems.empty()) throw BadFolder{"study.json: " + problems.front().text()};
+  map.x_values = values_of(map.options.x);
+  map.y_values = values_of(map.options.y);
+  map.rows = root.at("rows").get<int>();
+  map.columns = root.at("columns").get<int>();
+  map.complete = root.at("complete").get<bool>();
+  for (const std::string& method : map.options.methods) map.methods.push_back({method, {}, {}});
+  const Rows rows(folder, "stability.csv");
+  const std::size_t most = map.x_values.size() * map.y_values.size();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::string name = rows.text(row, "method");
+    const auto at = std::find_if(map.methods.begin(), map.methods.end(),
+                                 [&](const MethodMap& known) { return known.method == name; });
+    if (at == map.methods.end() || at->cells.size() == most)
+      throw rows.bad(row, "method", name, "is not in study.json, or has more cells than its axes");
+    at->cells.push_back(read_cell(rows, row));
+  }
+  const bool x_is_step = map.options.x.path == time_step_path;
+  for (const auto& [name, limits] : root.at("limits").items())
+    for (MethodMap& method : map.methods)
+      if (method.method == name)
+        for (const json& value : limits) {
+          const std::size_t k = method.measured.size();
+          const std::size_t cell = x_is_step ? k * map.x_values.size() + map.x_values.size() - 1
+                                             : (map.y_values.size() - 1) * map.x_values.size() + k;
+          if (cell >= method.cells.size()) throw BadFolder{"study.json: limits: more than there are cells"};
+          method.measured.push_back(
+              {.other = value.at("at").get<double>(),
+               .longest_stable = value.at("longest_stable_s").get<double>(),
+               .shortest_unstable = number_or(value.at("shortest_unstable_s"), infinity),
+               .stable_beyond = value.at("stable_beyond").get<bool>(),
+               .limits = method.cells[cell].limits});
+        }
+  return map;
+}
+
+ExtremesTable read_extremes(const std::filesystem::path& folder, const json& root) {
+  ExtremesOptions options;
+  if (root.contains("scene")) options.scene = scene_of(root);
+  options.methods = methods_of(root.at("options"));
+  options.cases = root.at("options").at("cases").get<std::vector<std::string>>();
+  ExtremesTable table = empty_table(options);
+  if (table.cases.size() != options.cases.size() || table.methods.size() != options.methods.size())
+    throw BadFolder{"study.json: options: there is a case or method that this version does not have"};
+  const Rows rows(folder, "extremes.csv");
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::size_t extreme = row / table.methods.size();
+    ExtremeCell cell{.case_name = rows.text(row, "case"), .method = rows.text(row, "method"), .detail = {}};
+    if (extreme >= table.cases.size() || cell.case_name != table.cases[extreme].name ||
+        cell.method != table.methods[row % table.methods.size()])
+      throw rows.bad(row, "case", cell.case_name, "is not the case and method that study.json has here");
+    cell.status = status_named(rows, row, extreme_statuses());
+    cell.detail = rows.text(row, "detail");
+    cell.time_step = rows.number(row, "time_step_s");
+    cell.steps = rows.count(row, "steps");
+    cell.ended_early = rows.count(row, "ended_early") != 0;
+    cell.max_strain = rows.number(row, "max_strain");
+    cell.energy_ratio = rows.number(row, "energy_ratio");
+    cell.wall = rows.number(row, "wall_s");
+    table.cells.push_back(std::move(cell));
+  }
+  return table;
+}
+
+StudyTable read_table(const std::filesystem::path& folder, const json& root) {
+  const std::string kind = root.at("kind").get<std::string>();
+  if (kind == "work-precision") return read_work_precision(folder, root);
+  if (kind == "stability") return read_stability(folder, root);
+  if (kind == "extremes") return read_extremes(folder, root);
+  throw BadFolder{
+      fmt::format("study.json: kind: \"{}\" is none of work-precision, stability, extremes", kind)};
+}
+
+}  // namespace
+
+StudyReading read_study(const std::filesystem::path& folder) {
+  std::string text;
+  if (const auto error = read_text_file(folder / "study.json", text)) return {std::nullopt, error->text()};
+  try {
+    const json root = json::parse(text);
+    if (root.at("format") != study_format)
+      throw BadFolder{fmt::format("study.json: format: must be \"{}\"", study_format)};
+    return {Study{read_table(folder, root), root.at("command").get<std::string>(),
+                  root.at("wall_s").get<double>()},
+            {}};
+  } catch (const BadFolder& bad) {
+    return {std::nullopt, (folder / "").string() + bad.problem};
+  } catch (const json::exception& error) {
+    return {std::nullopt, (folder / "study.json").string() + ": " + error.what()};
+  }
+}
+
+}  // namespace cloth

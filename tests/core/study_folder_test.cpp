@@ -1,0 +1,214 @@
+// A study as a folder comes back as it was written, and grows run by run to what is returned.
+#include "study/study_folder.h"
+
+#include <gtest/gtest.h>
+
+#include "io/run_folder.h"
+#include "scene/builtin_scenes.h"
+#include "study/extremes_report.h"
+#include "study/stability_report.h"
+#include "study/study_runs.h"
+#include "study/work_precision_report.h"
+#include "study/work_precision_tables.h"
+#include "support/files.h"
+
+namespace cloth::test {
+namespace {
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  ASSERT_FALSE(write_text_file(path, text));
+}
+
+WorkPrecisionOptions few_runs() {
+  WorkPrecisionOptions options;
+  options.methods = {"verlet", "dormand-prince"};
+  options.horizon = 0.2;
+  options.repeats = 2;
+  options.steps_per_method = 3;
+  return options;
+}
+
+StabilityOptions few_cells(const Scene& scene) {
+  StabilityOptions options{.methods = {"verlet", "rk4"}};
+  options.x = default_time_axis(scene, options.methods);
+  options.x.count = 4;
+  options.y = {.path = "springs.structural", .low = 50, .high = 500, .count = 3};
+  options.criterion.periods = 20;
+  return options;
+}
+
+Scene small_cloth() {
+  Scene scene = builtin_scene("corners-free");
+  scene.cloth.rows = scene.cloth.columns = 5;
+  return scene;
+}
+
+ExtremesOptions few_cases() {
+  return {.methods = {"verlet", "explicit-euler"}, .cases = {"cloth-2x2", "step-1s"}};
+}
+
+Study read_back(const TemporaryFolder& folder, const StudyTable& table) {
+  const auto error = write_study(folder.path(), Study{table, "the command", 1.25});
+  EXPECT_FALSE(error) << error->text();
+  StudyReading reading = read_study(folder.path());
+  EXPECT_TRUE(reading.study) << reading.problem;
+  EXPECT_EQ(reading.study->command, "the command");
+  EXPECT_EQ(reading.study->wall, 1.25);
+  return std::move(*reading.study);
+}
+
+TEST(StudyFolder, WorkPrecisionComesBackAsItWasWritten) {
+  const WorkPrecision study = study_work_precision(builtin_scene("pendulum"), few_runs());
+  const TemporaryFolder folder;
+  const auto back = std::get<WorkPrecision>(read_back(folder, study).table);
+  EXPECT_EQ(study_csv(back), study_csv(study));
+  EXPECT_EQ(sample_table(back).rows, sample_table(study).rows);
+  for (const PlotAgainst against : {PlotAgainst::run_time, PlotAgainst::step, PlotAgainst::force_evaluations})
+    EXPECT_EQ(to_svg(error_plot(back, against)), to_svg(error_plot(study, against)));
+}
+
+TEST(StudyFolder, AStabilityMapComesBackAsItWasWritten) {
+  const Scene scene = small_cloth();
+  const StabilityMap map = run_stability_map(scene, few_cells(scene));
+  const TemporaryFolder folder;
+  const auto back = std::get<StabilityMap>(read_back(folder, map).table);
+  EXPECT_EQ(stability_csv(back), stability_csv(map));
+  EXPECT_EQ(stability_json(back), stability_json(map));
+  EXPECT_EQ(to_svg(stability_heat_map(back)), to_svg(stability_heat_map(map)));
+}
+
+TEST(StudyFolder, ExtremesComeBackAsTheyWereWritten) {
+  const ExtremesTable table = run_extremes(few_cases());
+  const TemporaryFolder folder;
+  const auto back = std::get<ExtremesTable>(read_back(folder, table).table);
+  EXPECT_EQ(study_csv(back), study_csv(table));
+  EXPECT_EQ(extremes_text(back), extremes_text(table));
+  EXPECT_EQ(to_svg(extremes_map(back)), to_svg(extremes_map(table)));
+}
+
+TEST(StudyFolder, SaysWhatIsWrongWithIt) {
+  const TemporaryFolder folder;
+  EXPECT_NE(read_study(folder.path()).problem.find("study.json"), std::string::npos);
+  ASSERT_FALSE(write_study(folder.path(), Study{run_extremes(few_cases()), "", 0}));
+  const auto path = folder / "extremes.csv";
+  std::string text = content_of(path);
+  text.replace(text.find("diverged"), 8, "exploded");
+  write_file(path, text);
+  const StudyReading reading = read_study(folder.path());
+  EXPECT_FALSE(reading.study);
+  EXPECT_NE(reading.problem.find("extremes.csv, line 2, status: \"exploded\" is not a status"),
+            std::string::npos)
+      << reading.problem;
+  write_file(folder / "study.json", "{");
+  EXPECT_FALSE(read_study(folder.path()).study);
+  write_file(folder / "study.json", "{\"format\": \"clothlab/study/1\", \"kind\": 3}");
+  EXPECT_FALSE(read_study(folder.path()).study);
+}
+
+TEST(StudyFolder, TheLastPartialWorkPrecisionIsTheFinalOne) {
+  WorkPrecisionOptions options = few_runs();
+  std::string last;
+  int previous = 0;
+  options.partial = [&](const WorkPrecision& so_far) {
+    EXPECT_GE(finished_runs(so_far), previous);
+    previous = finished_runs(so_far);
+    last = study_csv(so_far);
+  };
+  const WorkPrecision study = study_work_precision(builtin_scene("pendulum"), options);
+  EXPECT_EQ(last, study_csv(study));
+  EXPECT_EQ(previous, finished_runs(study));
+}
+
+TEST(StudyFolder, TheLastPartialMapIsTheFinalOne) {
+  const Scene scene = small_cloth();
+  StabilityOptions options = few_cells(scene);
+  std::string last;
+  int calls = 0;
+  options.partial = [&](const StabilityMap& so_far) {
+    ++calls;
+    last = stability_csv(so_far) + stability_json(so_far);
+  };
+  const StabilityMap map = run_stability_map(scene, options);
+  EXPECT_EQ(last, stability_csv(map) + stability_json(map));
+  EXPECT_GE(calls, 2 * 4 * 3);
+}
+
+TEST(StudyFolder, TheLastPartialTableOfExtremesIsTheFinalOne) {
+  ExtremesOptions options = few_cases();
+  std::string last;
+  options.partial = [&](const ExtremesTable& so_far) { last = study_csv(so_far); };
+  const ExtremesTable table = run_extremes(options);
+  EXPECT_EQ(last, study_csv(table));
+}
+
+TEST(StudyStop, EndsEveryStudyAtItsNextStepAndKeepsWhatIsFinished) {
+  std::stop_source stop;
+  int runs = 0;
+  WorkPrecisionOptions precision = few_runs();
+  precision.stop = stop.get_token();
+  precision.partial = [&](const WorkPrecision& so_far) {
+    if ((runs = finished_runs(so_far)) == 2) stop.request_stop();
+  };
+  const WorkPrecision study = study_work_precision(builtin_scene("pendulum"), precision);
+  EXPECT_TRUE(study.stopped);
+  EXPECT_EQ(finished_runs(study), 2);
+
+  const Scene scene = small_cloth();
+  StabilityOptions options = few_cells(scene);
+  options.stop = stop.get_token();  // requested already
+  const StabilityMap map = run_stability_map(scene, options);
+  EXPECT_FALSE(map.complete);
+  EXPECT_EQ(finished_runs(map), 0);
+
+  ExtremesOptions extremes = few_cases();
+  extremes.stop = stop.get_token();
+  EXPECT_TRUE(run_extremes(extremes).cells.empty());
+}
+
+TEST(StudyStop, AStoppedStudyComesBackFromItsFolderToo) {
+  const Scene scene = small_cloth();
+  StabilityOptions options = few_cells(scene);
+  std::stop_source stop;
+  options.stop = stop.get_token();
+  options.partial = [&](const StabilityMap& so_far) {
+    if (finished_runs(so_far) == 5) stop.request_stop();
+  };
+  const StabilityMap map = run_stability_map(scene, options);
+  const TemporaryFolder folder;
+  const StudyTable back = read_back(folder, map).table;
+  EXPECT_FALSE(is_complete(back));
+  EXPECT_EQ(finished_runs(back), 5);
+  EXPECT_EQ(study_csv(back), study_csv(map));
+}
+
+TEST(StudyRuns, AreTheSceneThatWasRun) {
+  const WorkPrecision study = study_work_precision(builtin_scene("pendulum"), few_runs());
+  const WorkPrecisionRun& first = study.methods[0].runs[0];
+  const auto run = run_of(study, 0);
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->scene.integrator.method, "verlet");
+  EXPECT_EQ(run->scene.integrator.time_step, first.time_step);
+  EXPECT_EQ(run->status, name_of(first.status));
+  EXPECT_FALSE(run_of(study, -1));
+  EXPECT_FALSE(run_of(study, finished_runs(study)));
+
+  const Scene scene = small_cloth();
+  const StabilityMap map = run_stability_map(scene, few_cells(scene));
+  const auto cell = run_of(map, 4 * 3 + 5);  // of the second method
+  ASSERT_TRUE(cell);
+  EXPECT_EQ(cell->scene.integrator.method, "rk4");
+  EXPECT_EQ(cell->scene.springs->structural, map.methods[1].cells[5].y);
+  EXPECT_EQ(cell->scene.integrator.time_step, map.methods[1].cells[5].x);
+}
+
+TEST(ExtremesOfAScene, BeginWithTheSceneItselfAndAreAllValid) {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    const auto cases = extreme_cases_of(builtin_scene(builtin.name));
+    ASSERT_GT(cases.size(), 5u) << builtin.name;
+    EXPECT_EQ(cases.front().name, "as-it-is");
+    EXPECT_EQ(cases.front().scene.cloth, builtin_scene(builtin.name).cloth);
+  }
+}
+
+}  // namespace
+}  // namespace cloth::test

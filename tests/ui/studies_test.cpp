@@ -1,0 +1,273 @@
+// A user's story with studies: choose, start, watch, read, cancel, reopen, save, open a run.
+#include <QComboBox>
+#include <QDir>
+#include <QFile>
+#include <QImage>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QMessageBox>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QTimer>
+
+#include "studies/studies_panel.h"
+#include "study/study_runs.h"
+#include "window_bench.h"
+
+namespace clothlab::test {
+namespace {
+
+QByteArray content_of(const QString& path) {
+  QFile file(path);
+  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+/// The window with the dock open, and the hands that work it.
+class StudiesBench : public WindowBench {
+ public:
+  explicit StudiesBench(const QString& scene) : WindowBench(scene) {
+    action("studies")->trigger();
+    QTest::qWait(50);
+  }
+  ~StudiesBench() { panel().stop(); }
+
+  StudiesPanel& panel() { return window.studies(); }
+  StudyPlot& plot() { return panel().plot(); }
+  template <class Widget>
+  Widget* part(const char* name) {
+    return panel().findChild<Widget*>(QLatin1String(name));
+  }
+  void push(const char* button) { QTest::mouseClick(part<QPushButton>(button), Qt::LeftButton); }
+
+  void choose(StudyChoices::Kind kind) {
+    auto* box = part<QComboBox>("studyKind");
+    QTest::keyClick(box, Qt::Key_Home);
+    for (int k = 0; k < static_cast<int>(kind); ++k) QTest::keyClick(box, Qt::Key_Down);
+    QCOMPARE(panel().choices().kind(), kind);
+  }
+  /// Leaves these checked, by clicks on the boxes.
+  void only(const QStringList& names) {
+    auto* list = part<QListWidget>("studyMethods");
+    for (int row = 0; row < list->count(); ++row) {
+      QListWidgetItem* item = list->item(row);
+      const bool wanted = names.contains(item->data(Qt::UserRole).toString());
+      if (wanted == (item->checkState() == Qt::Checked)) continue;
+      list->scrollToItem(item);
+      const QRect box = list->visualItemRect(item);
+      QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, {box.left() + 12, box.center().y()});
+      QCOMPARE(item->checkState() == Qt::Checked, wanted);
+    }
+  }
+  void type(const char* field, const QString& text) {
+    auto* line = part<QLineEdit>(field);
+    line->setFocus();
+    line->selectAll();
+    QTest::keyClicks(line, text);
+  }
+  void wait_for_end() {
+    QTRY_VERIFY_WITH_TIMEOUT(!panel().isRunning() && part<QPushButton>("startStudy")->isEnabled(), 120000);
+  }
+
+  /// 3 x 2 cells of two methods.
+  void prepare_small_map(const QString& folder) {
+    choose(StudyChoices::Kind::stability);
+    only({"verlet", "rk4"});
+    auto* x = part<QWidget>("xAxis");
+    auto* y = part<QWidget>("yAxis");
+    x->findChild<QSpinBox*>("count")->setValue(3);
+    y->findChild<QSpinBox*>("count")->setValue(2);
+    part<QSpinBox>("periods")->setValue(10);
+    type("studyFolder", folder);
+  }
+};
+
+}  // namespace
+
+class StudiesTest : public QObject {
+  Q_OBJECT
+
+ private Q_SLOTS:
+  void initTestCase() {
+    QStandardPaths::setTestModeEnabled(true);
+    QApplication::setOrganizationName("Clothlab");
+    QApplication::setApplicationName("clothlab-studies-test");
+    apply_theme(*qApp, false);
+    QVERIFY(folder_.isValid());
+  }
+
+  void the_dock_is_hidden_until_it_is_asked_for_and_says_what_it_is_good_for() {
+    WindowBench bench("pendulum");
+    QVERIFY(!bench.window.studies().isVisible());
+    bench.action("studies")->trigger();
+    QVERIFY(bench.window.studies().isVisible());
+    QVERIFY(bench.window.studies().findChild<QLabel*>("studyEmpty")->isVisible());
+  }
+
+  void a_stability_map_runs_fills_and_is_kept() {
+    StudiesBench bench("pendulum");
+    const QString folder = folder_.filePath("map");
+    bench.prepare_small_map(folder);
+    bench.push("startStudy");
+    QVERIFY(!bench.part<QPushButton>("startStudy")->isEnabled() || !bench.panel().isRunning());
+    bench.wait_for_end();
+    QVERIFY(bench.panel().table());
+    QCOMPARE(cloth::finished_runs(*bench.panel().table()), 2 * 3 * 2);
+    QVERIFY(cloth::is_complete(*bench.panel().table()));
+    QVERIFY(QFile::exists(folder + "/stability.csv"));
+    QVERIFY(cloth::read_study(folder.toStdString()).study);
+  }
+
+  void resting_the_pointer_on_a_cell_names_it_and_a_double_click_opens_it() {
+    StudiesBench bench("pendulum");
+    bench.panel().openFolder(folder_.filePath("map"));
+    QVERIFY(bench.panel().table());
+    QTest::qWait(50);
+    const QPoint at = bench.plot().placeOf(7).center().toPoint();  // the second cell of the second method
+    QVERIFY(bench.plot().rect().contains(at));
+    QSignalSpy hovered(&bench.plot(), &StudyPlot::runHovered);
+    QTest::mouseMove(&bench.plot(), at);
+    QTRY_VERIFY(!hovered.isEmpty());
+    const QString said = hovered.back().front().toString();
+    QVERIFY2(said.contains("Runge-Kutta") && said.contains("Time step") && said.contains("steps"),
+             qPrintable(said));
+
+    const auto run = cloth::run_of(*bench.panel().table(), 7);
+    QTest::mouseDClick(&bench.plot(), Qt::LeftButton, {}, at);
+    bench.settle();
+    QCOMPARE(bench.window.document().scene().integrator.method, std::string("rk4"));
+    QCOMPARE(bench.window.document().scene().integrator.time_step, run->scene.integrator.time_step);
+    QVERIFY(bench.window.document().scene() == run->scene);
+  }
+
+  void work_precision_runs_beside_the_simulation_and_its_points_can_be_opened() {
+    StudiesBench bench("pendulum");
+    bench.choose(StudyChoices::Kind::work_precision);
+    bench.only({"verlet", "rk4"});
+    bench.type("horizon", "0.2");
+    bench.type("studyFolder", folder_.filePath("precision"));
+    bench.play_until(0.01);
+    bench.push("startStudy");
+    bench.wait_for_end();
+    QVERIFY(bench.status().playing);
+    const double time = bench.status().time;
+    bench.play_until(time + 0.05);
+    const auto& study = std::get<cloth::WorkPrecision>(*bench.panel().table());
+    QCOMPARE(study.methods.size(), 2u);
+    QVERIFY(!study.stopped);
+    const auto& runs = study.methods.front().runs;
+    int run = 0;
+    while (!runs[static_cast<std::size_t>(run)].reached_horizon()) ++run;
+    QTest::qWait(50);
+    const QPoint at = bench.plot().placeOf(run).center().toPoint();
+    QTest::mouseDClick(&bench.plot(), Qt::LeftButton, {}, at);
+    bench.settle();
+    QCOMPARE(bench.window.document().scene().integrator.method, study.methods.front().ladder.facts.name);
+    QVERIFY(bench.window.document().title().contains("Verlet"));
+  }
+
+  void cancelling_keeps_what_is_finished_and_the_folder_opens_again() {
+    StudiesBench bench("corners-free");
+    const QString folder = folder_.filePath("cancelled");
+    bench.prepare_small_map(folder);
+    bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(200);
+    bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(50);
+    bench.part<QSpinBox>("periods")->setValue(1000);
+    bench.push("startStudy");
+    QTRY_VERIFY_WITH_TIMEOUT(bench.panel().table() && cloth::finished_runs(*bench.panel().table()) > 0,
+                             120000);
+    QVERIFY(bench.part<QProgressBar>("studyProgress")->isVisible());
+    bench.push("cancelStudy");
+    bench.wait_for_end();
+    const int finished = cloth::finished_runs(*bench.panel().table());
+    QVERIFY(finished > 0 && finished < 2 * 200 * 50);
+    const QByteArray csv = content_of(folder + "/stability.csv");
+    bench.panel().openFolder(folder);
+    QCOMPARE(cloth::finished_runs(*bench.panel().table()), finished);
+    QCOMPARE(QByteArray::fromStdString(cloth::study_csv(*bench.panel().table())), csv);
+  }
+
+  void extremes_of_the_scene_are_a_table_of_methods_over_cases() {
+    StudiesBench bench("pendulum");
+    bench.choose(StudyChoices::Kind::extremes);
+    bench.only({"verlet"});
+    bench.type("studyFolder", folder_.filePath("extremes"));
+    bench.push("startStudy");
+    bench.wait_for_end();
+    const auto& table = std::get<cloth::ExtremesTable>(*bench.panel().table());
+    QVERIFY(table.is_complete());
+    QTest::qWait(50);
+    QVERIFY(!bench.plot().placeOf(0).isEmpty());
+  }
+
+  void every_format_is_saved() {
+    StudiesBench bench("pendulum");
+    for (const QString& name : {"map", "precision", "extremes"}) {
+      bench.panel().openFolder(folder_.filePath(name));
+      const QString base = folder_.filePath("saved-" + name);
+      for (const QString& ending : {".svg", ".png", ".pdf", ".csv"})
+        QCOMPARE(bench.panel().save(base + ending), QString());
+      QVERIFY(content_of(base + ".svg").startsWith("<svg"));
+      QVERIFY(content_of(base + ".pdf").startsWith("%PDF"));
+      QVERIFY(QImage(base + ".png").width() >= 960);
+      QCOMPARE(content_of(base + ".csv"),
+               QByteArray::fromStdString(cloth::study_csv(*bench.panel().table())));
+      QVERIFY(!bench.panel().save("/nowhere/at/all.svg").isEmpty());
+    }
+  }
+
+  void what_cannot_be_run_or_opened_is_said() {
+    StudiesBench bench("pendulum");
+    auto* line = bench.part<QLabel>("studyLine");
+    bench.panel().openFolder(folder_.filePath("not-there"));
+    QVERIFY(line->toolTip().contains("study.json"));
+    bench.choose(StudyChoices::Kind::stability);
+    auto* low = bench.part<QWidget>("xAxis")->findChild<QLineEdit*>("low");
+    low->setText("-1");
+    bench.push("startStudy");
+    QVERIFY(!bench.panel().isRunning());
+    QVERIFY2(line->toolTip().contains("integrator.time_step"), qPrintable(line->toolTip()));
+  }
+
+  void closing_the_window_asks_once_and_loses_nothing_finished() {
+    const QString folder = folder_.filePath("closed");
+    {
+      StudiesBench bench("corners-free");
+      bench.prepare_small_map(folder);
+      bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(200);
+      bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(50);
+      bench.part<QSpinBox>("periods")->setValue(1000);
+      bench.push("startStudy");
+      QTRY_VERIFY_WITH_TIMEOUT(bench.panel().table() && cloth::finished_runs(*bench.panel().table()) > 0,
+                               120000);
+      int asked = 0;
+      const auto answer = [&](QMessageBox::StandardButton button) {
+        QTimer::singleShot(200, &bench.window, [&asked, button] {
+          auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+          if (!box) return;
+          ++asked;
+          QTest::mouseClick(box->button(button), Qt::LeftButton);
+        });
+      };
+      answer(QMessageBox::Cancel);
+      QVERIFY(!bench.window.close());
+      QVERIFY(bench.panel().isRunning());
+      answer(QMessageBox::Close);
+      QVERIFY(bench.window.close());
+      QCOMPARE(asked, 2);
+      QVERIFY(!bench.panel().isRunning());
+    }
+    const cloth::StudyReading reading = cloth::read_study(folder.toStdString());
+    QVERIFY2(reading.study, reading.problem.c_str());
+    QVERIFY(cloth::finished_runs(reading.study->table) > 0);
+  }
+
+ private:
+  QTemporaryDir folder_;
+};
+
+}  // namespace clothlab::test
+
+QTEST_MAIN(clothlab::test::StudiesTest)
+#include "studies_test.moc"

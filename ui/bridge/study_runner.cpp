@@ -1,0 +1,175 @@
+#include "bridge/study_runner.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cassert>
+
+namespace clothlab {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr milliseconds between_offers{100}, between_writings{2000};
+constexpr int low_priority = 10;  // of nice(2): the simulation and the window go first
+
+double seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// Without the states of the reference, which no diagram and no file needs.
+cloth::WorkPrecision copy_of(const cloth::WorkPrecision& study) {
+  const cloth::ReferenceSolution& from = study.reference;
+  cloth::WorkPrecision copy;
+  copy.scene = study.scene;
+  copy.particles = study.particles;
+  copy.diagonal = study.diagonal;
+  copy.horizon = study.horizon;
+  copy.samples = study.samples;
+  copy.repeats = study.repeats;
+  copy.budget = study.budget;
+  copy.estimated = study.estimated;
+  copy.reference = {{},         from.floor,  from.excited_frequency, from.largest_kinetic, from.smooth,
+                    from.first, from.second, from.evaluations,       from.failure};
+  copy.methods = study.methods;
+  copy.stopped = study.stopped;
+  return copy;
+}
+
+cloth::StabilityMap copy_of(const cloth::StabilityMap& map) {
+  return map;
+}
+
+cloth::ExtremesTable copy_of(const cloth::ExtremesTable& table) {
+  return table;
+}
+
+/// A table that is not the last one is that of a study which is not complete.
+void mark(cloth::WorkPrecision& study) {
+  study.stopped = true;
+}
+void mark(cloth::StabilityMap& map) {
+  map.complete = false;
+}
+void mark(cloth::ExtremesTable&) {}
+
+}  // namespace
+
+StudyRunner::~StudyRunner() {
+  cancel();
+  wait();
+}
+
+void StudyRunner::start(StudyOrder order) {
+  assert(!is_running());
+  wait();
+  {
+    const std::lock_guard lock(mutex_);
+    status_ = {};
+    status_.running = true;
+    start_ = Clock::now();
+    newest_.reset();
+  }
+  thread_ = std::jthread([this, order = std::move(order)](const std::stop_token& stop) { run(order, stop); });
+}
+
+void StudyRunner::cancel() {
+  {
+    const std::lock_guard lock(mutex_);
+    status_.stopping = status_.running;
+  }
+  thread_.request_stop();
+}
+
+StudyStatus StudyRunner::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+bool StudyRunner::is_running() const {
+  const std::lock_guard lock(mutex_);
+  return status_.running;
+}
+
+std::shared_ptr<const cloth::StudyTable> StudyRunner::take() {
+  const std::lock_guard lock(mutex_);
+  return std::move(newest_);
+}
+
+void StudyRunner::wait() {
+  if (thread_.joinable()) thread_.join();
+}
+
+bool StudyRunner::note(const cloth::StudyProgress& progress) {
+  const std::lock_guard lock(mutex_);
+  status_.fraction = progress.fraction;
+  status_.text = progress.text;
+  status_.elapsed = seconds(Clock::now() - start_);
+  status_.left.reset();
+  if (progress.fraction > 0.02) status_.left = status_.elapsed * (1 - progress.fraction) / progress.fraction;
+  return !status_.stopping;
+}
+
+template <class Table>
+void StudyRunner::offer(const Table& table, const StudyOrder& order, bool last) {
+  const auto now = Clock::now();
+  const bool writes = last || now - written_ >= between_writings;
+  if (!writes && now - offered_ < between_offers) return;
+  offered_ = now;
+  Table copy = copy_of(table);
+  if (!last) mark(copy);
+  const auto shared = std::make_shared<const cloth::StudyTable>(std::move(copy));
+  double elapsed = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    newest_ = shared;
+    elapsed = seconds(now - start_);
+  }
+  if (!writes) return;
+  const auto error = cloth::write_study(order.folder, std::get<Table>(*shared), order.command, elapsed);
+  written_ = Clock::now();
+  const std::lock_guard lock(mutex_);
+  status_.problem = error ? error->text() : "";
+}
+
+void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), low_priority);
+  offered_ = written_ = Clock::now();
+  const auto partial = [&](const auto& table) { offer(table, order, false); };
+  const auto progress = [this](const cloth::StudyProgress& now) { return note(now); };
+  if (const auto* chosen = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
+    cloth::WorkPrecisionOptions options = *chosen;
+    options.progress = progress;
+    options.partial = partial;
+    options.stop = stop;
+    offer(cloth::study_work_precision(order.scene, options), order, true);
+  } else if (const auto* map = std::get_if<cloth::StabilityOptions>(&order.options)) {
+    cloth::StabilityOptions options = *map;
+    std::string text = "laying out the map";
+    options.progress = [&](double part) { return note({part, text}); };
+    options.partial = [&](const cloth::StabilityMap& so_far) {
+      std::size_t runs = 0, all = 0;
+      for (const cloth::MethodMap& method : so_far.methods)
+        for (const cloth::StabilityCell& cell : method.cells)
+          ++all, runs += cell.status != cloth::CellStatus::not_run ? 1 : 0;
+      text = "cell " + std::to_string(std::min(runs + 1, all)) + " of " + std::to_string(all);
+      partial(so_far);
+    };
+    options.stop = stop;
+    note({0, text});
+    offer(cloth::run_stability_map(order.scene, options), order, true);
+  } else {
+    cloth::ExtremesOptions options = std::get<cloth::ExtremesOptions>(order.options);
+    options.progress = progress;
+    options.partial = partial;
+    options.stop = stop;
+    offer(cloth::run_extremes(options), order, true);
+  }
+  const std::lock_guard lock(mutex_);
+  status_.running = false;
+  status_.stopping = false;
+  status_.elapsed = seconds(Clock::now() - start_);
+  status_.left.reset();
+  if (!stop.stop_requested()) status_.fraction = 1;
+}
+
+}  // namespace clothlab

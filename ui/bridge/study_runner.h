@@ -1,0 +1,74 @@
+// Runs one study at a time in a thread of its own, at low priority, on copies of what it was given. The
+// window only ever looks: the newest table wins, and no call waits for the study but `wait` and the
+// destructor.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "study/study_folder.h"
+
+namespace clothlab {
+
+using StudyOptions =
+    std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions, cloth::ExtremesOptions>;
+
+struct StudyOrder {
+  cloth::Scene scene;  ///< extremes: not used, see ExtremesOptions::scene
+  StudyOptions options;
+  std::filesystem::path folder;  ///< the results so far lie there every few seconds, and whole at the end
+  std::string command;           ///< what made it
+};
+
+struct StudyStatus {
+  bool running = false;
+  bool stopping = false;       ///< cancelled, but not yet at its next step
+  double fraction = 0;         ///< of the whole study
+  std::string text;            ///< what is being done
+  double elapsed = 0;          ///< s
+  std::optional<double> left;  ///< s, estimated; none: too early to say
+  std::string problem;         ///< why the folder could not be written; the study goes on
+};
+
+class StudyRunner {
+ public:
+  StudyRunner() = default;
+  ~StudyRunner();  ///< cancels and waits: for one step and the writing of what is finished
+  StudyRunner(const StudyRunner&) = delete;
+  StudyRunner& operator=(const StudyRunner&) = delete;
+
+  /// Precondition: nothing is running.
+  void start(StudyOrder order);
+  void cancel();
+  StudyStatus status() const;
+  bool is_running() const;
+
+  /// The newest table since the last call; null if there is none.
+  std::shared_ptr<const cloth::StudyTable> take();
+
+  /// Until what runs has ended and its folder is written. For tests and orderly ends.
+  void wait();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void run(const StudyOrder& order, const std::stop_token& stop);
+  bool note(const cloth::StudyProgress& progress);
+  template <class Table>
+  void offer(const Table& table, const StudyOrder& order, bool last);
+
+  mutable std::mutex mutex_;  // of the members down to the blank line
+  StudyStatus status_;
+  Clock::time_point start_;
+  std::shared_ptr<const cloth::StudyTable> newest_;
+
+  Clock::time_point offered_, written_;  // of the worker alone
+  std::jthread thread_;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,323 @@
+#include "studies/studies_panel.h"
+
+#include <QComboBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSaveFile>
+#include <QScrollArea>
+#include <QStackedWidget>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "studies/study_library.h"
+#include "study/extremes_report.h"
+#include "study/stability_report.h"
+#include "study/study_runs.h"
+#include "study/work_precision_report.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int poll_interval = 100;  // ms
+constexpr int choices_width = 300;  // px
+
+QString time_text(double seconds) {
+  const int whole = static_cast<int>(std::ceil(seconds));
+  return whole < 60 ? QObject::tr("%1 s").arg(whole)
+                    : QObject::tr("%1 min %2 s").arg(whole / 60).arg(whole % 60, 2, 10, QChar('0'));
+}
+
+bool is_timed(const cloth::WorkPrecision& study) {
+  return std::any_of(study.methods.begin(), study.methods.end(), [](const cloth::MethodStudy& method) {
+    return std::any_of(method.runs.begin(), method.runs.end(),
+                       [](const cloth::WorkPrecisionRun& run) { return !run.samples.empty(); });
+  });
+}
+
+Diagram diagram_of(const cloth::StudyTable& table, cloth::PlotAgainst against) {
+  if (const auto* study = std::get_if<cloth::WorkPrecision>(&table)) {
+    // Before the first timing there is nothing to show against the time.
+    const bool timed = against != cloth::PlotAgainst::run_time || is_timed(*study);
+    return cloth::error_plot(*study, timed ? against : cloth::PlotAgainst::force_evaluations);
+  }
+  if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::stability_heat_map(*map);
+  return cloth::extremes_map(std::get<cloth::ExtremesTable>(table));
+}
+
+QString kind_title(const cloth::StudyTable& table) {
+  const QString titles[] = {QObject::tr("Work-precision"), QObject::tr("Stability map"),
+                            QObject::tr("Extreme cases")};
+  return titles[table.index()];
+}
+
+}  // namespace
+
+StudiesPanel::StudiesPanel(LabDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
+  setObjectName("studiesPanel");
+  makeLayout();
+  timer_.setInterval(poll_interval);
+  connect(&timer_, &QTimer::timeout, this, &StudiesPanel::poll);
+  const auto stale = [this] {
+    choices_stale_ = true;
+    if (isVisible()) choices_->setScene(document_.scene()), choices_stale_ = false;
+  };
+  connect(&document_, &LabDocument::loaded, this, stale);
+  connect(&document_, &LabDocument::sceneChanged, this, stale);
+  showStatus({});
+}
+
+StudiesPanel::~StudiesPanel() = default;
+
+void StudiesPanel::makeLayout() {
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(spacing * 3 / 2, spacing, spacing * 3 / 2, spacing);
+  row->setSpacing(spacing * 2);
+  row->addWidget(makeLeft());
+  row->addWidget(makeRight(), 1);
+}
+
+QWidget* StudiesPanel::makeLeft() {
+  auto* left = new QWidget(this);
+  left->setFixedWidth(choices_width);
+  choices_ = new StudyChoices(left);
+  auto* scroll = new QScrollArea(left);
+  scroll->setWidget(choices_);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  start_ = new QPushButton(tr("Start the study"), left);
+  start_->setObjectName("startStudy");
+  start_->setDefault(true);
+  cancel_ = new QPushButton(tr("Cancel"), left);
+  cancel_->setObjectName("cancelStudy");
+  cancel_->setToolTip(tr("Stop at the next step. What is finished is kept."));
+  auto* column = new QVBoxLayout(left);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(spacing);
+  column->addWidget(scroll, 1);
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(start_, 1);
+  buttons->addWidget(cancel_);
+  column->addLayout(buttons);
+  connect(start_, &QPushButton::clicked, this, &StudiesPanel::start);
+  connect(cancel_, &QPushButton::clicked, this, [this] {
+    runner_.cancel();
+    poll();
+  });
+  return left;
+}
+
+QWidget* StudiesPanel::makeRight() {
+  auto* right = new QWidget(this);
+  title_ = new QLabel(right);
+  title_->setObjectName("studyTitle");
+  title_->setProperty("heading", true);
+  against_ = new QComboBox(right);
+  against_->setObjectName("against");
+  against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
+  save_ = new QToolButton(right);
+  save_->setObjectName("saveStudy");
+  save_->setIcon(icon("export-plot"));
+  save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
+  open_ = new QToolButton(right);
+  open_->setObjectName("openStudy");
+  open_->setIcon(icon("open"));
+  open_->setToolTip(tr("Open the folder of a study"));
+  open_->setPopupMode(QToolButton::InstantPopup);
+  recent_ = new QMenu(open_);
+  open_->setMenu(recent_);
+  auto* head = new QHBoxLayout;
+  head->setSpacing(spacing);
+  head->addWidget(title_, 1);
+  head->addWidget(against_);
+  head->addWidget(open_);
+  head->addWidget(save_);
+
+  auto* empty = new QLabel(tr("<p><b>No study yet.</b></p>"
+                              "<p>Choose a study of the scene being edited and start it: it runs beside the "
+                              "simulation, and its diagram fills as results come. Rest the pointer on a run "
+                              "to read it, double-click to open it in the view.</p>"),
+                           right);
+  empty->setAlignment(Qt::AlignCenter);
+  empty->setWordWrap(true);
+  empty->setProperty("muted", true);
+  empty->setObjectName("studyEmpty");
+  plot_ = new StudyPlot(right);
+  stack_ = new QStackedWidget(right);
+  stack_->addWidget(empty);
+  stack_->addWidget(plot_);
+  bar_ = new QProgressBar(right);
+  bar_->setObjectName("studyProgress");
+  bar_->setRange(0, 1000);
+  bar_->setTextVisible(false);
+  bar_->setFixedHeight(6);
+  line_ = new QLabel(right);
+  line_->setObjectName("studyLine");
+  line_->setProperty("muted", true);
+  line_->setMinimumWidth(100);
+
+  auto* column = new QVBoxLayout(right);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(spacing / 2);
+  column->addLayout(head);
+  column->addWidget(stack_, 1);
+  column->addWidget(bar_);
+  column->addWidget(line_);
+  connect(against_, &QComboBox::currentIndexChanged, this, &StudiesPanel::refreshDiagram);
+  connect(save_, &QToolButton::clicked, this, &StudiesPanel::saveAs);
+  connect(recent_, &QMenu::aboutToShow, this, &StudiesPanel::fillRecentMenu);
+  connect(plot_, &StudyPlot::runActivated, this, &StudiesPanel::openRun);
+  connect(plot_, &StudyPlot::runHovered, this, [this](const QString& text) {
+    if (!isRunning()) say(text.isEmpty() ? summary() : QString(text).replace('\n', ", "));
+  });
+  return right;
+}
+
+void StudiesPanel::showEvent(QShowEvent*) {
+  if (choices_stale_) choices_->setScene(document_.scene());
+  choices_stale_ = false;
+}
+
+void StudiesPanel::start() {
+  if (isRunning()) return;
+  auto order = choices_->order();
+  if (const QString* problem = std::get_if<QString>(&order)) {
+    say(*problem, true);
+    return;
+  }
+  StudyOrder& chosen = std::get<StudyOrder>(order);
+  folder_ = QString::fromStdString(chosen.folder.string());
+  table_.reset();
+  stack_->setCurrentIndex(0);
+  runner_.start(std::move(chosen));
+  was_running_ = true;
+  timer_.start();
+  poll();
+}
+
+void StudiesPanel::stop() {
+  runner_.cancel();
+  runner_.wait();
+  poll();
+}
+
+void StudiesPanel::poll() {
+  const StudyStatus status = runner_.status();
+  if (auto table = runner_.take()) show(std::move(table));
+  showStatus(status);
+  if (status.running || !was_running_) return;
+  was_running_ = false;
+  timer_.stop();
+  if (status.problem.empty() && table_) remember_study(folder_);
+  Q_EMIT finished();
+}
+
+void StudiesPanel::showStatus(const StudyStatus& status) {
+  start_->setEnabled(!status.running);
+  choices_->setEnabled(!status.running);
+  cancel_->setVisible(status.running);
+  cancel_->setEnabled(!status.stopping);
+  open_->setEnabled(!status.running);
+  save_->setEnabled(table_ != nullptr);
+  bar_->setVisible(status.running);
+  bar_->setValue(static_cast<int>(1000 * status.fraction));
+  against_->setVisible(table_ && std::holds_alternative<cloth::WorkPrecision>(*table_));
+  title_->setText(
+      table_ ? tr("%1: %2").arg(kind_title(*table_), QString::fromStdString(cloth::title_of(*table_)))
+             : QString());
+  if (status.running) {
+    QString text = status.stopping ? tr("stopping") : QString::fromStdString(status.text);
+    text += tr(" – %1 %").arg(static_cast<int>(100 * status.fraction));
+    if (status.left && !status.stopping) text += tr(", about %1 left").arg(time_text(*status.left));
+    say(text);
+  } else if (!status.problem.empty()) {
+    say(tr("The results could not be written. %1").arg(QString::fromStdString(status.problem)), true);
+  } else if (was_running_ || table_) {
+    say(summary());
+  }
+}
+
+QString StudiesPanel::summary() const {
+  if (!table_) return {};
+  return tr("%1 runs%2, in %3")
+      .arg(cloth::finished_runs(*table_))
+      .arg(cloth::is_complete(*table_) ? QString() : tr(" (stopped before the end)"))
+      .arg(QDir::toNativeSeparators(folder_));
+}
+
+void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {
+  table_ = std::move(table);
+  refreshDiagram();
+  stack_->setCurrentIndex(1);
+}
+
+void StudiesPanel::refreshDiagram() {
+  if (table_)
+    plot_->setDiagram(diagram_of(*table_, static_cast<cloth::PlotAgainst>(against_->currentIndex())));
+}
+
+void StudiesPanel::openRun(int run) {
+  if (!table_) return;
+  if (const auto found = cloth::run_of(*table_, run))
+    Q_EMIT runOpened(found->scene, QString::fromStdString(found->note));
+}
+
+void StudiesPanel::openFolder(const QString& folder) {
+  cloth::StudyReading reading = cloth::read_study(folder.toStdString());
+  if (!reading.study) {
+    say(tr("The study was not opened. %1").arg(QString::fromStdString(reading.problem)), true);
+    return;
+  }
+  folder_ = folder;
+  remember_study(folder);
+  show(std::make_shared<const cloth::StudyTable>(std::move(reading.study->table)));
+  showStatus({});
+}
+
+void StudiesPanel::fillRecentMenu() {
+  recent_->clear();
+  recent_->addAction(tr("Open a folder…"), this, [this] {
+    const QString folder =
+        QFileDialog::getExistingDirectory(this, tr("The folder of a study"), studies_folder());
+    if (!folder.isEmpty()) openFolder(folder);
+  });
+  recent_->addSeparator();
+  const QStringList recent = recent_studies();
+  for (const QString& folder : recent)
+    recent_->addAction(QDir(folder).dirName(), this, [this, folder] { openFolder(folder); })
+        ->setToolTip(folder);
+  if (recent.isEmpty()) recent_->addAction(tr("No study was made yet"))->setEnabled(false);
+}
+
+QString StudiesPanel::save(const QString& name) {
+  if (!table_) return tr("There is no study to save.");
+  if (!name.endsWith(".csv", Qt::CaseInsensitive)) return save_diagram(plot_->diagram(), name, font());
+  const std::string csv = cloth::study_csv(*table_);
+  QSaveFile file(name);
+  const auto size = static_cast<qint64>(csv.size());
+  if (file.open(QIODevice::WriteOnly) && file.write(csv.data(), size) == size && file.commit()) return {};
+  return tr("%1: %2").arg(name, file.errorString());
+}
+
+void StudiesPanel::saveAs() {
+  QString name = QFileDialog::getSaveFileName(this, tr("Save the study"), QDir(folder_).filePath("study.svg"),
+                                              tr("Diagram or runs (*.svg *.png *.pdf *.csv)"));
+  if (name.isEmpty()) return;
+  if (QFileInfo(name).suffix().isEmpty()) name += ".svg";
+  if (const QString problem = save(name); !problem.isEmpty()) say(problem, true);
+}
+
+void StudiesPanel::say(const QString& text, bool error) {
+  line_->setProperty("state", error ? "error" : "");
+  line_->style()->polish(line_);
+  line_->setText(line_->fontMetrics().elidedText(text, Qt::ElideRight, std::max(200, line_->width())));
+  line_->setToolTip(text);
+}
+
+}  // namespace clothlab

@@ -1,0 +1,86 @@
+// The Studies dock: choose, run in the background, watch the diagram fill, open a run in the view, save.
+#pragma once
+
+#include <QTimer>
+#include <QWidget>
+#include <memory>
+
+#include "bridge/study_runner.h"
+#include "document/lab_document.h"
+#include "studies/study_choices.h"
+#include "studies/study_plot.h"
+
+class QComboBox;
+class QLabel;
+class QMenu;
+class QProgressBar;
+class QPushButton;
+class QStackedWidget;
+class QToolButton;
+
+namespace clothlab {
+
+class StudiesPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  /// The document must outlive the panel.
+  explicit StudiesPanel(LabDocument& document, QWidget* parent = nullptr);
+  ~StudiesPanel() override;
+
+  bool isRunning() const { return runner_.is_running(); }
+  /// Cancels, and waits for one step and the writing of what is finished.
+  void stop();
+  /// Shows a folder that the command line or the window wrote. What cannot be read is said in the panel.
+  void openFolder(const QString& folder);
+  /// The diagram (.svg, .png, .pdf) or its table (.csv); empty, or what went wrong.
+  QString save(const QString& name);
+
+  StudyPlot& plot() { return *plot_; }
+  StudyChoices& choices() { return *choices_; }
+  const cloth::StudyTable* table() const { return table_.get(); }
+  QString folder() const { return folder_; }  ///< of what is shown
+
+ Q_SIGNALS:
+  /// A run was asked for: its scene, and what the scene cannot say of it.
+  void runOpened(const cloth::Scene& scene, const QString& note);
+  void finished();
+
+ private:
+  void makeLayout();
+  QWidget* makeLeft();
+  QWidget* makeRight();
+  void start();
+  void poll();
+  void show(std::shared_ptr<const cloth::StudyTable> table);
+  void refreshDiagram();
+  void showStatus(const StudyStatus& status);
+  void openRun(int run);
+  void saveAs();
+  void fillRecentMenu();
+  void say(const QString& text, bool error = false);
+  QString summary() const;
+
+  LabDocument& document_;
+  StudyRunner runner_;
+  std::shared_ptr<const cloth::StudyTable> table_;
+  QString folder_;
+  bool was_running_ = false;
+  bool choices_stale_ = true;
+  QTimer timer_;
+
+  StudyChoices* choices_ = nullptr;
+  StudyPlot* plot_ = nullptr;
+  QStackedWidget* stack_ = nullptr;  // nothing yet, the diagram
+  QLabel *title_ = nullptr, *line_ = nullptr;
+  QComboBox* against_ = nullptr;
+  QProgressBar* bar_ = nullptr;
+  QPushButton *start_ = nullptr, *cancel_ = nullptr;
+  QToolButton *save_ = nullptr, *open_ = nullptr;
+  QMenu* recent_ = nullptr;
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+};
+
+}  // namespace clothlab

@@ -1,0 +1,221 @@
+#include "studies/study_choices.h"
+
+#include <QComboBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QLocale>
+#include <QSpinBox>
+#include <QStackedWidget>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/registry.h"
+#include "studies/axis_choice.h"
+#include "studies/study_library.h"
+#include "study/stability_report.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int methods_height = 128;  // px
+const char* const made_by = "the Studies window of clothlab";
+
+QString purpose_of(StudyChoices::Kind kind) {
+  switch (kind) {
+    case StudyChoices::Kind::work_precision:
+      return QObject::tr(
+          "Which method reaches an error in the least time? Every method over a series of "
+          "steps, against a reference far more exact.");
+    case StudyChoices::Kind::stability:
+      return QObject::tr(
+          "Which steps can a method take, and does theory know? A run for each cell of a map "
+          "over two parameters, with the predicted limits over it.");
+    case StudyChoices::Kind::extremes:
+      return QObject::tr(
+          "What breaks which method? Every method on cases pushed far: stiffness, steps, "
+          "masses, damping, wind, limits.");
+  }
+  return {};
+}
+
+QFormLayout* form_on(QWidget* page) {
+  auto* form = new QFormLayout(page);
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setSpacing(spacing / 2);
+  form->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  return form;
+}
+
+}  // namespace
+
+StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
+  kind_ = new QComboBox(this);
+  kind_->setObjectName("studyKind");
+  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases")});
+  purpose_ = new QLabel(this);
+  purpose_->setWordWrap(true);
+  purpose_->setProperty("muted", true);
+  methods_ = new QListWidget(this);
+  methods_->setObjectName("studyMethods");
+  methods_->setFixedHeight(methods_height);
+  methods_->setAccessibleName(tr("Methods"));
+  for (const cloth::MethodFacts& facts : cloth::integrator_facts()) {
+    auto* item = new QListWidgetItem(QString::fromStdString(facts.title), methods_);
+    item->setData(Qt::UserRole, QString::fromStdString(facts.name));
+    item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
+    item->setCheckState(Qt::Checked);
+  }
+  makeForms();
+  folder_ = new QLineEdit(this);
+  folder_->setObjectName("studyFolder");
+  folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(studies_folder()));
+  folder_->setPlaceholderText(tr("a new one in %1").arg(studies_folder()));
+
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(spacing / 2);
+  column->addWidget(kind_);
+  column->addWidget(purpose_);
+  column->addWidget(methods_);
+  column->addWidget(forms_);
+  auto* folder = new QWidget(this);
+  form_on(folder)->addRow(tr("Folder"), folder_);
+  column->addWidget(folder);
+  column->addStretch();
+  connect(kind_, &QComboBox::currentIndexChanged, this, &StudyChoices::follow);
+  follow();
+}
+
+void StudyChoices::makeForms() {
+  forms_ = new QStackedWidget(this);
+  auto* precision = new QWidget(forms_);
+  QFormLayout* form = form_on(precision);
+  horizon_ = new QLineEdit(precision);
+  horizon_->setObjectName("horizon");
+  form->addRow(tr("Horizon (s)"), horizon_);
+  repeats_ = new QSpinBox(precision);
+  repeats_->setObjectName("repeats");
+  repeats_->setRange(5, 100);
+  repeats_->setToolTip(tr("How often each run is timed"));
+  form->addRow(tr("Repeats"), repeats_);
+  forms_->addWidget(precision);
+
+  auto* map = new QWidget(forms_);
+  form = form_on(map);
+  x_ = new AxisChoice(map);
+  x_->setObjectName("xAxis");
+  form->addRow(tr("Across"), x_);
+  y_ = new AxisChoice(map);
+  y_->setObjectName("yAxis");
+  form->addRow(tr("Up"), y_);
+  periods_ = new QSpinBox(map);
+  periods_->setObjectName("periods");
+  periods_->setRange(1, 100000);
+  periods_->setValue(static_cast<int>(cloth::StabilityCriterion{}.periods));
+  periods_->setToolTip(tr("How long a run lasts, in periods of the fastest motion"));
+  form->addRow(tr("Periods"), periods_);
+  forms_->addWidget(map);
+
+  auto* extremes = new QWidget(forms_);
+  form = form_on(extremes);
+  cases_ = new QComboBox(extremes);
+  cases_->setObjectName("cases");
+  cases_->addItems({tr("This scene, pushed"), tr("The fixed list")});
+  form->addRow(tr("Cases"), cases_);
+  forms_->addWidget(extremes);
+}
+
+StudyChoices::Kind StudyChoices::kind() const {
+  return static_cast<Kind>(kind_->currentIndex());
+}
+
+void StudyChoices::setKind(Kind kind) {
+  kind_->setCurrentIndex(static_cast<int>(kind));
+}
+
+void StudyChoices::follow() {
+  purpose_->setText(purpose_of(kind()));
+  forms_->setCurrentIndex(static_cast<int>(kind()));
+  for (int k = 0; k < forms_->count(); ++k)  // no taller than the form that is seen
+    forms_->widget(k)->setSizePolicy(
+        QSizePolicy::Preferred, k == forms_->currentIndex() ? QSizePolicy::Preferred : QSizePolicy::Ignored);
+  forms_->adjustSize();
+  checkMethods(kind() == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
+  Q_EMIT kindChanged();
+}
+
+void StudyChoices::checkMethods(const std::vector<std::string>& names) {
+  for (int row = 0; row < methods_->count(); ++row) {
+    const std::string name = methods_->item(row)->data(Qt::UserRole).toString().toStdString();
+    const bool on = std::find(names.begin(), names.end(), name) != names.end();
+    methods_->item(row)->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+  }
+}
+
+void StudyChoices::setScene(const cloth::Scene& scene) {
+  scene_ = scene;
+  horizon_->setPlaceholderText(
+      QLocale::c().toString(cloth::default_horizon(cloth::studied_scene(scene)), 'g', 4));
+  x_->setScene(scene, cloth::default_time_axis(scene, cloth::methods_with_a_limit()));
+  y_->setScene(scene, cloth::default_stiffness_axis(scene));
+}
+
+std::vector<std::string> StudyChoices::methods() const {
+  std::vector<std::string> names;
+  for (int row = 0; row < methods_->count(); ++row)
+    if (methods_->item(row)->checkState() == Qt::Checked)
+      names.push_back(methods_->item(row)->data(Qt::UserRole).toString().toStdString());
+  return names;
+}
+
+std::variant<StudyOrder, QString> StudyChoices::stabilityOrder() const {
+  cloth::StabilityOptions options{.methods = methods()};
+  options.criterion.periods = periods_->value();
+  for (const auto& [choice, axis, name] :
+       {std::tuple{x_, &options.x, "across"}, std::tuple{y_, &options.y, "up"}}) {
+    *axis = choice->axis();
+    const auto checked = cloth::parse_axis(cloth::axis_text(*axis), name);
+    if (const auto* problem = std::get_if<cloth::Problem>(&checked))
+      return QString::fromStdString(problem->text());
+  }
+  const auto problems = cloth::find_problems(scene_, options);
+  if (!problems.empty()) return QString::fromStdString(problems.front().text());
+  return StudyOrder{scene_, options, {}, made_by};
+}
+
+std::variant<StudyOrder, QString> StudyChoices::order() const {
+  if (methods().empty()) return tr("Choose at least one method.");
+  std::variant<StudyOrder, QString> result;
+  if (kind() == Kind::stability) {
+    result = stabilityOrder();
+  } else if (kind() == Kind::extremes) {
+    cloth::ExtremesOptions options{.methods = methods()};
+    if (cases_->currentIndex() == 0) options.scene = scene_;
+    result = StudyOrder{scene_, options, {}, made_by};
+  } else {
+    cloth::WorkPrecisionOptions options;
+    options.methods = methods();
+    options.repeats = repeats_->value();
+    if (const QString text = horizon_->text().trimmed(); !text.isEmpty()) {
+      bool ok = false;
+      options.horizon = QLocale::c().toDouble(text, &ok);
+      if (!ok || !(*options.horizon > 0) || !std::isfinite(*options.horizon))
+        return tr("Horizon: \"%1\" must be a time in s, more than 0.").arg(text);
+    }
+    result = StudyOrder{scene_, options, {}, made_by};
+  }
+  if (auto* order = std::get_if<StudyOrder>(&result)) {
+    const QString folder = folder_->text().trimmed();
+    order->folder =
+        (folder.isEmpty() ? new_study_folder(kind_->currentText(), QString::fromStdString(scene_.title))
+                          : folder)
+            .toStdString();
+  }
+  return result;
+}
+
+}  // namespace clothlab

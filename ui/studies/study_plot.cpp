@@ -1,0 +1,224 @@
+#include "studies/study_plot.h"
+
+#include <QBuffer>
+#include <QEvent>
+#include <QMouseEvent>
+#include <QPdfWriter>
+#include <QSaveFile>
+#include <QToolTip>
+#include <algorithm>
+#include <cmath>
+
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr double reach = 5;  // px around a shape that still count as on it
+constexpr double smallest_scale = 0.55;
+constexpr double export_scale = 2;  // of a PNG
+
+double height_of(const Diagram& diagram) {
+  return std::visit([](const auto& plot) { return cloth::height_of(plot); }, diagram);
+}
+
+double width_of(const Diagram& diagram) {
+  return std::visit([](const auto& plot) { return plot.width; }, diagram);
+}
+
+void draw(cloth::PlotCanvas& canvas, const Diagram& diagram) {
+  std::visit([&](const auto& plot) { cloth::draw(canvas, plot); }, diagram);
+}
+
+/// The largest value of `set` in [low, high] for which the diagram is no higher than `height`.
+template <class Set>
+void fill_height(Diagram& diagram, double low, double high, double height, Set set) {
+  for (int k = 0; k < 14; ++k) {
+    const double middle = (low + high) / 2;
+    set(middle);
+    (height_of(diagram) <= height ? low : high) = middle;
+  }
+  set(low);
+}
+
+bool fit(Diagram& diagram, QSizeF room) {
+  if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) {
+    plot->width = room.width();
+    fill_height(diagram, 130, room.height(), room.height(), [&](double h) { plot->plot_height = h; });
+  } else if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
+    map->width = room.width();
+    const int panels = std::max(1, static_cast<int>(map->panels.size()));
+    int best = 1;
+    double best_size = 0;
+    for (int columns = 1; columns <= panels; ++columns) {
+      map->columns = columns;
+      fill_height(diagram, 60, room.height(), room.height(), [&](double h) { map->highest = h; });
+      const double size = std::min(room.width() / columns, 1.6 * map->highest);
+      if (size > best_size) best_size = size, best = columns;
+    }
+    map->columns = best;
+    fill_height(diagram, 60, room.height(), room.height(), [&](double h) { map->highest = h; });
+  } else {
+    std::get<cloth::CategoryMap>(diagram).width = room.width();
+  }
+  return height_of(diagram) <= room.height();
+}
+
+/// As it goes onto the screen, where the panel around it has the title.
+Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
+  std::visit([](auto& plot) { plot.title.clear(), plot.subtitle.clear(); }, diagram);
+  if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
+  if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) map->caption.clear();
+  for (scale = 1; scale > smallest_scale; scale -= 0.05)
+    if (fit(diagram, room / scale)) return diagram;
+  fit(diagram, room / scale);
+  return diagram;
+}
+
+QString written(const QString& name, const QByteArray& bytes) {
+  QSaveFile file(name);
+  if (file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size() && file.commit()) return {};
+  return QObject::tr("%1: %2").arg(name, file.errorString());
+}
+
+}  // namespace
+
+StudyPlot::StudyPlot(QWidget* parent) : QWidget(parent) {
+  setObjectName("studyPlot");
+  setMouseTracking(true);
+  setAccessibleName(tr("The study's diagram"));
+}
+
+void StudyPlot::setDiagram(Diagram diagram) {
+  diagram_ = std::move(diagram);
+  stale_ = true;
+  marked_ = {};
+  update();
+}
+
+void StudyPlot::refresh() {
+  if (!stale_ || size().isEmpty()) return;
+  stale_ = false;
+  const Diagram shown = fitted(diagram_, size(), scale_);
+  picture_ = QPixmap(size() * devicePixelRatioF());
+  picture_.setDevicePixelRatio(devicePixelRatioF());
+  picture_.fill(theme().panel);
+  QPainter painter(&picture_);
+  painter.scale(scale_, scale_);
+  PainterCanvas canvas(painter, font(), PainterCanvas::Look::theme);
+  draw(canvas, shown);
+  touches_ = canvas.touches();
+}
+
+QRectF StudyPlot::onScreen(const QRectF& drawn) const {
+  return {drawn.topLeft() * scale_, drawn.size() * scale_};
+}
+
+QRectF StudyPlot::placeOf(int run) const {
+  const_cast<StudyPlot*>(this)->refresh();
+  for (const PlotTouch& touch : touches_)
+    if (touch.tag == run) return onScreen(touch.box);
+  return {};
+}
+
+const PlotTouch* StudyPlot::touchAt(QPointF at) const {
+  const PlotTouch* nearest = nullptr;
+  double least = INFINITY;
+  for (const PlotTouch& touch : touches_) {
+    const QRectF box = onScreen(touch.box);
+    const bool large = box.width() > 4 * reach;  // a cell: its neighbours begin where it ends
+    const double margin = large ? 0 : reach;
+    if (!box.adjusted(-margin, -margin, margin, margin).contains(at)) continue;
+    const QPointF away = box.center() - at;
+    const double distance = std::hypot(away.x(), away.y());
+    if (distance <= least) least = distance, nearest = &touch;
+  }
+  return nearest;
+}
+
+void StudyPlot::hover(QPointF at) {
+  const PlotTouch* touch = touchAt(at);
+  const QRectF marked = touch ? onScreen(touch->box) : QRectF();
+  if (marked == marked_) return;
+  marked_ = marked;
+  update();
+  setCursor(touch && touch->tag >= 0 ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  Q_EMIT runHovered(touch ? touch->text : QString());
+  if (touch) {
+    QString tip = touch->text.toHtmlEscaped().replace('\n', "<br>");
+    if (touch->tag >= 0) tip += tr("<br><i>Double-click to open this run</i>");
+    QToolTip::showText(mapToGlobal(at.toPoint()), tip, this);
+  } else {
+    QToolTip::hideText();
+  }
+}
+
+void StudyPlot::paintEvent(QPaintEvent*) {
+  refresh();
+  QPainter painter(this);
+  painter.drawPixmap(0, 0, picture_);
+  if (marked_.isNull()) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(QPen(theme().accent, 2));
+  painter.drawRoundedRect(marked_.adjusted(-3, -3, 3, 3), 3, 3);
+}
+
+void StudyPlot::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange || event->type() == QEvent::FontChange ||
+      event->type() == QEvent::StyleChange) {
+    stale_ = true;
+    update();
+  }
+  QWidget::changeEvent(event);
+}
+
+void StudyPlot::resizeEvent(QResizeEvent*) {
+  stale_ = true;
+  marked_ = {};
+}
+
+void StudyPlot::mouseMoveEvent(QMouseEvent* event) {
+  hover(event->position());
+}
+
+void StudyPlot::leaveEvent(QEvent*) {
+  hover({-1e6, -1e6});
+}
+
+void StudyPlot::mouseDoubleClickEvent(QMouseEvent* event) {
+  const PlotTouch* touch = touchAt(event->position());
+  if (touch && touch->tag >= 0) Q_EMIT runActivated(touch->tag);
+}
+
+QString save_diagram(const Diagram& diagram, const QString& name, const QFont& font) {
+  const QString ending = name.section('.', -1).toLower();
+  if (ending == "svg") {
+    const std::string svg = std::visit([](const auto& plot) { return cloth::to_svg(plot); }, diagram);
+    return written(name, QByteArray::fromStdString(svg));
+  }
+  const QSizeF size(width_of(diagram), height_of(diagram));
+  QByteArray bytes;
+  QBuffer buffer(&bytes);
+  buffer.open(QIODevice::WriteOnly);
+  if (ending == "pdf") {
+    QPdfWriter pdf(&buffer);
+    pdf.setPageMargins({});
+    pdf.setResolution(96);
+    pdf.setPageSize(QPageSize(size * 72 / 96, QPageSize::Point, {}, QPageSize::ExactMatch));
+    QPainter painter(&pdf);
+    PainterCanvas canvas(painter, font, PainterCanvas::Look::light_paper);
+    draw(canvas, diagram);
+  } else {
+    QImage image((size * export_scale).toSize(), QImage::Format_RGB32);
+    image.fill(Qt::white);
+    QPainter painter(&image);
+    painter.scale(export_scale, export_scale);
+    PainterCanvas canvas(painter, font, PainterCanvas::Look::light_paper);
+    draw(canvas, diagram);
+    painter.end();
+    if (!image.save(&buffer, "PNG")) return QObject::tr("%1: the picture could not be written").arg(name);
+  }
+  return written(name, bytes);
+}
+
+}  // namespace clothlab

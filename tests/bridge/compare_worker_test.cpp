@@ -69,7 +69,9 @@ TEST(CompareWorker, ShowsWhatLockStepComputesToTheBitOnAnyNumberOfThreads) {
       const auto frame = worker.take_frame(i);
       ASSERT_TRUE(frame);
       expect_shows(*frame, expected.lane(i).state);
-      if (i > 0) EXPECT_EQ(*end.panes[i].rms, expected.difference(i)->rms);
+      if (i > 0) {
+        EXPECT_EQ(*end.panes[i].rms, expected.difference(i)->rms);
+      }
     }
   }
 }

@@ -203,10 +203,10 @@ class StudiesTest : public QObject {
 
   void every_format_is_saved() {
     StudiesBench bench("pendulum");
-    for (const QString& name : {"map", "precision", "extremes"}) {
+    for (const QString name : {"map", "precision", "extremes"}) {
       bench.panel().openFolder(folder_.filePath(name));
       const QString base = folder_.filePath("saved-" + name);
-      for (const QString& ending : {".svg", ".png", ".pdf", ".csv"})
+      for (const QString ending : {".svg", ".png", ".pdf", ".csv"})
         QCOMPARE(bench.panel().save(base + ending), QString());
       QVERIFY(content_of(base + ".svg").startsWith("<svg"));
       QVERIFY(content_of(base + ".pdf").startsWith("%PDF"));

@@ -202,6 +202,7 @@ void SimulationWorker::handle(const command::Play&) {
 
 void SimulationWorker::handle(const command::Pause&) {
   status_.playing = false;
+  publish_frame();  // what was computed since the last one
 }
 
 void SimulationWorker::handle(const command::SingleStep&) {

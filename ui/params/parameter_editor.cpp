@@ -101,7 +101,7 @@ void ParameterEditor::makeMessages(QVBoxLayout& column) {
   note_->setProperty("muted", true);
   for (QLabel* label : {rule_, note_}) label->setFont(smaller(label->font()));
   note_button_ = new QToolButton(this);
-  note_button_->setObjectName("noteButton");
+  name(*note_button_, "noteButton", tr("note"));
   note_button_->setFont(note_->font());
   note_button_->setFocusPolicy(Qt::TabFocus);
   note_button_->hide();

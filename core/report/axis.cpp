@@ -117,7 +117,8 @@ std::vector<Tick> AxisMap::logarithmic_ticks(double spacing) const {
   const double a = std::log10(low_), b = std::log10(high_);
   const int first = int(std::ceil(a - 1e-9)), last = int(std::floor(b + 1e-9));
   const int stride = std::max(1, int(std::ceil(spacing / density())));  // decades between two labels
-  const bool few = last - first < 1;  // fewer than two decades in the range: label 2 and 5 too
+  // Fewer than two decades in the range: label 2 and 5 too where there is room, or there would be no label.
+  const bool few = last - first < 1 && (last < first || density() * std::log10(2) >= 0.6 * spacing);
   std::vector<Tick> ticks;
   for (int n = int(std::floor(a)); n <= last; ++n)
     for (int factor = 1; factor < 10; ++factor) {

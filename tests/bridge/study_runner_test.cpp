@@ -50,10 +50,12 @@ TEST(StudyRunner, EndsWithTheTableThatADirectCallGives) {
 TEST(StudyRunner, IsCancelledAtTheNextStepAndKeepsWhatIsFinished) {
   const TemporaryFolder folder;
   StudyRunner runner;
-  runner.start(small_map(folder, 100, 2000));
+  runner.start(small_map(folder, 30, 2000));
   std::shared_ptr<const cloth::StudyTable> table;
-  while (!table || cloth::finished_runs(*table) == 0)
+  while (!table || cloth::finished_runs(*table) == 0) {
     if (auto next = runner.take()) table = std::move(next);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   runner.cancel();
   runner.wait();
   if (auto next = runner.take()) table = std::move(next);

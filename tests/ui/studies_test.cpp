@@ -171,8 +171,8 @@ class StudiesTest : public QObject {
     StudiesBench bench("corners-free");
     const QString folder = folder_.filePath("cancelled");
     bench.prepare_small_map(folder);
-    bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(200);
-    bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(50);
+    bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(40);
+    bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(20);
     bench.part<QSpinBox>("periods")->setValue(1000);
     bench.push("startStudy");
     QTRY_VERIFY_WITH_TIMEOUT(bench.panel().table() && cloth::finished_runs(*bench.panel().table()) > 0,
@@ -181,7 +181,7 @@ class StudiesTest : public QObject {
     bench.push("cancelStudy");
     bench.wait_for_end();
     const int finished = cloth::finished_runs(*bench.panel().table());
-    QVERIFY(finished > 0 && finished < 2 * 200 * 50);
+    QVERIFY(finished > 0 && finished < 2 * 40 * 20);
     const QByteArray csv = content_of(folder + "/stability.csv");
     bench.panel().openFolder(folder);
     QCOMPARE(cloth::finished_runs(*bench.panel().table()), finished);
@@ -235,8 +235,8 @@ class StudiesTest : public QObject {
     {
       StudiesBench bench("corners-free");
       bench.prepare_small_map(folder);
-      bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(200);
-      bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(50);
+      bench.part<QWidget>("xAxis")->findChild<QSpinBox*>("count")->setValue(40);
+      bench.part<QWidget>("yAxis")->findChild<QSpinBox*>("count")->setValue(20);
       bench.part<QSpinBox>("periods")->setValue(1000);
       bench.push("startStudy");
       QTRY_VERIFY_WITH_TIMEOUT(bench.panel().table() && cloth::finished_runs(*bench.panel().table()) > 0,

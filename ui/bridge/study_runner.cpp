@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace clothlab {
@@ -10,7 +11,8 @@ namespace {
 
 using std::chrono::milliseconds;
 constexpr milliseconds between_offers{100}, between_writings{2000};
-constexpr int low_priority = 10;  // of nice(2): the simulation and the window go first
+constexpr int writing_share = 20;  // a large table is written less often: at most this part of the time
+constexpr int low_priority = 10;   // of nice(2): the simulation and the window go first
 
 double seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -112,7 +114,8 @@ bool StudyRunner::note(const cloth::StudyProgress& progress) {
 template <class Table>
 void StudyRunner::offer(const Table& table, const StudyOrder& order, bool last) {
   const auto now = Clock::now();
-  const bool writes = last || now - written_ >= between_writings;
+  const bool writes =
+      last || now - written_ >= std::max<Clock::duration>(between_writings, writing_share * writing_);
   if (!writes && now - offered_ < between_offers) return;
   offered_ = now;
   Table copy = copy_of(table);
@@ -127,6 +130,7 @@ void StudyRunner::offer(const Table& table, const StudyOrder& order, bool last) 
   if (!writes) return;
   const auto error = cloth::write_study(order.folder, std::get<Table>(*shared), order.command, elapsed);
   written_ = Clock::now();
+  writing_ = written_ - now;
   const std::lock_guard lock(mutex_);
   status_.problem = error ? error->text() : "";
 }

@@ -68,6 +68,7 @@ class StudyRunner {
   std::shared_ptr<const cloth::StudyTable> newest_;
 
   Clock::time_point offered_, written_;  // of the worker alone
+  Clock::duration writing_{};
   std::jthread thread_;
 };
 

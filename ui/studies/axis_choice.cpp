@@ -18,9 +18,10 @@ namespace clothlab {
 namespace {
 
 constexpr int usual_count = 12;
+constexpr int count_width = 54;  // px
 
 QString number_text(double value) {
-  return QString::fromStdString(cloth::short_number(value, 4));
+  return QString::fromStdString(cloth::short_number(value, 3));
 }
 
 double number_of(const QLineEdit& field) {
@@ -64,6 +65,7 @@ AxisChoice::AxisChoice(QWidget* parent) : QWidget(parent) {
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(spacing / 2);
   grid->addWidget(parameter_, 0, 0, 1, 5);
+  count_->setFixedWidth(count_width);
   grid->addWidget(low_, 1, 0);
   grid->addWidget(new QLabel(tr("to"), this), 1, 1);
   grid->addWidget(high_, 1, 2);
@@ -101,6 +103,7 @@ void AxisChoice::chooseParameter(int index) {
 
 void AxisChoice::show(const cloth::StudyAxis& axis) {
   low_->setText(number_text(axis.low));
+  low_->setCursorPosition(0);
   high_->setText(number_text(axis.high));
   count_->setValue(axis.count);
   logarithmic_->setChecked(axis.scale == cloth::AxisScale::logarithmic);

@@ -128,6 +128,10 @@ void PainterCanvas::text(cloth::SvgPoint baseline, const cloth::SvgText& text) {
   painter_.save();
   painter_.translate(baseline.x, baseline.y);
   painter_.rotate(text.turn);
+  // The layout knows the widths of Helvetica: a wider face is drawn narrower.
+  const double room = cloth::text_width(text.text, text.size, text.bold) +
+                      cloth::text_width(text.superscript, 0.75 * text.size);
+  if (whole > room && room > 0) painter_.scale(room / whole, 1);
   if (text.halo) {
     QPainterPath outline;
     outline.addText(left, 0, font, words);

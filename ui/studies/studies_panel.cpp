@@ -26,7 +26,7 @@ namespace clothlab {
 namespace {
 
 constexpr int poll_interval = 100;  // ms
-constexpr int choices_width = 300;  // px
+constexpr int choices_width = 330;  // px
 
 QString time_text(double seconds) {
   const int whole = static_cast<int>(std::ceil(seconds));
@@ -93,7 +93,7 @@ QWidget* StudiesPanel::makeLeft() {
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   start_ = new QPushButton(tr("Start the study"), left);
   start_->setObjectName("startStudy");
-  start_->setDefault(true);
+  start_->setProperty("primary", true);
   cancel_ = new QPushButton(tr("Cancel"), left);
   cancel_->setObjectName("cancelStudy");
   cancel_->setToolTip(tr("Stop at the next step. What is finished is kept."));
@@ -139,18 +139,19 @@ QWidget* StudiesPanel::makeRight() {
   head->addWidget(open_);
   head->addWidget(save_);
 
-  auto* empty = new QLabel(tr("<p><b>No study yet.</b></p>"
-                              "<p>Choose a study of the scene being edited and start it: it runs beside the "
-                              "simulation, and its diagram fills as results come. Rest the pointer on a run "
-                              "to read it, double-click to open it in the view.</p>"),
-                           right);
-  empty->setAlignment(Qt::AlignCenter);
-  empty->setWordWrap(true);
-  empty->setProperty("muted", true);
-  empty->setObjectName("studyEmpty");
+  empty_ = new QLabel(tr("<p><b>No study yet.</b></p>"
+                         "<p>Choose a study of the scene being edited and start it: it runs beside the "
+                         "simulation, and its diagram fills as results come. Rest the pointer on a run "
+                         "to read it, double-click to open it in the view.</p>"),
+                      right);
+  empty_->setAlignment(Qt::AlignCenter);
+  empty_->setWordWrap(true);
+  empty_->setMargin(12 * spacing);
+  empty_->setProperty("muted", true);
+  empty_->setObjectName("studyEmpty");
   plot_ = new StudyPlot(right);
   stack_ = new QStackedWidget(right);
-  stack_->addWidget(empty);
+  stack_->addWidget(empty_);
   stack_->addWidget(plot_);
   bar_ = new QProgressBar(right);
   bar_->setObjectName("studyProgress");
@@ -195,6 +196,7 @@ void StudiesPanel::start() {
   folder_ = QString::fromStdString(chosen.folder.string());
   table_.reset();
   stack_->setCurrentIndex(0);
+  empty_->setText(tr("<p><b>The study runs.</b></p><p>Its first results will be drawn here.</p>"));
   runner_.start(std::move(chosen));
   was_running_ = true;
   timer_.start();

@@ -72,7 +72,7 @@ class StudiesPanel : public QWidget {
   StudyChoices* choices_ = nullptr;
   StudyPlot* plot_ = nullptr;
   QStackedWidget* stack_ = nullptr;  // nothing yet, the diagram
-  QLabel *title_ = nullptr, *line_ = nullptr;
+  QLabel *title_ = nullptr, *line_ = nullptr, *empty_ = nullptr;
   QComboBox* against_ = nullptr;
   QProgressBar* bar_ = nullptr;
   QPushButton *start_ = nullptr, *cancel_ = nullptr;

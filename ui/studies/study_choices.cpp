@@ -21,7 +21,7 @@
 namespace clothlab {
 namespace {
 
-constexpr int methods_height = 128;  // px
+constexpr int method_rows = 5, method_height = 22, method_width = 152;  // px
 const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
@@ -61,7 +61,12 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
   purpose_->setProperty("muted", true);
   methods_ = new QListWidget(this);
   methods_->setObjectName("studyMethods");
-  methods_->setFixedHeight(methods_height);
+  methods_->setWrapping(true);
+  methods_->setFlow(QListView::TopToBottom);
+  methods_->setResizeMode(QListView::Adjust);
+  methods_->setGridSize({method_width, method_height});
+  methods_->setFixedHeight(method_rows * method_height + spacing);
+  methods_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   methods_->setAccessibleName(tr("Methods"));
   for (const cloth::MethodFacts& facts : cloth::integrator_facts()) {
     auto* item = new QListWidgetItem(QString::fromStdString(facts.title), methods_);
@@ -106,6 +111,7 @@ void StudyChoices::makeForms() {
 
   auto* map = new QWidget(forms_);
   form = form_on(map);
+  form->setRowWrapPolicy(QFormLayout::DontWrapRows);
   x_ = new AxisChoice(map);
   x_->setObjectName("xAxis");
   form->addRow(tr("Across"), x_);

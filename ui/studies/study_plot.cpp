@@ -68,7 +68,10 @@ bool fit(Diagram& diagram, QSizeF room) {
 Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
   std::visit([](auto& plot) { plot.title.clear(), plot.subtitle.clear(); }, diagram);
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
-  if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) map->caption.clear();
+  if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
+    map->caption.clear();
+    map->y.label = map->y.label.substr(0, map->y.label.find(','));  // what qualifies it is in the tooltip
+  }
   for (scale = 1; scale > smallest_scale; scale -= 0.05)
     if (fit(diagram, room / scale)) return diagram;
   fit(diagram, room / scale);

@@ -277,7 +277,10 @@ void CompareWindow::followStatus(const CompareStatus& status) {
   }
   play_->setEnabled(status.refusal.empty());
   step_->setEnabled(status.refusal.empty());
-  time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
+  if (status.time > status.duration)  // played on beyond its end
+    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
+  else
+    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
   if (status.playing)
     rate_->setText(tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2));
   else

@@ -70,7 +70,8 @@ Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
   if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
     map->caption.clear();
-    map->y.label = map->y.label.substr(0, map->y.label.find(','));  // what qualifies it is in the tooltip
+    map->y.label =
+        map->y.label.substr(0, map->y.label.find(','));  // no room for what qualifies it: the files have it
   }
   for (scale = 1; scale > smallest_scale; scale -= 0.05)
     if (fit(diagram, room / scale)) return diagram;

@@ -110,7 +110,6 @@ class MainWindow : public QMainWindow {
   Timeline* timeline_ = nullptr;
   ViewBar* view_bar_ = nullptr;
   QMenu* recent_menu_ = nullptr;
-  QMenu* windows_menu_ = nullptr;
 
   QAction* play_ = nullptr;
   QAction* play_again_ = nullptr;

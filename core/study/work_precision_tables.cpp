@@ -164,14 +164,6 @@ CsvTable sample_table(const WorkPrecision& study) {
   return table;
 }
 
-std::optional<IoError> write_csv(const std::filesystem::path& path, const CsvTable& table) {
-  CsvFile file;
-  if (auto error = file.open(path, table.header)) return error;
-  for (const auto& row : table.rows)
-    if (auto error = file.add(row)) return error;
-  return file.close();
-}
-
 std::string work_precision_json(const WorkPrecision& study) {
   const ReferenceSolution& reference = study.reference;
   json root{{"title", study.scene.title},

@@ -1,7 +1,6 @@
 // A study of error against run time as files: CSV and JSON, and the method that is cheapest for an error.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +15,6 @@ CsvTable run_table(const WorkPrecision& study);
 
 /// work_precision_samples.csv: a row for each timed repeat.
 CsvTable sample_table(const WorkPrecision& study);
-
-/// A table as a file.
-std::optional<IoError> write_csv(const std::filesystem::path& path, const CsvTable& table);
 
 /// One object: what was studied and measured, the order of each method, the machine.
 std::string work_precision_json(const WorkPrecision& study);

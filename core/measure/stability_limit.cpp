@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "cloth/grid.h"
 #include "measure/amplification.h"
@@ -121,8 +122,8 @@ DampingRates damping_rates(const Scene& scene) {
 }
 
 bool stable_at_every_step(const std::string& method) {
-  static const std::array<std::string, 5> methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
-                                                  "xpbd"};
+  static constexpr std::array<std::string_view, 5> methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
+                                                            "xpbd"};
   return std::find(methods.begin(), methods.end(), method) != methods.end();
 }
 

@@ -211,7 +211,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
                   "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
   run->add_option("--threads", arguments.run.threads,
                   "Threads that a step may use; without it all cores. The results are the same to the bit. "
-                  "summary.json says how many were used: a small cloth is stepped on one")
+                  "They are used while they are seen to gain; summary.json says how many could be")
       ->check(CLI::Range(1, 1024));
   run->add_flag("--json", arguments.run.json, json_help);
 

@@ -1,6 +1,7 @@
 #include "forces/force_model.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "forces/air.h"
 #include "forces/gravity.h"
@@ -48,7 +49,7 @@ void ForceModel::system_changed() {
   weight_ = Vec3::Zero();
   if (const auto grid = recognise_grid(*system_)) {
     sweep_ = std::make_unique<GridSweep>(*system_, *grid, common_mass(*system_));
-    sweep_->set_team(team_);
+    sweep_->set_team(team_, thread_use_);
     if (sweep_->has_common_mass()) weight_ = sweep_->mass() * gravity_;
   }
   beside_sweep_.clear();
@@ -131,11 +132,17 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
 }
 
 std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
-  if (!can_step() || has_load()) return std::nullopt;
+  if (!steps_verlet()) return std::nullopt;
   ++evaluations_;
   const double squares = sweep_->verlet(step, {weight_, viscous_, nullptr}, position_force_, state).after;
-  power = Work{.damping_loss = viscous_ * squares};
+  power = power_after(squares);
   return squares;
+}
+
+void ForceModel::verlet_steps(double step, std::span<double> squares, ClothState& state) {
+  assert(steps_verlet());
+  evaluations_ += static_cast<std::int64_t>(squares.size());
+  sweep_->verlet_steps(step, {weight_, viscous_, nullptr}, squares, position_force_, state);
 }
 
 std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& state, Work& work) {
@@ -146,9 +153,9 @@ std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& stat
   return squares[4];
 }
 
-void ForceModel::set_team(WorkerTeam* team) {
-  team_ = team;
-  if (sweep_) sweep_->set_team(team);
+void ForceModel::set_team(WorkerTeam* team, ThreadUse use) {
+  team_ = team, thread_use_ = use;
+  if (sweep_) sweep_->set_team(team, use);
 }
 
 int ForceModel::threads() const {

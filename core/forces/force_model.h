@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "forces/force.h"
 #include "forces/hand.h"
+#include "kernels/thread_choice.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -73,12 +75,18 @@ class ForceModel {
   std::optional<double> euler_step(double time, double step, bool drift_first, ClothState& state, Work& work);
   /// From the last update, at the state's position, to the end of the step. `power` becomes that at the end.
   std::optional<double> verlet_step(double step, ClothState& state, Work& power);
+  /// As many such steps as there are `squares`, without the states in between: the same bits. Each of the
+  /// squares becomes a step's sum of |v|^2, of which power_after() makes its power. Precondition:
+  /// steps_verlet(), that verlet_step would not return nothing.
+  void verlet_steps(double step, std::span<double> squares, ClothState& state);
+  bool steps_verlet() const { return can_step() && !has_load(); }
+  Work power_after(double squares) const { return Work{.damping_loss = viscous_ * squares}; }
   /// Kutta's method of order four. Adds the work.
   std::optional<double> runge_kutta_step(double step, ClothState& state, Work& work);
 
   /// Threads to share whole steps and evaluations among; null: one. Must outlive its use.
-  void set_team(WorkerTeam* team);
-  /// How many of them are used for this cloth.
+  void set_team(WorkerTeam* team, ThreadUse use = ThreadUse::where_they_gain);
+  /// How many of them this cloth may use.
   int threads() const;
 
   /// The hand. A brush without air and a pull on a pinned particle have no effect.
@@ -108,6 +116,7 @@ class ForceModel {
   Vec3 weight_{0, 0, 0};  ///< N, of every particle, where the sweep takes care of gravity
   double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
+  ThreadUse thread_use_ = ThreadUse::where_they_gain;
   Vec3Field position_force_;                        ///< sized when first needed
   Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,15 @@ class Integrator {
   /// method's own order. Neither `state.time` nor `state.step` is touched.
   virtual IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                 ClothState& state, Work& work) = 0;
+
+  /// Whether several steps of which nobody sees the states in between would now cost less than one by one.
+  virtual bool gains_unseen(const ForceModel&) const { return false; }
+  /// As many steps of length `step` as there are `speed_squares`, to the same bits. Gives each step's
+  /// speed_squares, and the report that each of them would give. Precondition: gains_unseen().
+  virtual IntegratorReport unseen_steps(ForceModel&, double /*step*/, std::span<double> /*speed_squares*/,
+                                        ClothState&, Work&) {
+    return {};
+  }
 
   /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
   virtual void forget(Change) {}

@@ -17,6 +17,9 @@ class Verlet : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool gains_unseen(const ForceModel& forces) const override { return holds_force_ && forces.steps_verlet(); }
+  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
+                                ClothState& state, Work& work) override;
   void forget(Change) override { holds_force_ = false; }
 
  private:

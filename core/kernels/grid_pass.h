@@ -78,6 +78,12 @@ struct GridKernels {
   void (*euler)(const Pass& pass);
   /// Velocity Verlet with centred damping: `force` holds p(x) before and p(x') after.
   void (*verlet)(const Pass& pass);
+  /// The same in parts, for steps of which nobody sees the states between them. From the state at t to
+  /// v(t + h/2) and x(t + h); from those to v(t + 3h/2) and x(t + 2h), without `force`; and from those to
+  /// v(t + h) and `force`.
+  void (*verlet_open)(const Pass& pass);
+  void (*verlet_between)(const Pass& pass);
+  void (*verlet_close)(const Pass& pass);
   /// Kutta's method of order four.
   void (*runge_kutta)(const Pass& pass);
   /// force = springs + weight + load. `load` may be `force` itself. No sums.

@@ -169,22 +169,72 @@ inline void kick_drift_row(const Pass& pass, int row) {
   if (j < columns) kick_drift_block<true>(x, v, p, inverse_mass, half_step, step, damping, j, columns - j);
 }
 
+inline V centring(const Pass& pass) {
+  return Lanes::set(1 / (1 + 0.5 * pass.step * pass.damping / pass.mass_of_free));
+}
+
+/// With the kick and the drift before the force, or after a pass that has done them.
+template <bool KickAndDrift>
 void verlet_band(const Pass& pass) {
   const Springs springs(pass.grid);
   const int start = pass.first < 2 ? 0 : pass.first - 2;
   RowChain chain(pass, springs, 0, start);
   VerletUpdate update{};
   update.half_step = Lanes::set(0.5 * pass.step);
-  update.centred = Lanes::set(1 / (1 + 0.5 * pass.step * pass.damping / pass.mass_of_free));
+  update.centred = centring(pass);
   const auto position = [&](int row) { return row_of(pass, pass.position, row); };
-  kick_drift_row(pass, start);
-  kick_drift_row(pass, start + 1);
+  if (KickAndDrift) kick_drift_row(pass, start);
+  if (KickAndDrift) kick_drift_row(pass, start + 1);
   for (int row = start; row < pass.last; ++row) {
-    kick_drift_row(pass, row + 2);
+    if (KickAndDrift) kick_drift_row(pass, row + 2);
     const bool own = row >= pass.first;
     if (own) {
       update.velocity = row_of(pass, pass.velocity, row);
       update.force = row_of(pass, pass.force, row);
+      update.inverse_mass = inverse_masses(pass, row);
+      update.after = Lanes::zero();
+    }
+    chain.run(row, own, position, update);
+    store_sum(pass, 1, row, update.after);
+  }
+}
+
+void verlet_open_band(const Pass& pass) {
+  for (int row = pass.first; row < pass.last; ++row) kick_drift_row(pass, row);
+}
+
+/// The end of one step of Verlet and the beginning of the next, by the same operations as in two passes.
+struct VerletBetweenUpdate {
+  V half_step, step, centred, damping;
+  Row position, velocity;
+  const double* inverse_mass;
+  V after;  ///< the sum of squares of the velocity between the steps
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector& x, const Vector& p) {
+    const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
+                                               : Lanes::load(inverse_mass + j));
+    const Vector v = scaled(centred, plus(load_part<Edge>(velocity, j, count), scale, p));
+    after = plus_square(after, v);
+    const Vector half = plus(v, scale, minus(p, damping, v));
+    store<Edge>(velocity, j, count, half);
+    store<Edge>(position, j, count, plus(x, step, half));
+  }
+};
+
+void verlet_between_band(const Pass& pass) {
+  const Springs springs(pass.grid);
+  const int start = pass.first < 2 ? 0 : pass.first - 2;
+  RowChain chain(pass, springs, 0, start);
+  VerletBetweenUpdate update{};
+  update.half_step = Lanes::set(0.5 * pass.step), update.step = Lanes::set(pass.step);
+  update.centred = centring(pass), update.damping = Lanes::set(pass.damping);
+  const auto position = [&](int row) { return row_of(pass, pass.position, row); };
+  for (int row = start; row < pass.last; ++row) {
+    const bool own = row >= pass.first;
+    if (own) {
+      update.position = position(row);
+      update.velocity = row_of(pass, pass.velocity, row);
       update.inverse_mass = inverse_masses(pass, row);
       update.after = Lanes::zero();
     }
@@ -342,9 +392,10 @@ void spring_scales(const SpringKind& kind, const double* squares, double* result
   }
 }
 
-constexpr GridKernels grid_kernels{euler_band,       verlet_band,
-                                   runge_kutta_band, evaluate_band,
-                                   sum_squares_band, {spring_scales<false>, spring_scales<true>}};
+constexpr GridKernels grid_kernels{
+    euler_band,          verlet_band<true>,  verlet_open_band,
+    verlet_between_band, verlet_band<false>, runge_kutta_band,
+    evaluate_band,       sum_squares_band,   {spring_scales<false>, spring_scales<true>}};
 
 }  // namespace
 }  // namespace cloth::kernels

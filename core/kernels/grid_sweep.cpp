@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
+#include <utility>
 
 #include "cloth/grid.h"
 #include "cloth/sums.h"
@@ -40,8 +41,8 @@ std::size_t take_direction(const ClothSystem& system, const SpringDirection& dir
   return count;
 }
 
-/// Below so many particles for each thread, waking the others takes longer than what they would save.
-constexpr int break_even = 3000;
+/// With fewer particles for each thread the others need not be tried: waking them takes as long as the pass.
+constexpr int fewest_particles = 1000;
 /// A band repeats up to two rows of the one above.
 constexpr int fewest_rows = 12;
 
@@ -105,13 +106,16 @@ GridSweep::GridSweep(const ClothSystem& system, const Grid& grid, std::optional<
 
 int GridSweep::threads() const {
   if (!team_) return 1;
-  return std::clamp(std::min(grid_.rows * grid_.columns / break_even, grid_.rows / fewest_rows), 1,
+  return std::clamp(std::min(grid_.rows * grid_.columns / fewest_particles, grid_.rows / fewest_rows), 1,
                     team_->size());
 }
 
 /// Makes a pass for every band, without its fields.
-void GridSweep::share_rows(int halo_rows, int scratch_rows, const SweepLoads& loads, double step) {
-  const int count = threads();
+void GridSweep::share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads,
+                           double step) {
+  ThreadChoice& choice = choices_[kind];
+  const int count = use_ == ThreadUse::always ? threads() : choice.next(threads());
+  if (choice.wants_time()) begun_ = std::chrono::steady_clock::now();
   const auto rows = static_cast<std::size_t>(grid_.rows), pitch = static_cast<std::size_t>(grid_.columns);
   const std::size_t scratch =
       static_cast<std::size_t>(scratch_rows) * static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
@@ -124,6 +128,7 @@ void GridSweep::share_rows(int halo_rows, int scratch_rows, const SweepLoads& lo
     Band& band = bands_[static_cast<std::size_t>(b)];
     if (band.scratch.size() < scratch) band.scratch.resize(scratch);
     if (band.halo.size() < halo) band.halo.resize(halo);
+    band.copies.clear();
     Pass& pass = band.pass;
     pass = Pass{};
     pass.grid = grid_;
@@ -147,7 +152,8 @@ void GridSweep::attach(BandField Pass::*field, Vec3Field& values) {
   for (Band& band : bands_) band.pass.*field = {all, all, all};
 }
 
-/// A field that is stepped in place: what a band needs of its neighbours' rows is copied beforehand.
+/// A field that is stepped in place: what a band needs of its neighbours' rows is copied beforehand, by the
+/// thread that will need it, since rows that another core has written take long to come.
 void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, int halo_rows, int slot) {
   attach(field, values);
   if (bands_.size() == 1) return;
@@ -159,9 +165,10 @@ void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, in
       const RowBlock block{to, to + run, to + 2 * run, first};
       const auto begin = static_cast<std::size_t>(first) * columns;
       const std::size_t count = static_cast<std::size_t>(last - first) * columns;
-      std::copy_n(values.x() + begin, count, block.x);
-      std::copy_n(values.y() + begin, count, block.y);
-      std::copy_n(values.z() + begin, count, block.z);
+      if (count > 0)
+        for (const auto& [from, into] :
+             {std::pair{values.x(), block.x}, std::pair{values.y(), block.y}, std::pair{values.z(), block.z}})
+          band.copies.push_back({from + begin, into, count});
       to += 3 * run;
       return block;
     };
@@ -171,13 +178,22 @@ void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, in
   }
 }
 
-void GridSweep::run(void (*kernel)(const Pass&)) {
+void GridSweep::run(PassKind kind, Kernel kernel) {
+  ThreadChoice& choice = choices_[kind];
   if (bands_.size() == 1) {
     kernel(bands_.front().pass);
-    return;
+  } else {
+    const int count = static_cast<int>(bands_.size());
+    team_->run(count, [this](int b) {
+      for (const Copy& copy : bands_[static_cast<std::size_t>(b)].copies)
+        std::copy_n(copy.from, copy.count, copy.to);
+    });
+    team_->run(count, [this, kernel](int b) { kernel(bands_[static_cast<std::size_t>(b)].pass); });
   }
-  const auto share = [&](int b) { kernel(bands_[static_cast<std::size_t>(b)].pass); };
-  team_->run(static_cast<int>(bands_.size()), share);
+  if (choice.wants_time())
+    choice.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count());
+  else
+    choice.took(0);
 }
 
 double GridSweep::sum_of(int which) const {
@@ -190,45 +206,64 @@ double GridSweep::sum_of(int which) const {
 GridSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLoads& loads,
                                     ClothState& state) {
   assert(mass_);
-  share_rows(kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
+  share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
   for (Band& band : bands_) band.pass.drift_first = drift_first;
   attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
   attach(&Pass::velocity, state.velocity);
-  run(kernels_->euler);
+  run(PassKind::step, kernels_->euler);
   return {sum_of(0), sum_of(1)};
 }
 
 GridSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
                                      ClothState& state) {
   assert(mass_ && !loads.load);
-  share_rows(kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
+  share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
   attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
   attach_with_copies(&Pass::velocity, state.velocity, kernels::euler_halo, 1);
   attach_with_copies(&Pass::force, force, kernels::euler_halo, 2);
-  run(kernels_->verlet);
+  run(PassKind::step, kernels_->verlet);
   return {0, sum_of(1)};
+}
+
+void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
+                             Vec3Field& force, ClothState& state) {
+  assert(mass_ && !loads.load);
+  const auto pass = [&](PassKind kind, Kernel kernel) {
+    share_rows(kind, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
+    attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
+    attach(&Pass::velocity, state.velocity);
+    attach(&Pass::force, force);
+    run(kind, kernel);
+  };
+  pass(opening, kernels_->verlet_open);
+  for (std::size_t k = 0; k + 1 < squares.size(); ++k) {
+    pass(between, kernels_->verlet_between);
+    squares[k] = sum_of(1);
+  }
+  pass(closing, kernels_->verlet_close);
+  squares.back() = sum_of(1);
 }
 
 std::array<double, 5> GridSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
   assert(mass_ && !loads.load);
-  share_rows(kernels::runge_kutta_halo, kernels::runge_kutta_scratch_rows, loads, step);
+  share_rows(PassKind::step, kernels::runge_kutta_halo, kernels::runge_kutta_scratch_rows, loads, step);
   attach_with_copies(&Pass::position, state.position, kernels::runge_kutta_halo, 0);
   attach_with_copies(&Pass::velocity, state.velocity, kernels::runge_kutta_halo, 1);
-  run(kernels_->runge_kutta);
+  run(PassKind::step, kernels_->runge_kutta);
   return {sum_of(0), sum_of(1), sum_of(2), sum_of(3), sum_of(4)};
 }
 
 void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  share_rows(kernels::euler_halo, kernels::euler_scratch_rows, loads, 0);
+  share_rows(evaluation, kernels::euler_halo, kernels::euler_scratch_rows, loads, 0);
   attach(&Pass::position, const_cast<Vec3Field&>(position));  // only read
   attach(&Pass::force, force);
-  run(kernels_->evaluate);
+  run(evaluation, kernels_->evaluate);
 }
 
 double GridSweep::squares(const Vec3Field& velocity) {
-  share_rows(kernels::euler_halo, kernels::euler_scratch_rows, {}, 0);
+  share_rows(sums, kernels::euler_halo, kernels::euler_scratch_rows, {}, 0);
   attach(&Pass::velocity, const_cast<Vec3Field&>(velocity));  // only read
-  run(kernels_->sum_squares);
+  run(sums, kernels_->sum_squares);
   return sum_of(1);
 }
 

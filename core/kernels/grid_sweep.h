@@ -7,12 +7,15 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cloth/cloth_system.h"
 #include "kernels/grid_pass.h"
 #include "kernels/instruction_set.h"
+#include "kernels/thread_choice.h"
 #include "kernels/worker_team.h"
 
 namespace cloth {
@@ -42,8 +45,8 @@ class GridSweep {
   double mass() const { return mass_.value(); }
 
   /// The team whose threads share the rows; null: one thread.
-  void set_team(WorkerTeam* team) { team_ = team; }
-  /// How many of the team's threads are used: below the break-even size only one.
+  void set_team(WorkerTeam* team, ThreadUse use = ThreadUse::where_they_gain) { team_ = team, use_ = use; }
+  /// How many of the team's threads a pass may use: only one where a band would be too small.
   int threads() const;
 
   /// Sums over all particles of |v|^2, in (m/s)^2: before and after the step.
@@ -55,6 +58,10 @@ class GridSweep {
   /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
   /// after. No load. Only `after` is given.
   Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state);
+  /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between; each
+  /// of the squares is a step's `after`.
+  void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
+                    ClothState& state);
   /// Kutta's method of order four. No load. The sums at the four stages, and after the step.
   std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state);
 
@@ -64,16 +71,27 @@ class GridSweep {
   double squares(const Vec3Field& velocity);
 
  private:
+  using Kernel = void (*)(const kernels::Pass&);
+  /// Each takes its own time, and so makes its own choice of threads.
+  enum PassKind { step, opening, between, closing, evaluation, sums };
+  static constexpr std::size_t pass_kinds = 6;
+
+  struct Copy {
+    const double* from;
+    double* to;
+    std::size_t count;
+  };
   /// What a band needs of its own.
   struct Band {
     kernels::Pass pass;
+    std::vector<Copy> copies;  ///< to be made before any band is stepped
     AlignedDoubles scratch, halo;
   };
-  void share_rows(int halo_rows, int scratch_rows, const SweepLoads& loads, double step);
+  void share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads, double step);
   void attach(kernels::BandField kernels::Pass::*field, Vec3Field& values);
   void attach_with_copies(kernels::BandField kernels::Pass::*field, Vec3Field& values, int halo_rows,
                           int slot);
-  void run(void (*kernel)(const kernels::Pass&));
+  void run(PassKind kind, Kernel kernel);
   double sum_of(int which) const;
 
   const ClothSystem* system_;
@@ -81,6 +99,9 @@ class GridSweep {
   std::optional<double> mass_;
   const kernels::GridKernels* kernels_;
   WorkerTeam* team_ = nullptr;
+  ThreadUse use_ = ThreadUse::where_they_gain;
+  std::array<ThreadChoice, pass_kinds> choices_;
+  std::chrono::steady_clock::time_point begun_;  ///< the pass, where its time is wanted
   std::vector<Band> bands_;
   std::vector<double> squares_;  ///< see kernels::Pass
 };

@@ -18,6 +18,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// So that whoever wants to stop a run need not wait.
+constexpr std::int64_t most_steps_unseen = 32, steps_between_looks = 16;
+
 struct Column {
   const char* name;
   bool (*present)(const Quantities&);
@@ -95,13 +98,14 @@ class Run {
     note_end();
     bool going = add_row() && carry_out_due();
     while (going && !ended_ && may_go_on()) {
+      const std::int64_t begin = simulation_.state().step, count = steps_until_seen();
       const Clock::time_point start = Clock::now();
-      result_.summary.divergence = simulation_.step();
+      result_.summary.divergence = simulation_.advance(count);
       const double taken = seconds_since(start);
       wall_since_row_ += taken;
       result_.summary.wall += taken;
       if (result_.summary.divergence) break;
-      ++steps_since_row_;
+      steps_since_row_ += simulation_.state().step - begin;
       note_end();
       if (clock_.due(simulation_.state().step) || ended_) going = add_row();
       going = going && carry_out_due();
@@ -125,6 +129,13 @@ class Run {
     return keep(make_folder(options_.folder)) &&
            keep(write_text_file(options_.folder / "scene.json", write_scene(resolved))) &&
            keep(record_.open(options_.folder, simulation_.quantities()));
+  }
+
+  /// Steps to the next of which somebody sees the state: a row, a command, the end.
+  std::int64_t steps_until_seen() const {
+    if (script_.commands) return 1;
+    const std::int64_t step = simulation_.state().step;
+    return std::min({most_steps_unseen, clock_.until_due(step), script_.steps - step});
   }
 
   void note_end() {
@@ -159,9 +170,9 @@ class Run {
 
   bool may_go_on() {
     constexpr double interval = 0.1;
-    constexpr int steps_between_looks = 16;
-    if (!options_.progress || ++looks_ % steps_between_looks != 0 || seconds_since(last_look_) < interval)
+    if (!options_.progress || simulation_.state().step < next_look_ || seconds_since(last_look_) < interval)
       return true;
+    next_look_ = simulation_.state().step + steps_between_looks;
     last_look_ = Clock::now();
     keep(record_.flush());
     return options_.progress(simulation_.time()) && !result_.io_error;
@@ -193,7 +204,7 @@ class Run {
   std::vector<Problem> problems_;
   std::int64_t steps_since_row_ = 0;
   double wall_since_row_ = 0;
-  std::int64_t looks_ = 0;
+  std::int64_t next_look_ = 0;  ///< step
   Clock::time_point last_look_ = Clock::now();
 };
 

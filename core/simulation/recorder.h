@@ -22,7 +22,9 @@ std::vector<std::string> record_row(const Measurement& measurement, const Quanti
 struct RowClock {
   std::int64_t origin = 0, stride = 1;
   static RowClock of(const Simulation& simulation);
-  bool due(std::int64_t step) const { return (step - origin) % stride == 0; }
+  bool due(std::int64_t step) const { return until_due(step) == stride; }
+  /// Steps from `step` to the next row, at least 1.
+  std::int64_t until_due(std::int64_t step) const { return stride - (step - origin) % stride; }
   /// After an edit: counts from the present step on where the stride is another one.
   void follow(const Simulation& simulation);
 };

@@ -71,7 +71,7 @@ Simulation::~Simulation() = default;
 
 void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
-  forces_->set_team(team_.get());
+  forces_->set_team(team_.get(), thread_use_);
   limiter_.reset();
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
@@ -258,10 +258,11 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     integrator_->forget(Change::state);
 }
 
-void Simulation::set_threads(int threads) {
+void Simulation::set_threads(int threads, ThreadUse use) {
+  thread_use_ = use;
   forces_->set_team(nullptr);
   team_ = threads > 1 ? std::make_unique<WorkerTeam>(threads) : nullptr;
-  forces_->set_team(team_.get());
+  forces_->set_team(team_.get(), thread_use_);
 }
 
 int Simulation::threads() const {
@@ -318,11 +319,15 @@ bool Simulation::has_run_away(double kinetic) const {
   return !(kinetic <= runaway_factor * energy_scale());
 }
 
+/// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2.
+bool Simulation::is_surely_slow(double speed_squares) const {
+  return 0.5 * largest_mass_ * speed_squares <= runaway_factor * energy_scale_after(0);
+}
+
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
 /// all does not make the speeds too much, nothing has run away. Only else the state is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
-  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ &&
-      0.5 * largest_mass_ * *report.speed_squares <= runaway_factor * energy_scale_after(0))
+  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ && is_surely_slow(*report.speed_squares))
     return std::nullopt;
   const auto x = state_.position.flat();
   // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.

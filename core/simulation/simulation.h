@@ -95,6 +95,10 @@ class Simulation {
   /// One step; or, where the new state is not finite or has run away, why. The state is then the bad one.
   std::optional<Divergence> step();
 
+  /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit,
+  /// but the states in between are not to be seen, which makes some methods cheaper.
+  std::optional<Divergence> advance(std::int64_t steps);
+
   /// Puts an edited scene in force from the next step on, keeping the state. Precondition: as for the
   /// constructor, and only parameters of EditCost::live differ (and pins). The ledger takes up the jump in
   /// energy.
@@ -105,9 +109,10 @@ class Simulation {
   /// as it is: to go on to the bit it must be the one that was in force at the checkpoint.
   void restore(const Checkpoint& checkpoint);
 
-  /// Threads that a step may use, 1 without this call. The motion is the same to the bit.
-  void set_threads(int threads);
-  /// How many a step does use: one where the cloth is too small to share, or the method cannot.
+  /// Threads that a step may use, 1 without this call: while they are seen to gain, or always. The motion is
+  /// the same to the bit.
+  void set_threads(int threads, ThreadUse use = ThreadUse::where_they_gain);
+  /// How many of them: one where the cloth is too small to share, or the method cannot.
   int threads() const;
 
   /// The hand, from the next step on.
@@ -141,6 +146,8 @@ class Simulation {
 
  private:
   void assemble();
+  std::int64_t advance_unseen(std::int64_t most);
+  bool is_surely_slow(double speed_squares) const;
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
   void apply_hand();
@@ -159,6 +166,7 @@ class Simulation {
   ClothSystem system_;
   ClothState state_;
   std::unique_ptr<WorkerTeam> team_;  ///< none: one thread
+  ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
@@ -180,6 +188,7 @@ class Simulation {
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   bool was_finite_ = false;                   ///< every position was finite after the last step
+  ClothState before_unseen_;                  ///< to go back to
 };
 
 }  // namespace cloth

@@ -157,7 +157,7 @@ TEST_P(EveryInstructionSet, GivesTheSameBitsForAnyNumberOfThreads) {
       advance(alone);
       for (const int threads : {2, 3, 5}) {
         Simulation shared(scene);
-        shared.set_threads(threads);
+        shared.set_threads(threads, ThreadUse::always);
         ASSERT_EQ(shared.threads(), threads);
         advance(shared);
         EXPECT_EQ(alone.state(), shared.state()) << method << ", " << threads;

@@ -35,9 +35,8 @@ double predicted_seconds(int size, const Wanted& wanted, const std::vector<StepC
 }
 
 bool advance(Variant& variant, int steps) {
-  for (int k = 0; k < steps; ++k)
-    if ((variant.divergence = variant.simulation->step())) return false;
-  return true;
+  variant.divergence = variant.simulation->advance(steps);
+  return !variant.divergence;
 }
 
 std::string title_of(const Wanted& wanted) {

@@ -1,0 +1,54 @@
+#include "kernels/thread_choice.h"
+
+#include <algorithm>
+
+namespace cloth {
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+int ThreadChoice::next(int most) {
+  if (most != most_) *this = ThreadChoice{}, most_ = most;
+  if (most_ <= 1) return 1;
+  if (at_ >= trial + hold_) {
+    at_ = 0;
+    hold_ = std::min(2 * hold_, longest_hold);
+  }
+  if (trying()) return tries_all() ? most_ : 1;
+  return chosen_;
+}
+
+void ThreadChoice::took(double seconds) {
+  if (most_ <= 1) return;
+  if (!trying()) {
+    if (chosen_ > 1) watch_over(seconds);
+    ++at_;
+    return;
+  }
+  if (at_ % block >= not_counted) (tries_all() ? together_ : alone_).push_back(seconds);
+  if (++at_ == trial) decide();
+}
+
+void ThreadChoice::decide() {
+  alone_median_ = median(alone_);
+  chosen_ = median(together_) < worthwhile * alone_median_ ? most_ : 1;
+  alone_.clear();
+  together_.clear();
+  watched_ = 0, watched_jobs_ = 0;
+}
+
+/// A core that others want meanwhile shows at once: a thread that has to wait stops all of them.
+void ThreadChoice::watch_over(double seconds) {
+  watched_ += seconds;
+  if (++watched_jobs_ < watch) return;
+  if (watched_ > watch * alone_median_) chosen_ = 1;
+  watched_ = 0, watched_jobs_ = 0;
+}
+
+}  // namespace cloth

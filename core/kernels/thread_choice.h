@@ -1,0 +1,54 @@
+// Whether a job that is done again and again is done sooner by several threads: tried out while it runs,
+// since that depends on the size of the job, on the machine, and on what else the machine is doing.
+//
+//     const int threads = choice.next(most);   // before the job
+//     choice.took(seconds);                    // after it, where choice.wants_time()
+//
+// It may only be used where the result is the same to the bit for any number of threads.
+#pragma once
+
+#include <vector>
+
+namespace cloth {
+
+/// Whether a team's threads are used for every job, or only while they are seen to gain.
+enum class ThreadUse { where_they_gain, always };
+
+class ThreadChoice {
+ public:
+  /// How many threads the next job gets: 1 or `most`.
+  int next(int most);
+  /// Whether took() wants to know how long the job lasted.
+  bool wants_time() const { return most_ > 1 && (trying() || chosen_ > 1); }
+  /// Wall time in s of the job that followed the last call of next().
+  void took(double seconds);
+
+  /// Jobs of a trial, and between two trials: few at first, when nothing is warm yet, then twice as many each
+  /// time up to the most.
+  static constexpr int trial = 48, first_hold = 96, longest_hold = 32 * first_hold;
+
+ private:
+  /// A trial takes turns between one thread and all, in blocks, since a job that has just moved between
+  /// cores does not show what it costs; the first jobs of a block are not counted.
+  static constexpr int block = 8, not_counted = 2;
+  /// Several threads must gain so much to be taken: as much again is noise.
+  static constexpr double worthwhile = 0.97;
+  /// Jobs after which several threads are compared with what one took.
+  static constexpr int watch = 32;
+
+  bool trying() const { return at_ < trial; }
+  bool tries_all() const { return (at_ / block) % 2 == 1; }
+  void decide();
+  void watch_over(double seconds);
+
+  int most_ = 1;
+  int at_ = 0;  ///< jobs since the trial began
+  int hold_ = first_hold;
+  int chosen_ = 1;
+  std::vector<double> alone_, together_;  ///< s, of the trial's jobs
+  double alone_median_ = 0;               ///< s
+  double watched_ = 0;                    ///< s, of the jobs since the last comparison
+  int watched_jobs_ = 0;
+};
+
+}  // namespace cloth

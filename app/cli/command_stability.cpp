@@ -63,7 +63,7 @@ std::string command_text(const StabilityArguments& arguments) {
   if (arguments.most_steps != StabilityArguments{}.most_steps)
     text += fmt::format(" --most-steps {}", arguments.most_steps);
   if (arguments.full_size) text += " --full-size";
-  return text + " --out " + arguments.folder;
+  return text + " --out DIR";
 }
 
 }  // namespace

@@ -30,12 +30,14 @@ Pace pace_of(Subject& subject, const TimingPlan& plan) {
   constexpr int most = 1 << 20;
   int runs = 1;
   double taken = seconds_for(subject, runs);
-  while (!subject.broken && taken < 0.5 * plan.moment && runs < most) {
+  const double moment = plan.moment * subject.moments;
+  while (!subject.broken && (taken < 0.5 * moment || runs < subject.runs_to_settle) && runs < most) {
     runs *= 2;
     taken = seconds_for(subject, runs);
   }
   Pace pace;
-  pace.runs = std::max(1, static_cast<int>(std::lround(runs * std::min(1.0, plan.moment / taken))));
+  pace.runs =
+      std::max(subject.runs_at_least, static_cast<int>(std::lround(runs * std::min(1.0, moment / taken))));
   const double sample = taken * pace.runs / runs;
   pace.repeats = static_cast<int>(std::clamp(plan.budget / sample, 1.0, static_cast<double>(plan.repeats)));
   return pace;

@@ -18,6 +18,9 @@ struct Subject {
   double scale = 1;                  ///< what a run's seconds are multiplied with
   std::function<bool(int)> run;      ///< does its work so many times; false: it broke down
   int threads = 1;                   ///< that its work is shared among
+  int runs_to_settle = 1;            ///< before the first sample
+  double moments = 1;                ///< that one sample takes
+  int runs_at_least = 1;             ///< in one sample
   std::function<void()> warm = {};   ///< called once, between warming up and the first sample
   std::vector<Sample> samples = {};  ///< none if it broke down
   bool broken = false;

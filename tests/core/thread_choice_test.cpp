@@ -62,7 +62,7 @@ TEST(ThreadChoice, IsNotMisledByAFewInterruptedJobs) {
     const Costs costs = k % 7 == 3 ? Costs{5e-3, 5e-3} : gain;
     run(choice, 1, costs);
   }
-  EXPECT_EQ(run(choice, 100, gain), 100);
+  EXPECT_EQ(run(choice, ThreadChoice::first_hold, gain), ThreadChoice::first_hold);
 }
 
 TEST(ThreadChoice, TriesAboutAsManyJobsAloneAsTogether) {

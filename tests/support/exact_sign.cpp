@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace cloth::test {
 namespace {
-
-constexpr double half_ulp = 0x1p-53;
 
 int sign(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
@@ -81,6 +81,26 @@ Expansion minor(const Expansion3& u, const Expansion3& v, std::size_t i, std::si
   return u[i] * v[j] + -(u[j] * v[i]);
 }
 
+/// The sign where the determinant exceeds its error bound (Shewchuk's o3derrboundA) or has no term at all.
+template <class Real>
+std::optional<int> filtered_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point) {
+  constexpr Real half_ulp = std::numeric_limits<Real>::epsilon() / 2;
+  using Real3 = Eigen::Matrix<Real, 3, 1>;
+  const Real3 p = point.cast<Real>(), u = a.cast<Real>() - p, v = b.cast<Real>() - p, w = c.cast<Real>() - p;
+  const Real xy = v.x() * w.y(), yx = w.x() * v.y();
+  const Real yz = w.x() * u.y(), zy = u.x() * w.y();
+  const Real zx = u.x() * v.y(), xz = v.x() * u.y();
+  const Real determinant = u.z() * (xy - yx) + v.z() * (yz - zy) + w.z() * (zx - xz);
+  const Real permanent = (std::abs(xy) + std::abs(yx)) * std::abs(u.z()) +
+                         (std::abs(yz) + std::abs(zy)) * std::abs(v.z()) +
+                         (std::abs(zx) + std::abs(xz)) * std::abs(w.z());
+  if (permanent == 0) return 0;
+  const Real bound = (7 + 56 * half_ulp) * half_ulp * permanent;
+  if (determinant > bound) return -1;
+  if (-determinant > bound) return 1;
+  return std::nullopt;
+}
+
 }  // namespace
 
 int side_of_plane_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point) {
@@ -89,23 +109,17 @@ int side_of_plane_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, con
 }
 
 int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point) {
-  const Vec3 u = a - point, v = b - point, w = c - point;
-  const double xy = v.x() * w.y(), yx = w.x() * v.y();
-  const double yz = w.x() * u.y(), zy = u.x() * w.y();
-  const double zx = u.x() * v.y(), xz = v.x() * u.y();
-  const double determinant = u.z() * (xy - yx) + v.z() * (yz - zy) + w.z() * (zx - xz);
-  const double permanent = (std::abs(xy) + std::abs(yx)) * std::abs(u.z()) +
-                           (std::abs(yz) + std::abs(zy)) * std::abs(v.z()) +
-                           (std::abs(zx) + std::abs(xz)) * std::abs(w.z());
-  const double bound = (7 + 56 * half_ulp) * half_ulp * permanent;  // Shewchuk's o3derrboundA
-  if (determinant > bound || -determinant > bound) return -sign(determinant);
-  return side_of_plane_by_expansions(a, b, c, point);
+  std::optional<int> side = filtered_side<double>(a, b, c, point);
+  if (!side) side = filtered_side<long double>(a, b, c, point);
+  return side ? *side : side_of_plane_by_expansions(a, b, c, point);
 }
 
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   const double left = (a[x] - c[x]) * (b[y] - c[y]), right = (a[y] - c[y]) * (b[x] - c[x]);
   const double determinant = left - right;
+  if (left == 0 && right == 0) return 0;
+  constexpr double half_ulp = 0x1p-53;
   const double bound = (3 + 16 * half_ulp) * half_ulp * (std::abs(left) + std::abs(right));  // ccwerrboundA
   if (determinant > bound || -determinant > bound) return sign(determinant);
   const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);

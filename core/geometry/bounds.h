@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-/// Without points it is empty: lower above upper, overlapping nothing.
+/// Without points it is empty: lower above upper, overlapping no finite box.
 struct Bounds {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 lower{infinity, infinity, infinity};     ///< m

@@ -12,6 +12,12 @@ double half_surface(const Bounds& bounds) {
   return side.x() * side.y() + side.y() * side.z() + side.z() * side.x();
 }
 
+/// Of an empty or an infinite box, which has none, the origin.
+Vec3 middle_of(const Bounds& bounds) {
+  const Vec3 middle = 0.5 * bounds.lower + 0.5 * bounds.upper;
+  return middle.allFinite() ? middle : Vec3(0, 0, 0);
+}
+
 struct Cut {
   double cost = Bounds::infinity;
   int axis = 0;
@@ -151,7 +157,7 @@ BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(b
   Builder builder{*this, {}};
   builder.items.reserve(boxes.size());
   for (const Bounds& box : boxes)
-    builder.items.push_back({box, 0.5 * box.lower + 0.5 * box.upper, static_cast<int>(builder.items.size())});
+    builder.items.push_back({box, middle_of(box), static_cast<int>(builder.items.size())});
   nodes_.reserve(boxes.size() / (width - 2) + 2);
   builder.add_node(builder.items, 0);
   index_.reserve(boxes.size());
@@ -172,7 +178,7 @@ void BoxTree::refit(std::span<const Bounds> boxes) {
 void BoxTree::fit() {
   Bounds all;
   for (const Bounds& box : boxes_) all.add(box);
-  if (!nodes_.empty()) origin_ = 0.5 * all.lower + 0.5 * all.upper;
+  origin_ = middle_of(all);
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
     const auto used = static_cast<std::size_t>(std::popcount(node.used));

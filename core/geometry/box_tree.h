@@ -30,7 +30,7 @@ class BoxTree {
  public:
   BoxTree() = default;
 
-  /// The same boxes give the same tree. No box may be empty.
+  /// The same boxes give the same tree. Infinite and empty ones are welcome; what is not a number is not.
   explicit BoxTree(std::span<const Bounds> boxes);
 
   int size() const { return static_cast<int>(boxes_.size()); }

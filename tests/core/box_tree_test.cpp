@@ -101,6 +101,18 @@ TEST(BoxTree, TakesEqualBoxesPointsAndTheWholeOfSpace) {
   }
 }
 
+TEST(BoxTree, HoldsEmptyAndInfiniteBoxesAmongOthers) {
+  Random random;
+  Boxes boxes = random_boxes(300, 0.1, random);
+  for (std::size_t i = 0; i < boxes.size(); i += 40) boxes[i] = Bounds();
+  const Boxes queries = random_boxes(100, 0.3, random);
+  expect_as_brute_force(queries, boxes, BoxTree(boxes));
+  for (std::size_t i = 20; i < boxes.size(); i += 40)
+    boxes[i].upper = Vec3::Constant(Bounds::infinity), boxes[i].lower.y() = -Bounds::infinity;
+  expect_as_brute_force(queries, boxes, BoxTree(boxes));
+  expect_as_brute_force(boxes, boxes, BoxTree(boxes));
+}
+
 TEST(BoxTree, WithoutBoxesFindsNothing) {
   for (const BoxTree& tree : {BoxTree(), BoxTree(Boxes())}) {
     EXPECT_EQ(tree.size(), 0);

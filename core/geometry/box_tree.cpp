@@ -1,0 +1,246 @@
+#include "geometry/box_tree.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace cloth {
+namespace {
+
+/// Half the surface, which an overlapping box meets in proportion to its area (Goldsmith and Salmon 1987).
+double half_surface(const Bounds& bounds) {
+  const Vec3 side = (bounds.upper - bounds.lower).cwiseMax(0);
+  return side.x() * side.y() + side.y() * side.z() + side.z() * side.x();
+}
+
+/// Of an empty or an infinite box, which has none, the origin.
+Vec3 middle_of(const Bounds& bounds) {
+  const Vec3 middle = 0.5 * bounds.lower + 0.5 * bounds.upper;
+  return middle.allFinite() ? middle : Vec3(0, 0, 0);
+}
+
+struct Cut {
+  double cost = Bounds::infinity;
+  int axis = 0;
+  std::ptrdiff_t left = 0;  // boxes before the cut
+};
+
+struct Item {
+  Bounds bounds;
+  Vec3 middle;
+  int index;
+};
+
+/// Boxes sorted into equal intervals of their middles along each axis.
+class Bins {
+ public:
+  explicit Bins(std::span<const Item> items) {
+    Bounds middles;
+    for (const Item& item : items) middles.add(item.middle);
+    const Vec3 extent = middles.upper - middles.lower;
+    lower_ = middles.lower;
+    for (int axis = 0; axis < 3; ++axis)
+      scale_[axis] = extent[axis] > 0 && extent[axis] < Bounds::infinity ? count / extent[axis] : 0;
+    for (const Item& item : items) {
+      const Vec3 at = (item.middle - lower_).cwiseProduct(scale_);
+      for (int axis = 0; axis < 3; ++axis) {
+        Bin& bin =
+            bins_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(std::clamp(at[axis], 0.0, last))];
+        bin.bounds.add(item.bounds);
+        ++bin.boxes;
+      }
+    }
+  }
+
+  /// The boundary between bins with the least sum of surface times boxes on both sides; in the middle where
+  /// all boxes have the same.
+  Cut best(std::ptrdiff_t boxes) const {
+    Cut best;
+    best.left = boxes / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (scale_[axis] == 0) continue;
+      const Cut cut = best_along(axis);
+      if (cut.cost < best.cost) best = cut;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t count = 16;
+  static constexpr double last = count - 1;
+
+  struct Bin {
+    Bounds bounds;
+    std::ptrdiff_t boxes = 0;
+    void add(const Bin& other) {
+      bounds.add(other.bounds);
+      boxes += other.boxes;
+    }
+    double cost() const { return half_surface(bounds) * static_cast<double>(boxes); }
+  };
+
+  Cut best_along(int axis) const {
+    const auto& bins = bins_[static_cast<std::size_t>(axis)];
+    std::array<double, count> right_cost{};
+    Bin left, right;
+    for (std::size_t k = count - 1; k > 0; --k) {
+      right.add(bins[k]);
+      right_cost[k] = right.cost();
+    }
+    Cut cut;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      left.add(bins[k]);
+      const double cost = left.cost() + right_cost[k + 1];
+      if (cost < cut.cost) cut = {cost, axis, left.boxes};
+    }
+    return cut;
+  }
+
+  Vec3 lower_{0, 0, 0}, scale_{0, 0, 0};
+  std::array<std::array<Bin, count>, 3> bins_;
+};
+
+void append_sorted(int query, std::vector<int>& found, std::vector<BoxPair>& pairs) {
+  std::sort(found.begin(), found.end());
+  for (const int index : found) pairs.push_back({query, index});
+}
+
+}  // namespace
+
+struct BoxTree::Builder {
+  using Range = std::span<Item>;
+
+  BoxTree& tree;
+  std::vector<Item> items;
+
+  int add_node(Range range, int level) {
+    tree.depth_ = std::max(tree.depth_, level + 1);
+    const std::size_t number = tree.nodes_.size();
+    tree.nodes_.emplace_back();
+    // As much as a child can hold, so that all are full but the last.
+    std::size_t capacity = 1;
+    while (capacity * width < range.size()) capacity *= width;
+    std::array<Range, width> parts;
+    std::size_t used = 0;
+    if (capacity == 1)
+      for (std::size_t k = 0; k < range.size(); ++k) parts[used++] = range.subspan(k, 1);
+    else
+      divide(range, capacity, parts, used);
+    for (std::size_t k = 0; k < used; ++k) {
+      const int place = static_cast<int>(parts[k].data() - items.data());
+      const int child = capacity == 1 ? ~place : add_node(parts[k], level + 1);
+      tree.nodes_[number].child[k] = child;  // after the call: nodes move as their number grows
+    }
+    tree.nodes_[number].used = (1U << used) - 1;
+    return static_cast<int>(number);
+  }
+
+  void divide(Range range, std::size_t capacity, std::array<Range, width>& parts, std::size_t& used) {
+    if (range.size() <= capacity) {
+      parts[used++] = range;
+      return;
+    }
+    const Cut cut = Bins(range).best(static_cast<std::ptrdiff_t>(range.size()));
+    const std::size_t children = (range.size() + capacity - 1) / capacity;
+    const std::size_t wished = (static_cast<std::size_t>(cut.left) + capacity / 2) / capacity;
+    const std::size_t left = std::clamp<std::size_t>(wished, 1, children - 1) * capacity;
+    const auto before = [axis = cut.axis](const Item& a, const Item& b) {
+      return a.middle[axis] < b.middle[axis] || (a.middle[axis] == b.middle[axis] && a.index < b.index);
+    };
+    std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left), range.end(), before);
+    divide(range.first(left), capacity, parts, used);
+    divide(range.subspan(left), capacity, parts, used);
+  }
+};
+
+BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(boxes.size()) {
+  if (boxes.empty()) return;
+  Builder builder{*this, {}};
+  builder.items.reserve(boxes.size());
+  for (const Bounds& box : boxes)
+    builder.items.push_back({box, middle_of(box), static_cast<int>(builder.items.size())});
+  nodes_.reserve(boxes.size() / (width - 2) + 2);
+  builder.add_node(builder.items, 0);
+  index_.reserve(boxes.size());
+  for (const Item& item : builder.items) {
+    place_[static_cast<std::size_t>(item.index)] = static_cast<int>(index_.size());
+    index_.push_back(item.index);
+  }
+  refit(boxes);
+}
+
+void BoxTree::refit(std::span<const Bounds> boxes) {
+  assert(boxes.size() == boxes_.size());
+  for (std::size_t place = 0; place < boxes_.size(); ++place)
+    boxes_[place] = boxes[static_cast<std::size_t>(index_[place])];
+  fit();
+}
+
+void BoxTree::fit() {
+  Bounds all;
+  for (const Bounds& box : boxes_) all.add(box);
+  origin_ = middle_of(all);
+  for (std::size_t number = nodes_.size(); number-- > 0;) {
+    Node& node = nodes_[number];
+    const auto used = static_cast<std::size_t>(std::popcount(node.used));
+    for (std::size_t k = 0; k < used; ++k) {
+      const int child = node.child[k];
+      if (child < 0) {
+        const Query leaf = rounded(boxes_[static_cast<std::size_t>(~child)]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          node.lower[axis][k] = leaf.lower[axis], node.upper[axis][k] = leaf.upper[axis];
+        continue;
+      }
+      const Node& below = nodes_[static_cast<std::size_t>(child)];
+      const auto filled = std::popcount(below.used);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto &lower = below.lower[axis], &upper = below.upper[axis];
+        node.lower[axis][k] = *std::min_element(lower.begin(), lower.begin() + filled);
+        node.upper[axis][k] = *std::max_element(upper.begin(), upper.begin() + filled);
+      }
+    }
+  }
+}
+
+void BoxTree::collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
+  std::vector<int> found;
+  for (std::size_t q = 0; q < queries.size(); ++q) {
+    found.clear();
+    visit(queries[q], [&](int index) { found.push_back(index); });
+    append_sorted(static_cast<int>(q), found, pairs);
+  }
+}
+
+void BoxTree::collect_own(std::vector<BoxPair>& pairs) const {
+  std::vector<int> found;
+  for (int i = 0; i < size(); ++i) {
+    found.clear();
+    const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+    visit(boxes_[place], [&](int index) {
+      if (index > i) found.push_back(index);
+    });
+    append_sorted(i, found, pairs);
+  }
+}
+
+std::vector<Bounds> BoxTree::boxes_at(int level) const {
+  std::vector<Bounds> below(nodes_.size());
+  std::vector<int> level_of(nodes_.size(), 0);
+  for (std::size_t number = 0; number < nodes_.size(); ++number)
+    for (int k = 0; k < std::popcount(nodes_[number].used); ++k)
+      if (const int child = nodes_[number].child[static_cast<std::size_t>(k)]; child >= 0)
+        level_of[static_cast<std::size_t>(child)] = level_of[number] + 1;
+  std::vector<Bounds> found;
+  for (std::size_t number = nodes_.size(); number-- > 0;) {
+    for (int k = 0; k < std::popcount(nodes_[number].used); ++k) {
+      const int child = nodes_[number].child[static_cast<std::size_t>(k)];
+      const Bounds& part =
+          child >= 0 ? below[static_cast<std::size_t>(child)] : boxes_[static_cast<std::size_t>(~child)];
+      below[number].add(part);
+      if (child < 0 && level_of[number] + 1 == level) found.push_back(part);
+    }
+    if (level_of[number] == level) found.push_back(below[number]);
+  }
+  return found;
+}
+
+}  // namespace cloth

@@ -7,6 +7,7 @@
 
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
+#include "compare/comparison_log.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/time_step.h"
 #include "study/reference_solution.h"
@@ -141,11 +142,48 @@ TEST(AnEditOfAComparison, StartsAnewOnlyForWhatCannotActAtOnce) {
   EXPECT_TRUE(acts([](Comparison& c) { c.reference = "A"; }));
   EXPECT_FALSE(acts([](Comparison& c) { c.scene.cloth.rows = 7; }));
   EXPECT_FALSE(acts([](Comparison& c) { c.scene.record.interval = 0.02; }));
-  EXPECT_FALSE(acts([](Comparison& c) { duplicate_pane(c, 0); }));
+  EXPECT_TRUE(acts([](Comparison& c) { duplicate_pane(c, 0); }));
+  EXPECT_FALSE(acts([](Comparison& c) {
+    duplicate_pane(c, 0);
+    set_own(c.panes[1], "damping", 0.5);
+  })) << "a pane whose past nobody has run";
   EXPECT_FALSE(acts([](Comparison& c) { set_own(c.panes[0], "cloth.width", 2.0); }));
   Comparison without = before;
   without.reference = "A";
   EXPECT_FALSE(acts_at_once(without, before)) << "a reference that did not run from the start";
+}
+
+TEST(ALogOfEdits, SaysWhatChangedWhenAndWhere) {
+  Comparison before = two_panes();
+  duplicate_pane(before, 0);
+  Comparison after = before;
+  set_shared_value(after, "gravity", Vec3(0, -3, 0));
+  set_own(after.panes[1], "integrator.time_step", 0.0005);
+  remove_pane(after, 2);
+  duplicate_pane(after, 1);
+  after.reference = "A";
+  ASSERT_TRUE(acts_at_once(before, after));
+  const std::string removed = before.panes[2].name, copied = before.panes[1].name;
+  const auto lines = comparison_log_lines(before, after, 0.3);
+  const auto expect = [&](const std::string& line) {
+    EXPECT_NE(std::find(lines.begin(), lines.end(), line), lines.end()) << line;
+  };
+  expect(R"({"time_s":0.3,"pane":")" + removed + R"(","removed":true})");
+  expect(R"({"time_s":0.3,"path":"gravity","value":[0.0,-3.0,0.0]})");
+  expect(R"({"time_s":0.3,"pane":")" + copied + R"(","path":"integrator.time_step","value":0.0005})");
+  expect(R"({"time_s":0.3,"reference":"A"})");
+  EXPECT_TRUE(comparison_log_lines(after, after, 0.3).empty());
+}
+
+TEST(ALogOfEdits, SaysThatAValueIsSharedAgainAndThatTheHandLetsGo) {
+  Comparison before = two_panes();
+  set_own(before.panes[0], "damping", 0.5);
+  Comparison after = before;
+  set_shared(after.panes[0], "damping");
+  EXPECT_EQ(comparison_log_lines(before, after, 0),
+            std::vector<std::string>{R"({"time_s":0.0,"pane":"A","path":"damping","value":null})"});
+  EXPECT_EQ(comparison_log_lines(std::optional<Pull>(), 0.5),
+            std::vector<std::string>{R"({"time_s":0.5,"path":"pull","value":null})"});
 }
 
 // --- The file ---

@@ -150,8 +150,8 @@ void ClothView::setColourMaximum(std::optional<double> maximum) {
   if (mode_ == ViewMode::strain) redraw();
 }
 
-void ClothView::setRestDelay(int milliseconds) {
-  if (canvas_) canvas_->setRestDelay(milliseconds);
+void ClothView::setSmoothAtRest(bool on) {
+  if (canvas_) canvas_->setSmoothAtRest(on);
 }
 
 // ---- camera

@@ -29,7 +29,7 @@ struct Quantity {
 std::array<Quantity, quantities> chart_quantities() {
   return {{{"compare_energy", "total_J", CompareCharts::tr("Total energy (J)"), "J", 1, false, false},
            {"compare_strain", "max_strain", CompareCharts::tr("Maximum strain (%)"), "%", 100, true, false},
-           {"compare_step_time", "step_ms", CompareCharts::tr("Step time (ms)"), "ms", 1, true, false},
+           {"compare_step_time", "step_ms", CompareCharts::tr("Step time (ms)"), "ms", 1, false, true},
            {"compare_difference", "rms_difference_m", CompareCharts::tr("RMS difference (mm)"), "mm", 1000,
             false, true}}};
 }

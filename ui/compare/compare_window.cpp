@@ -23,7 +23,7 @@ namespace clothlab {
 namespace {
 
 constexpr QSize pleasant_size{1600, 1000};
-constexpr int parameters_width = 310, charts_width = 380, ranking_height = 170;  // px
+constexpr int parameters_width = 290, charts_width = 340, ranking_height = 170;  // px
 constexpr int title_bar_height = 32;
 constexpr int ranking_interval = 200;  // ms between two fillings of the table while it runs
 
@@ -61,7 +61,7 @@ void CompareWindow::makeScopeTabs() {
   scopes_ = new QTabBar(this);
   scopes_->setObjectName("scopes");
   scopes_->setAccessibleName(tr("Whose values the form shows"));
-  scopes_->setExpanding(true);
+  scopes_->setExpanding(false);
   scopes_->setUsesScrollButtons(false);
   scopes_->setIconSize({12, 12});
   scopes_->setStyleSheet("QTabBar::tab { padding: 6px 6px; margin-right: 0; }");

@@ -49,7 +49,7 @@ PaneView::PaneView(QWidget* parent)
       method_(new QuietCombo(this)),
       step_(new ExactField(this)),
       gauge_(new StabilityGauge(this)),
-      cost_(new Reading("0.00e+00 s/s", Reading::Look::muted, this)),
+      cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
       stopped_(new QLabel(this)) {
   auto* column = new QVBoxLayout(this);
@@ -77,7 +77,7 @@ QWidget* PaneView::makeHeader() {
   step_->setObjectName("step");
   step_->setUnit("s");
   step_->setAccessibleName(tr("Time step"));
-  step_->setFixedWidth(104);
+  step_->setFixedWidth(88);
   auto* more = new QToolButton(header);
   more->setObjectName("more");
   more->setText(QStringLiteral("⋯"));

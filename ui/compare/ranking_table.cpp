@@ -109,6 +109,7 @@ RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
   verticalHeader()->setDefaultSectionSize(26);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
   horizontalHeader()->setHighlightSections(false);
+  horizontalHeader()->setMinimumSectionSize(24);
   setEditTriggers(NoEditTriggers);
   setSelectionBehavior(SelectRows);
   setShowGrid(false);

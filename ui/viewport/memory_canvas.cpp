@@ -23,14 +23,27 @@ std::unique_ptr<QOpenGLFramebufferObject> make_target(QSize size, int samples) {
 
 }  // namespace
 
-MemoryCanvas::MemoryCanvas(QWidget* parent, Callbacks callbacks)
-    : QWidget(parent), callbacks_(std::move(callbacks)), context_(std::make_unique<QOpenGLContext>()) {
-  setAttribute(Qt::WA_TransparentForMouseEvents);
-  setAttribute(Qt::WA_OpaquePaintEvent);
+std::shared_ptr<MemoryCanvas::SharedContext> MemoryCanvas::SharedContext::of_the_application() {
+  static std::weak_ptr<SharedContext> known;
+  auto shared = known.lock();
+  if (!shared) known = shared = std::make_shared<SharedContext>();
+  return shared;
+}
+
+bool MemoryCanvas::SharedContext::ensure() {
+  if (context.isValid()) return true;
   QSurfaceFormat format = ClothView::surface_format();
   format.setSamples(0);
-  surface_.setFormat(format);
-  context_->setFormat(format);
+  surface.setFormat(format);
+  context.setFormat(format);
+  surface.create();
+  return context.create();
+}
+
+MemoryCanvas::MemoryCanvas(QWidget* parent, Callbacks callbacks)
+    : QWidget(parent), callbacks_(std::move(callbacks)), shared_(SharedContext::of_the_application()) {
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  setAttribute(Qt::WA_OpaquePaintEvent);
   fence_timer_.setSingleShot(true);
   fence_timer_.setInterval(fence_interval_ms);
   fence_timer_.setTimerType(Qt::PreciseTimer);
@@ -55,10 +68,9 @@ MemoryCanvas::~MemoryCanvas() {
 
 bool MemoryCanvas::initialise() {
   if (initialised_ || failed_) return initialised_;
-  surface_.create();
-  initialised_ = context_->create() && context_->makeCurrent(&surface_);
+  initialised_ = shared_->ensure() && shared_->context.makeCurrent(&shared_->surface);
   failed_ = !initialised_;
-  top_row_first_ = initialised_ && context_->hasExtension("GL_MESA_pack_invert");
+  top_row_first_ = initialised_ && shared_->context.hasExtension("GL_MESA_pack_invert");
   callbacks_.initialise();
   return initialised_;
 }
@@ -81,20 +93,24 @@ void MemoryCanvas::askForTurn() {
 
 /// Hands the drawing over. OpenGL's own threads fill the pixels; waiting for them here would hold the window.
 void MemoryCanvas::takeTurn() {
-  if ((!stale_ && !rested_) || fence_ || !initialise()) return;
+  if ((!stale_ && !rested_) || fence_ || failed_) return;
+  if (!initialised_) {  // which takes long enough for a turn
+    initialise();
+    return askForTurn();
+  }
   drawing_time_.start();
   drawing_ = stale_ ? Quality::quick : Quality::smooth;
   rested_ = false;
   makeCurrent();
   submit(drawing_);
-  fence_ = context_->extraFunctions()->glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  context_->functions()->glFlush();
+  fence_ = shared_->context.extraFunctions()->glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  shared_->context.functions()->glFlush();
   fence_timer_.start();
 }
 
 void MemoryCanvas::fetchPicture() {
   makeCurrent();
-  QOpenGLExtraFunctions* gl = context_->extraFunctions();
+  QOpenGLExtraFunctions* gl = shared_->context.extraFunctions();
   if (gl->glClientWaitSync(fence_, 0, 0) == GL_TIMEOUT_EXPIRED) {
     fence_timer_.start();
     return;
@@ -110,7 +126,7 @@ void MemoryCanvas::fetchPicture() {
 
 void MemoryCanvas::dropFence() {
   fence_timer_.stop();
-  if (fence_) context_->extraFunctions()->glDeleteSync(std::exchange(fence_, nullptr));
+  if (fence_) shared_->context.extraFunctions()->glDeleteSync(std::exchange(fence_, nullptr));
 }
 
 void MemoryCanvas::setSmoothAtRest(bool on) {
@@ -131,7 +147,7 @@ void MemoryCanvas::submit(Quality quality) {
   if (smooth && !multisampled_) multisampled_ = make_target(pixels(), samples);
   stale_ = false;  // before drawing, which may ask for the next picture
   (smooth ? multisampled_ : plain_)->bind();
-  context_->functions()->glViewport(0, 0, plain_->width(), plain_->height());
+  shared_->context.functions()->glViewport(0, 0, plain_->width(), plain_->height());
   callbacks_.draw(!smooth);
   if (smooth) QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
   plain_->bind();
@@ -140,7 +156,7 @@ void MemoryCanvas::submit(Quality quality) {
 void MemoryCanvas::readPicture() {
   if (picture_.size() != plain_->size()) picture_ = QImage(plain_->size(), QImage::Format_RGB32);
   picture_.setDevicePixelRatio(devicePixelRatioF());
-  QOpenGLFunctions* gl = context_->functions();
+  QOpenGLFunctions* gl = shared_->context.functions();
   gl->glPixelStorei(GL_PACK_ALIGNMENT, 4);
   if (top_row_first_) gl->glPixelStorei(gl_pack_invert_mesa, GL_TRUE);
   gl->glReadPixels(0, 0, picture_.width(), picture_.height(), gl_bgra, GL_UNSIGNED_BYTE, picture_.bits());

@@ -25,9 +25,9 @@ class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Draw
   ~MemoryCanvas() override;
 
   QWidget& widget() override { return *this; }
-  QOpenGLContext* context() const override { return initialised_ ? context_.get() : nullptr; }
-  void makeCurrent() override { context_->makeCurrent(&surface_); }
-  void doneCurrent() override { context_->doneCurrent(); }
+  QOpenGLContext* context() const override { return initialised_ ? &shared_->context : nullptr; }
+  void makeCurrent() override { shared_->context.makeCurrent(&shared_->surface); }
+  void doneCurrent() override { shared_->context.doneCurrent(); }
   void redraw() override;
   void repaintOver() override { update(); }
   void setSmoothAtRest(bool on) override;
@@ -40,6 +40,15 @@ class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Draw
  private:
   enum class Quality { quick, smooth };
 
+  /// One for all canvases: the driver translates each program once.
+  struct SharedContext {
+    QOffscreenSurface surface;
+    QOpenGLContext context;
+
+    static std::shared_ptr<SharedContext> of_the_application();
+    bool ensure();
+  };
+
   bool initialise();
   QSize pixels() const;
   void askForTurn();
@@ -50,8 +59,7 @@ class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Draw
   void readPicture();
 
   Callbacks callbacks_;
-  QOffscreenSurface surface_;
-  std::unique_ptr<QOpenGLContext> context_;
+  std::shared_ptr<SharedContext> shared_;
   std::unique_ptr<QOpenGLFramebufferObject> plain_, multisampled_;  // the second only once something rested
   bool initialised_ = false, failed_ = false;
   bool top_row_first_ = false;  // the driver can read pictures that way round

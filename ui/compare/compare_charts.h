@@ -37,7 +37,7 @@ class CompareCharts : public QWidget {
   LiveChart* chart(const QString& key) const;
 
   QSize sizeHint() const override { return {400, 600}; }
-  QSize minimumSizeHint() const override { return {280, 320}; }
+  QSize minimumSizeHint() const override { return {250, 320}; }
 
  protected:
   void changeEvent(QEvent* event) override;

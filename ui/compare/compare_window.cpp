@@ -23,7 +23,7 @@ namespace clothlab {
 namespace {
 
 constexpr QSize pleasant_size{1600, 1000};
-constexpr int parameters_width = 290, charts_width = 340, ranking_height = 170;  // px
+constexpr int parameters_width = 284, charts_width = 330, ranking_height = 170;  // px
 constexpr int title_bar_height = 32;
 constexpr int ranking_interval = 200;  // ms between two fillings of the table while it runs
 

@@ -72,12 +72,13 @@ QWidget* PaneView::makeHeader() {
 
   method_->setObjectName("method");
   method_->setAccessibleName(tr("Method"));
+  method_->setMinimumContentsLength(2);  // where the window is narrow, the panes share it
   for (const cloth::MethodFacts& facts : cloth::integrator_facts())
     method_->addItem(QString::fromStdString(facts.title), QString::fromStdString(facts.name));
   step_->setObjectName("step");
   step_->setUnit("s");
   step_->setAccessibleName(tr("Time step"));
-  step_->setFixedWidth(88);
+  step_->setFixedWidth(80);
   auto* more = new QToolButton(header);
   more->setObjectName("more");
   more->setText(QStringLiteral("⋯"));

@@ -113,7 +113,7 @@ int GridSweep::threads() const {
 /// Makes a pass for every band, without its fields.
 void GridSweep::share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads,
                            double step) {
-  ThreadChoice& choice = choices_[kind];
+  ThreadChoice& choice = choices_[static_cast<std::size_t>(kind)];
   const int count = use_ == ThreadUse::always ? threads() : choice.next(threads());
   if (choice.wants_time()) begun_ = std::chrono::steady_clock::now();
   const auto rows = static_cast<std::size_t>(grid_.rows), pitch = static_cast<std::size_t>(grid_.columns);
@@ -179,7 +179,7 @@ void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, in
 }
 
 void GridSweep::run(PassKind kind, Kernel kernel) {
-  ThreadChoice& choice = choices_[kind];
+  ThreadChoice& choice = choices_[static_cast<std::size_t>(kind)];
   if (bands_.size() == 1) {
     kernel(bands_.front().pass);
   } else {
@@ -235,12 +235,12 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
     attach(&Pass::force, force);
     run(kind, kernel);
   };
-  pass(opening, kernels_->verlet_open);
+  pass(PassKind::opening, kernels_->verlet_open);
   for (std::size_t k = 0; k + 1 < squares.size(); ++k) {
-    pass(between, kernels_->verlet_between);
+    pass(PassKind::between, kernels_->verlet_between);
     squares[k] = sum_of(1);
   }
-  pass(closing, kernels_->verlet_close);
+  pass(PassKind::closing, kernels_->verlet_close);
   squares.back() = sum_of(1);
 }
 
@@ -254,16 +254,16 @@ std::array<double, 5> GridSweep::runge_kutta(double step, const SweepLoads& load
 }
 
 void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  share_rows(evaluation, kernels::euler_halo, kernels::euler_scratch_rows, loads, 0);
+  share_rows(PassKind::evaluation, kernels::euler_halo, kernels::euler_scratch_rows, loads, 0);
   attach(&Pass::position, const_cast<Vec3Field&>(position));  // only read
   attach(&Pass::force, force);
-  run(evaluation, kernels_->evaluate);
+  run(PassKind::evaluation, kernels_->evaluate);
 }
 
 double GridSweep::squares(const Vec3Field& velocity) {
-  share_rows(sums, kernels::euler_halo, kernels::euler_scratch_rows, {}, 0);
+  share_rows(PassKind::sums, kernels::euler_halo, kernels::euler_scratch_rows, {}, 0);
   attach(&Pass::velocity, const_cast<Vec3Field&>(velocity));  // only read
-  run(sums, kernels_->sum_squares);
+  run(PassKind::sums, kernels_->sum_squares);
   return sum_of(1);
 }
 

@@ -73,7 +73,7 @@ class GridSweep {
  private:
   using Kernel = void (*)(const kernels::Pass&);
   /// Each takes its own time, and so makes its own choice of threads.
-  enum PassKind { step, opening, between, closing, evaluation, sums };
+  enum class PassKind { step, opening, between, closing, evaluation, sums };
   static constexpr std::size_t pass_kinds = 6;
 
   struct Copy {

@@ -7,7 +7,7 @@
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
 #include "cloth/normals.h"
-#include "geometry/mesh_topology.h"
+#include "geometry/mesh_repair.h"
 #include "integrators/registry.h"
 #include "measure/resting_frequency.h"
 #include "measure/spectrum.h"
@@ -28,9 +28,11 @@ MeshChoice chosen(const TriangleMesh& surface) {
   auto mesh = std::make_shared<SceneMesh>();
   mesh->file = "made.obj";
   mesh->surface = surface;
-  const MeshTopology topology = topology_of(surface);
-  mesh->edges = topology.edges;
-  mesh->hinges = topology.hinges;
+  for (const MeshEdge& edge : unique_edges(surface)) {
+    mesh->edges.push_back({edge.from, edge.to});
+    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
+    if (a >= 0) mesh->hinges.push_back({a, b});
+  }
   for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
   return {mesh->file, mesh};
 }

@@ -33,6 +33,8 @@ MeshChoice chosen(const TriangleMesh& surface) {
     const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
     if (a >= 0) mesh->hinges.push_back({a, b});
   }
+  std::sort(mesh->hinges.begin(), mesh->hinges.end());
+  mesh->hinges.erase(std::unique(mesh->hinges.begin(), mesh->hinges.end()), mesh->hinges.end());
   for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
   return {mesh->file, mesh};
 }

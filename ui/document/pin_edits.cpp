@@ -14,6 +14,7 @@ using cloth::PinnedParticle;
 /// The particles of one pin, by the core's own rule.
 std::vector<int> particles_of(const ClothSheet& sheet, const Pin& pin) {
   ClothSheet only;
+  only.mesh.file = sheet.mesh.file;
   only.rows = sheet.rows;
   only.columns = sheet.columns;
   only.pins = {pin};
@@ -26,6 +27,7 @@ bool holds(const std::vector<int>& ascending, int particle) {
 
 Pin pin_at(const ClothSheet& sheet, int row, int column) {
   const int particle = row * sheet.columns + column;
+  if (sheet.is_mesh()) return PinnedParticle{row, column};
   for (const NamedPin corner :
        {NamedPin::top_left, NamedPin::top_right, NamedPin::bottom_left, NamedPin::bottom_right})
     if (particles_of(sheet, corner) == std::vector<int>{particle}) return corner;

@@ -14,7 +14,6 @@ using cloth::PinnedParticle;
 /// The particles of one pin, by the core's own rule.
 std::vector<int> particles_of(const ClothSheet& sheet, const Pin& pin) {
   ClothSheet only;
-  only.mesh.file = sheet.mesh.file;
   only.rows = sheet.rows;
   only.columns = sheet.columns;
   only.pins = {pin};

@@ -61,6 +61,17 @@ CLOTH_VECTORISED void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, 
   for (int s = 0; s < count; ++s) qz[s] -= gz[s];
 }
 
+/// One spring of a mesh: the same as a chunk of one, without what a chunk costs.
+inline void add_spring(const BlockRows& b, std::size_t s, const ConstVectorRows& d, const VectorRows& p,
+                       int i, int j) {
+  const double dx = d.x[i] - d.x[j], dy = d.y[i] - d.y[j], dz = d.z[i] - d.z[j];
+  const double gx = b.xx[s] * dx + b.xy[s] * dy + b.xz[s] * dz;
+  const double gy = b.xy[s] * dx + b.yy[s] * dy + b.yz[s] * dz;
+  const double gz = b.xz[s] * dx + b.yz[s] * dy + b.zz[s] * dz;
+  p.x[i] += gx, p.y[i] += gy, p.z[i] += gz;
+  p.x[j] -= gx, p.y[j] -= gy, p.z[j] -= gz;
+}
+
 }  // namespace
 
 void SymmetricBlocks::assign(std::size_t size, const SymmetricBlock& block) {
@@ -86,8 +97,15 @@ void multiply_blocks(const SymmetricBlocks& blocks, std::size_t begin, std::size
 void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& direction,
                                   Vec3Field& product) const {
   multiply_blocks(nodes, 0, nodes.size(), direction, product);
+  const BlockRows blocks = rows_of(springs, 0);
+  const ConstVectorRows from = rows_of(direction, 0);
+  const VectorRows to = rows_of(product, 0);
   std::size_t spring = 0;
   for (const SpringRun& run : system.springs) {
+    if (run.count == 1) {
+      add_spring(blocks, spring++, from, to, run.first, run.first + run.offset);
+      continue;
+    }
     for (int begin = 0; begin < run.count; begin += chunk_length) {
       const int count = std::min(chunk_length, run.count - begin);
       const auto first = static_cast<std::size_t>(run.first + begin);

@@ -18,8 +18,7 @@ Scene full_scene() {
   scene.gravity = Vec3::Zero();
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
-    scene.obstacles.emplace_back().shape = shape;
+  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   return scene;
 }
 
@@ -86,12 +85,19 @@ std::string method_settings() {
   return rows;
 }
 
+/// What a cloth from a mesh has in place of rows, columns, lengths and directions.
+std::string mesh_cloth_settings() {
+  Scene scene;
+  scene.cloth.mesh.file = "disc.obj";
+  return row(scene, find_parameter(scene, "cloth.mesh").value(), " of a mesh");
+}
+
 }  // namespace
 
 std::string reference_page() {
   const Scene scene = full_scene();
   std::string page =
-      "# Parameters\n\nMade from the declarations in `core/scene/scene_declarations.cpp` by `clothlab-cli "
+      "# Parameters\n\nMade from the declarations in `core/scene/*_declarations.cpp` by `clothlab-cli "
       "parameters`; do "
       "not edit. \"Start value\" is what the window fills in when a block is added and what a reset returns "
       "to. A "
@@ -103,6 +109,7 @@ std::string reference_page() {
         block.title, block.doc);
     for (const Parameter& parameter : block.parameters) page += row(scene, parameter);
     if (block.path == "integrator") page += method_settings();
+    if (block.path == "cloth") page += mesh_cloth_settings();
   }
   return page;
 }

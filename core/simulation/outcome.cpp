@@ -43,9 +43,10 @@ std::string describe(const Divergence& d) {
   else
     advice = fmt::format("the time step is {:.4g} s, stable for this scene is up to {:.4g} s", d.time_step,
                          d.stable_step);
-  return fmt::format("{} in step {} (t = {:.6g} s) at particle {} (row {}, column {}): {}; {}",
-                     d.solver_failed ? "stopped" : "diverged", d.step, d.time, d.particle, d.row, d.column,
-                     d.cause, advice);
+  const std::string where = d.on_grid ? fmt::format(" (row {}, column {})", d.row, d.column) : "";
+  return fmt::format("{} in step {} (t = {:.6g} s) at particle {}{}: {}; {}",
+                     d.solver_failed ? "stopped" : "diverged", d.step, d.time, d.particle, where, d.cause,
+                     advice);
 }
 
 }  // namespace cloth

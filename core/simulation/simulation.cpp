@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "cloth/sums.h"
 #include "forces/gravity.h"
 #include "integrators/registry.h"
@@ -57,7 +58,7 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
 
 Simulation::Simulation(const Scene& scene, Preparation prepare)
     : scene_(scene), prepare_(std::move(prepare)) {
-  system_ = make_grid(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_.cloth, material_of(scene_));
   state_ = starting_state(system_);
   if (prepare_) prepare_(system_, state_);
   time_step_ = resolved_time_step(scene_).value();
@@ -194,7 +195,7 @@ void Simulation::edit(const Scene& scene) {
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
-  system_ = make_grid(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_.cloth, material_of(scene_));
   if (prepare_) {
     ClothState unused = starting_state(system_);
     prepare_(system_, unused);
@@ -370,6 +371,7 @@ Divergence Simulation::stop_at(int particle, std::string cause) const {
   divergence.cause = std::move(cause);
   divergence.time_step = time_step_;
   divergence.stable_step = method_limit();
+  divergence.on_grid = !system_.is_mesh();
   divergence.row = divergence.particle / system_.columns;
   divergence.column = divergence.particle % system_.columns;
   return divergence;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
 
@@ -15,6 +16,8 @@ StageInfo spring_stage(const Scene& scene, const ClothSystem& system, SpringFami
   const double stiffness = stiffness_of(*scene.springs, family);
   if (!(stiffness > 0)) return {name, false, fmt::format("springs.{} is 0", name_of(family))};
   const auto count = system.spring_count(family);
+  if (count == 0 && family == SpringFamily::shear && system.is_mesh())
+    return {name, false, "a mesh has edges and no cells to shear"};
   if (count == 0) return {name, false, "the grid is too small for any"};
   return {name, true, fmt::format("{} springs of {} N/m", count, stiffness)};
 }
@@ -71,7 +74,7 @@ std::string evaluations_text(const MethodFacts& method) {
 
 std::vector<StageInfo> explain_stages(const Scene& scene) {
   const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
-  const ClothSystem system = make_grid(scene.cloth, material);
+  const ClothSystem system = make_cloth(scene.cloth, material);
   const MethodFacts& method = facts_of(scene.integrator.method);
   const bool moved_later = contact_stage(scene).present || limiter_stage(scene, system).present;
   std::vector<StageInfo> stages;

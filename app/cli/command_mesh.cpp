@@ -16,7 +16,8 @@ int mesh(const MeshArguments& arguments) {
   }
   const cloth::BuiltinMesh* found = cloth::find_builtin_mesh(arguments.name);
   if (!found) {
-    say(fmt::format("{}: there is no built-in mesh of this name; 'clothlab-cli mesh' lists them", arguments.name));
+    say(fmt::format("{}: there is no built-in mesh of this name; 'clothlab-cli mesh' lists them",
+                    arguments.name));
     return bad_input;
   }
   return print(cloth::obj_text(found->make(), found->title));

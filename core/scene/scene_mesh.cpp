@@ -71,12 +71,13 @@ SharedMesh prepared(const std::string& file, const TriangleMesh& from_file, bool
   const std::size_t unused = take_out_unused_vertices(mesh->surface);
   const std::size_t removed = static_cast<std::size_t>(welded.merged_vertices) + unused;
   if (removed > 0 && !built_in)
-    mesh->notices.push_back(
-        counted(removed, "vertex is", "vertices are") +
-        " at the place of another or of no triangle, and left out; those after have lower numbers than in the file");
+    mesh->notices.push_back(counted(removed, "vertex is", "vertices are") +
+                            " at the place of another or of no triangle, and left out; those after have "
+                            "lower numbers than in the file");
   if (welded.collapsed_triangles > 0)
-    mesh->notices.push_back(counted(static_cast<std::size_t>(welded.collapsed_triangles), "triangle has", "triangles have") +
-                            " two corners at one place, and left out");
+    mesh->notices.push_back(
+        counted(static_cast<std::size_t>(welded.collapsed_triangles), "triangle has", "triangles have") +
+        " two corners at one place, and left out");
   for (const MeshFinding& finding : inspect(mesh->surface))
     if (finding.fault != MeshFault::open_edge) mesh->notices.push_back(finding.message);
   list_edges(*mesh);

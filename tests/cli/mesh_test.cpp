@@ -28,7 +28,8 @@ TEST(Mesh, ClothIsRunAndRecordedIntoAFolderFromWhichItRunsAgain) {
       << R"({"cloth": {"mesh": "disc of mine.obj", "pins": [0]}, "springs": {"structural": 50, "flexion": 5},
              "gravity": [0, -9.81, 0], "duration": 0.02})";
   const std::string out = (folder / "runs/one").string();
-  const CommandResult first = cli("run '" + (folder / "x.scene.json").string() + "' --out '" + out + "' --json");
+  const CommandResult first =
+      cli("run '" + (folder / "x.scene.json").string() + "' --out '" + out + "' --json");
   ASSERT_EQ(first.exit_code, 0) << first.errors;
   EXPECT_EQ(Json::parse(first.output)["particles"], 1801);
   const CommandResult again = cli("run '" + out + "/scene.json' --out '" + out + "2'");
@@ -61,7 +62,8 @@ TEST(Mesh, WarnsOfAnOpenObstacleAndRunsAllTheSame) {
 TEST(Mesh, ThatCannotBeReadIsOneProblemWithItsPlace) {
   TemporaryFolder folder;
   std::ofstream(folder / "bad.obj") << "v 0 0 0\nv 1 nan 0\n";
-  std::ofstream(folder / "x.scene.json") << "{\"cloth\": {},\n\"obstacles\": [{\"shape\": \"mesh\", \"file\": \"bad.obj\"}]}";
+  std::ofstream(folder / "x.scene.json")
+      << "{\"cloth\": {},\n\"obstacles\": [{\"shape\": \"mesh\", \"file\": \"bad.obj\"}]}";
   const CommandResult run = cli("run '" + (folder / "x.scene.json").string() + "'");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.errors.find("x.scene.json:2:"), std::string::npos) << run.errors;

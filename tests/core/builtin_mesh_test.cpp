@@ -62,7 +62,8 @@ TEST(BuiltinMesh, NoTriangleOfTheBunnyIsDegenerate) {
 TEST(BuiltinMesh, EveryVertexOfTheBunnyLiesNearItsSurface) {
   constexpr double cell = 0.02;
   double farthest = 0;
-  for (const Vec3& vertex : make_bunny(cell).vertices) farthest = std::max(farthest, std::abs(bunny_distance(vertex)));
+  for (const Vec3& vertex : make_bunny(cell).vertices)
+    farthest = std::max(farthest, std::abs(bunny_distance(vertex)));
   EXPECT_LT(farthest, 0.4 * cell);
 }
 

@@ -119,12 +119,12 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     remove_block(with, obstacle ? "obstacles.0" : offer.path);
     EXPECT_EQ(with, scene) << offer.path;
   }
-  EXPECT_EQ(offered, std::set<std::string>(
-                         {"springs", "deformation", "damping", "gravity", "air", "sphere", "box", "plane", "mesh"}));
+  EXPECT_EQ(offered, std::set<std::string>({"springs", "deformation", "damping", "gravity", "air", "sphere",
+                                            "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
-    EXPECT_TRUE(std::any_of(all_shapes.begin(), all_shapes.end(),
-                            [&](Shape shape) { return offer.path == name_of(shape); }))
-        << offer.path;
+    EXPECT_TRUE(std::any_of(all_shapes.begin(), all_shapes.end(), [&](Shape shape) {
+      return offer.path == name_of(shape);
+    })) << offer.path;
 }
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {

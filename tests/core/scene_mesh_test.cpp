@@ -13,8 +13,7 @@
 namespace cloth::test {
 namespace {
 
-const char* const tetrahedron =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+const char* const tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 std::string scene_with(const std::string& obstacle) {
   return R"({"cloth": {}, "obstacles": [)" + obstacle + "]}";
@@ -66,7 +65,8 @@ TEST_F(SceneMeshFile, GoesBeforeABuiltInMeshOfItsNameExceptInABuiltInScene) {
 }
 
 TEST_F(SceneMeshFile, ThatIsMissingIsAProblemWithPlaceValueAndRule) {
-  const std::string text = "{\n\"cloth\": {},\n\"obstacles\": [{\"shape\": \"mesh\",\n  \"file\": \"none.obj\"}]}";
+  const std::string text =
+      "{\n\"cloth\": {},\n\"obstacles\": [{\"shape\": \"mesh\",\n  \"file\": \"none.obj\"}]}";
   const std::string problem = only_problem_of(read(text));
   EXPECT_NE(problem.find("x.scene.json:4:"), std::string::npos) << problem;
   EXPECT_NE(problem.find("obstacles.0.file = \"none.obj\": must be a file"), std::string::npos) << problem;
@@ -77,11 +77,13 @@ TEST_F(SceneMeshFile, ThatIsBrokenIsOneProblemWithTheLineInTheFile) {
   write("t.obj", "v 0 0 0\nv 1 nan 0\n");
   const std::string problem = only_problem_of(read(scene_with(R"({"shape": "mesh", "file": "t.obj"})")));
   EXPECT_NE(problem.find("t.obj:2:"), std::string::npos) << problem;
-  EXPECT_EQ(problem.find(folder(), 1), std::string::npos) << "no machine's path but the scene's own: " << problem;
+  EXPECT_EQ(problem.find(folder(), 1), std::string::npos)
+      << "no machine's path but the scene's own: " << problem;
 }
 
 TEST_F(SceneMeshFile, MustBeGiven) {
-  EXPECT_NE(only_problem_of(read(scene_with(R"({"shape": "mesh"})"))).find("must name a mesh"), std::string::npos);
+  EXPECT_NE(only_problem_of(read(scene_with(R"({"shape": "mesh"})"))).find("must name a mesh"),
+            std::string::npos);
   EXPECT_NE(only_problem_of(read(cloth_of(R"({"mesh": ""})"))).find("must name a mesh"), std::string::npos);
 }
 
@@ -117,7 +119,8 @@ TEST(SceneMesh, ClothHasTheMeshesVerticesAndTheirNumbersAsPins) {
 TEST(SceneMesh, ClothRefusesWhatOnlyAGridHas) {
   const auto rule = [](const char* cloth) { return only_problem_of(read_scene(cloth_of(cloth), "x")); };
   EXPECT_NE(rule(R"({"mesh": "disc.obj", "columns": 3})").find("cloth.columns"), std::string::npos);
-  EXPECT_NE(rule(R"({"mesh": "disc.obj", "pins": ["top-left"]})").find("number of a vertex"), std::string::npos);
+  EXPECT_NE(rule(R"({"mesh": "disc.obj", "pins": ["top-left"]})").find("number of a vertex"),
+            std::string::npos);
   EXPECT_NE(rule(R"({"mesh": "disc.obj", "pins": [1801]})").find("0 to 1800"), std::string::npos);
   EXPECT_NE(rule(R"({"mesh": "disc.obj", "pins": [-1]})").find("cloth.pins.0 = -1"), std::string::npos);
 }

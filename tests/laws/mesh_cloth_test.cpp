@@ -1,11 +1,12 @@
 // A cloth from a mesh obeys the laws that a grid obeys.
+#include "cloth/mesh_cloth.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
 #include "cloth/grid.h"
-#include "cloth/mesh_cloth.h"
 #include "cloth/normals.h"
 #include "geometry/mesh_repair.h"
 #include "integrators/registry.h"
@@ -49,15 +50,16 @@ Scene mesh_scene(const TriangleMesh& surface) {
   return scene;
 }
 
-/// A sheet of rows x columns vertices 0.2 m apart, cut along one or the other diagonal, irregular by `shake` m; along
-/// one only where that is 0.
+/// A sheet of rows x columns vertices 0.2 m apart, cut along one or the other diagonal, irregular by `shake`
+/// m; along one only where that is 0.
 TriangleMesh shaken_sheet(int rows, int columns, double shake) {
   TriangleMesh mesh;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
       const double k = r * columns + c;
-      mesh.vertices.push_back(Vec3(0.2 * c, -0.2 * r, 0) +
-                              shake * Vec3(std::sin(12.9 * k), std::sin(78.2 * k + 1), std::sin(37.7 * k + 2)));
+      mesh.vertices.push_back(Vec3(0.2 * c, -0.2 * r, 0) + shake * Vec3(std::sin(12.9 * k),
+                                                                        std::sin(78.2 * k + 1),
+                                                                        std::sin(37.7 * k + 2)));
     }
   for (int r = 0; r + 1 < rows; ++r)
     for (int c = 0; c + 1 < columns; ++c) {
@@ -141,7 +143,8 @@ TEST(MeshCloth, NormalsOfAGridsTrianglesAreTheGridsNormals) {
     position.add(i, 0.05 * random.vector(1));
     direction.set(i, random.vector(1));
   }
-  Vec3Field of_a(position.size()), of_b(position.size()), change_a(position.size()), change_b(position.size());
+  Vec3Field of_a(position.size()), of_b(position.size()), change_a(position.size()),
+      change_b(position.size());
   particle_normals(a, position, of_a);
   particle_normals(b, position, of_b);
   particle_normal_changes(a, position, direction, change_a);
@@ -164,7 +167,8 @@ TEST(MeshCloth, FreeKeepsItsMomentumAndTurningMomentum) {
     const auto before = momenta();
     run.advance(300, 1e-3);
     EXPECT_LT((momenta().first - before.first).norm(), 1e-12) << method;
-    EXPECT_LT((momenta().second - before.second).norm(), method == std::string("rk4") ? 1e-6 : 1e-11) << method;
+    EXPECT_LT((momenta().second - before.second).norm(), method == std::string("rk4") ? 1e-6 : 1e-11)
+        << method;
   }
 }
 
@@ -279,7 +283,8 @@ TEST(RestingFrequency, BoundsTheSpectrumAtRestAndNotByMuch) {
 TEST(RestingFrequency, OfASquareGridOfStructuralSpringsIsTheGridsOwn) {
   const Scene scene = bare_sheet(8, 8);
   const SpringMaterial material{.structural = 30};
-  EXPECT_NEAR(resting_frequency(make_grid(scene.cloth, material)), largest_frequency(scene.cloth, material), 1e-9);
+  EXPECT_NEAR(resting_frequency(make_grid(scene.cloth, material)), largest_frequency(scene.cloth, material),
+              1e-9);
 }
 
 TEST(MeshCloth, ARateThatItsPinsMakeUnreachableIsFoundByTheShortestChain) {

@@ -103,10 +103,13 @@ class MeshViewTest : public ViewFixture {
     view_->setCameraPose(head_on());
     for (int vertex = 0; vertex < 7; ++vertex) {
       const Eigen::Vector3d towards = Eigen::Vector3d(0, 0.5, 0) - particle_position(*frame, vertex);
-      const Eigen::Vector3d near = particle_position(*frame, vertex) + 0.1 * towards + Eigen::Vector3d(0.01, 0.004, 0);
-      QCOMPARE(pick_particle(*frame, view_->camera(), view_->camera().project(near)), std::optional<int>(vertex));
+      const Eigen::Vector3d near =
+          particle_position(*frame, vertex) + 0.1 * towards + Eigen::Vector3d(0.01, 0.004, 0);
+      QCOMPARE(pick_particle(*frame, view_->camera(), view_->camera().project(near)),
+               std::optional<int>(vertex));
     }
-    QCOMPARE(pick_particle(*frame, view_->camera(), view_->camera().project({1.2, 0.5, 0})), std::optional<int>());
+    QCOMPARE(pick_particle(*frame, view_->camera(), view_->camera().project({1.2, 0.5, 0})),
+             std::optional<int>());
   }
 
   void a_mesh_obstacle_is_drawn_where_it_is_placed_and_turned() {

@@ -74,6 +74,14 @@ struct Deformation {
 
 enum class Shape { sphere, box, plane };
 
+/// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene describes it.
+struct Keyframe {
+  double time = 0;         ///< s
+  Vec3 position{0, 0, 0};  ///< m
+  Vec3 rotation{0, 0, 0};  ///< rad, along the axis
+  bool operator==(const Keyframe&) const = default;
+};
+
 /// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal.
 struct Obstacle {
   Shape shape = Shape::sphere;
@@ -85,7 +93,23 @@ struct Obstacle {
   std::string response = "coulomb";
   double friction = 0.3;
   double restitution = 0;
+  Vec3 velocity{0, 0, 0};           ///< m/s
+  Vec3 spin{0, 0, 0};               ///< rad/s along the axis, about the pivot
+  std::vector<Keyframe> keyframes;  ///< ascending in time; any: velocity and spin say nothing
   bool operator==(const Obstacle&) const = default;
+};
+
+/// Makes contact continuous: nothing comes through.
+struct ContactSettings {
+  double thickness = 0.005;  ///< m, kept between cloth and obstacles
+  bool operator==(const ContactSettings&) const = default;
+};
+
+/// The cloth does not pass through itself.
+struct SelfContact {
+  double thickness = 0.004;  ///< m
+  double friction = 0.3;
+  bool operator==(const SelfContact&) const = default;
 };
 
 /// Which of the settings matter depends on `method`: integrator_fields(method) lists them.
@@ -114,6 +138,8 @@ struct Scene {
   std::optional<Air> air;
   std::optional<Deformation> deformation;
   std::vector<Obstacle> obstacles;
+  std::optional<ContactSettings> contact;
+  std::optional<SelfContact> self_contact;
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;

@@ -41,7 +41,7 @@ class SceneReader {
     if (!object(root, "")) return scene;
     known_keys(root, "",
                {"format", "title", "cloth", "springs", "damping", "gravity", "air", "deformation",
-                "obstacles", "integrator", "duration", "record"});
+                "obstacles", "contact", "self_contact", "integrator", "duration", "record"});
     if (const json* format = member(root, "format"); format && *format != scene_format)
       problem("format", *format, fmt::format("must be \"{}\"", scene_format));
 
@@ -54,6 +54,8 @@ class SceneReader {
     block(root, "deformation", deformation_fields(), scene.deformation);
     if (const json* air = member(root, "air")) read_air(*air, scene.air.emplace());
     if (const json* obstacles = member(root, "obstacles")) read_obstacles(*obstacles, scene.obstacles);
+    block(root, "contact", contact_fields(), scene.contact);
+    block(root, "self_contact", self_contact_fields(), scene.self_contact);
     if (const json* integrator = member(root, "integrator")) read_integrator(*integrator, scene.integrator);
     required_block(root, "record", recording_fields(), scene.record);
     return scene;
@@ -186,8 +188,24 @@ class SceneReader {
         continue;
       }
       obstacle.shape = *shape == "sphere" ? Shape::sphere : *shape == "box" ? Shape::box : Shape::plane;
-      known_keys(value[i], path, keys_of(obstacle_fields(obstacle.shape), {"shape"}));
+      known_keys(value[i], path,
+                 keys_of(obstacle_fields(obstacle.shape), keys_of(motion_fields(), {"shape", "keyframes"})));
       fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);
+      fields(value[i], path, motion_fields(), obstacle);
+      if (const json* keys = member(value[i], "keyframes"))
+        read_keyframes(*keys, path + ".keyframes", obstacle);
+    }
+  }
+
+  void read_keyframes(const json& value, const std::string& path, Obstacle& obstacle) {
+    if (!value.is_array()) return problem(path, value, "must be a list");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const std::string key_path = fmt::format("{}.{}", path, i);
+      Keyframe& key = obstacle.keyframes.emplace_back();
+      if (!object(value[i], key_path)) continue;
+      known_keys(value[i], key_path, keys_of(keyframe_fields()));
+      key.position = obstacle.shape == Shape::plane ? obstacle.point : obstacle.center;
+      fields(value[i], key_path, keyframe_fields(), key);
     }
   }
 

@@ -32,6 +32,9 @@ StepCount StepCount::since(const StepCount& earlier) const {
 }
 
 std::string describe(const Divergence& d) {
+  if (d.pinched)
+    return fmt::format("pinched in step {} (t = {:.6g} s) at particle {} (row {}, column {}): {}", d.step,
+                       d.time, d.particle, d.row, d.column, d.cause);
   std::string advice;
   if (d.solver_failed)
     advice = fmt::format("the time step is {:.4g} s; a shorter one makes the equations easier", d.time_step);

@@ -1,10 +1,13 @@
 #include "simulation/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "cloth/grid.h"
 #include "cloth/sums.h"
+#include "contact/continuous_contact.h"
 #include "forces/gravity.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
@@ -76,7 +79,11 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  if (!scene_.obstacles.empty()) contact_.emplace(scene_.obstacles);
+  continuous_contact_.reset();
+  if (has_continuous_contact(scene_))
+    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_);
+  else if (!scene_.obstacles.empty())
+    contact_.emplace(scene_.obstacles);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
@@ -92,9 +99,10 @@ void Simulation::assemble() {
       .brush = brush,
       .pull = pull,
       .limiter = limiter_.has_value(),
-      .contact = contact_.has_value(),
+      .contact = contact_ || continuous_contact_,
       .structural = system_.spring_count(SpringFamily::structural) > 0,
-      .shear = system_.spring_count(SpringFamily::shear) > 0};
+      .shear = system_.spring_count(SpringFamily::shear) > 0,
+      .continuous_contact = continuous_contact_ != nullptr};
 
   strongest_pull_ = find_strongest_pull();
   apply_hand();
@@ -136,13 +144,16 @@ std::optional<Divergence> Simulation::step() {
   const std::int64_t next = state_.step + 1;
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
+  if (continuous_contact_) position_before_ = state_.position;
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact();
+  if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
   state_.time = times.end;
   state_.step = next;
   count_step(report);
 
+  if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
   if (!report.failure) return find_divergence(report);
   Divergence stop = stop_at(report.failure->particle, report.failure->cause);
   stop.solver_failed = true;
@@ -185,6 +196,17 @@ void Simulation::resolve_contact() {
   if (!contact_->touches(system_, state_)) return;
   const double before = total_energy();
   last_contact_ = contact_->apply(system_, state_);
+  ledger_.contact += total_energy() - before;
+  integrator_->forget(Change::state);
+}
+
+void Simulation::resolve_continuous_contact(const StepTimes& times) {
+  last_contact_ = {};
+  const ContactTimes contact_times{times.begin, times.end, times.step};
+  if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return;
+  const double before = total_energy();
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_);
+  if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
   integrator_->forget(Change::state);
 }
@@ -294,7 +316,8 @@ Measurement Simulation::measure() const {
           .strain = measure_strain(system_, state_.position),
           .limiter_sweeps = last_limit_.sweeps,
           .limiter_excess = last_limit_.excess,
-          .contacts = last_contact_.contacts};
+          .contacts = last_contact_.contacts,
+          .held_back = last_contact_.held_back};
 }
 
 /// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
@@ -321,7 +344,7 @@ bool Simulation::has_run_away(double kinetic) const {
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
 /// all does not make the speeds too much, nothing has run away. Only else the state is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
-  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ &&
+  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ && !continuous_contact_ &&
       0.5 * largest_mass_ * *report.speed_squares <= runaway_factor * energy_scale_after(0))
     return std::nullopt;
   const auto x = state_.position.flat();
@@ -355,6 +378,15 @@ double Simulation::method_limit() const {
   const auto of_system =
       stable_step(scene_.integrator.method, guaranteed_frequency(system_), damping_rates(scene_));
   return std::min(*of_scene, of_system.value_or(0));
+}
+
+Divergence Simulation::stop_at_pinch(const Pinch& pinch) const {
+  Divergence stop = stop_at(
+      pinch.particle, fmt::format("obstacle {} cannot go on without passing through the cloth, which is held "
+                                  "at ({:.4g}, {:.4g}, {:.4g}) m",
+                                  pinch.obstacle, pinch.place.x(), pinch.place.y(), pinch.place.z()));
+  stop.pinched = true;
+  return stop;
 }
 
 Divergence Simulation::stop_at(int particle, std::string cause) const {

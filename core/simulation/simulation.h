@@ -19,6 +19,7 @@
 
 namespace cloth {
 
+class ContinuousContact;
 class WorkerTeam;
 
 /// What entered the cloth since t = 0, in J; the loss left it.
@@ -42,6 +43,7 @@ struct Measurement {
   std::int64_t limiter_sweeps = 0;  ///< of the last step
   double limiter_excess = 0;
   int contacts = 0;
+  int held_back = 0;  ///< particles that contact kept from getting where they should
   /// total - total(0) - works + losses: what the method itself added or lost, J
   double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
 };
@@ -50,6 +52,7 @@ struct Measurement {
 struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
   bool structural = false, shear = false;
+  bool continuous_contact = false;
   bool operator==(const Quantities&) const = default;
 };
 
@@ -128,7 +131,8 @@ class Simulation {
   double time_step() const { return time_step_; }
   const Quantities& quantities() const { return quantities_; }
   const StepCount& count() const { return count_; }
-  const LimiterReport& last_limit() const { return last_limit_; }  ///< of the last step
+  const LimiterReport& last_limit() const { return last_limit_; }      ///< of the last step
+  const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
   Measurement measure() const;
@@ -147,9 +151,11 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;
+  Divergence stop_at_pinch(const Pinch& pinch) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
   bool has_run_away(double kinetic) const;
@@ -162,7 +168,9 @@ class Simulation {
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
-  std::optional<ObstacleContact> contact_;
+  std::optional<ObstacleContact> contact_;               ///< particle by particle
+  std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
+  Vec3Field position_before_;                            ///< m, at the step's start, for the latter
 
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force

@@ -12,23 +12,12 @@ std::size_t at(int index) {
 
 /// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
 constexpr double near_factor = 1.5;
-/// Features never come closer than this part of the thickness.
-constexpr double least_part = 1e-3;
-/// Of a gap a round may use up this part: enough that few rounds are needed, and something is always left.
-constexpr double used_part = 0.5;
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
 constexpr int solver_sweeps = 20, velocity_sweeps = 50;
 constexpr double velocity_tolerance = 1e-9;  ///< m/s
-constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 30;
-
-/// What must be left of a gap after a round.
-double kept_gap(double gap, double thickness) {
-  const double least = least_part * thickness;
-  if (gap <= least) return gap;
-  return std::max(least, (1 - used_part) * std::min(gap, thickness));
-}
+constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
 
 bool all_finite(const Vec3Field& field) {
   const auto values = field.flat();
@@ -46,6 +35,12 @@ std::vector<Triangle> grid_triangles(int rows, int columns) {
   return triangles;
 }
 
+std::vector<ObstacleBody> bodies_of(const Scene& scene) {
+  std::vector<ObstacleBody> bodies;
+  for (const Obstacle& obstacle : scene.obstacles) bodies.push_back(body_of(obstacle));
+  return bodies;
+}
+
 double mean_edge(const Surface& surface, const Vec3Field& position) {
   double sum = 0;
   for (const auto& [a, b] : surface.edges) sum += (position[at(a)] - position[at(b)]).norm();
@@ -60,21 +55,29 @@ bool has_continuous_contact(const Scene& scene) {
                      [](const Obstacle& o) { return moves(o); });
 }
 
+double highest_obstacle_speed(const Scene& scene) {
+  double highest = 0;
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
+  return highest;
+}
+
 ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system)
     : surface_(make_surface(system.size(), grid_triangles(system.rows, system.columns))),
+      bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
+      search_(surface_, bodies_, scene.self_contact.has_value()),
       thickness_(scene.contact.value_or(ContactSettings{}).thickness),
-      touches_itself_(scene.self_contact.has_value()),
-      gravity_(scene.gravity.value_or(Vec3::Zero()).norm()) {
-  if (scene.self_contact) {
-    self_thickness_ = scene.self_contact->thickness;
-    self_friction_ = scene.self_contact->friction;
-  }
-  for (const Obstacle& obstacle : obstacles_) bodies_.push_back(body_of(obstacle));
-  poses_.resize(bodies_.size());
-  next_poses_ = end_poses_ = poses_;
+      gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
+      poses_(bodies_.size()),
+      next_poses_(bodies_.size()),
+      end_poses_(bodies_.size()) {
   constexpr double edges_of_a_search = 4;
-  longest_way_ = touches_itself_ ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
+  longest_way_ = infinity;
+  if (!scene.self_contact) return;
+  self_thickness_ = scene.self_contact->thickness;
+  self_friction_ = scene.self_contact->friction;
+  longest_way_ = edges_of_a_search * mean_edge(surface_, system.start);
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {
@@ -99,12 +102,10 @@ bool ContinuousContact::find_pairs() {
     const Vec3 here = safe_[i];
     const Vec3 way = wish_[i] - here;
     const double length = way.norm();
-    boxes_[i] = Box(here);
-    boxes_[i].extend(length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i]);
-    boxes_[i].min().array() -= margin;
-    boxes_[i].max().array() += margin;
+    const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
+    boxes_[i] = bounds_of(here, end).grown(margin);
   }
-  find_near_pairs(surface_, boxes_, bodies_, passages_, near_factor * thickness_, touches_itself_, pairs_);
+  search_.find(boxes_, passages_, near_factor * thickness_, pairs_);
   memory_.assign(pairs_.size(), {});
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
@@ -115,11 +116,6 @@ void ContinuousContact::separate_all() {
   separations_.resize(pairs_.size());
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     separations_[k] = separate(pairs_[k], surface_, safe_, bodies_, poses_);
-}
-
-Vec3 ContinuousContact::carried_point(const FeaturePair& pair, const Vec3& point,
-                                      const std::vector<Pose>& to) const {
-  return to[at(pair.obstacle)].at(poses_[at(pair.obstacle)].back(point));
 }
 
 /// The pair at the end of the step: its plane is carried along by the obstacle.
@@ -137,11 +133,11 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   contact.rest = contact.point(from);
   if (pair.obstacle != FeaturePair::cloth_itself) {
     const Passage& passage = passages_[at(pair.obstacle)];
+    const Plane at_end = carried_plane(pair.obstacle, {s.far_point, s.normal}, end_poses_);
     const Vec3 local = poses_[at(pair.obstacle)].back(s.far_point);
-    const Vec3 at_end = passage.to().at(local);
-    contact.normal = passage.to().turn * (poses_[at(pair.obstacle)].turn.transpose() * s.normal);
-    contact.bound += contact.normal.dot(at_end);
-    contact.rest += at_end - passage.from().at(local);
+    contact.normal = at_end.normal;
+    contact.bound += contact.normal.dot(at_end.point);
+    contact.rest += passage.to().at(local) - passage.from().at(local);
     const ObstacleBody& body = bodies_[at(pair.obstacle)];
     contact.friction = body.reflects ? 0 : body.friction;
   }
@@ -193,71 +189,6 @@ void ContinuousContact::keep_touches(double step) {
   }
 }
 
-/// How much of its way each particle can go without leaving its side of any plane.
-void ContinuousContact::bound_by_pairs() {
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const Separation& s = separations_[k];
-    const double room = s.gap() - kept_gap(s.gap(), memory_[k].thickness);
-    double near_way = 0, far_way = 0;  // m, towards each other
-    std::array<double, 4> ahead{};
-    for (int j = 0; j < s.count; ++j) {
-      const auto i = at(s.particle[at(j)]);
-      ahead[at(j)] = s.normal.dot(wish_[i] - safe_[i]);
-      if (j < s.near_count)
-        near_way = std::max(near_way, -ahead[at(j)]);
-      else
-        far_way = std::max(far_way, ahead[at(j)]);
-    }
-    if (s.gap() > 0 && near_way + far_way <= room) continue;
-    const double near_room =
-        near_way + far_way > 0 ? std::max(room, 0.0) * near_way / (near_way + far_way) : 0;
-    for (int j = 0; j < s.count; ++j) {
-      const auto i = at(s.particle[at(j)]);
-      const bool is_near = j < s.near_count;
-      const double level = s.normal.dot(safe_[i]);
-      const double slack =
-          is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
-      const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
-      if (s.gap() <= 0)
-        share_[i] = 0;
-      else if (way > slack)
-        share_[i] = std::min(share_[i], std::max(slack, 0.0) / way);
-    }
-  }
-}
-
-void ContinuousContact::bound_by_boxes() {
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    const Vec3 here = safe_[i], way = wish_[i] - here;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double room =
-          way[axis] > 0 ? boxes_[i].max()[axis] - here[axis] : here[axis] - boxes_[i].min()[axis];
-      if (std::abs(way[axis]) * share_[i] <= room) continue;
-      share_[i] = std::max(room, 0.0) / std::abs(way[axis]);
-      outgrown_ = true;
-    }
-  }
-}
-
-/// Moves the particles; returns what is left of the longest way, in m.
-double ContinuousContact::move_cloth() {
-  share_.assign(safe_.size(), 1.0);
-  outgrown_ = false;
-  bound_by_pairs();
-  bound_by_boxes();
-  double left = 0;
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    if (share_[i] == 1) {
-      safe_.set(i, wish_[i]);
-      continue;
-    }
-    const Vec3 way = wish_[i] - safe_[i];
-    left = std::max(left, (1 - share_[i]) * way.norm());
-    safe_.add(i, share_[i] * way);
-  }
-  return left;
-}
-
 /// What is not finite is left as it is: the run stops there.
 bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state) {
   if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
@@ -282,11 +213,11 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
     const double left = move_cloth();
     moved = moved || left > 0;
     if (part_ < 1) {
-      const double gone = advance_obstacles();
+      const double advance = advance_obstacles();
       if (part_ < 1) base_ = wish_, was_rebased_ = true;
-      stuck = gone > 1e-6 ? 0 : stuck + 1;
+      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
       if (stuck > most_rounds_stuck || report.rounds > most_rounds_moving) {
-        report.pinch = Pinch{};
+        report.pinch = pinch(system);
         break;
       }
     } else if (left <= arrived || report.rounds > most_rounds_at_rest) {
@@ -306,9 +237,10 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   return report;
 }
 
-double ContinuousContact::advance_obstacles() {
-  part_ = 1;
-  return 1;
+double ContinuousContact::furthest_move(const Vec3Field& before) const {
+  double furthest = 0;
+  for (std::size_t i = 0; i < safe_.size(); ++i) furthest = std::max(furthest, (safe_[i] - before[i]).norm());
+  return furthest;
 }
 
 int ContinuousContact::count_touched() const {

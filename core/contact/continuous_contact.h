@@ -21,6 +21,9 @@ namespace cloth {
 /// Whether the scene's contact is this one; otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
+/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest.
+double highest_obstacle_speed(const Scene& scene);
+
 /// Begin and end of a step, in s.
 struct ContactTimes {
   double begin = 0, end = 0, step = 0;
@@ -29,6 +32,8 @@ struct ContactTimes {
 class ContinuousContact {
  public:
   ContinuousContact(const Scene& scene, const ClothSystem& system);
+  ContinuousContact(const ContinuousContact&) = delete;
+  ContinuousContact& operator=(const ContinuousContact&) = delete;
 
   /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
@@ -44,6 +49,9 @@ class ContinuousContact {
     double push = 0;       ///< kg m, of the last round
     Vec3 rub{0, 0, 0};     ///< kg m
     int touch = -1;        ///< in touches_
+  };
+  struct Plane {
+    Vec3 point, normal;
   };
   struct Touch {
     ContactConstraint contact;
@@ -62,8 +70,11 @@ class ContinuousContact {
   void bound_by_boxes();
   double advance_obstacles();
   double turn_limit(std::size_t obstacle) const;
-  double shrink_to_planes(std::size_t obstacle_pair_end);
-  Vec3 carried_point(const FeaturePair& pair, const Vec3& point, const std::vector<Pose>& to) const;
+  double shrink_to_planes();
+  double reached_gap(const Separation& separation) const;
+  double furthest_move(const Vec3Field& before) const;
+  Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
+  Pinch pinch(const ClothSystem& system) const;
   int note_held_back(const Vec3Field& from, double step, ClothState& state) const;
   int count_touched() const;
   Vec3 answer_velocities(const ClothSystem& system, double step, ClothState& state);
@@ -71,8 +82,8 @@ class ContinuousContact {
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
   std::vector<Obstacle> obstacles_;
+  PairSearch search_;
   double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
-  bool touches_itself_ = false;
   double gravity_ = 0;      ///< m/s^2
   double longest_way_ = 0;  ///< m, that one search for pairs serves
 
@@ -84,15 +95,16 @@ class ContinuousContact {
   Vec3Field wish_;   ///< m, wished with contact
   Vec3Field safe_;   ///< m, reached
   std::vector<double> share_;
-  std::vector<Box> boxes_;
+  std::vector<Bounds> boxes_;
   std::vector<FeaturePair> pairs_;
   std::vector<PairMemory> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
-  bool outgrown_ = false;     ///< a particle was stopped by its box
-  bool was_rebased_ = false;  ///< contacts of earlier rounds are part of what is wished
+  std::size_t blocking_pair_ = 0;  ///< that stopped an obstacle last
+  bool outgrown_ = false;          ///< a particle was stopped by its box
+  bool was_rebased_ = false;       ///< contacts of earlier rounds are part of what is wished
 };
 
 }  // namespace cloth

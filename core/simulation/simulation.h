@@ -168,9 +168,9 @@ class Simulation {
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
-  std::optional<ObstacleContact> contact_;               ///< particle by particle
+  std::optional<ObstacleContact> contact_;                 ///< particle by particle
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
-  Vec3Field position_before_;                            ///< m, at the step's start, for the latter
+  Vec3Field position_before_;                              ///< m, at the step's start, for the latter
 
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force
@@ -187,6 +187,7 @@ class Simulation {
   std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
+  double obstacle_speed_ = 0;                 ///< m/s, the highest of any point
   bool was_finite_ = false;                   ///< every position was finite after the last step
 };
 

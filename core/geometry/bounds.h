@@ -1,0 +1,42 @@
+// Axis-aligned bounding boxes.
+#pragma once
+
+#include <limits>
+
+#include "cloth/vec3_field.h"
+
+namespace cloth {
+
+/// Without points it is empty: lower above upper, overlapping nothing.
+struct Bounds {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vec3 lower{infinity, infinity, infinity};     ///< m
+  Vec3 upper{-infinity, -infinity, -infinity};  ///< m
+
+  void add(const Vec3& point) {
+    lower = lower.cwiseMin(point);
+    upper = upper.cwiseMax(point);
+  }
+  void add(const Bounds& other) {
+    lower = lower.cwiseMin(other.lower);
+    upper = upper.cwiseMax(other.upper);
+  }
+  Bounds grown(double margin) const {
+    const Vec3 all = Vec3::Constant(margin);
+    return {lower - all, upper + all};
+  }
+};
+
+template <class... Points>
+Bounds bounds_of(const Points&... points) {
+  Bounds bounds;
+  (bounds.add(points), ...);
+  return bounds;
+}
+
+/// Touching is overlapping.
+inline bool overlap(const Bounds& a, const Bounds& b) {
+  return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+}
+
+}  // namespace cloth

@@ -1,0 +1,132 @@
+// A hierarchy of bounding boxes: which of many boxes overlap a given one.
+//
+// Nodes have eight children, whose boxes lie side by side in single precision and are tested at once; what is
+// found there is tested exactly, so that the answer depends on the boxes alone and not on the tree. Rounding
+// keeps order, so a box in single precision overlaps whatever the exact one does. The tree is packed: all
+// nodes but those at one edge are full, and its depth is the least that eight children allow.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "geometry/bounds.h"
+
+namespace cloth {
+
+struct BoxPair {
+  int query = 0, index = 0;
+  auto operator<=>(const BoxPair&) const = default;
+};
+
+class BoxTree {
+ public:
+  BoxTree() = default;
+
+  /// The same boxes give the same tree. No box may be empty.
+  explicit BoxTree(std::span<const Bounds> boxes);
+
+  int size() const { return static_cast<int>(boxes_.size()); }
+  const Bounds& box(int index) const { return boxes_[static_cast<std::size_t>(index)]; }
+
+  /// The boxes have moved: as many as before. What is asked stays exact however far they did; it takes longer
+  /// where boxes that were neighbours have parted.
+  void refit(std::span<const Bounds> boxes);
+
+  /// callback(index) for every box that overlaps or touches `query`, in an order that the tree decides.
+  template <class Callback>
+  void visit(const Bounds& query, Callback&& callback) const;
+
+  /// Appends a pair for every query and each box that it overlaps or touches, by query and then by index.
+  void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const;
+
+  /// Levels of nodes: 0 without boxes.
+  int depth() const { return depth_; }
+
+  /// The boxes of the nodes `level` below the root, for drawing; those of level depth() are the given ones.
+  std::vector<Bounds> boxes_at(int level) const;
+
+ private:
+  static constexpr int width = 8;
+  static constexpr int deepest = 11;  // 8^11 > 2^31
+
+  struct alignas(64) Node {
+    std::array<std::array<float, width>, 3> lower, upper;
+    std::array<int, width> child;  // a node, or ~index of a box
+    std::uint32_t used = 0;        // a bit for each child
+  };
+
+  struct Query {
+    std::array<float, 3> lower, upper;
+  };
+
+  struct Builder;
+
+  static std::uint32_t overlapping(const Node& node, const Query& query);
+  Query rounded(const Bounds& bounds) const;
+  void fit();
+
+  std::vector<Bounds> boxes_;
+  std::vector<Node> nodes_;  // children after their parents
+  Vec3 origin_{0, 0, 0};     // of single precision
+  int depth_ = 0;
+};
+
+inline BoxTree::Query BoxTree::rounded(const Bounds& bounds) const {
+  const Eigen::Vector3f lower = (bounds.lower - origin_).cast<float>();
+  const Eigen::Vector3f upper = (bounds.upper - origin_).cast<float>();
+  return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
+}
+
+inline std::uint32_t BoxTree::overlapping(const Node& node, const Query& query) {
+#if defined(__SSE2__)
+  __m128 low = _mm_castsi128_ps(_mm_set1_epi32(-1)), high = low;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const __m128 from = _mm_set1_ps(query.lower[axis]), to = _mm_set1_ps(query.upper[axis]);
+    const float *lower = node.lower[axis].data(), *upper = node.upper[axis].data();
+    low = _mm_and_ps(
+        low, _mm_and_ps(_mm_cmple_ps(_mm_load_ps(lower), to), _mm_cmple_ps(from, _mm_load_ps(upper))));
+    high = _mm_and_ps(high, _mm_and_ps(_mm_cmple_ps(_mm_load_ps(lower + 4), to),
+                                       _mm_cmple_ps(from, _mm_load_ps(upper + 4))));
+  }
+  const int mask = _mm_movemask_ps(low) | _mm_movemask_ps(high) << 4;
+  return static_cast<std::uint32_t>(mask) & node.used;
+#else
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < width; ++k) {
+    bool hit = true;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      hit &= node.lower[axis][k] <= query.upper[axis] && query.lower[axis] <= node.upper[axis][k];
+    mask |= static_cast<std::uint32_t>(hit) << k;
+  }
+  return mask & node.used;
+#endif
+}
+
+template <class Callback>
+void BoxTree::visit(const Bounds& query, Callback&& callback) const {
+  if (nodes_.empty()) return;
+  const Query rounded_query = rounded(query);
+  std::array<int, deepest*(width - 1) + 1> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const Node& node = nodes_[static_cast<std::size_t>(waiting[--count])];
+    for (std::uint32_t hits = overlapping(node, rounded_query); hits != 0; hits &= hits - 1) {
+      const int child = node.child[static_cast<std::size_t>(std::countr_zero(hits))];
+      if (child >= 0)
+        waiting[count++] = child;
+      else if (overlap(boxes_[static_cast<std::size_t>(~child)], query))
+        callback(~child);
+    }
+  }
+}
+
+}  // namespace cloth

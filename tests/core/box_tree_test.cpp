@@ -1,0 +1,181 @@
+// The hierarchy of boxes against the loop over all of them.
+#include "geometry/box_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/random.h"
+
+namespace cloth::test {
+namespace {
+
+using Boxes = std::vector<Bounds>;
+
+std::vector<BoxPair> all_pairs(const Boxes& queries, const Boxes& boxes) {
+  std::vector<BoxPair> pairs;
+  for (std::size_t q = 0; q < queries.size(); ++q)
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      if (overlap(queries[q], boxes[i])) pairs.push_back({static_cast<int>(q), static_cast<int>(i)});
+  return pairs;
+}
+
+std::vector<BoxPair> tree_pairs(const Boxes& queries, const BoxTree& tree) {
+  std::vector<BoxPair> pairs;
+  tree.collect(queries, pairs);
+  return pairs;
+}
+
+void expect_as_brute_force(const Boxes& queries, const Boxes& boxes, const BoxTree& tree) {
+  EXPECT_EQ(tree_pairs(queries, tree), all_pairs(queries, boxes)) << boxes.size() << " boxes";
+}
+
+/// Boxes of triangles of all sizes, in a cloud or along a line.
+Boxes random_boxes(int count, double size, Random& random) {
+  const bool line = random.integer(0, 3) == 0;
+  Boxes boxes;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 place = line ? Vec3(random.uniform(-1, 1), 0, 0) : random.vector(1);
+    const double scale = size * std::pow(10, random.uniform(-2, 0));
+    boxes.push_back(
+        bounds_of(Vec3(place + random.vector(scale)), Vec3(place + random.vector(scale)), Vec3(place)));
+  }
+  return boxes;
+}
+
+void shift(Boxes& boxes, const Vec3& by) {
+  for (Bounds& box : boxes) box = {box.lower + by, box.upper + by};
+}
+
+TEST(Bounds, WithoutPointsOverlapNothing) {
+  const Bounds everywhere{Vec3::Constant(-Bounds::infinity), Vec3::Constant(Bounds::infinity)};
+  EXPECT_FALSE(overlap(Bounds(), bounds_of(Vec3(0, 0, 0))));
+  EXPECT_TRUE(overlap(everywhere, bounds_of(Vec3(0, 0, 0))));
+}
+
+TEST(Bounds, ThatTouchOverlapAndThatMissByOneUlpDoNot) {
+  const Bounds unit = bounds_of(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  const Vec3 corner(1, 1, 1), beyond(std::nextafter(1, 2), 1, 1), top(2, 2, 2);
+  EXPECT_TRUE(overlap(unit, bounds_of(corner, top)));
+  EXPECT_FALSE(overlap(unit, bounds_of(beyond, top)));
+  const BoxTree tree(Boxes{unit});
+  EXPECT_EQ(tree_pairs({bounds_of(corner, top), bounds_of(beyond, top)}, tree),
+            (std::vector<BoxPair>{{0, 0}}));
+}
+
+TEST(BoxTree, FindsWhatTheLoopOverAllBoxesFinds) {
+  Random random;
+  for (const int count : {0, 1, 2, 7, 8, 9, 10, 63, 64, 65, 100, 511, 512, 513, 1500}) {
+    for (const double size : {1e-3, 0.1, 1.0}) {
+      const Boxes boxes = random_boxes(count, size, random), queries = random_boxes(200, 0.1, random);
+      const BoxTree tree(boxes);
+      EXPECT_EQ(tree.size(), count);
+      expect_as_brute_force(queries, boxes, tree);
+      expect_as_brute_force(boxes, boxes, tree);
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+TEST(BoxTree, FindsTouchingBoxesOfARaster) {
+  Boxes cells;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j)
+      cells.push_back(bounds_of(Vec3(0.1 * i, 0.1 * j, 0), Vec3(0.1 * (i + 1), 0.1 * (j + 1), 0)));
+  const BoxTree tree(cells);
+  expect_as_brute_force(cells, cells, tree);
+  EXPECT_EQ(tree_pairs(cells, tree).size(), 58U * 58U);
+}
+
+TEST(BoxTree, TakesEqualBoxesPointsAndTheWholeOfSpace) {
+  const Bounds everywhere{Vec3::Constant(-Bounds::infinity), Vec3::Constant(Bounds::infinity)};
+  for (const int count : {1, 5, 8, 100, 1000}) {
+    const Boxes same(static_cast<std::size_t>(count), bounds_of(Vec3(1, 2, 3)));
+    const BoxTree tree(same);
+    const auto pairs =
+        tree_pairs({bounds_of(Vec3(1, 2, 3)), bounds_of(Vec3(1, 2, 3.1)), everywhere, Bounds()}, tree);
+    ASSERT_EQ(pairs.size(), 2 * same.size());
+    EXPECT_EQ(pairs.back(), (BoxPair{2, count - 1}));
+  }
+}
+
+TEST(BoxTree, WithoutBoxesFindsNothing) {
+  for (const BoxTree& tree : {BoxTree(), BoxTree(Boxes())}) {
+    EXPECT_EQ(tree.size(), 0);
+    EXPECT_EQ(tree.depth(), 0);
+    EXPECT_TRUE(tree_pairs({bounds_of(Vec3(0, 0, 0))}, tree).empty());
+    EXPECT_TRUE(tree.boxes_at(0).empty());
+  }
+}
+
+TEST(BoxTree, IsExactFarFromTheOriginAndForTheVerySmall) {
+  Random random;
+  for (const double far : {1e3, 1e6, 1e12}) {
+    Boxes boxes = random_boxes(300, 0.1, random), queries = random_boxes(100, 0.1, random);
+    const Vec3 by = far * Vec3(1, -0.7, 0.3);
+    shift(boxes, by), shift(queries, by);
+    expect_as_brute_force(queries, boxes, BoxTree(boxes));
+  }
+  Boxes mixed = random_boxes(300, 1e-9, random);
+  for (Bounds& box : mixed) box = {1e-9 * box.lower, 1e-9 * box.upper};
+  mixed.push_back(bounds_of(Vec3(-1e9, -1, -1), Vec3(1e9, 1, 1)));
+  expect_as_brute_force(mixed, mixed, BoxTree(mixed));
+}
+
+TEST(BoxTree, StaysExactAfterAnyMotion) {
+  Random random;
+  for (const int count : {1, 8, 9, 700}) {
+    Boxes boxes = random_boxes(count, 0.1, random);
+    BoxTree tree(boxes);
+    for (const double motion : {0.01, 1.0, 100.0}) {
+      for (Bounds& box : boxes) {
+        const Vec3 by = random.vector(motion);
+        box = {box.lower + by, box.upper + by};
+      }
+      shift(boxes, {motion, 0, -motion});
+      tree.refit(boxes);
+      expect_as_brute_force(boxes, boxes, tree);
+      expect_as_brute_force(random_boxes(200, 0.5, random), boxes, tree);
+    }
+  }
+}
+
+TEST(BoxTree, AppendsToWhatIsThereSortedByQueryAndIndex) {
+  Random random;
+  const Boxes boxes = random_boxes(200, 0.3, random);
+  const BoxTree tree(boxes);
+  std::vector<BoxPair> pairs{{9, 9}};
+  tree.collect(boxes, pairs);
+  EXPECT_EQ(pairs.front(), (BoxPair{9, 9}));
+  EXPECT_TRUE(std::is_sorted(pairs.begin() + 1, pairs.end()));
+}
+
+TEST(BoxTree, IsAsFlatAsEightChildrenAllow) {
+  Random random;
+  EXPECT_EQ(BoxTree(random_boxes(1, 0.1, random)).depth(), 1);
+  EXPECT_EQ(BoxTree(random_boxes(8, 0.1, random)).depth(), 1);
+  EXPECT_EQ(BoxTree(random_boxes(9, 0.1, random)).depth(), 2);
+  EXPECT_EQ(BoxTree(random_boxes(512, 0.1, random)).depth(), 3);
+  EXPECT_EQ(BoxTree(random_boxes(513, 0.1, random)).depth(), 4);
+}
+
+TEST(BoxTree, HasOneBoxAtTheTopAndTheGivenOnesAtTheBottom) {
+  Random random;
+  const Boxes boxes = random_boxes(512, 0.1, random);
+  const BoxTree tree(boxes);
+  ASSERT_EQ(tree.boxes_at(0).size(), 1U);
+  Bounds all;
+  for (const Bounds& box : boxes) all.add(box);
+  EXPECT_EQ(tree.boxes_at(0)[0].lower, all.lower);
+  EXPECT_EQ(tree.boxes_at(0)[0].upper, all.upper);
+  EXPECT_EQ(tree.boxes_at(1).size(), 8U);
+  EXPECT_EQ(tree.boxes_at(2).size(), 64U);
+  EXPECT_EQ(tree.boxes_at(3).size(), 512U);
+  EXPECT_TRUE(tree.boxes_at(4).empty());
+  for (const Bounds& box : tree.boxes_at(2)) EXPECT_TRUE(overlap(box, all));
+}
+
+}  // namespace
+}  // namespace cloth::test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "commands.h"
 #include "console.h"
 #include "integrators/implicit/linear_choice.h"
@@ -41,7 +41,7 @@ struct Explanation {
 std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vector<MethodLimit>& methods) {
   std::vector<LinearSolve> solves;
   const cloth::ClothSystem system =
-      cloth::make_grid(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
+      cloth::make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
   for (const MethodLimit& method : methods) {
     const auto weight = cloth::stage_weight(method.facts.name);
     const auto step = scene.integrator.time_step ? scene.integrator.time_step : method.auto_step;
@@ -78,19 +78,26 @@ std::string evaluations_text(const cloth::MethodFacts& facts) {
   return facts.evaluations_per_step > 0 ? fmt::format("{}", facts.evaluations_per_step) : "as needed";
 }
 
+std::string shape_text(const cloth::ClothSheet& sheet) {
+  if (!sheet.is_mesh()) return fmt::format("{} rows x {} columns", sheet.rows, sheet.columns);
+  return fmt::format("{}: {} triangles", sheet.mesh.file, sheet.mesh.loaded->surface.triangles.size());
+}
+
 std::string to_text(const Explanation& e) {
-  std::string text =
-      fmt::format("{}\n{} particles ({} rows x {} columns), {} pinned\n\nStages of a step\n", e.scene.title,
-                  e.scene.cloth.rows * e.scene.cloth.columns, e.scene.cloth.rows, e.scene.cloth.columns,
-                  cloth::pinned_particles(e.scene.cloth).size());
+  std::string text = fmt::format("{}\n{} particles ({}), {} pinned\n", e.scene.title,
+                                 e.scene.cloth.rows * e.scene.cloth.columns, shape_text(e.scene.cloth),
+                                 cloth::pinned_particles(e.scene.cloth).size());
+  for (const std::string& notice : cloth::mesh_notices(e.scene)) text += notice + '\n';
+  text += "\nStages of a step\n";
   for (const cloth::StageInfo& stage : e.stages)
     text += fmt::format("  {:<9} {:<19} {}\n", stage.present ? "in" : "left out", stage.name, stage.reason);
 
   text += fmt::format(
-      "\nLargest frequency       {:.6g} 1/s (flat grid at rest)\n"
+      "\nLargest frequency       {:.6g} 1/s ({} at rest)\n"
       "Guaranteed bound        {:.6g} 1/s (any configuration)\n"
       "Provot's criterion      {} (historical; 3 to 5 times too long for a grid)\n",
-      e.largest_frequency, e.guaranteed_frequency, step_text(e.provot_step));
+      e.largest_frequency, e.scene.cloth.is_mesh() ? "at most, the mesh" : "flat grid",
+      e.guaranteed_frequency, step_text(e.provot_step));
   text += fmt::format("\n  {:<22} {:>5} {:>12} {:>16} {:>16}\n", "method", "order", "evaluations",
                       "stable step", "auto");
   for (const MethodLimit& method : e.methods)
@@ -128,10 +135,12 @@ std::string to_json(const Explanation& e) {
             {"springs", json::object()},
             {"methods", json::array()},
             {"linear_solves", json::array()}};
+  if (const std::vector<std::string> notices = cloth::mesh_notices(e.scene); !notices.empty())
+    root["notices"] = notices;
   for (const cloth::StageInfo& stage : e.stages)
     root["stages"].push_back({{"name", stage.name}, {"in", stage.present}, {"reason", stage.reason}});
   const cloth::ClothSystem system =
-      cloth::make_grid(e.scene.cloth, e.scene.springs.value_or(cloth::SpringMaterial{}));
+      cloth::make_cloth(e.scene.cloth, e.scene.springs.value_or(cloth::SpringMaterial{}));
   for (const cloth::SpringFamily family : cloth::spring_families)
     root["springs"][cloth::name_of(family)] = system.spring_count(family);
   root["largest_frequency_per_s"] = e.largest_frequency;

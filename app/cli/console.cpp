@@ -76,7 +76,9 @@ LoadedScene load_scene(const std::string& name, const std::vector<std::string>& 
         name));
     return {std::nullopt, io_failed};
   }
-  cloth::SceneReading reading = cloth::read_scene(text, name, *overrides);
+  cloth::MeshSource meshes;
+  if (!is_file) meshes.folder = cloth::SceneFolder{.path = "", .built_in = true};
+  cloth::SceneReading reading = cloth::read_scene(text, name, *overrides, meshes);
   if (!reading.scene) return {std::nullopt, report(reading.problems)};
   return {std::move(reading.scene), done};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloth/vec3_field.h"
+#include "geometry/triangle_mesh.h"
 
 namespace cloth {
 
@@ -26,8 +27,10 @@ struct SpringRun {
   bool operator==(const SpringRun&) const = default;
 };
 
+/// A grid of rows x columns particles, or the vertices of a mesh: one row, and triangles.
 struct ClothSystem {
   int rows = 0, columns = 0;
+  std::vector<Triangle> triangles;   ///< of a mesh; none: a grid, whose cells triangles_of() cuts in two
   std::vector<SpringRun> springs;    ///< in the order structural, shear, flexion
   std::vector<double> mass;          ///< kg, one of each particle
   std::vector<double> inverse_mass;  ///< 1/kg; 0 where pinned
@@ -37,6 +40,7 @@ struct ClothSystem {
 
   int size() const { return rows * columns; }
   int index(int row, int column) const { return row * columns + column; }
+  bool is_mesh() const { return !triangles.empty(); }
   double total_mass() const;  ///< kg
   std::int64_t spring_count(SpringFamily family) const;
 };

@@ -1,5 +1,6 @@
 #include "cloth/normals.h"
 
+#include <array>
 #include <cmath>
 
 namespace cloth {
@@ -24,6 +25,25 @@ void normalise(Vec3Field& normal) {
     const double scale = length > 0 ? 1 / length : 0;
     nx[i] *= scale, ny[i] *= scale, nz[i] *= scale;
   }
+}
+
+/// From the sums of cross products and their changes to the changes of normals.
+void normalise_changes(const Vec3Field& sum, Vec3Field& change) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double length = sum[i].norm();
+    const Vec3 n = length > 0 ? Vec3(sum[i] / length) : Vec3(0, 0, 0);
+    change.set(i, length > 0 ? Vec3((change[i] - n.dot(change[i]) * n) / length) : Vec3(0, 0, 0));
+  }
+}
+
+/// A triangle's two sides from its first corner.
+std::array<Vec3, 2> sides_of(const Triangle& t, const Vec3Field& of) {
+  const Vec3 first = of[static_cast<std::size_t>(t[0])];
+  return {of[static_cast<std::size_t>(t[1])] - first, of[static_cast<std::size_t>(t[2])] - first};
+}
+
+void add_to_corners(const Triangle& t, const Vec3& vector, Vec3Field& to) {
+  for (const int corner : t) to.add(static_cast<std::size_t>(corner), vector);
 }
 
 }  // namespace
@@ -72,11 +92,32 @@ void particle_normal_changes(int rows, int columns, const Vec3Field& position, c
       add(d, lower, lower_change);
     }
   }
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const double length = sum[i].norm();
-    const Vec3 n = length > 0 ? Vec3(sum[i] / length) : Vec3(0, 0, 0);
-    change.set(i, length > 0 ? Vec3((change[i] - n.dot(change[i]) * n) / length) : Vec3(0, 0, 0));
+  normalise_changes(sum, change);
+}
+
+void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal) {
+  if (!system.is_mesh()) return particle_normals(system.rows, system.columns, position, normal);
+  normal.fill(0);
+  for (const Triangle& t : system.triangles) {
+    const auto [u, v] = sides_of(t, position);
+    add_to_corners(t, u.cross(v), normal);
   }
+  normalise(normal);
+}
+
+void particle_normal_changes(const ClothSystem& system, const Vec3Field& position, const Vec3Field& direction,
+                             Vec3Field& change) {
+  if (!system.is_mesh())
+    return particle_normal_changes(system.rows, system.columns, position, direction, change);
+  Vec3Field sum(position.size());
+  change.fill(0);
+  for (const Triangle& t : system.triangles) {
+    const auto [u, v] = sides_of(t, position);
+    const auto [du, dv] = sides_of(t, direction);
+    add_to_corners(t, u.cross(v), sum);
+    add_to_corners(t, du.cross(v) + u.cross(dv), change);
+  }
+  normalise_changes(sum, change);
 }
 
 }  // namespace cloth

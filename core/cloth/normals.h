@@ -1,7 +1,7 @@
-// Normals of a grid's particles.
+// Normals of a cloth's particles.
 #pragma once
 
-#include "cloth/vec3_field.h"
+#include "cloth/cloth_system.h"
 
 namespace cloth {
 
@@ -12,6 +12,11 @@ void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Fiel
 /// How the normals change where the positions change by `direction`, to first order; zero where there is no
 /// normal.
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
+                             Vec3Field& change);
+
+/// The same for a cloth of either kind; of a mesh over its triangles.
+void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal);
+void particle_normal_changes(const ClothSystem& system, const Vec3Field& position, const Vec3Field& direction,
                              Vec3Field& change);
 
 }  // namespace cloth

@@ -24,7 +24,10 @@ constexpr double controlled_limiter_tolerance = 1e-6;  // of the rest length
 constexpr double controlled_part = 0.125;              // of the panes' shortest step
 
 void apply(const OwnValue& own, Scene& scene) {
-  if (const auto parameter = find_parameter(scene, own.path)) parameter->set(scene, own.value);
+  const auto parameter = find_parameter(scene, own.path);
+  if (!parameter) return;
+  parameter->set(scene, own.value);
+  load_meshes(scene);  // what cannot be read is found with the scene's other problems
 }
 
 double shortest_step(const Comparison& comparison) {
@@ -159,7 +162,7 @@ int style_of(const Pane& pane) {
 }
 
 std::optional<std::string> must_be_shared(const std::string& path) {
-  if (path == "cloth.rows" || path == "cloth.columns")
+  if (path == "cloth.rows" || path == "cloth.columns" || path == "cloth.mesh")
     return "must be shared: each particle of a pane is compared with the same one of the others";
   if (path.rfind("cloth.pins", 0) == 0) return "must be shared: pins act on all panes alike";
   if (path == "duration" || path == "record.interval")
@@ -202,6 +205,7 @@ void set_shared_value(Comparison& comparison, const std::string& path, const Par
   const auto parameter = find_parameter(comparison.scene, path);
   assert(parameter);
   parameter->set(comparison.scene, value);
+  load_meshes(comparison.scene);
 }
 
 std::size_t duplicate_pane(Comparison& comparison, std::size_t pane) {

@@ -90,12 +90,13 @@ class ComparisonReader {
                                    fmt::join(names, ", ")));
       }
       scene_text_ = builtin->text;
+      meshes_.folder = SceneFolder{.path = "", .built_in = true};
     } else if (value.is_object()) {
       scene_text_ = value.dump(-1, ' ', false, json::error_handler_t::replace);
     } else {
       return problem("scene", value, "must be a scene in braces or the name of a built-in one");
     }
-    SceneReading reading = read_scene(scene_text_, place_, overrides_);
+    SceneReading reading = read_scene(scene_text_, place_, overrides_, meshes_);
     for (Problem& problem : reading.problems) {
       problem.path = problem.path.empty() ? "scene" : "scene." + problem.path;
       problems.push_back(std::move(problem));
@@ -141,7 +142,8 @@ class ComparisonReader {
 
   void read_values(const std::vector<Override>& settings, const std::string& path, const Scene& shared,
                    Pane& pane) {
-    const SceneReading reading = read_scene(scene_text_, place_, settings);
+    const SceneReading reading =
+        read_scene(scene_text_, place_, settings, {.folder = meshes_.folder, .known = &shared});
     const auto is_own = [&](const std::string& key) {
       return std::any_of(settings.begin() + static_cast<std::ptrdiff_t>(overrides_.size()), settings.end(),
                          [&](const Override& own) { return own.path == key; });
@@ -169,6 +171,7 @@ class ComparisonReader {
   std::string place_;
   const std::vector<Override>& overrides_;
   std::string scene_text_;
+  MeshSource meshes_;
   bool has_scene_ = false;
 };
 

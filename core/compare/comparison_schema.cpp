@@ -18,8 +18,7 @@ Scene full_scene(const std::string& method) {
   scene.gravity = Vec3::Zero();
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
-    scene.obstacles.emplace_back().shape = shape;
+  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   scene.integrator.method = method;
   return scene;
 }

@@ -32,7 +32,7 @@ std::string notice_of(const Scene& asked, const Simulation& simulation) {
         "a step of {:.6g} s does not divide the record interval of {:.6g} s: run with {:.6g} s instead", step,
         asked.record.interval, simulation.time_step());
   if (const auto& unreachable = simulation.unreachable_rate())
-    notice += (notice.empty() ? "" : "; ") + describe(*unreachable, simulation.system().columns);
+    notice += (notice.empty() ? "" : "; ") + describe(*unreachable, simulation.system());
   return notice;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloth/mesh_cloth.h"
+
 namespace cloth {
 namespace {
 
@@ -24,17 +26,6 @@ bool all_finite(const Vec3Field& field) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-std::vector<Triangle> grid_triangles(int rows, int columns) {
-  std::vector<Triangle> triangles;
-  for (int r = 0; r + 1 < rows; ++r)
-    for (int c = 0; c + 1 < columns; ++c) {
-      const int a = r * columns + c, d = a + columns;
-      triangles.push_back({a, d, d + 1});
-      triangles.push_back({a, d + 1, a + 1});
-    }
-  return triangles;
-}
-
 std::vector<ObstacleBody> bodies_of(const Scene& scene) {
   std::vector<ObstacleBody> bodies;
   for (const Obstacle& obstacle : scene.obstacles) bodies.push_back(body_of(obstacle));
@@ -52,7 +43,7 @@ double mean_edge(const Surface& surface, const Vec3Field& position) {
 bool has_continuous_contact(const Scene& scene) {
   return scene.contact || scene.self_contact ||
          std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                     [](const Obstacle& o) { return moves(o); });
+                     [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
 }
 
 double highest_obstacle_speed(const Scene& scene) {
@@ -63,7 +54,7 @@ double highest_obstacle_speed(const Scene& scene) {
 }
 
 ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system)
-    : surface_(make_surface(system.size(), grid_triangles(system.rows, system.columns))),
+    : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
       search_(surface_, bodies_, scene.self_contact.has_value()),
@@ -73,11 +64,14 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       next_poses_(bodies_.size()),
       end_poses_(bodies_.size()) {
   constexpr double edges_of_a_search = 4;
-  longest_way_ = infinity;
-  if (!scene.self_contact) return;
-  self_thickness_ = scene.self_contact->thickness;
-  self_friction_ = scene.self_contact->friction;
-  longest_way_ = edges_of_a_search * mean_edge(surface_, system.start);
+  if (scene.self_contact) {
+    self_thickness_ = scene.self_contact->thickness;
+    self_friction_ = scene.self_contact->friction;
+  }
+  const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
+                                    [](const Obstacle& o) { return o.shape == Shape::mesh; });
+  longest_way_ =
+      scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {
@@ -202,7 +196,7 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
                                        const ContactTimes& times, ClothState& state) {
   ContactReport report;
   bool moved = false;
-  int stuck = 0;
+  int stuck = 0, rounds_at_rest = 0;
   const double arrived = arrived_part * thickness_;
   while (true) {
     ++report.rounds;
@@ -220,9 +214,8 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
         report.pinch = pinch(system);
         break;
       }
-    } else if (left <= arrived || report.rounds > most_rounds_at_rest) {
-      break;
     }
+    if (part_ == 1 && (left <= arrived || ++rounds_at_rest > most_rounds_at_rest)) break;
     if (outgrown_) {
       const bool any = find_pairs();
       if (!any) break;

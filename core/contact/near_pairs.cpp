@@ -58,6 +58,8 @@ class PairSearch::Step {
         return meet_sphere(body, passage);
       case Shape::box:
         return meet_box(body, passage);
+      case Shape::mesh:
+        return meet_mesh(body, passage);
     }
   }
 
@@ -138,7 +140,34 @@ class PairSearch::Step {
     }
   }
 
+  void meet_mesh(const ObstacleBody& body, const Passage& passage) {
+    const BoxTree& tree = search_.mesh_trees_[at(obstacle_)];
+    const Vec3 pivot = passage.from().at(body.pivot);
+    for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f) {
+      const Bounds box = box_of_face(f);
+      Bounds seen = seen_from(passage.from(), box);
+      if (!passage.rests()) seen.add(seen_from(passage.to(), box));
+      const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
+      tree.visit(seen.grown(reach_ + bulge(passage, radius)),
+                 [&](int triangle) { meet_face(f, triangle, body.surface); });
+    }
+  }
+
   /// Each feature is met by the triangle that answers for it, so that no pair comes twice.
+  void meet_face(int face, int triangle, const Surface& mesh) {
+    for (int k = 0; k < 3; ++k) {
+      if (cloth_.answers_for_vertex(face, k))
+        add(PairKind::vertex_face, cloth_.triangles[at(face)][at(k)], triangle);
+      if (mesh.answers_for_vertex(triangle, k))
+        add(PairKind::face_vertex, face, mesh.triangles[at(triangle)][at(k)]);
+      if (!cloth_.answers_for_edge(face, k)) continue;
+      for (int j = 0; j < 3; ++j)
+        if (mesh.answers_for_edge(triangle, j))
+          add(PairKind::edge_edge, cloth_.edges_of[at(face)][at(k)], mesh.edges_of[at(triangle)][at(j)]);
+    }
+  }
+
+  /// The same among the cloth's own.
   void meet_own_face(int near, int far) {
     const Triangle &a = cloth_.triangles[at(near)], &b = cloth_.triangles[at(far)];
     for (std::size_t k = 0; k < 3; ++k)
@@ -170,7 +199,16 @@ class PairSearch::Step {
 };
 
 PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself)
-    : cloth_(cloth), bodies_(bodies), with_itself_(with_itself), mesh_trees_(bodies.size()) {}
+    : cloth_(cloth), bodies_(bodies), with_itself_(with_itself), mesh_trees_(bodies.size()) {
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (bodies[k].shape != Shape::mesh) continue;
+    std::vector<Bounds> boxes;
+    for (const auto& [a, b, c] : bodies[k].surface.triangles)
+      boxes.push_back(
+          bounds_of(bodies[k].vertices[at(a)], bodies[k].vertices[at(b)], bodies[k].vertices[at(c)]));
+    mesh_trees_[k] = BoxTree(boxes);
+  }
+}
 
 void PairSearch::find(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
                       double reach, std::vector<FeaturePair>& pairs) {

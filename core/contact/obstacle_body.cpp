@@ -13,6 +13,12 @@ void add_box(const Obstacle& obstacle, ObstacleBody& body) {
   body.surface.edges.assign(box_edges.begin(), box_edges.end());
 }
 
+void add_mesh(const Obstacle& obstacle, ObstacleBody& body) {
+  TriangleMesh mesh = placed_mesh(obstacle);
+  body.vertices = std::move(mesh.vertices);
+  body.surface = make_surface(static_cast<int>(body.vertices.size()), std::move(mesh.triangles));
+}
+
 }  // namespace
 
 ObstacleBody body_of(const Obstacle& obstacle) {
@@ -24,6 +30,7 @@ ObstacleBody body_of(const Obstacle& obstacle) {
   body.point = obstacle.point;
   body.normal = obstacle.normal.normalized();
   if (obstacle.shape == Shape::box) add_box(obstacle, body);
+  if (obstacle.shape == Shape::mesh) add_mesh(obstacle, body);
   if (obstacle.shape == Shape::sphere) body.reach = obstacle.radius;
   for (const Vec3& vertex : body.vertices) body.reach = std::max(body.reach, (vertex - body.pivot).norm());
   body.friction = obstacle.friction;

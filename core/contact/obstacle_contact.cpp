@@ -46,6 +46,8 @@ std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& po
       return box_penetration(obstacle, position);
     case Shape::plane:
       return plane_penetration(obstacle, position);
+    case Shape::mesh:
+      return std::nullopt;  // a surface without a thickness of its own: no particle is inside it
   }
   return std::nullopt;
 }
@@ -66,7 +68,7 @@ std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obsta
                                               double time_step) {
   std::optional<TunnellingRisk> risk;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (obstacles[k].shape == Shape::plane) continue;
+    if (obstacles[k].shape == Shape::plane || obstacles[k].shape == Shape::mesh) continue;
     const double thickness =
         obstacles[k].shape == Shape::sphere ? 2 * obstacles[k].radius : obstacles[k].size.minCoeff();
     if (!risk || thickness < risk->thickness) risk = TunnellingRisk{0, k, 0, thickness};

@@ -32,7 +32,16 @@ Pose pose_between(const Vec3& pivot, const std::vector<Keyframe>& keys, double t
 }  // namespace
 
 Vec3 pivot_of(const Obstacle& obstacle) {
-  return obstacle.shape == Shape::plane ? obstacle.point : obstacle.center;
+  switch (obstacle.shape) {
+    case Shape::plane:
+      return obstacle.point;
+    case Shape::mesh:
+      return obstacle.translate;
+    case Shape::sphere:
+    case Shape::box:
+      break;
+  }
+  return obstacle.center;
 }
 
 bool moves(const Obstacle& obstacle) {

@@ -24,7 +24,7 @@ double brush_falloff(const BrushGust& brush, const Vec3& position) {
 
 void AirForce::update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) {
   if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-  particle_normals(system.rows, system.columns, position, normal_);
+  particle_normals(system, position, normal_);
   wind_ = wind_at(air_, time);
 
   const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
@@ -83,7 +83,7 @@ void AirForce::add_asymmetric_product(const ClothSystem& system, const Vec3Field
                                       const Vec3Field& velocity, const Vec3Field& direction,
                                       Vec3Field& product) const {
   Vec3Field turned(position.size());
-  particle_normal_changes(system.rows, system.columns, position, direction, turned);
+  particle_normal_changes(system, position, direction, turned);
   for (std::size_t i = 0; i < position.size(); ++i) {
     const Vec3 n = normal_[i], dn = turned[i];
     Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();

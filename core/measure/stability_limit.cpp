@@ -7,7 +7,10 @@
 #include <numbers>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "measure/amplification.h"
+#include "measure/resting_frequency.h"
+#include "measure/spectrum.h"
 
 namespace cloth {
 namespace {
@@ -76,12 +79,14 @@ bool adapts_its_steps(const std::string& method, const Scene& scene) {
 }  // namespace
 
 double largest_frequency(const ClothSheet& sheet, const SpringMaterial& material) {
+  if (sheet.is_mesh()) return resting_frequency(make_cloth(sheet, material));
   const GridCell cell = cell_of(sheet);
   const double stiffness = is_square(cell) ? square_stiffness(material) : scanned_stiffness(cell, material);
   return std::sqrt(stiffness / particle_mass(sheet));
 }
 
 double guaranteed_frequency(const ClothSheet& sheet, const SpringMaterial& material) {
+  if (sheet.is_mesh()) return guaranteed_frequency(make_cloth(sheet, material));
   // Inside the grid every particle has four springs of each family.
   const double stiffness = 8 * (material.structural + material.shear + material.flexion);
   return std::sqrt(stiffness / particle_mass(sheet));

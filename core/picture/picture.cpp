@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloth/mesh_cloth.h"
+#include "geometry/mesh_look.h"
 #include "picture/floor.h"
 #include "picture/shapes.h"
 
@@ -86,6 +88,13 @@ void Painter::add_obstacles() {
   const double cell = system_.springs.empty() ? 0 : system_.springs.front().rest_length;
   for (const Obstacle& o : scene_.obstacles) {
     if (o.shape == Shape::plane) continue;
+    if (o.shape == Shape::mesh) {
+      if (!o.mesh.is_loaded() || !placed_bounds(o).min().allFinite()) continue;
+      meshes_.push_back(body_mesh(placed_mesh(o)));
+      canvas_.add_mesh(meshes_.back().vertices, meshes_.back().triangles, matte);
+      extent_.extend(placed_bounds(o));
+      continue;
+    }
     const bool ball = o.shape == Shape::sphere;
     const Vec3 size = ball ? Vec3(Vec3::Constant(2 * o.radius)) : o.size;
     if (!o.center.allFinite() || !size.allFinite()) continue;
@@ -106,9 +115,10 @@ void Painter::add_cloth() {
   surface.weave = plain                                       ? Weave::plain
                   : options_.pattern == ClothPattern::stripes ? Weave::stripes
                                                               : Weave::checks;
-  const double longer = std::max({scene_.cloth.width, scene_.cloth.height, 1e-9});
-  surface.bands = {static_cast<float>(bands_along_cloth * scene_.cloth.width / longer),
-                   static_cast<float>(bands_along_cloth * scene_.cloth.height / longer)};
+  const Eigen::Vector2d size = system_.is_mesh() ? flat_pattern(rest_surface(system_)).size
+                                                 : Eigen::Vector2d(scene_.cloth.width, scene_.cloth.height);
+  const Eigen::Vector2d bands = bands_along_cloth * size / std::max(size.maxCoeff(), 1e-9);
+  surface.bands = {static_cast<float>(bands.x()), static_cast<float>(bands.y())};
   surface.front = linear_light(options_.wireframe ? pale_sheet : warp);
   surface.back = options_.wireframe ? linear_light(pale_back) : Colour(back_tint.cwiseProduct(surface.front));
   if (plain && !options_.wireframe) surface.front = 0.5F * (linear_light(warp) + linear_light(weft));
@@ -136,11 +146,11 @@ void Painter::add_springs() {
 void Painter::add_spring(const SpringRun& run, int particle, double width, int surface) {
   const Vec3 from = position_[static_cast<std::size_t>(particle)];
   const Vec3 to = position_[static_cast<std::size_t>(particle + run.offset)];
-  if (run.family != SpringFamily::flexion) {
+  if (run.family != SpringFamily::flexion || system_.is_mesh()) {
     canvas_.add_line(from, to, width, surface);
     return;
   }
-  // A flexion spring lies over two structural ones: it is drawn as a bow beside them.
+  // A flexion spring of a grid lies over two structural ones: it is drawn as a bow beside them.
   const PictureVertex& middle = meshes_.back().vertices[static_cast<std::size_t>(particle + run.offset / 2)];
   const Vec3 side = 0.14 * (to - from).cross(middle.normal.cast<double>());
   constexpr int pieces = 6;
@@ -168,7 +178,7 @@ void Painter::add_pins() {
   bool in_a_row = false;
   for (int i = 0; i + 1 < system_.size(); ++i)
     in_a_row =
-        in_a_row ||
+        in_a_row || system_.is_mesh() ||
         (held(i) && (held(i + 1) || (i + system_.columns < system_.size() && held(i + system_.columns))));
   const double largest = 10 * scale;
   const double diameter = in_a_row ? std::clamp(0.85 * cell_pixels(), 3 * scale, largest) : largest;

@@ -25,6 +25,7 @@ double slope_of(const PictureCamera& camera) {
 
 Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle) {
   if (obstacle.shape == Shape::plane) return {};
+  if (obstacle.shape == Shape::mesh) return placed_bounds(obstacle);
   const Vec3 half =
       obstacle.shape == Shape::sphere ? Vec3(Vec3::Constant(obstacle.radius)) : Vec3(obstacle.size / 2);
   return {obstacle.center - half, obstacle.center + half};

@@ -4,34 +4,60 @@
 #include <cmath>
 #include <numbers>
 
+#include "cloth/mesh_cloth.h"
 #include "cloth/normals.h"
+#include "geometry/mesh_look.h"
 #include "measure/strain.h"
 
 namespace cloth {
 
+namespace {
+
+/// For the pattern: a share of the width and one of the height for each particle.
+std::vector<Eigen::Vector2f> pattern_of(const ClothSystem& system) {
+  std::vector<Eigen::Vector2f> shares;
+  shares.reserve(static_cast<std::size_t>(system.size()));
+  if (system.is_mesh()) {
+    const FlatPattern flat = flat_pattern(rest_surface(system));
+    const Eigen::Vector2d size = flat.size.cwiseMax(1e-9);
+    for (const Eigen::Vector2d& at : flat.at) shares.push_back(at.cwiseQuotient(size).cast<float>());
+    return shares;
+  }
+  for (int r = 0; r < system.rows; ++r)
+    for (int c = 0; c < system.columns; ++c)
+      shares.emplace_back(static_cast<float>(c) / static_cast<float>(system.columns - 1),
+                          static_cast<float>(r) / static_cast<float>(system.rows - 1));
+  return shares;
+}
+
+}  // namespace
+
 PictureMesh sheet_mesh(const ClothSystem& system, const Vec3Field& position, double strain_scale) {
-  const int rows = system.rows, columns = system.columns;
   PictureMesh mesh;
-  if (rows < 2 || columns < 2) return mesh;
+  if (!system.is_mesh() && (system.rows < 2 || system.columns < 2)) return mesh;
   Vec3Field normal(position.size());
-  particle_normals(rows, columns, position, normal);
+  particle_normals(system, position, normal);
   std::vector<float> strain(position.size());
   particle_strain(system, position, strain);
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) {
-      const auto i = static_cast<std::size_t>(system.index(r, c));
-      const double fraction = strain[i] / strain_scale;
-      mesh.vertices.push_back(
-          {position[i], normal[i].cast<float>(), static_cast<float>(c) / static_cast<float>(columns - 1),
-           static_cast<float>(r) / static_cast<float>(rows - 1),
-           std::isnan(fraction) ? 1.0F : static_cast<float>(std::clamp(fraction, 0.0, 1.0))});
-    }
+  const std::vector<Eigen::Vector2f> share = pattern_of(system);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double fraction = strain[i] / strain_scale;
+    mesh.vertices.push_back(
+        {position[i], normal[i].cast<float>(), share[i].x(), share[i].y(),
+         std::isnan(fraction) ? 1.0F : static_cast<float>(std::clamp(fraction, 0.0, 1.0))});
   }
-  for (int r = 0; r + 1 < rows; ++r) {
-    for (int c = 0; c + 1 < columns; ++c) {
-      const int a = system.index(r, c), b = a + 1, d = a + columns, opposite = d + 1;
-      mesh.triangles.insert(mesh.triangles.end(), {a, d, opposite, a, opposite, b});
-    }
+  for (const Triangle& t : triangles_of(system))
+    mesh.triangles.insert(mesh.triangles.end(), t.begin(), t.end());
+  return mesh;
+}
+
+PictureMesh body_mesh(const TriangleMesh& body) {
+  PictureMesh mesh;
+  const std::vector<Vec3> normals = corner_normals(body);
+  for (std::size_t k = 0; k < normals.size(); ++k) {
+    const int vertex = body.triangles[k / 3][k % 3];
+    mesh.vertices.push_back({body.vertices[static_cast<std::size_t>(vertex)], normals[k].cast<float>()});
+    mesh.triangles.push_back(static_cast<int>(k));
   }
   return mesh;
 }

@@ -15,7 +15,7 @@ const BuiltinScene* find_builtin_scene(const std::string& name) {
 Scene builtin_scene(const std::string& name) {
   const BuiltinScene* found = find_builtin_scene(name);
   assert(found != nullptr);
-  const SceneReading reading = read_scene(found->text, name);
+  const SceneReading reading = read_scene(found->text, name, {}, {SceneFolder{"", true}});
   assert(reading.scene.has_value());
   return *reading.scene;
 }

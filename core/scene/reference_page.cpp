@@ -18,8 +18,7 @@ Scene full_scene() {
   scene.gravity = Vec3::Zero();
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
-    scene.obstacles.emplace_back().shape = shape;
+  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   return scene;
 }
 
@@ -91,7 +90,7 @@ std::string method_settings() {
 std::string reference_page() {
   const Scene scene = full_scene();
   std::string page =
-      "# Parameters\n\nMade from the declarations in `core/scene/scene_declarations.cpp` by `clothlab-cli "
+      "# Parameters\n\nMade from the declarations in `core/scene/*_declarations.cpp` by `clothlab-cli "
       "parameters`; do "
       "not edit. \"Start value\" is what the window fills in when a block is added and what a reset returns "
       "to. A "

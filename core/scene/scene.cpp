@@ -51,6 +51,8 @@ const char* name_of(Shape shape) {
       return "box";
     case Shape::plane:
       return "plane";
+    case Shape::mesh:
+      return "mesh";
   }
   return "";
 }

@@ -2,6 +2,7 @@
 // benchmarks start from the same scenes. An absent block is absent physics. SI units throughout.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "params/parameter.h"
+#include "scene/scene_mesh.h"
 
 namespace cloth {
 
@@ -30,14 +32,18 @@ struct PinnedParticle {
 
 using Pin = std::variant<NamedPin, PinnedParticle>;
 
-/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0.
+/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0. With a mesh
+/// its vertices instead, shifted by `origin`: they count as one row, and width, height, across and down say
+/// nothing.
 struct ClothSheet {
+  MeshChoice mesh;  ///< no file: a grid
   int columns = 33, rows = 33;
   double width = 1.0, height = 1.0;  ///< m
   double mass = 0.25;                ///< kg, of the whole cloth
   Vec3 origin{-0.5, 1.0, 0.0};       ///< m, where particle (0, 0) starts
   Vec3 across{1, 0, 0}, down{0, -1, 0};
   std::vector<Pin> pins;
+  bool is_mesh() const { return !mesh.file.empty(); }
   bool operator==(const ClothSheet&) const = default;
 };
 
@@ -72,7 +78,8 @@ struct Deformation {
   bool operator==(const Deformation&) const = default;
 };
 
-enum class Shape { sphere, box, plane };
+enum class Shape { sphere, box, plane, mesh };
+inline constexpr std::array<Shape, 4> all_shapes{Shape::sphere, Shape::box, Shape::plane, Shape::mesh};
 
 /// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene describes it.
 struct Keyframe {
@@ -82,7 +89,8 @@ struct Keyframe {
   bool operator==(const Keyframe&) const = default;
 };
 
-/// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal.
+/// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal;
+/// mesh: mesh, scale, rotate, translate (placed_mesh).
 struct Obstacle {
   Shape shape = Shape::sphere;
   Vec3 center{0, 0, 0};
@@ -90,6 +98,10 @@ struct Obstacle {
   Vec3 size{0.4, 0.4, 0.4};
   Vec3 point{0, 0, 0};
   Vec3 normal{0, 1, 0};
+  MeshChoice mesh;
+  double scale = 1;
+  Vec3 rotate{0, 0, 0};     ///< degrees about x, then y, then z
+  Vec3 translate{0, 0, 0};  ///< m, after scaling and turning
   std::string response = "coulomb";
   double friction = 0.3;
   double restitution = 0;
@@ -143,6 +155,7 @@ struct Scene {
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;
+  SceneFolder folder;  ///< no part of the file
   bool operator==(const Scene&) const = default;
 };
 

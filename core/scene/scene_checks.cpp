@@ -15,7 +15,30 @@ void check_parameters(const Scene& scene, std::vector<Problem>& problems) {
   }
 }
 
+/// Of meshes that load_meshes() could not read, or has not been asked for.
+void check_meshes(const Scene& scene, std::vector<Problem>& problems) {
+  const auto check = [&](const std::string& path, const MeshChoice& mesh) {
+    if (!mesh.is_loaded()) problems.push_back({path, '"' + mesh.file + '"', "has not been read", "", 0, 0});
+  };
+  if (scene.cloth.is_mesh()) check("cloth.mesh", scene.cloth.mesh);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    if (scene.obstacles[i].shape == Shape::mesh)
+      check(fmt::format("obstacles.{}.file", i), scene.obstacles[i].mesh);
+}
+
+void check_vertex_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
+  if (!cloth.mesh.is_loaded()) return;  // said already
+  for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
+    const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
+    if (pin && pin->row == 0 && pin->column >= 0 && pin->column < cloth.columns) continue;
+    problems.push_back({fmt::format("cloth.pins.{}", i),
+                        pin ? std::to_string(pin->column) : name_of(std::get<NamedPin>(cloth.pins[i])),
+                        fmt::format("must be a vertex of the mesh: 0 to {}", cloth.columns - 1), "", 0, 0});
+  }
+}
+
 void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
+  if (cloth.is_mesh()) return check_vertex_pins(cloth, problems);
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
     const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
     if (!pin) continue;
@@ -28,6 +51,7 @@ void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
 }
 
 void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
+  if (cloth.is_mesh()) return;
   if (!(cloth.across.norm() > 0) || !(cloth.down.norm() > 0)) return;  // said already
   constexpr double least_sine = 1e-6;
   if (cloth.across.normalized().cross(cloth.down.normalized()).norm() > least_sine) return;
@@ -48,6 +72,7 @@ std::string Problem::text() const {
 std::vector<Problem> find_problems(const Scene& scene) {
   std::vector<Problem> problems;
   check_parameters(scene, problems);
+  check_meshes(scene, problems);
   check_pins(scene.cloth, problems);
   check_directions(scene.cloth, problems);
   return problems;

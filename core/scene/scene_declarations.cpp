@@ -8,9 +8,11 @@
 
 namespace cloth {
 
-const Fields<ClothSheet>& cloth_fields() {
+namespace {
+
+Fields<ClothSheet> grid_cloth_fields() {
   using C = ClothSheet;
-  static const Fields<C> fields{
+  return {
       integer(&C::columns, {.key = "columns",
                             .label = "Columns",
                             .doc = "Particles along each row.",
@@ -79,7 +81,15 @@ const Fields<ClothSheet>& cloth_fields() {
                         .slider_minimum = -1,
                         .slider_maximum = 1}),
   };
-  return fields;
+}
+
+}  // namespace
+
+const Fields<ClothSheet>& cloth_fields(bool is_mesh) {
+  static const Fields<ClothSheet> grid = grid_cloth_fields();
+  if (!is_mesh) return grid;
+  static const Fields<ClothSheet> mesh = mesh_cloth_fields();
+  return mesh;
 }
 
 const Fields<SpringMaterial>& spring_fields() {
@@ -243,6 +253,8 @@ Fields<Obstacle> shape_fields(Shape shape) {
                                   .unit_vector = true,
                                   .slider_minimum = -1,
                                   .slider_maximum = 1})};
+    case Shape::mesh:
+      return mesh_obstacle_fields();
   }
   return {};
 }
@@ -276,10 +288,12 @@ Fields<Obstacle> with_response(Fields<Obstacle> fields) {
 }  // namespace
 
 const Fields<Obstacle>& obstacle_fields(Shape shape) {
-  static const Fields<Obstacle> sphere = with_response(shape_fields(Shape::sphere));
-  static const Fields<Obstacle> box = with_response(shape_fields(Shape::box));
-  static const Fields<Obstacle> plane = with_response(shape_fields(Shape::plane));
-  return shape == Shape::sphere ? sphere : shape == Shape::box ? box : plane;
+  static const auto all = [] {
+    std::array<Fields<Obstacle>, all_shapes.size()> fields;
+    for (std::size_t k = 0; k < fields.size(); ++k) fields[k] = with_response(shape_fields(all_shapes[k]));
+    return fields;
+  }();
+  return all[static_cast<std::size_t>(shape)];
 }
 
 namespace {

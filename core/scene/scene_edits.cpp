@@ -48,7 +48,7 @@ SceneReading edited_scene(const Scene& scene, const std::vector<SceneEdit>& edit
   std::vector<Override> overrides;
   overrides.reserve(edits.size());
   for (const SceneEdit& edit : edits) overrides.push_back({edit.path, edit.value});
-  return read_scene(write_scene(scene), "", overrides);
+  return read_scene(write_scene(scene), "", overrides, {scene.folder, &scene});
 }
 
 }  // namespace cloth

@@ -28,9 +28,15 @@ struct SceneReading {
   std::vector<Problem> problems;
 };
 
+/// Where the mesh files of a scene are found.
+struct MeshSource {
+  std::optional<SceneFolder> folder = {};  ///< none: that of `place`
+  const Scene* known = nullptr;            ///< whose meshes need not be read again where they are the same
+};
+
 /// `place` names the text in messages.
 SceneReading read_scene(const std::string& text, const std::string& place,
-                        const std::vector<Override>& overrides = {});
+                        const std::vector<Override>& overrides = {}, const MeshSource& meshes = {});
 
 /// Writes every value, defaults resolved, with numbers that read back to the same bits.
 std::string write_scene(const Scene& scene);
@@ -42,7 +48,7 @@ std::string value_json(const ParameterValue& value);
 std::string scene_schema();
 std::string value_schema_json(const ParameterInfo& info);
 
-/// 64-bit FNV-1a of write_scene, as 16 hexadecimal digits.
+/// 64-bit FNV-1a of write_scene and of what is in the meshes, as 16 hexadecimal digits.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace cloth

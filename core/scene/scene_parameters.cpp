@@ -69,9 +69,17 @@ Block run_block() {
           std::move(parameters)};
 }
 
+/// Of a cloth from a mesh that is loaded, as its file has it.
+Eigen::AlignedBox3d bounds_of(const ClothSheet& cloth) {
+  return cloth.mesh.is_loaded() ? cloth.mesh.loaded->bounds : Eigen::AlignedBox3d(Vec3(Vec3::Zero()));
+}
+
+constexpr const char* starter_mesh = "bunny.obj";
+
 /// The height at which a new obstacle meets the cloth: below its lower edge if it hangs, under its middle if
 /// it lies.
 Vec3 middle_of(const ClothSheet& cloth) {
+  if (cloth.is_mesh()) return cloth.origin + bounds_of(cloth).center();
   return cloth.origin + 0.5 * cloth.width * cloth.across.normalized() +
          0.5 * cloth.height * cloth.down.normalized();
 }
@@ -79,11 +87,17 @@ Vec3 middle_of(const ClothSheet& cloth) {
 Obstacle starter_obstacle(Shape shape, const ClothSheet& cloth) {
   Obstacle obstacle;
   obstacle.shape = shape;
-  const double span = std::max(cloth.width, cloth.height);
+  const double span =
+      cloth.is_mesh() ? bounds_of(cloth).sizes().maxCoeff() : std::max(cloth.width, cloth.height);
   obstacle.radius = 0.25 * span;
   obstacle.size = Vec3::Constant(0.4 * span);
   obstacle.center = middle_of(cloth) - Vec3(0, 0.75 * span, 0);
   obstacle.point = middle_of(cloth) - Vec3(0, 1.25 * span, 0);
+  if (shape == Shape::mesh) {
+    obstacle.mesh.file = starter_mesh;
+    obstacle.scale = 0.5 * span;
+    obstacle.translate = middle_of(cloth) - Vec3(0, span, 0);
+  }
   return obstacle;
 }
 
@@ -103,6 +117,8 @@ const Air starter_air{.drag = 0.01, .wind = {0, 0, 3}, .gust = std::nullopt};
 /// A scene in which every optional block has its starting values: what "default" means.
 Scene starter_scene(const Scene& like) {
   Scene scene;
+  scene.cloth.mesh = like.cloth.mesh;
+  if (like.cloth.is_mesh()) scene.cloth.origin.setZero();
   scene.springs = starter_springs;
   scene.damping = starter_damping;
   scene.gravity = starter_gravity;
@@ -158,9 +174,12 @@ std::vector<Block> blocks_of(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) blocks.push_back(obstacle_block(scene, i));
   add_contact_blocks(scene, blocks);
-  blocks.push_back(
-      {"cloth", "Cloth", "The sheet: how many particles, how large, how heavy.", false,
-       bound<ClothSheet>("cloth", cloth_fields(), [](Scene& s) -> ClothSheet& { return s.cloth; })});
+  blocks.push_back({"cloth", "Cloth",
+                    scene.cloth.is_mesh() ? "A mesh: its vertices are particles, its edges springs."
+                                          : "The sheet: how many particles, how large, how heavy.",
+                    false,
+                    bound<ClothSheet>("cloth", cloth_fields(scene.cloth.is_mesh()),
+                                      [](Scene& s) -> ClothSheet& { return s.cloth; })});
   blocks.push_back(run_block());
   return blocks;
 }
@@ -205,12 +224,15 @@ std::vector<BlockOffer> offers_for(const Scene& scene) {
     offers.push_back({"self_contact", "Self-contact", "The cloth does not pass through itself.",
                       [](Scene& s) { s.self_contact = starter_self_contact(s.cloth); }});
   const auto obstacle = [&](Shape shape, const char* title, const char* doc) {
-    offers.push_back({name_of(shape), title, doc,
-                      [shape](Scene& s) { s.obstacles.push_back(starter_obstacle(shape, s.cloth)); }});
+    offers.push_back({name_of(shape), title, doc, [shape](Scene& s) {
+                        s.obstacles.push_back(starter_obstacle(shape, s.cloth));
+                        load_meshes(s);
+                      }});
   };
   obstacle(Shape::sphere, "Sphere", "A ball under the cloth.");
   obstacle(Shape::box, "Box", "A cube or rectangle under the cloth.");
   obstacle(Shape::plane, "Plane", "A floor under the cloth.");
+  obstacle(Shape::mesh, "Mesh", "A body of any shape under the cloth, from an OBJ file.");
   return offers;
 }
 

@@ -13,7 +13,7 @@ template <class Owner>
 using Fields = std::vector<Field<Owner>>;
 
 /// The declarations themselves, for the JSON reader and writer and the schema.
-const Fields<ClothSheet>& cloth_fields();
+const Fields<ClothSheet>& cloth_fields(bool is_mesh);
 const Fields<SpringMaterial>& spring_fields();
 const Fields<Gust>& gust_fields();
 const Fields<Air>& air_fields();
@@ -26,6 +26,10 @@ const Fields<SelfContact>& self_contact_fields();
 const Fields<IntegratorChoice>& integrator_fields(const std::string& method);  ///< with its own settings
 const Fields<Recording>& recording_fields();
 const Fields<Scene>& scene_fields();  ///< title, damping, gravity, duration: the keys of the root
+
+/// Of what comes from mesh files (mesh_declarations.cpp).
+Fields<ClothSheet> mesh_cloth_fields();
+Fields<Obstacle> mesh_obstacle_fields();
 
 /// One parameter of a scene, bound to its dotted path ("obstacles.0.friction").
 struct Parameter {

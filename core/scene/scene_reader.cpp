@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "contact/rigid_motion.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
@@ -115,13 +117,23 @@ class SceneReader {
 
   void read_cloth(const json& value, ClothSheet& cloth) {
     if (!object(value, "cloth")) return;
-    if (value.contains("mesh")) {
-      problem("cloth.mesh", value["mesh"], "cloths from mesh files are not supported by this version");
-      return;
-    }
-    known_keys(value, "cloth", keys_of(cloth_fields(), {"pins"}));
-    fields(value, "cloth", cloth_fields(), cloth);
-    if (const json* pins = member(value, "pins")) read_pins(*pins, cloth.pins);
+    const bool is_mesh = value.contains("mesh");
+    if (is_mesh) cloth.origin.setZero();
+    known_keys(value, "cloth", keys_of(cloth_fields(is_mesh), {"pins"}));
+    fields(value, "cloth", cloth_fields(is_mesh), cloth);
+    if (is_mesh && value["mesh"] == "") problem("cloth.mesh", value["mesh"], "must name a mesh");
+    const json* pins = member(value, "pins");
+    if (pins && is_mesh) read_vertex_pins(*pins, cloth.pins);
+    if (pins && !is_mesh) read_pins(*pins, cloth.pins);
+  }
+
+  void read_vertex_pins(const json& value, std::vector<Pin>& pins) {
+    if (!value.is_array()) return problem("cloth.pins", value, "must be a list");
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (small_integer(value[i]))
+        pins.emplace_back(PinnedParticle{0, value[i].get<int>()});
+      else
+        problem(fmt::format("cloth.pins.{}", i), value[i], "must be the number of a vertex, from 0");
   }
 
   void read_pins(const json& value, std::vector<Pin>& pins) {
@@ -169,25 +181,23 @@ class SceneReader {
 
   void read_obstacles(const json& value, std::vector<Obstacle>& obstacles) {
     if (!value.is_array()) return problem("obstacles", value, "must be a list");
+    const std::string shapes = "\"sphere\", \"box\", \"plane\" or \"mesh\"";
     for (std::size_t i = 0; i < value.size(); ++i) {
       const std::string path = fmt::format("obstacles.{}", i);
       Obstacle& obstacle = obstacles.emplace_back();
       if (!object(value[i], path)) continue;
       const json* shape = member(value[i], "shape");
       if (!shape) {
-        problems.push_back(
-            {path + ".shape", "", "must be given: \"sphere\", \"box\" or \"plane\"", "", 0, 0});
+        problems.push_back({path + ".shape", "", "must be given: " + shapes, "", 0, 0});
         continue;
       }
-      if (*shape == "mesh") {
-        problem(path + ".shape", *shape, "mesh obstacles are not supported by this version");
+      const auto known = std::find_if(all_shapes.begin(), all_shapes.end(),
+                                      [&](Shape one) { return *shape == name_of(one); });
+      if (known == all_shapes.end()) {
+        problem(path + ".shape", *shape, "must be " + shapes);
         continue;
       }
-      if (*shape != "sphere" && *shape != "box" && *shape != "plane") {
-        problem(path + ".shape", *shape, "must be \"sphere\", \"box\" or \"plane\"");
-        continue;
-      }
-      obstacle.shape = *shape == "sphere" ? Shape::sphere : *shape == "box" ? Shape::box : Shape::plane;
+      obstacle.shape = *known;
       known_keys(value[i], path,
                  keys_of(obstacle_fields(obstacle.shape), keys_of(motion_fields(), {"shape", "keyframes"})));
       fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);
@@ -204,7 +214,7 @@ class SceneReader {
       Keyframe& key = obstacle.keyframes.emplace_back();
       if (!object(value[i], key_path)) continue;
       known_keys(value[i], key_path, keys_of(keyframe_fields()));
-      key.position = obstacle.shape == Shape::plane ? obstacle.point : obstacle.center;
+      key.position = pivot_of(obstacle);
       fields(value[i], key_path, keyframe_fields(), key);
     }
   }
@@ -321,7 +331,7 @@ std::optional<Override> parse_override(const std::string& text) {
 }
 
 SceneReading read_scene(const std::string& text, const std::string& place,
-                        const std::vector<Override>& overrides) {
+                        const std::vector<Override>& overrides, const MeshSource& meshes) {
   if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
   json document = json::parse(text);
   const Placer place_problem(text, place, overrides);
@@ -335,6 +345,8 @@ SceneReading read_scene(const std::string& text, const std::string& place,
           {override_.path, override_.value, "there is no such parameter in this scene", "", 0, 0});
 
   Scene scene = reader.read(document);
+  scene.folder = meshes.folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()});
+  for (Problem& problem : load_meshes(scene, meshes.known)) reader.problems.push_back(std::move(problem));
   std::set<std::string> named;
   for (const Problem& problem : reader.problems) named.insert(problem.path);
   for (Problem& problem : find_problems(scene))

@@ -64,13 +64,28 @@ json pins_schema() {
           {"description", "Pinned particles: names of corners and edges, or [row, column]."}};
 }
 
+json vertex_pins_schema() {
+  return {{"type", "array"},
+          {"items", {{"type", "integer"}, {"minimum", 0}}},
+          {"description", "Pinned particles: numbers of the mesh's vertices, from 0."}};
+}
+
+/// A grid, or a mesh.
+json cloth_schema() {
+  json grid = object_schema(cloth_fields(false)), mesh = object_schema(cloth_fields(true));
+  grid["properties"]["pins"] = pins_schema();
+  mesh["properties"]["pins"] = vertex_pins_schema();
+  mesh["required"] = {"mesh"};
+  return {{"anyOf", json::array({std::move(grid), std::move(mesh)})}};
+}
+
 json obstacles_schema() {
   json shapes = json::array();
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane}) {
+  for (const Shape shape : all_shapes) {
     json entry = object_schema(obstacle_fields(shape), {{"shape", {{"const", name_of(shape)}}}});
     entry["properties"].update(object_schema(motion_fields())["properties"]);
     entry["properties"]["keyframes"] = {{"type", "array"}, {"items", object_schema(keyframe_fields())}};
-    entry["required"] = {"shape"};
+    entry["required"] = shape == Shape::mesh ? json::array({"shape", "file"}) : json::array({"shape"});
     shapes.push_back(std::move(entry));
   }
   return {{"type", "array"}, {"items", {{"anyOf", std::move(shapes)}}}};
@@ -104,9 +119,7 @@ std::string value_schema_json(const ParameterInfo& info) {
 
 std::string scene_schema() {
   json properties{{"format", {{"const", scene_format}}}};
-  json cloth = object_schema(cloth_fields());
-  cloth["properties"]["pins"] = pins_schema();
-  properties["cloth"] = std::move(cloth);
+  properties["cloth"] = cloth_schema();
   properties["springs"] = object_schema(spring_fields());
   json air = object_schema(air_fields());
   air["properties"]["gust"] = object_schema(gust_fields());

@@ -31,10 +31,14 @@ json block(const Fields<Owner>& fields, const Owner& owner) {
   return into;
 }
 
-json pins_json(const std::vector<Pin>& pins) {
+/// Of a mesh the pins are vertices.
+json pins_json(const ClothSheet& cloth) {
   json list = json::array();
-  for (const Pin& pin : pins) {
-    if (const auto* named = std::get_if<NamedPin>(&pin))
+  for (const Pin& pin : cloth.pins) {
+    const auto* particle = std::get_if<PinnedParticle>(&pin);
+    if (particle && cloth.is_mesh())
+      list.push_back(particle->column);
+    else if (const auto* named = std::get_if<NamedPin>(&pin))
       list.push_back(name_of(*named));
     else
       list.push_back({std::get<PinnedParticle>(pin).row, std::get<PinnedParticle>(pin).column});
@@ -52,8 +56,8 @@ json scene_json(const Scene& scene) {
   json root;
   root["format"] = scene_format;
   root["title"] = scene.title;
-  root["cloth"] = block(cloth_fields(), scene.cloth);
-  root["cloth"]["pins"] = pins_json(scene.cloth.pins);
+  root["cloth"] = block(cloth_fields(scene.cloth.is_mesh()), scene.cloth);
+  root["cloth"]["pins"] = pins_json(scene.cloth);
   if (scene.springs) root["springs"] = block(spring_fields(), *scene.springs);
   if (scene.damping) root["damping"] = *scene.damping;
   if (scene.gravity) root["gravity"] = ToJson{}(*scene.gravity);
@@ -126,6 +130,11 @@ std::string value_json(const ParameterValue& value) {
 std::string scene_hash(const Scene& scene) {
   FnvHash hash;
   hash.add(write_scene(scene));
+  const auto add = [&](const MeshChoice& mesh) {
+    if (mesh.is_loaded()) hash.add(mesh.loaded->hash);
+  };
+  add(scene.cloth.mesh);
+  for (const Obstacle& obstacle : scene.obstacles) add(obstacle.mesh);
   return hash.text();
 }
 

@@ -40,8 +40,9 @@ double Simulation::energy_scale_after(double fallen) const {
   double wind = 0;
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
   const double struck = 2 * obstacle_speed_;  // at most, off an obstacle that gives all speed back
-  return std::max(drop, fallen) + 0.5 * mass * (wind * wind + struck * struck) + std::abs(ledger_.forces.brush) +
-         std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
+  return std::max(drop, fallen) + 0.5 * mass * (wind * wind + struck * struck) +
+         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) +
+         rounding_floor * elastic_scale_;
 }
 
 double Simulation::energy_scale() const {
@@ -110,6 +111,7 @@ Divergence Simulation::stop_at(int particle, std::string cause) const {
   divergence.cause = std::move(cause);
   divergence.time_step = time_step_;
   divergence.stable_step = method_limit();
+  divergence.on_grid = !system_.is_mesh();
   divergence.row = divergence.particle / system_.columns;
   divergence.column = divergence.particle % system_.columns;
   return divergence;

@@ -25,6 +25,7 @@ struct Divergence {
   std::int64_t step = 0;  ///< the first one that was not accepted
   double time = 0;        ///< s, at its end
   int particle = 0;
+  bool on_grid = true;  ///< a mesh has no rows and columns
   int row = 0, column = 0;
   std::string cause;     ///< "position is not finite", ...
   double time_step = 0;  ///< s, as run

@@ -88,8 +88,10 @@ class Run {
     summary.particles = simulation_.system().size();
     simulation_.set_threads(options_.threads);
     summary.threads = simulation_.threads();
+    summary.notice = fmt::format("{}", fmt::join(mesh_notices(scene), "; "));
     if (simulation_.unreachable_rate())
-      summary.notice = describe(*simulation_.unreachable_rate(), simulation_.system().columns);
+      summary.notice += (summary.notice.empty() ? "" : "; ") +
+                        describe(*simulation_.unreachable_rate(), simulation_.system());
   }
 
   RunResult to_end() {
@@ -125,7 +127,8 @@ class Run {
     Scene resolved = scene_;
     resolved.integrator.time_step = simulation_.time_step();
     return keep(make_folder(options_.folder)) &&
-           keep(write_text_file(options_.folder / "scene.json", write_scene(resolved))) &&
+           keep(write_text_file(options_.folder / "scene.json",
+                                write_scene(moved_to_folder(resolved, options_.folder.string())))) &&
            keep(record_.open(options_.folder, simulation_.quantities()));
   }
 
@@ -272,12 +275,15 @@ ReplayResult replay(const Session& session, const ReplayOptions& options) {
   return result;
 }
 
-std::string describe(const UnreachableRate& u, int columns) {
+std::string describe(const UnreachableRate& u, const ClothSystem& system) {
+  const auto pin = [&](int particle) {
+    if (system.is_mesh()) return fmt::format("{}", particle);
+    return fmt::format("(row {}, column {})", particle / system.columns, particle % system.columns);
+  };
   return fmt::format(
-      "deformation.rate cannot be kept: pins (row {}, column {}) and (row {}, column {}) are {:.6g} m apart, "
-      "and the "
-      "limited springs between them reach {:.6g} m at this rate",
-      u.first / columns, u.first % columns, u.second / columns, u.second % columns, u.distance, u.reach);
+      "deformation.rate cannot be kept: pins {} and {} are {:.6g} m apart, and the limited springs between "
+      "them reach {:.6g} m at this rate",
+      pin(u.first), pin(u.second), u.distance, u.reach);
 }
 
 }  // namespace cloth

@@ -67,6 +67,6 @@ struct RunResult {
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 /// What the geometry says about a rate that cannot be kept.
-std::string describe(const UnreachableRate& unreachable, int columns);
+std::string describe(const UnreachableRate& unreachable, const ClothSystem& system);
 
 }  // namespace cloth

@@ -14,7 +14,9 @@ namespace {
 /// What only a new start can change: the sheet's particles and where they start.
 std::vector<Problem> new_start_needed(const ClothSheet& before, const ClothSheet& after) {
   std::vector<Problem> problems;
-  for (const Field<ClothSheet>& field : cloth_fields())
+  if (before.is_mesh() != after.is_mesh())
+    return {{"cloth.mesh", after.mesh.file, "cannot change while a scene runs", "", 0, 0}};
+  for (const Field<ClothSheet>& field : cloth_fields(before.is_mesh()))
     if (field.info.cost == EditCost::restart && field.get(before) != field.get(after))
       problems.push_back({"cloth." + field.info.key, value_text(field.info, field.get(after)),
                           "cannot change while a scene runs", "", 0, 0});

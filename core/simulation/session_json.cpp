@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "io/run_folder.h"
@@ -65,6 +66,8 @@ std::string indented(const std::string& text) {
 /// Takes a session's document apart. Problems are collected, never thrown.
 class SessionReader {
  public:
+  explicit SessionReader(SceneFolder folder) : folder_(std::move(folder)) {}
+
   std::vector<Problem> problems;
 
   Session read(const json& root) {
@@ -118,7 +121,8 @@ class SessionReader {
   void read_scene_part(const json& root, Session& session) {
     const json* value = member(root, "", "scene");
     if (!value) return;
-    SceneReading reading = read_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "");
+    SceneReading reading =
+        read_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "", {}, {folder_});
     if (reading.scene) session.scene = std::move(*reading.scene);
     for (Problem& found : reading.problems) {
       found.path = found.path.empty() ? "scene" : "scene." + found.path;
@@ -232,9 +236,10 @@ void put_in_place(const JsonLocations& locations, const std::string& place, Prob
 
 }  // namespace
 
-SessionReading read_session(const std::string& text, const std::string& place) {
+SessionReading read_session(const std::string& text, const std::string& place,
+                            const std::optional<SceneFolder>& folder) {
   if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
-  SessionReader reader;
+  SessionReader reader(folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()}));
   Session session = reader.read(json::parse(text));
   const JsonLocations locations = locate_json(text);
   for (const std::string& path : locations.repeated)

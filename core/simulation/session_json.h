@@ -14,9 +14,10 @@ struct SessionReading {
   std::vector<Problem> problems;
 };
 
-/// `place` names the text in messages. Whether the commands fit the scene at their time only a replay can
-/// tell.
-SessionReading read_session(const std::string& text, const std::string& place);
+/// `place` names the text in messages; its folder is that of meshes, if no other is given. Whether the
+/// commands fit the scene at their time only a replay can tell.
+SessionReading read_session(const std::string& text, const std::string& place,
+                            const std::optional<SceneFolder>& folder = {});
 
 /// Numbers read back to the same bits.
 std::string write_session(const Session& session);

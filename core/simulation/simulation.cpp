@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
@@ -44,7 +45,7 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
 
 Simulation::Simulation(const Scene& scene, Preparation prepare)
     : scene_(scene), prepare_(std::move(prepare)) {
-  system_ = make_grid(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_.cloth, material_of(scene_));
   state_ = starting_state(system_);
   if (prepare_) prepare_(system_, state_);
   time_step_ = resolved_time_step(scene_).value();
@@ -201,7 +202,7 @@ void Simulation::edit(const Scene& scene) {
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
-  system_ = make_grid(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_.cloth, material_of(scene_));
   if (prepare_) {
     ClothState unused = starting_state(system_);
     prepare_(system_, unused);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
@@ -18,7 +19,9 @@ StageInfo spring_stage(const Scene& scene, const ClothSystem& system, SpringFami
   const double stiffness = stiffness_of(*scene.springs, family);
   if (!(stiffness > 0)) return {name, false, fmt::format("springs.{} is 0", name_of(family))};
   const auto count = system.spring_count(family);
-  if (count == 0) return {name, false, "the grid is too small for any"};
+  if (count == 0 && family == SpringFamily::shear && system.is_mesh())
+    return {name, false, "a mesh has edges and no cells to shear"};
+  if (count == 0) return {name, false, "the cloth is too small for any"};
   return {name, true, fmt::format("{} springs of {} N/m", count, stiffness)};
 }
 
@@ -65,7 +68,8 @@ StageInfo contact_stage(const Scene& scene) {
   if (!has_continuous_contact(scene)) return {"contact", true, count};
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(), &moves);
   return {"contact", true,
-          fmt::format("{}{}, without gaps, {} m thick", count, moving > 0 ? fmt::format(" ({} moving)", moving) : "",
+          fmt::format("{}{}, without gaps, {} m thick", count,
+                      moving > 0 ? fmt::format(" ({} moving)", moving) : "",
                       scene.contact.value_or(ContactSettings{}).thickness)};
 }
 
@@ -84,9 +88,10 @@ std::string evaluations_text(const MethodFacts& method) {
 
 std::vector<StageInfo> explain_stages(const Scene& scene) {
   const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
-  const ClothSystem system = make_grid(scene.cloth, material);
+  const ClothSystem system = make_cloth(scene.cloth, material);
   const MethodFacts& method = facts_of(scene.integrator.method);
-  const bool moved_later = contact_stage(scene).present || scene.self_contact || limiter_stage(scene, system).present;
+  const bool moved_later =
+      contact_stage(scene).present || scene.self_contact || limiter_stage(scene, system).present;
   std::vector<StageInfo> stages;
   for (const SpringFamily family : spring_families) stages.push_back(spring_stage(scene, system, family));
   stages.push_back(positive_stage("spring damping", scene.springs.has_value(), "springs", material.damping,

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "forces/force_model.h"
 #include "measure/energy.h"
 #include "measure/stability_limit.h"
@@ -73,7 +74,7 @@ void finish(const ClothSystem& system, const std::vector<ClothState>& check, Ref
 
 bool is_smooth(const Scene& scene) {
   if (!scene.obstacles.empty()) return false;
-  const ClothSystem system = make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{}));
+  const ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}));
   return !(scene.deformation && DeformationLimiter::is_needed(*scene.deformation, system));
 }
 
@@ -88,7 +89,7 @@ struct ClothMotion::Forces {
 };
 
 ClothMotion::ClothMotion(const Scene& scene)
-    : system_(make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
+    : system_(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
       forces_(std::make_unique<Forces>(scene, system_)) {}
 
 ClothMotion::~ClothMotion() = default;

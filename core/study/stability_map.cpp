@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
@@ -30,10 +31,24 @@ double next_random(std::uint64_t& state) {
   return static_cast<double>(bits >> 11) * 0x1p-52 - 1;
 }
 
+/// m, between neighbours at rest.
+double shortest_spacing(const ClothSheet& sheet) {
+  if (!sheet.is_mesh()) {
+    const GridCell grid = cell_of(sheet);
+    return std::min(grid.across.norm(), grid.down.norm());
+  }
+  const SceneMesh& mesh = *sheet.mesh.loaded;
+  double shortest = infinity;
+  for (const auto& [a, b] : mesh.edges)
+    shortest = std::min(shortest, (mesh.surface.vertices[static_cast<std::size_t>(a)] -
+                                   mesh.surface.vertices[static_cast<std::size_t>(b)])
+                                      .norm());
+  return shortest;
+}
+
 /// Moves every free particle at random, so that every motion that can grow has something to grow from.
 Preparation perturbation(const Scene& cell, const StabilityCriterion& criterion) {
-  const GridCell grid = cell_of(cell.cloth);
-  const double length = criterion.perturbation * std::min(grid.across.norm(), grid.down.norm());
+  const double length = criterion.perturbation * shortest_spacing(cell.cloth);
   return [length, seed = criterion.perturbation_seed](ClothSystem& system, ClothState& state) {
     std::uint64_t random = seed;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -58,7 +73,9 @@ double energy_scale(const Simulation& run) {
          0.5 * mass * wind * wind + std::abs(run.checkpoint().ledger.initial) + trace * elastic;
 }
 
+/// A mesh stays as it is: no smaller one has the same triangles.
 void make_smaller(ClothSheet& cloth) {
+  if (cloth.is_mesh()) return;
   const int rows = std::min(cloth.rows, study_grid), columns = std::min(cloth.columns, study_grid);
   const auto scaled = [](int index, int from, int to) {
     return static_cast<int>(std::lround(static_cast<double>(index) * (to - 1) / (from - 1)));
@@ -316,7 +333,7 @@ PredictedLimits predict_limits(const Scene& cell) {
                          .provot = provot_step(cell),
                          .spectrum = infinity};
   if (!std::isfinite(limits.predicted)) return limits;
-  const ClothSystem system = make_grid(cell.cloth, cell.springs.value_or(SpringMaterial{}));
+  const ClothSystem system = make_cloth(cell.cloth, cell.springs.value_or(SpringMaterial{}));
   const double omega = measure_spectrum(system, system.start).largest_frequency();
   limits.spectrum = seconds_of(stable_step(method, omega, damping_rates(cell)));
   return limits;

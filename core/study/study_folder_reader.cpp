@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
@@ -138,7 +139,7 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const jso
   WorkPrecision study;
   study.scene = scene_of(root);
   study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
-  study.diagonal = std::hypot(study.scene.cloth.width, study.scene.cloth.height);
+  study.diagonal = diagonal_of(study.scene.cloth);
   const json& options = root.at("options");
   const double horizon = options.at("horizon_s").get<double>();
   if (!(horizon > 0)) throw BadFolder{"study.json: options.horizon_s: must be > 0"};

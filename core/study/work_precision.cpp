@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "cloth/mesh_cloth.h"
+
 namespace cloth {
 namespace {
 
@@ -326,7 +328,7 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
   WorkPrecision study;
   study.scene = studied_scene(scene);
   study.particles = scene.cloth.rows * scene.cloth.columns;
-  study.diagonal = std::hypot(scene.cloth.width, scene.cloth.height);
+  study.diagonal = diagonal_of(scene.cloth);
   study.repeats = options.repeats;
   study.budget = options.budget;
   const auto& methods = options.methods.empty() ? integrator_names() : options.methods;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
 
 namespace cloth::test {
@@ -16,7 +17,7 @@ IntegratorChoice exactly(const std::string& method, std::optional<double> time_s
 }
 
 DirectRun::DirectRun(const Scene& scene, const IntegratorChoice& choice)
-    : DirectRun(make_grid(scene.cloth, scene.springs.value_or(SpringMaterial{})), scene, choice) {}
+    : DirectRun(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})), scene, choice) {}
 
 DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoice& choice)
     : system(std::move(made)),

@@ -24,7 +24,8 @@ std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& 
   cloth::Scene scene = simulation.scene();
   scene.integrator.time_step = simulation.time_step();
   if (auto error = cloth::make_folder(folder)) return error;
-  if (auto error = cloth::write_text_file(folder / "scene.json", cloth::write_scene(scene))) return error;
+  const cloth::Scene moved = moved_to_folder(scene, folder.string());
+  if (auto error = cloth::write_text_file(folder / "scene.json", cloth::write_scene(moved))) return error;
   if (first_step_ > 0)
     if (auto error = cloth::write_text_file(folder / "start_state.csv", cloth::state_csv(simulation.state())))
       return error;

@@ -345,7 +345,10 @@ void SimulationWorker::publish_status() {
     status_.step = simulation_->state().step;
     status_.time_step = simulation_->time_step();
     const auto& unreachable = simulation_->unreachable_rate();
-    status_.notice = unreachable ? cloth::describe(*unreachable, simulation_->system().columns) : "";
+    status_.notice.clear();
+    for (const std::string& notice : cloth::mesh_notices(simulation_->scene()))
+      status_.notice += notice + '\n';
+    if (unreachable) status_.notice += cloth::describe(*unreachable, simulation_->system());
     if (!status_.scene || *status_.scene != simulation_->scene())
       status_.scene = std::make_shared<cloth::Scene>(simulation_->scene());
     status_.history = {.last_step = history_.last_step(),

@@ -99,8 +99,9 @@ bool SimulationWorker::advance_again() {
 
 void SimulationWorker::handle(const command::SaveSession& save) {
   if (!simulation_) return;
-  const std::string text = cloth::write_session(history_.session(*simulation_));
-  const auto error = cloth::write_text_file(save.file, text);
+  cloth::Session session = history_.session(*simulation_);
+  session.scene = moved_to_folder(session.scene, save.file.parent_path().string());
+  const auto error = cloth::write_text_file(save.file, cloth::write_session(session));
   status_.session_error = error ? error->text() : "";
 }
 
@@ -113,7 +114,8 @@ void SimulationWorker::handle(const command::OpenSession& open) {
       status_.session_error = error->text();
       return;
     }
-    cloth::SessionReading reading = cloth::read_session(text, file->filename().string());
+    cloth::SessionReading reading = cloth::read_session(text, file->filename().string(),
+                                                        cloth::SceneFolder{file->parent_path().string()});
     if (!reading.session) return show_session_problems(reading.problems);
     session = std::move(*reading.session);
   } else {

@@ -198,6 +198,8 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
 
   Scene after = sceneBefore(path);
   parameter->set(after, value);
+  if (const auto problems = load_meshes(after, &scene_); !problems.empty())
+    return QString::fromStdString(problems.front().rule);
   if (after.cloth.rows != scene_.cloth.rows || after.cloth.columns != scene_.cloth.columns)
     after.cloth.pins = pins_inside(after.cloth);
   push(verb.arg(in_sentence(parameter->info.label)), std::move(after),

@@ -22,8 +22,14 @@ QString lines_of(const std::vector<cloth::Problem>& problems) {
   return lines.join('\n');
 }
 
+/// Where the meshes of a scene at `path` are found; a built-in scene has no path.
+cloth::SceneFolder folder_of(const QString& path) {
+  if (path.isEmpty()) return {.path = "", .built_in = true};
+  return {QFileInfo(path).absolutePath().toStdString()};
+}
+
 OpenedScene read_text(const std::string& text, const std::string& place, const QString& path) {
-  cloth::SceneReading reading = cloth::read_scene(text, place);
+  cloth::SceneReading reading = cloth::read_scene(text, place, {}, {folder_of(path)});
   return {std::move(reading.scene), {}, path, lines_of(reading.problems)};
 }
 
@@ -33,7 +39,7 @@ bool is_session(const std::string& text, const QString& path) {
 }
 
 OpenedScene read_session_text(const std::string& text, const std::string& place, const QString& path) {
-  cloth::SessionReading reading = cloth::read_session(text, place);
+  cloth::SessionReading reading = cloth::read_session(text, place, folder_of(path));
   OpenedScene opened{{}, std::move(reading.session), path, lines_of(reading.problems)};
   if (opened.session) opened.scene = opened.session->scene;
   return opened;
@@ -59,7 +65,8 @@ OpenedScene open_scene(const QString& name) {
 }
 
 QString save_scene_file(const cloth::Scene& scene, const QString& path) {
-  const auto error = cloth::write_text_file(path.toStdString(), cloth::write_scene(scene));
+  const auto error = cloth::write_text_file(path.toStdString(),
+                                            cloth::write_scene(moved_to_folder(scene, folder_of(path).path)));
   return error ? QString::fromStdString(error->text()) : QString();
 }
 

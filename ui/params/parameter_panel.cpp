@@ -101,7 +101,8 @@ void ParameterPanel::fillAddMenu() {
   menu_->clear();
   bool among_obstacles = false;
   for (const cloth::BlockOffer& offer : offers_for(document_.scene())) {
-    const bool obstacle = offer.path == "sphere" || offer.path == "box" || offer.path == "plane";
+    const bool obstacle = std::any_of(cloth::all_shapes.begin(), cloth::all_shapes.end(),
+                                      [&](cloth::Shape shape) { return offer.path == name_of(shape); });
     if (obstacle && !among_obstacles && !menu_->isEmpty()) menu_->addSeparator();
     among_obstacles = obstacle;
     QAction* action = menu_->addAction(QString::fromStdString(offer.title));

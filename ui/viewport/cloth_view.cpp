@@ -29,7 +29,7 @@ bool sizes_agree(const ClothFrame& frame) {
 }
 
 bool has_cloth(const std::shared_ptr<const ClothFrame>& frame) {
-  return frame && frame->rows > 1 && frame->columns > 1;
+  return frame && frame->has_cloth();
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void ClothView::setBrushRadius(double pixels) {
 }
 
 std::optional<int> ClothView::pick(QPointF at) const {
-  if (!frame_ || frame_->rows < 2 || frame_->columns < 2) return std::nullopt;
+  if (!frame_ || !frame_->has_cloth()) return std::nullopt;
   return pick_particle(*frame_, camera_, as_vector(at));
 }
 

@@ -19,26 +19,36 @@ double distance_to_triangle(const Ray& ray, const Eigen::Vector3d& p, const Eige
   return f.dot(k) / det;
 }
 
-std::optional<int> nearest_hit(const ClothFrame& frame, const Ray& ray) {
-  double first = std::numeric_limits<double>::infinity();
-  std::optional<int> picked;
+template <class Visit>  // visit(triangle)
+void for_each_triangle(const ClothFrame& frame, Visit visit) {
+  if (frame.mesh) {
+    for (const cloth::Triangle& triangle : frame.mesh->surface.triangles) visit(triangle);
+    return;
+  }
   for (int r = 0; r + 1 < frame.rows; ++r) {
     for (int c = 0; c + 1 < frame.columns; ++c) {
       const int a = r * frame.columns + c, d = a + frame.columns;
-      for (const std::array<int, 3>& triangle : {std::array{a, d, d + 1}, std::array{a, d + 1, a + 1}}) {
-        const std::array corners{particle_position(frame, triangle[0]), particle_position(frame, triangle[1]),
-                                 particle_position(frame, triangle[2])};
-        const double along = distance_to_triangle(ray, corners[0], corners[1], corners[2]);
-        if (!(along > 0 && along < first)) continue;
-        first = along;
-        const Eigen::Vector3d hit = ray.origin + along * ray.direction;
-        std::size_t nearest = 0;
-        for (std::size_t k = 1; k < 3; ++k)
-          if ((corners[k] - hit).squaredNorm() < (corners[nearest] - hit).squaredNorm()) nearest = k;
-        picked = triangle[nearest];
-      }
+      visit(cloth::Triangle{a, d, d + 1});
+      visit(cloth::Triangle{a, d + 1, a + 1});
     }
   }
+}
+
+std::optional<int> nearest_hit(const ClothFrame& frame, const Ray& ray) {
+  double first = std::numeric_limits<double>::infinity();
+  std::optional<int> picked;
+  for_each_triangle(frame, [&](const cloth::Triangle& triangle) {
+    const std::array corners{particle_position(frame, triangle[0]), particle_position(frame, triangle[1]),
+                             particle_position(frame, triangle[2])};
+    const double along = distance_to_triangle(ray, corners[0], corners[1], corners[2]);
+    if (!(along > 0 && along < first)) return;
+    first = along;
+    const Eigen::Vector3d hit = ray.origin + along * ray.direction;
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if ((corners[k] - hit).squaredNorm() < (corners[nearest] - hit).squaredNorm()) nearest = k;
+    picked = triangle[nearest];
+  });
   return picked;
 }
 

@@ -27,6 +27,10 @@ Eigen::AlignedBox3d bounds_of_obstacles(const std::vector<cloth::Obstacle>& obst
   Eigen::AlignedBox3d box;
   for (const cloth::Obstacle& o : obstacles) {
     if (o.shape == cloth::Shape::plane) continue;
+    if (o.shape == cloth::Shape::mesh) {
+      box.extend(placed_bounds(o));
+      continue;
+    }
     const Eigen::Vector3d half =
         o.shape == cloth::Shape::sphere ? Eigen::Vector3d::Constant(o.radius) : Eigen::Vector3d(o.size / 2);
     box.extend(o.center - half);

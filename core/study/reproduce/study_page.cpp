@@ -61,7 +61,7 @@ SceneRun scene_run(const std::string& name, const std::vector<std::string>& sett
     const bool quoted = setting.find_first_of(" []\"") != std::string::npos;
     command += " --set " + (quoted ? "'" + setting + "'" : setting);
   }
-  SceneReading reading = read_scene(find_builtin_scene(name)->text, name, overrides);
+  SceneReading reading = read_scene(find_builtin_scene(name)->text, name, overrides, {SceneFolder{"", true}});
   assert(reading.scene);
   return {*std::move(reading.scene), command + " --out " + name};
 }

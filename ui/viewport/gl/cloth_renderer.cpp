@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/mesh_look.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
 #include "viewport/gl/weave.h"
@@ -21,6 +22,13 @@ constexpr double tiles_along_cloth = 9;  // of the weave, over the longer side
 
 QVector3D vector(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+QMatrix3x3 matrix(const Eigen::Matrix3d& m) {
+  QMatrix3x3 result;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) result(r, c) = static_cast<float>(m(r, c));
+  return result;
 }
 
 QMatrix4x4 matrix(const Eigen::Matrix4d& m) {
@@ -50,6 +58,10 @@ double grid_step_for(double size) {
   return (fine <= 2 * decade ? 2 : fine <= 5 * decade ? 5 : 10) * decade;
 }
 
+QColor thread_colour(const Theme& theme) {
+  return theme.dark ? QColor(0xB9, 0xC7, 0xD6) : QColor(0x3F, 0x56, 0x6E);
+}
+
 QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
   const float s = 1 - share_of_b;
   return QColor::fromRgbF(s * a.redF() + share_of_b * b.redF(), s * a.greenF() + share_of_b * b.greenF(),
@@ -72,6 +84,7 @@ bool ClothRenderer::initialise(bool frugal, QString* problem) {
   QOpenGLFunctions_3_3_Core& gl = *this;
   surface_ = std::make_unique<ClothSurface>(gl);
   solids_ = std::make_unique<Solids>(gl);
+  bodies_ = std::make_unique<MeshBodies>(gl);
   make_textures();
   return true;
 }
@@ -90,7 +103,8 @@ bool ClothRenderer::build_programs(QString* problem) {
   return build_program(background_, "background.vert", "background.frag", {}, problem) &&
          build_program(plane_, "plane.vert", "plane.frag", {}, problem) &&
          build_program(solid_, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
-         build_program(marker_, "marker.vert", "marker.frag", {}, problem);
+         build_program(marker_, "marker.vert", "marker.frag", {}, problem) &&
+         build_program(thread_, "thread.vert", "thread.frag", {}, problem);
 }
 
 void ClothRenderer::make_textures() {
@@ -156,20 +170,35 @@ void ClothRenderer::store(Texture decoded, Texture stored) {
 
 void ClothRenderer::set_frame(const ClothFrame& frame) {
   obstacles_ = frame.obstacles;
-  has_cloth_ = frame.rows > 1 && frame.columns > 1;
+  bodies_->keep(obstacles_);
+  has_cloth_ = frame.has_cloth();
+  is_mesh_ = frame.mesh != nullptr;
   if (!has_cloth_) return;
   if (frame.topology != topology_ || frame.rows != rows_ || frame.columns != columns_) {
     topology_ = frame.topology;
     rows_ = frame.rows;
     columns_ = frame.columns;
-    const double width = chain_length(frame, 0, 1, columns_),
-                 height = chain_length(frame, 0, columns_, rows_);
-    const double longer = std::max({width, height, 1e-9});
-    cell_length_ = std::min(width / (columns_ - 1), height / (rows_ - 1));
-    tiles_per_cell_ = {number(tiles_along_cloth * width / longer / (columns_ - 1)),
-                       number(tiles_along_cloth * height / longer / (rows_ - 1))};
+    measure_cloth(frame);
   }
   surface_->upload(frame);
+}
+
+void ClothRenderer::measure_cloth(const ClothFrame& frame) {
+  if (is_mesh_) {
+    const double longest = cloth::flat_pattern(frame.mesh->surface).size.maxCoeff();
+    const float tiles = number(tiles_along_cloth / std::max(longest, 1e-9));
+    tiles_per_cell_ = {tiles, tiles};
+    double length = 0;
+    for (const auto& [a, b] : frame.mesh->edges)
+      length += (particle_position(frame, a) - particle_position(frame, b)).norm();
+    cell_length_ = length / std::max(static_cast<double>(frame.mesh->edges.size()), 1.0);
+    return;
+  }
+  const double width = chain_length(frame, 0, 1, columns_), height = chain_length(frame, 0, columns_, rows_);
+  const double longer = std::max({width, height, 1e-9});
+  cell_length_ = std::min(width / (columns_ - 1), height / (rows_ - 1));
+  tiles_per_cell_ = {number(tiles_along_cloth * width / longer / (columns_ - 1)),
+                     number(tiles_along_cloth * height / longer / (rows_ - 1))};
 }
 
 void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
@@ -233,7 +262,16 @@ void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
   glPolygonOffset(1.5F, 4.0F);
   for (const cloth::Obstacle& o : obstacles_) {
     if (o.shape == cloth::Shape::plane) continue;
+    if (o.shape == cloth::Shape::mesh) {
+      if (!o.mesh.loaded) continue;
+      solid_.setUniformValue("center", vector(o.translate));
+      solid_.setUniformValue("turn", matrix(cloth::turn_of(o)));
+      solid_.setUniformValue("scale", vector(Eigen::Vector3d::Constant(o.scale)));
+      bodies_->draw(*o.mesh.loaded);
+      continue;
+    }
     solid_.setUniformValue("center", vector(o.center));
+    solid_.setUniformValue("turn", QMatrix3x3());
     if (o.shape == cloth::Shape::sphere) {
       const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
       solid_.setUniformValue("scale",
@@ -265,19 +303,36 @@ void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
     const auto mixable = [quick](const QColor& c) {
       return quick ? as_srgb(c) * as_srgb(c) : linear_light(c);
     };
-    const QColor thread = theme.dark ? QColor(0xB9, 0xC7, 0xD6) : QColor(0x3F, 0x56, 0x6E);
-    cloth.setUniformValue("last_cell", QVector2D(number(columns_ - 1), number(rows_ - 1)));
+    cloth.setUniformValue("last_cell",
+                          is_mesh_ ? QVector2D(1, 1) : QVector2D(number(columns_ - 1), number(rows_ - 1)));
     cloth.setUniformValue("line_width", number(1.25 * shot.pixel_ratio));
     cloth.setUniformValue("sheet_colour", mixable(sheet));
-    cloth.setUniformValue("thread_colour", mixable(thread));
+    cloth.setUniformValue("thread_colour", mixable(thread_colour(theme)));
   } else {
     glBindTexture(GL_TEXTURE_2D, textures_[quick ? stored_palette : palette]);
     cloth.setUniformValue("strain_palette", 0);
     cloth.setUniformValue("strain_maximum", number(shot.strain_maximum));
   }
-  surface_->draw_triangles();
+  const bool threads = is_mesh_ && shot.mode == ViewMode::wireframe;
+  if (threads) {  // pushed back, so that its edges lie on it
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 1.0F);
+    surface_->draw_plain_triangles();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+  } else {
+    surface_->draw_triangles();
+  }
   glBindTexture(GL_TEXTURE_2D, 0);
   cloth.release();
+  if (threads) draw_threads(shot, theme);
+}
+
+void ClothRenderer::draw_threads(const Shot& shot, const Theme& theme) {
+  thread_.bind();
+  thread_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  thread_.setUniformValue("thread_colour", as_srgb(thread_colour(theme)));
+  surface_->draw_edges();
+  thread_.release();
 }
 
 double ClothRenderer::cell_on_screen(const Shot& shot) const {

@@ -10,6 +10,7 @@
 
 #include "bridge/frame.h"
 #include "viewport/gl/cloth_surface.h"
+#include "viewport/gl/mesh_body.h"
 #include "viewport/gl/solids.h"
 #include "viewport/scene_extent.h"
 #include "viewport/view_mode.h"
@@ -60,24 +61,27 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   void light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme);
   void draw_background(const Theme& theme);
   void draw_obstacles(const Shot& shot, const Theme& theme);
+  void measure_cloth(const ClothFrame& frame);
   void draw_cloth(const Shot& shot, const Theme& theme);
+  void draw_threads(const Shot& shot, const Theme& theme);
   double cell_on_screen(const Shot& shot) const;  // px
   void draw_planes(const Shot& shot, const Theme& theme);
   void draw_plane(const Shot& shot, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
   void draw_pins(const Shot& shot, const Theme& theme);
 
-  QOpenGLShaderProgram background_, plane_, solid_, marker_;
+  QOpenGLShaderProgram background_, plane_, solid_, marker_, thread_;
   std::array<QOpenGLShaderProgram, 3> cloth_, quick_cloth_;  // by ViewMode; quick_cloth_ only if frugal
   std::unique_ptr<ClothSurface> surface_;
   std::unique_ptr<Solids> solids_;
+  std::unique_ptr<MeshBodies> bodies_;
   GLuint textures_[texture_count] = {};  // the stored ones give sRGB; only if frugal
   bool frugal_ = false;
 
-  bool has_cloth_ = false;
+  bool has_cloth_ = false, is_mesh_ = false;
   std::uint64_t topology_ = 0;
   int rows_ = 0, columns_ = 0;
   double cell_length_ = 0;    // m, between neighbours when the run began
-  QVector2D tiles_per_cell_;  // of the weave
+  QVector2D tiles_per_cell_;  // of the weave; of a mesh a metre takes the cell's place
   std::vector<cloth::Obstacle> obstacles_;
 };
 

@@ -1,5 +1,6 @@
 #include "viewport/gl/cloth_surface.h"
 
+#include "geometry/mesh_look.h"
 #include "viewport/gl/cloth_mesh.h"
 
 namespace clothlab {
@@ -23,7 +24,7 @@ ClothSurface::~ClothSurface() {
 
 void ClothSurface::upload(const ClothFrame& frame) {
   const bool new_grid = frame.rows != rows_ || frame.columns != columns_ || frame.topology != topology_;
-  if (new_grid) upload_grid(frame);
+  if (new_grid) upload_topology(frame);
   if (new_grid || frame.pinned != pinned_flags_) upload_pins(frame);
   upload_moving(frame);
 }
@@ -60,23 +61,48 @@ void ClothSurface::lay_out_attributes(std::size_t particles) {
   gl_.glBindVertexArray(0);
 }
 
-void ClothSurface::upload_grid(const ClothFrame& frame) {
+void ClothSurface::upload_topology(const ClothFrame& frame) {
   rows_ = frame.rows;
   columns_ = frame.columns;
   topology_ = frame.topology;
-  std::vector<std::uint32_t> indices;
-  cloth_triangles(rows_, columns_, indices);
+  const std::vector<float> pattern = pattern_of(frame);
+  lay_out_attributes(pattern.size() / 2);
+  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[cells]);
+  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(pattern), pattern.data(), GL_STATIC_DRAW);
+
+  std::vector<std::uint32_t> indices, lines;
+  if (frame.mesh) {
+    for (const cloth::Triangle& triangle : frame.mesh->surface.triangles)
+      for (const int corner : triangle) indices.push_back(static_cast<std::uint32_t>(corner));
+    for (const auto& edge : frame.mesh->edges)
+      for (const int end : edge) lines.push_back(static_cast<std::uint32_t>(end));
+  } else {
+    cloth_triangles(rows_, columns_, indices);
+  }
   index_count_ = static_cast<GLsizei>(indices.size());
-  std::vector<float> grid;
-  grid.reserve(2 * static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_));
+  edge_count_ = static_cast<GLsizei>(lines.size());
+  upload_indices(triangles, indices);
+  upload_indices(edges, lines);
+}
+
+/// Column and row of each particle; of a mesh its place in the cloth laid flat, m.
+std::vector<float> ClothSurface::pattern_of(const ClothFrame& frame) const {
+  std::vector<float> pattern;
+  if (frame.mesh) {
+    for (const Eigen::Vector2d& at : cloth::flat_pattern(frame.mesh->surface).at)
+      pattern.insert(pattern.end(), {static_cast<float>(at.x()), static_cast<float>(at.y())});
+    return pattern;
+  }
+  pattern.reserve(2 * static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_));
   for (int r = 0; r < rows_; ++r)
     for (int c = 0; c < columns_; ++c)
-      grid.insert(grid.end(), {static_cast<float>(c), static_cast<float>(r)});
-  lay_out_attributes(grid.size() / 2);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[cells]);
-  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(grid), grid.data(), GL_STATIC_DRAW);
+      pattern.insert(pattern.end(), {static_cast<float>(c), static_cast<float>(r)});
+  return pattern;
+}
+
+void ClothSurface::upload_indices(Buffer buffer, const std::vector<std::uint32_t>& indices) {
   gl_.glBindVertexArray(vertex_array_);
-  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[triangles]);
+  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[buffer]);
   gl_.glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(indices), indices.data(), GL_STATIC_DRAW);
   gl_.glBindVertexArray(0);
 }
@@ -87,16 +113,32 @@ void ClothSurface::upload_pins(const ClothFrame& frame) {
   for (std::size_t i = 0; i < frame.pinned.size(); ++i)
     if (frame.pinned[i]) pinned_indices_.push_back(static_cast<std::uint32_t>(i));
   pinned_count_ = static_cast<GLsizei>(pinned_indices_.size());
-  gl_.glBindVertexArray(vertex_array_);
-  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[pinned]);
-  gl_.glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(pinned_indices_), pinned_indices_.data(), GL_STATIC_DRAW);
-  gl_.glBindVertexArray(0);
+  upload_indices(pinned, pinned_indices_);
 }
 
 void ClothSurface::draw_triangles() {
   gl_.glBindVertexArray(vertex_array_);
   gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[triangles]);
   gl_.glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  gl_.glBindVertexArray(0);
+}
+
+void ClothSurface::draw_plain_triangles() {
+  constexpr GLuint cell = 3;
+  gl_.glBindVertexArray(vertex_array_);
+  gl_.glDisableVertexAttribArray(cell);
+  gl_.glVertexAttrib2f(cell, 0.5F, 0.5F);
+  gl_.glBindVertexArray(0);
+  draw_triangles();
+  gl_.glBindVertexArray(vertex_array_);
+  gl_.glEnableVertexAttribArray(cell);
+  gl_.glBindVertexArray(0);
+}
+
+void ClothSurface::draw_edges() {
+  gl_.glBindVertexArray(vertex_array_);
+  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[edges]);
+  gl_.glDrawElements(GL_LINES, edge_count_, GL_UNSIGNED_INT, nullptr);
   gl_.glBindVertexArray(0);
 }
 

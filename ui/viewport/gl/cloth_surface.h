@@ -20,13 +20,19 @@ class ClothSurface {
   /// changed, and pins when they have. Allocates only for those.
   void upload(const ClothFrame& frame);
   void draw_triangles();
+  /// The same without a pattern: every particle in the middle of a cell.
+  void draw_plain_triangles();
+  /// The edges of a mesh, as lines; none of a grid.
+  void draw_edges();
   void draw_pinned_points();
   bool has_pinned_points() const { return pinned_count_ > 0; }
 
  private:
-  enum Buffer { moving, cells, triangles, pinned, buffer_count };
+  enum Buffer { moving, cells, triangles, edges, pinned, buffer_count };
 
-  void upload_grid(const ClothFrame& frame);
+  void upload_topology(const ClothFrame& frame);
+  std::vector<float> pattern_of(const ClothFrame& frame) const;
+  void upload_indices(Buffer buffer, const std::vector<std::uint32_t>& indices);
   void lay_out_attributes(std::size_t particles);
   void upload_pins(const ClothFrame& frame);
   void upload_moving(const ClothFrame& frame);
@@ -36,7 +42,7 @@ class ClothSurface {
   GLuint buffers_[buffer_count] = {};
   int rows_ = 0, columns_ = 0;
   std::uint64_t topology_ = 0;
-  GLsizei index_count_ = 0, pinned_count_ = 0;
+  GLsizei index_count_ = 0, edge_count_ = 0, pinned_count_ = 0;
   std::vector<std::uint8_t> pinned_flags_;  // as uploaded
   std::vector<std::uint32_t> pinned_indices_;
 };

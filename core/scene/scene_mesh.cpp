@@ -1,0 +1,184 @@
+#include "scene/scene_mesh.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <numbers>
+
+#include "geometry/builtin_meshes.h"
+#include "geometry/mesh_topology.h"
+#include "io/fnv_hash.h"
+#include "io/obj_reader.h"
+#include "scene/scene.h"
+
+namespace cloth {
+namespace {
+
+namespace fs = std::filesystem;
+
+using SharedMesh = std::shared_ptr<const SceneMesh>;
+
+std::string hash_of(const TriangleMesh& mesh) {
+  FnvHash hash;
+  for (const Vec3& v : mesh.vertices) hash.add(std::span<const double>(v.data(), 3));
+  for (const Triangle& t : mesh.triangles)
+    for (const int corner : t) hash.add(static_cast<std::uint64_t>(corner));
+  return hash.text();
+}
+
+SharedMesh prepared(const std::string& file, TriangleMesh surface, bool built_in) {
+  auto mesh = std::make_shared<SceneMesh>();
+  mesh->file = file;
+  mesh->built_in = built_in;
+  CleanMesh clean = cleaned(surface);
+  mesh->notices = std::move(clean.notices);
+  mesh->surface = std::move(clean.mesh);
+  MeshTopology topology = topology_of(mesh->surface);
+  mesh->notices.insert(mesh->notices.end(), topology.notices.begin(), topology.notices.end());
+  mesh->open_edges = topology.open_edges;
+  mesh->edges = std::move(topology.edges);
+  mesh->hinges = std::move(topology.hinges);
+  for (const Vec3& vertex : mesh->surface.vertices) mesh->bounds.extend(vertex);
+  mesh->hash = hash_of(mesh->surface);
+  return mesh;
+}
+
+/// Made once and for all: constant, and the same for everybody.
+SharedMesh built_in_mesh(const BuiltinMesh& which) {
+  static std::mutex mutex;
+  static std::map<std::string, SharedMesh> made;
+  const std::lock_guard lock(mutex);
+  SharedMesh& mesh = made[which.name];
+  if (!mesh) mesh = prepared(which.name, which.make(), true);
+  return mesh;
+}
+
+/// A file of the scene's folder, else a built-in mesh; or what is wrong with it.
+struct Loading {
+  SharedMesh mesh;
+  std::string rule;
+};
+
+Loading load(const std::string& file, const SceneFolder& folder) {
+  if (file.empty()) return {nullptr, "must name a mesh: an OBJ file, or a built-in one"};
+  const BuiltinMesh* built_in = find_builtin_mesh(file);
+  if (built_in && folder.built_in) return {built_in_mesh(*built_in), {}};
+  const fs::path path = fs::path(folder.path) / file;
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) {
+    ObjReading reading = read_obj(path);
+    if (!reading.mesh) return {nullptr, "cannot be used: " + reading.problem};
+    SharedMesh mesh = prepared(file, std::move(*reading.mesh), false);
+    if (mesh->surface.triangles.empty())
+      return {nullptr, "cannot be used: all of its triangles are degenerate"};
+    return {std::move(mesh), {}};
+  }
+  if (built_in) return {built_in_mesh(*built_in), {}};
+  std::string names;
+  for (const BuiltinMesh& known : builtin_meshes()) names += (names.empty() ? "" : ", ") + known.name;
+  return {nullptr,
+          fmt::format("must be a file, as seen from the scene's folder, or a built-in mesh: {}", names)};
+}
+
+/// Visits the scene's cloth and obstacles where they have a mesh.
+template <class SceneType, class Visit>  // visit(path, choice)
+void for_each_mesh(SceneType& scene, Visit visit) {
+  if (scene.cloth.is_mesh()) visit(std::string("cloth.mesh"), scene.cloth.mesh);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    if (scene.obstacles[i].shape == Shape::mesh)
+      visit(fmt::format("obstacles.{}.file", i), scene.obstacles[i].mesh);
+}
+
+SharedMesh find_loaded(const Scene* scene, const SceneFolder& folder, const std::string& file) {
+  SharedMesh found;
+  if (scene && scene->folder.path == folder.path && scene->folder.built_in == folder.built_in)
+    for_each_mesh(*scene, [&](const std::string&, const MeshChoice& mesh) {
+      if (mesh.is_loaded() && mesh.file == file) found = mesh.loaded;
+    });
+  return found;
+}
+
+}  // namespace
+
+bool MeshChoice::operator==(const MeshChoice& other) const {
+  if (file != other.file || is_loaded() != other.is_loaded()) return false;
+  return !is_loaded() || loaded == other.loaded || loaded->hash == other.loaded->hash;
+}
+
+std::vector<Problem> load_meshes(Scene& scene, const Scene* known) {
+  std::vector<Problem> problems;
+  for_each_mesh(scene, [&](const std::string& path, MeshChoice& mesh) {
+    if (mesh.is_loaded()) return;
+    mesh.loaded = find_loaded(known, scene.folder, mesh.file);
+    if (!mesh.loaded) mesh.loaded = find_loaded(&scene, scene.folder, mesh.file);
+    if (mesh.loaded) return;
+    Loading loading = load(mesh.file, scene.folder);
+    mesh.loaded = std::move(loading.mesh);
+    if (!mesh.loaded) problems.push_back({path, '"' + mesh.file + '"', loading.rule, "", 0, 0});
+  });
+  if (scene.cloth.is_mesh() && scene.cloth.mesh.is_loaded()) {
+    scene.cloth.rows = 1;
+    scene.cloth.columns = static_cast<int>(scene.cloth.mesh.loaded->surface.vertices.size());
+  }
+  return problems;
+}
+
+std::vector<std::string> mesh_notices(const Scene& scene) {
+  std::vector<std::string> notices;
+  for_each_mesh(scene, [&](const std::string& path, const MeshChoice& mesh) {
+    if (!mesh.is_loaded()) return;
+    const auto add = [&](const std::string& notice) {
+      notices.push_back(fmt::format("{} = \"{}\": {}", path, mesh.file, notice));
+    };
+    for (const std::string& notice : mesh.loaded->notices) add(notice);
+    if (&mesh != &scene.cloth.mesh && mesh.loaded->open_edges > 0)
+      add(fmt::format("{} of its edges are open: it has a border, and no inside", mesh.loaded->open_edges));
+  });
+  return notices;
+}
+
+Scene moved_to_folder(const Scene& scene, const std::string& folder) {
+  Scene moved = scene;
+  moved.folder = {folder};
+  std::error_code error;
+  const fs::path from = fs::absolute(fs::path(scene.folder.path), error),
+                 to = fs::absolute(fs::path(folder), error);
+  for_each_mesh(moved, [&](const std::string&, MeshChoice& mesh) {
+    if (!mesh.is_loaded() || mesh.loaded->built_in || fs::path(mesh.file).is_absolute()) return;
+    const fs::path seen = (from / mesh.file).lexically_normal().lexically_relative(to.lexically_normal());
+    auto renamed = std::make_shared<SceneMesh>(*mesh.loaded);
+    mesh.file = renamed->file = (seen.empty() ? from / mesh.file : seen).generic_string();
+    mesh.loaded = std::move(renamed);
+  });
+  return moved;
+}
+
+Eigen::Matrix3d turn_of(const Obstacle& obstacle) {
+  const Vec3 angle = obstacle.rotate * (std::numbers::pi / 180);
+  using Turn = Eigen::AngleAxisd;
+  return (Turn(angle.z(), Vec3::UnitZ()) * Turn(angle.y(), Vec3::UnitY()) * Turn(angle.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+Eigen::AlignedBox3d placed_bounds(const Obstacle& obstacle) {
+  Eigen::AlignedBox3d bounds;
+  if (!obstacle.mesh.is_loaded()) return bounds;
+  const Eigen::Matrix3d turn = obstacle.scale * turn_of(obstacle);
+  for (int k = 0; k < 8; ++k) {
+    const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(k);
+    bounds.extend(Vec3(obstacle.translate + turn * obstacle.mesh.loaded->bounds.corner(corner)));
+  }
+  return bounds;
+}
+
+TriangleMesh placed_mesh(const Obstacle& obstacle) {
+  TriangleMesh mesh = obstacle.mesh.loaded->surface;
+  const Eigen::Matrix3d turn = obstacle.scale * turn_of(obstacle);
+  for (Vec3& vertex : mesh.vertices) vertex = obstacle.translate + turn * vertex;
+  return mesh;
+}
+
+}  // namespace cloth

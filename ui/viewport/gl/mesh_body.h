@@ -1,0 +1,39 @@
+// A mesh obstacle in the graphics memory: uploaded once for each mesh, placed by the shader.
+#pragma once
+
+#include <QOpenGLFunctions_3_3_Core>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace clothlab {
+
+/// A context must be current whenever a member is called, the destructor included.
+class MeshBodies {
+ public:
+  explicit MeshBodies(QOpenGLFunctions_3_3_Core& gl) : gl_(gl) {}
+  ~MeshBodies();
+  MeshBodies(const MeshBodies&) = delete;
+  MeshBodies& operator=(const MeshBodies&) = delete;
+
+  /// Uploads the meshes of these obstacles that are not there yet, and lets go of those that none of them
+  /// has.
+  void keep(const std::vector<cloth::Obstacle>& obstacles);
+  void draw(const cloth::SceneMesh& mesh);  ///< as its file has it; one of those that are kept
+
+ private:
+  struct Body {
+    std::shared_ptr<const cloth::SceneMesh> mesh;  ///< so that its address is not given to another
+    GLuint vertex_array = 0, vertices = 0;
+    GLsizei count = 0;
+  };
+  Body upload(std::shared_ptr<const cloth::SceneMesh> mesh);
+  void release(const Body& body);
+
+  QOpenGLFunctions_3_3_Core& gl_;
+  std::map<const cloth::SceneMesh*, Body> bodies_;
+};
+
+}  // namespace clothlab

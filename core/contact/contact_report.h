@@ -20,6 +20,7 @@ struct ContactReport {
   int held_back = 0;   ///< particles that did not get where they should: something was in the way to the end
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only continuous contact says it
   int rounds = 0;         ///< of continuous contact
+  std::size_t pairs = 0;  ///< of features near each other, of the last round
   std::optional<Pinch> pinch;
 };
 

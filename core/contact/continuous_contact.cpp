@@ -14,6 +14,7 @@ std::size_t at(int index) {
 
 /// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
 constexpr double near_factor = 1.5;
+constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
@@ -57,7 +58,8 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
-      search_(surface_, bodies_, scene.self_contact.has_value()),
+      search_(surface_, bodies_, scene.self_contact.has_value(),
+              skin_part * mean_edge(surface_, system.start)),
       thickness_(scene.contact.value_or(ContactSettings{}).thickness),
       gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
       poses_(bodies_.size()),
@@ -90,7 +92,7 @@ void ContinuousContact::begin(const ContactTimes& times) {
 
 /// Whether there are any. Forgets what was pushed in earlier rounds.
 bool ContinuousContact::find_pairs() {
-  const double margin = std::max(near_factor * thickness_, 0.5 * near_factor * self_thickness_);
+  const double margin = 0.5 * std::max(thickness_, near_factor * self_thickness_);
   boxes_.resize(safe_.size());
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     const Vec3 here = safe_[i];
@@ -223,6 +225,7 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   }
   if (!moved && touches_.empty()) return report;
   report.acted = true;
+  report.pairs = pairs_.size();
   report.contacts = count_touched();
   state.position = safe_;
   report.impulse = answer_velocities(system, times.step, state);

@@ -33,6 +33,26 @@ Bounds seen_from(const Pose& pose, const Bounds& box) {
   return {middle - half, middle + half};
 }
 
+/// Boxes of the cloth as a mesh meets them on its way, grown by `reach`.
+void seen_from_body(const ObstacleBody& body, const Passage& passage, const std::vector<Bounds>& boxes,
+                    double reach, std::vector<Bounds>& seen) {
+  const Vec3 pivot = passage.from().at(body.pivot);
+  const bool at_home = passage.rests() && passage.from() == Pose{};
+  seen.resize(boxes.size());
+  for (std::size_t f = 0; f < boxes.size(); ++f) {
+    const Bounds& box = boxes[f];
+    seen[f] = at_home ? box : seen_from(passage.from(), box);
+    if (!passage.rests()) seen[f].add(seen_from(passage.to(), box));
+    const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
+    seen[f] = seen[f].grown(reach + bulge(passage, radius));
+  }
+}
+
+bool holds(const Bounds& outer, const Bounds& inner) {
+  return (outer.lower.array() <= inner.lower.array()).all() &&
+         (inner.upper.array() <= outer.upper.array()).all();
+}
+
 bool has_vertex(const Triangle& triangle, int vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
@@ -65,16 +85,9 @@ class PairSearch::Step {
 
   void meet_itself() {
     obstacle_ = FeaturePair::cloth_itself;
-    find_faces();
-    BoxTree& tree = search_.cloth_tree_;
-    if (tree.size() == 0)
-      tree = BoxTree(search_.faces_);
-    else
-      tree.refit(search_.faces_);
-    search_.overlaps_.clear();
-    tree.collect(search_.faces_, search_.overlaps_);
-    for (const BoxPair& both : search_.overlaps_)
-      if (both.query != both.index) meet_own_face(both.query, both.index);
+    for (const BoxPair& both : search_.own_overlaps_)
+      if (both.query != both.index && overlap(search_.faces_[at(both.query)], search_.faces_[at(both.index)]))
+        meet_own_face(both.query, both.index);
   }
 
  private:
@@ -85,11 +98,6 @@ class PairSearch::Step {
   Bounds box_of_face(int face) const {
     const auto& [a, b, c] = cloth_.triangles[at(face)];
     return merged(merged(particles_[at(a)], particles_[at(b)]), particles_[at(c)]);
-  }
-  void find_faces() {
-    search_.faces_.resize(cloth_.triangles.size());
-    for (std::size_t f = 0; f < search_.faces_.size(); ++f)
-      search_.faces_[f] = box_of_face(static_cast<int>(f));
   }
   void add(PairKind kind, int feature, int foreign) { pairs_.push_back({obstacle_, kind, feature, foreign}); }
 
@@ -142,28 +150,39 @@ class PairSearch::Step {
 
   void meet_mesh(const ObstacleBody& body, const Passage& passage) {
     const BoxTree& tree = search_.mesh_trees_[at(obstacle_)];
-    const Vec3 pivot = passage.from().at(body.pivot);
-    for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f) {
-      const Bounds box = box_of_face(f);
-      Bounds seen = seen_from(passage.from(), box);
-      if (!passage.rests()) seen.add(seen_from(passage.to(), box));
-      const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
-      tree.visit(seen.grown(reach_ + bulge(passage, radius)),
-                 [&](int triangle) { meet_face(f, triangle, body.surface); });
-    }
+    seen_from_body(body, passage, particles_, reach_, search_.seen_);
+    for (const BoxPair& both : search_.mesh_overlaps_[at(obstacle_)])
+      meet_face(both.query, both.index, tree, body);
   }
 
   /// Each feature is met by the triangle that answers for it, so that no pair comes twice.
-  void meet_face(int face, int triangle, const Surface& mesh) {
+  void meet_face(int face, int triangle, const BoxTree& tree, const ObstacleBody& body) {
+    const std::vector<Bounds>& seen = search_.seen_;
+    const Triangle& own = cloth_.triangles[at(face)];
+    const Bounds near = merged(merged(seen[at(own[0])], seen[at(own[1])]), seen[at(own[2])]);
+    const Surface& mesh = body.surface;
+    const Bounds& far = tree.box(triangle);
+    if (!overlap(near, far)) return;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (cloth_.answers_for_vertex(face, static_cast<int>(k)) && overlap(seen[at(own[k])], far))
+        add(PairKind::vertex_face, own[k], triangle);
+      const int vertex = mesh.triangles[at(triangle)][k];
+      if (mesh.answers_for_vertex(triangle, static_cast<int>(k)) &&
+          overlap(near, bounds_of(body.vertices[at(vertex)])))
+        add(PairKind::face_vertex, face, vertex);
+    }
     for (int k = 0; k < 3; ++k) {
-      if (cloth_.answers_for_vertex(face, k))
-        add(PairKind::vertex_face, cloth_.triangles[at(face)][at(k)], triangle);
-      if (mesh.answers_for_vertex(triangle, k))
-        add(PairKind::face_vertex, face, mesh.triangles[at(triangle)][at(k)]);
       if (!cloth_.answers_for_edge(face, k)) continue;
-      for (int j = 0; j < 3; ++j)
-        if (mesh.answers_for_edge(triangle, j))
-          add(PairKind::edge_edge, cloth_.edges_of[at(face)][at(k)], mesh.edges_of[at(triangle)][at(j)]);
+      const int e = cloth_.edges_of[at(face)][at(k)];
+      const Bounds box = merged(seen[at(cloth_.edges[at(e)][0])], seen[at(cloth_.edges[at(e)][1])]);
+      if (!overlap(box, far)) continue;
+      for (int j = 0; j < 3; ++j) {
+        if (!mesh.answers_for_edge(triangle, j)) continue;
+        const int g = mesh.edges_of[at(triangle)][at(j)];
+        const auto& [c, d] = mesh.edges[at(g)];
+        if (overlap(box, bounds_of(body.vertices[at(c)], body.vertices[at(d)])))
+          add(PairKind::edge_edge, e, g);
+      }
     }
   }
 
@@ -198,25 +217,79 @@ class PairSearch::Step {
   int obstacle_ = FeaturePair::cloth_itself;
 };
 
-PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself)
-    : cloth_(cloth), bodies_(bodies), with_itself_(with_itself), mesh_trees_(bodies.size()) {
+PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself,
+                       double skin)
+    : cloth_(cloth),
+      bodies_(bodies),
+      with_itself_(with_itself),
+      skin_(skin),
+      mesh_trees_(bodies.size()),
+      mesh_overlaps_(bodies.size()) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies[k].shape != Shape::mesh) continue;
+    needs_trees_ = true;
     std::vector<Bounds> boxes;
     for (const auto& [a, b, c] : bodies[k].surface.triangles)
       boxes.push_back(
           bounds_of(bodies[k].vertices[at(a)], bodies[k].vertices[at(b)], bodies[k].vertices[at(c)]));
     mesh_trees_[k] = BoxTree(boxes);
   }
+  needs_trees_ = needs_trees_ || with_itself_;
+}
+
+/// What the trees have found is kept while every particle stays in its grown box and no mesh moves. It may
+/// say too much; what is in the boxes of this step is told apart afterwards, so that the pairs do not depend
+/// on it.
+void PairSearch::look_in_trees(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
+                               double reach) {
+  const auto stays = [&](std::size_t i) { return holds(kept_[i], particles[i]); };
+  bool kept = kept_.size() == particles.size() && kept_reach_ == reach;
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    kept = kept &&
+           (bodies_[k].shape != Shape::mesh || (passages[k].rests() && passages[k].to() == kept_poses_[k]));
+  for (std::size_t i = 0; kept && i < particles.size(); ++i) kept = stays(i);
+  if (kept) return;
+
+  kept_reach_ = reach;
+  kept_.resize(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) kept_[i] = particles[i].grown(skin_);
+  kept_poses_.clear();
+  for (const Passage& passage : passages) kept_poses_.push_back(passage.to());
+  find_faces(kept_);
+  if (with_itself_) {
+    if (cloth_tree_.size() == 0)
+      cloth_tree_ = BoxTree(faces_);
+    else
+      cloth_tree_.refit(faces_);
+    own_overlaps_.clear();
+    cloth_tree_.collect(faces_, own_overlaps_);
+  }
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (bodies_[k].shape != Shape::mesh) continue;
+    seen_from_body(bodies_[k], passages[k], faces_, reach, seen_);
+    mesh_overlaps_[k].clear();
+    mesh_trees_[k].collect(seen_, mesh_overlaps_[k]);
+  }
+}
+
+void PairSearch::find_faces(const std::vector<Bounds>& particles) {
+  faces_.resize(cloth_.triangles.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const auto& [a, b, c] = cloth_.triangles[f];
+    faces_[f] = merged(merged(particles[at(a)], particles[at(b)]), particles[at(c)]);
+  }
 }
 
 void PairSearch::find(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
                       double reach, std::vector<FeaturePair>& pairs) {
   pairs.clear();
+  if (needs_trees_) {
+    look_in_trees(particles, passages, reach);
+    find_faces(particles);
+  }
   Step step(*this, particles, reach, pairs);
   if (with_itself_) step.meet_itself();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), passages[k]);
-  std::sort(pairs.begin(), pairs.end());
 }
 
 }  // namespace cloth

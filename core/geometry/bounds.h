@@ -36,7 +36,10 @@ Bounds bounds_of(const Points&... points) {
 
 /// Touching is overlapping.
 inline bool overlap(const Bounds& a, const Bounds& b) {
-  return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+  bool all = true;
+  for (int axis = 0; axis < 3; ++axis)  // without a branch: which axis parts them cannot be foreseen
+    all = all & (a.lower[axis] <= b.upper[axis]) & (b.lower[axis] <= a.upper[axis]);
+  return all;
 }
 
 }  // namespace cloth

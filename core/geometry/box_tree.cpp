@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
 namespace cloth {
 namespace {
@@ -19,55 +18,93 @@ struct Cut {
   std::ptrdiff_t left = 0;  // boxes before the cut
 };
 
-/// Boxes sorted into equal intervals of their middles along one axis.
+struct Item {
+  Bounds bounds;
+  Vec3 middle;
+  int index;
+};
+
+/// Boxes sorted into equal intervals of their middles along each axis.
 class Bins {
  public:
-  static constexpr int count = 16;
-
-  Bins(int axis, double lower, double upper) : axis_(axis), lower_(lower), scale_(count / (upper - lower)) {}
-
-  void add(const Bounds& bounds, double middle) {
-    const auto k = static_cast<std::size_t>(std::clamp((middle - lower_) * scale_, 0.0, count - 1.0));
-    bounds_[k].add(bounds);
-    ++boxes_[k];
+  explicit Bins(std::span<const Item> items) {
+    Bounds middles;
+    for (const Item& item : items) middles.add(item.middle);
+    const Vec3 extent = middles.upper - middles.lower;
+    lower_ = middles.lower;
+    for (int axis = 0; axis < 3; ++axis)
+      scale_[axis] = extent[axis] > 0 && extent[axis] < Bounds::infinity ? count / extent[axis] : 0;
+    for (const Item& item : items) {
+      const Vec3 at = (item.middle - lower_).cwiseProduct(scale_);
+      for (int axis = 0; axis < 3; ++axis) {
+        Bin& bin =
+            bins_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(std::clamp(at[axis], 0.0, last))];
+        bin.bounds.add(item.bounds);
+        ++bin.boxes;
+      }
+    }
   }
 
-  /// The boundary between bins with the least sum of surface times boxes on both sides.
-  Cut best() const {
-    std::array<double, count> right_cost{};
-    Bounds right;
+  /// The boundary between bins with the least sum of surface times boxes on both sides; in the middle where
+  /// all boxes have the same.
+  Cut best(std::ptrdiff_t boxes) const {
+    Cut best;
+    best.left = boxes / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (scale_[axis] == 0) continue;
+      const Cut cut = best_along(axis);
+      if (cut.cost < best.cost) best = cut;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t count = 16;
+  static constexpr double last = count - 1;
+
+  struct Bin {
+    Bounds bounds;
     std::ptrdiff_t boxes = 0;
+    void add(const Bin& other) {
+      bounds.add(other.bounds);
+      boxes += other.boxes;
+    }
+    double cost() const { return half_surface(bounds) * static_cast<double>(boxes); }
+  };
+
+  Cut best_along(int axis) const {
+    const auto& bins = bins_[static_cast<std::size_t>(axis)];
+    std::array<double, count> right_cost{};
+    Bin left, right;
     for (std::size_t k = count - 1; k > 0; --k) {
-      right.add(bounds_[k]);
-      boxes += boxes_[k];
-      right_cost[k] = half_surface(right) * static_cast<double>(boxes);
+      right.add(bins[k]);
+      right_cost[k] = right.cost();
     }
     Cut cut;
-    Bounds left;
-    boxes = 0;
     for (std::size_t k = 0; k + 1 < count; ++k) {
-      left.add(bounds_[k]);
-      boxes += boxes_[k];
-      const double cost = half_surface(left) * static_cast<double>(boxes) + right_cost[k + 1];
-      if (cost < cut.cost) cut = {cost, axis_, boxes};
+      left.add(bins[k]);
+      const double cost = left.cost() + right_cost[k + 1];
+      if (cost < cut.cost) cut = {cost, axis, left.boxes};
     }
     return cut;
   }
 
- private:
-  int axis_;
-  double lower_, scale_;
-  std::array<Bounds, count> bounds_;
-  std::array<std::ptrdiff_t, count> boxes_{};
+  Vec3 lower_{0, 0, 0}, scale_{0, 0, 0};
+  std::array<std::array<Bin, count>, 3> bins_;
 };
+
+void append_sorted(int query, std::vector<int>& found, std::vector<BoxPair>& pairs) {
+  std::sort(found.begin(), found.end());
+  for (const int index : found) pairs.push_back({query, index});
+}
 
 }  // namespace
 
 struct BoxTree::Builder {
-  using Range = std::span<int>;
+  using Range = std::span<Item>;
 
   BoxTree& tree;
-  std::vector<Vec3> middle;
+  std::vector<Item> items;
 
   int add_node(Range range, int level) {
     tree.depth_ = std::max(tree.depth_, level + 1);
@@ -78,9 +115,13 @@ struct BoxTree::Builder {
     while (capacity * width < range.size()) capacity *= width;
     std::array<Range, width> parts;
     std::size_t used = 0;
-    divide(range, capacity, parts, used);
+    if (capacity == 1)
+      for (std::size_t k = 0; k < range.size(); ++k) parts[used++] = range.subspan(k, 1);
+    else
+      divide(range, capacity, parts, used);
     for (std::size_t k = 0; k < used; ++k) {
-      const int child = capacity == 1 ? ~parts[k].front() : add_node(parts[k], level + 1);
+      const int place = static_cast<int>(parts[k].data() - items.data());
+      const int child = capacity == 1 ? ~place : add_node(parts[k], level + 1);
       tree.nodes_[number].child[k] = child;  // after the call: nodes move as their number grows
     }
     tree.nodes_[number].used = (1U << used) - 1;
@@ -92,53 +133,39 @@ struct BoxTree::Builder {
       parts[used++] = range;
       return;
     }
-    const Cut cut = best_cut(range);
+    const Cut cut = Bins(range).best(static_cast<std::ptrdiff_t>(range.size()));
     const std::size_t children = (range.size() + capacity - 1) / capacity;
     const std::size_t wished = (static_cast<std::size_t>(cut.left) + capacity / 2) / capacity;
     const std::size_t left = std::clamp<std::size_t>(wished, 1, children - 1) * capacity;
-    const auto before = [&](int i, int j) {
-      const double at = middle[static_cast<std::size_t>(i)][cut.axis];
-      const double other = middle[static_cast<std::size_t>(j)][cut.axis];
-      return at < other || (at == other && i < j);
+    const auto before = [axis = cut.axis](const Item& a, const Item& b) {
+      return a.middle[axis] < b.middle[axis] || (a.middle[axis] == b.middle[axis] && a.index < b.index);
     };
     std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left), range.end(), before);
     divide(range.first(left), capacity, parts, used);
     divide(range.subspan(left), capacity, parts, used);
   }
-
-  Cut best_cut(Range range) const {
-    Bounds middles;
-    for (const int i : range) middles.add(middle[static_cast<std::size_t>(i)]);
-    Cut best;
-    best.left = static_cast<std::ptrdiff_t>(range.size() / 2);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double extent = middles.upper[axis] - middles.lower[axis];
-      if (!(extent > 0 && extent < Bounds::infinity)) continue;
-      Bins bins(axis, middles.lower[axis], middles.upper[axis]);
-      for (const int i : range)
-        bins.add(tree.boxes_[static_cast<std::size_t>(i)], middle[static_cast<std::size_t>(i)][axis]);
-      const Cut cut = bins.best();
-      if (cut.cost < best.cost) best = cut;
-    }
-    return best;
-  }
 };
 
-BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.begin(), boxes.end()) {
+BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(boxes.size()) {
   if (boxes.empty()) return;
   Builder builder{*this, {}};
-  builder.middle.reserve(boxes.size());
-  for (const Bounds& box : boxes) builder.middle.emplace_back(0.5 * box.lower + 0.5 * box.upper);
-  std::vector<int> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0);
+  builder.items.reserve(boxes.size());
+  for (const Bounds& box : boxes)
+    builder.items.push_back({box, 0.5 * box.lower + 0.5 * box.upper, static_cast<int>(builder.items.size())});
   nodes_.reserve(boxes.size() / (width - 2) + 2);
-  builder.add_node(order, 0);
-  fit();
+  builder.add_node(builder.items, 0);
+  index_.reserve(boxes.size());
+  for (const Item& item : builder.items) {
+    place_[static_cast<std::size_t>(item.index)] = static_cast<int>(index_.size());
+    index_.push_back(item.index);
+  }
+  refit(boxes);
 }
 
 void BoxTree::refit(std::span<const Bounds> boxes) {
   assert(boxes.size() == boxes_.size());
-  std::copy(boxes.begin(), boxes.end(), boxes_.begin());
+  for (std::size_t place = 0; place < boxes_.size(); ++place)
+    boxes_[place] = boxes[static_cast<std::size_t>(index_[place])];
   fit();
 }
 
@@ -169,10 +196,23 @@ void BoxTree::fit() {
 }
 
 void BoxTree::collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
+  std::vector<int> found;
   for (std::size_t q = 0; q < queries.size(); ++q) {
-    const auto first = static_cast<std::ptrdiff_t>(pairs.size());
-    visit(queries[q], [&](int index) { pairs.push_back({static_cast<int>(q), index}); });
-    std::sort(pairs.begin() + first, pairs.end());
+    found.clear();
+    visit(queries[q], [&](int index) { found.push_back(index); });
+    append_sorted(static_cast<int>(q), found, pairs);
+  }
+}
+
+void BoxTree::collect_own(std::vector<BoxPair>& pairs) const {
+  std::vector<int> found;
+  for (int i = 0; i < size(); ++i) {
+    found.clear();
+    const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+    visit(boxes_[place], [&](int index) {
+      if (index > i) found.push_back(index);
+    });
+    append_sorted(i, found, pairs);
   }
 }
 
@@ -187,7 +227,8 @@ std::vector<Bounds> BoxTree::boxes_at(int level) const {
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     for (int k = 0; k < std::popcount(nodes_[number].used); ++k) {
       const int child = nodes_[number].child[static_cast<std::size_t>(k)];
-      const Bounds& part = child >= 0 ? below[static_cast<std::size_t>(child)] : box(~child);
+      const Bounds& part =
+          child >= 0 ? below[static_cast<std::size_t>(child)] : boxes_[static_cast<std::size_t>(~child)];
       below[number].add(part);
       if (child < 0 && level_of[number] + 1 == level) found.push_back(part);
     }

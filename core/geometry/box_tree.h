@@ -34,18 +34,22 @@ class BoxTree {
   explicit BoxTree(std::span<const Bounds> boxes);
 
   int size() const { return static_cast<int>(boxes_.size()); }
-  const Bounds& box(int index) const { return boxes_[static_cast<std::size_t>(index)]; }
 
-  /// The boxes have moved: as many as before. What is asked stays exact however far they did; it takes longer
-  /// where boxes that were neighbours have parted.
+  /// The boxes have moved: as many as before, in their order. What is asked stays exact however far they did;
+  /// it takes longer where boxes that were neighbours have parted.
   void refit(std::span<const Bounds> boxes);
 
   /// callback(index) for every box that overlaps or touches `query`, in an order that the tree decides.
+  /// Allocates nothing.
   template <class Callback>
   void visit(const Bounds& query, Callback&& callback) const;
 
   /// Appends a pair for every query and each box that it overlaps or touches, by query and then by index.
   void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const;
+
+  /// Appends every pair of boxes of the tree that overlap or touch each other, query < index, in the same
+  /// order.
+  void collect_own(std::vector<BoxPair>& pairs) const;
 
   /// Levels of nodes: 0 without boxes.
   int depth() const { return depth_; }
@@ -59,7 +63,7 @@ class BoxTree {
 
   struct alignas(64) Node {
     std::array<std::array<float, width>, 3> lower, upper;
-    std::array<int, width> child;  // a node, or ~index of a box
+    std::array<int, width> child;  // a node, or ~place of a box
     std::uint32_t used = 0;        // a bit for each child
   };
 
@@ -73,9 +77,11 @@ class BoxTree {
   Query rounded(const Bounds& bounds) const;
   void fit();
 
+  // Boxes in the order of the tree; those of a node lie together.
   std::vector<Bounds> boxes_;
-  std::vector<Node> nodes_;  // children after their parents
-  Vec3 origin_{0, 0, 0};     // of single precision
+  std::vector<int> index_, place_;  // the index that each was given, and where the box of an index lies
+  std::vector<Node> nodes_;         // children after their parents
+  Vec3 origin_{0, 0, 0};            // of single precision
   int depth_ = 0;
 };
 
@@ -121,10 +127,12 @@ void BoxTree::visit(const Bounds& query, Callback&& callback) const {
     const Node& node = nodes_[static_cast<std::size_t>(waiting[--count])];
     for (std::uint32_t hits = overlapping(node, rounded_query); hits != 0; hits &= hits - 1) {
       const int child = node.child[static_cast<std::size_t>(std::countr_zero(hits))];
-      if (child >= 0)
+      if (child >= 0) {
         waiting[count++] = child;
-      else if (overlap(boxes_[static_cast<std::size_t>(~child)], query))
-        callback(~child);
+        continue;
+      }
+      const auto place = static_cast<std::size_t>(~child);
+      if (overlap(boxes_[place], query)) callback(index_[place]);
     }
   }
 }

@@ -142,6 +142,37 @@ TEST(BoxTree, StaysExactAfterAnyMotion) {
   }
 }
 
+TEST(BoxTree, FindsItsOwnPairsOnce) {
+  Random random;
+  for (const int count : {0, 1, 2, 8, 9, 65, 700}) {
+    const Boxes boxes = random_boxes(count, 0.3, random);
+    std::vector<BoxPair> own, expected = all_pairs(boxes, boxes);
+    std::erase_if(expected, [](const BoxPair& pair) { return pair.query >= pair.index; });
+    BoxTree(boxes).collect_own(own);
+    EXPECT_EQ(own, expected);
+  }
+}
+
+TEST(BoxTree, VisitsWhatItCollects) {
+  Random random;
+  const Boxes boxes = random_boxes(700, 0.3, random);
+  const BoxTree tree(boxes);
+  std::vector<BoxPair> visited;
+  for (int q = 0; q < 700; ++q)
+    tree.visit(boxes[static_cast<std::size_t>(q)], [&](int index) { visited.push_back({q, index}); });
+  std::sort(visited.begin(), visited.end());
+  EXPECT_EQ(visited, all_pairs(boxes, boxes));
+}
+
+TEST(BoxTree, CollectsForQueriesThatLieSideBySide) {
+  Random random;
+  const Boxes boxes = random_boxes(700, 0.1, random);
+  Boxes row;
+  for (int i = 0; i < 203; ++i) row.push_back(bounds_of(Vec3(0.02 * i - 2, 0, 0)).grown(0.3));
+  row[77] = Bounds();
+  expect_as_brute_force(row, boxes, BoxTree(boxes));
+}
+
 TEST(BoxTree, AppendsToWhatIsThereSortedByQueryAndIndex) {
   Random random;
   const Boxes boxes = random_boxes(200, 0.3, random);

@@ -1,0 +1,56 @@
+// What a mesh from a file needs before it is of use: equal vertices made one, faults named, edges listed.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace cloth {
+
+struct Weld {
+  TriangleMesh mesh;
+  std::vector<int> number;      ///< in `mesh`, of each vertex that was given
+  int merged_vertices = 0;      ///< how many fewer there are
+  int collapsed_triangles = 0;  ///< gone, because two of their corners have become one
+};
+
+/// Each vertex joins the first of those before it that have stayed and are no further than `tolerance` (m, at
+/// least 0) away, else stays where it is.
+Weld weld(const TriangleMesh& mesh, double tolerance);
+
+/// An edge and the triangles that share it, in their order.
+struct MeshEdge {
+  int from = 0, to = 0;  ///< vertices, from < to
+  std::array<int, 2> opposite = {-1,
+                                 -1};  ///< the third vertices of the first two triangles; -1: there is none
+  int triangles = 0;                   ///< how many share it
+  int forward = 0;                     ///< how many of them run from `from` to `to`
+};
+
+/// Every edge once, by its vertices. Triangles that name a vertex twice have none.
+std::vector<MeshEdge> unique_edges(const TriangleMesh& mesh);
+
+/// The normalised sum of the triangles' normals weighted by area; zero where that sum is zero.
+std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
+
+enum class MeshFault {
+  degenerate_triangle,   ///< names a vertex twice, or is less than 1e-12 of its longest edge squared in area
+  open_edge,             ///< of one triangle only
+  inconsistent_winding,  ///< an edge along which its two triangles run the same way
+  crowded_edge,          ///< of more than two triangles
+  unused_vertex,         ///< of no triangle
+};
+
+struct MeshFinding {
+  MeshFault fault;
+  int count = 0;
+  int first = 0;        ///< a triangle, a vertex, or the lower vertex of an edge
+  std::string message;  ///< "4 open edges, the first between vertices 0 and 1 near (0, 0.5, 0)"
+};
+
+/// The faults that the mesh has, a finding for each kind in the order above. Indices must be of vertices.
+std::vector<MeshFinding> inspect(const TriangleMesh& mesh);
+
+}  // namespace cloth

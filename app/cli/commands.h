@@ -31,6 +31,11 @@ struct ScenesArguments {
 };
 int scenes(const ScenesArguments& arguments);
 
+struct MeshArguments {
+  std::string name;
+};
+int mesh(const MeshArguments& arguments);
+
 struct ExplainArguments {
   std::string scene;
   std::vector<std::string> settings;

@@ -32,6 +32,7 @@ struct Arguments {
   cli::RunArguments run;
   cli::ReplayArguments replay;
   cli::ScenesArguments scenes;
+  cli::MeshArguments mesh;
   cli::ExplainArguments explain;
   cli::CompareArguments compare;
   bool comparison_schema = false;
@@ -221,6 +222,9 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   scenes->add_option("name", arguments.scenes.name, "The scene to print");
   scenes->add_flag("--json", arguments.scenes.json, json_help);
 
+  CLI::App* mesh = app.add_subcommand("mesh", "List the built-in meshes, or print one as an OBJ file");
+  mesh->add_option("name", arguments.mesh.name, "The mesh to print");
+
   CLI::App* explain = app.add_subcommand(
       "explain",
       "The stages a scene is run with, what was left out and why, and each method's stable time step");
@@ -264,6 +268,7 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("run")) return cli::run(arguments.run);
   if (app.got_subcommand("replay")) return cli::replay(arguments.replay);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
+  if (app.got_subcommand("mesh")) return cli::mesh(arguments.mesh);
   if (app.got_subcommand("explain")) return cli::explain(arguments.explain);
   if (app.got_subcommand("compare")) return cli::compare(arguments.compare);
   if (app.got_subcommand("stability")) return cli::stability(arguments.stability);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -9,7 +10,7 @@
 #include <numbers>
 
 #include "geometry/builtin_meshes.h"
-#include "geometry/mesh_topology.h"
+#include "geometry/mesh_repair.h"
 #include "io/fnv_hash.h"
 #include "io/obj_reader.h"
 #include "scene/scene.h"
@@ -29,18 +30,56 @@ std::string hash_of(const TriangleMesh& mesh) {
   return hash.text();
 }
 
-SharedMesh prepared(const std::string& file, TriangleMesh surface, bool built_in) {
+/// Vertices of no triangle would be particles that nothing holds. Returns how many there were.
+std::size_t take_out_unused_vertices(TriangleMesh& mesh) {
+  std::vector<int> number(mesh.vertices.size(), -1);
+  for (const Triangle& t : mesh.triangles)
+    for (const int corner : t) number[static_cast<std::size_t>(corner)] = 0;
+  std::vector<Vec3> used;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(used.size());
+    used.push_back(mesh.vertices[i]);
+  }
+  for (Triangle& t : mesh.triangles)
+    for (int& corner : t) corner = number[static_cast<std::size_t>(corner)];
+  mesh.vertices.swap(used);
+  return used.size() - mesh.vertices.size();
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void list_edges(SceneMesh& mesh) {
+  for (const MeshEdge& edge : unique_edges(mesh.surface)) {
+    mesh.edges.push_back({edge.from, edge.to});
+    if (edge.triangles == 1) ++mesh.open_edges;
+    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
+    if (a >= 0 && a != b) mesh.hinges.push_back({a, b});
+  }
+  std::sort(mesh.hinges.begin(), mesh.hinges.end());
+  mesh.hinges.erase(std::unique(mesh.hinges.begin(), mesh.hinges.end()), mesh.hinges.end());
+}
+
+SharedMesh prepared(const std::string& file, const TriangleMesh& from_file, bool built_in) {
   auto mesh = std::make_shared<SceneMesh>();
   mesh->file = file;
   mesh->built_in = built_in;
-  CleanMesh clean = cleaned(surface);
-  mesh->notices = std::move(clean.notices);
-  mesh->surface = std::move(clean.mesh);
-  MeshTopology topology = topology_of(mesh->surface);
-  mesh->notices.insert(mesh->notices.end(), topology.notices.begin(), topology.notices.end());
-  mesh->open_edges = topology.open_edges;
-  mesh->edges = std::move(topology.edges);
-  mesh->hinges = std::move(topology.hinges);
+  Weld welded = weld(from_file, 0);
+  mesh->surface = std::move(welded.mesh);
+  const std::size_t unused = take_out_unused_vertices(mesh->surface);
+  const std::size_t removed = static_cast<std::size_t>(welded.merged_vertices) + unused;
+  if (removed > 0 && !built_in)
+    mesh->notices.push_back(
+        counted(removed, "vertex is", "vertices are") +
+        " at the place of another or of no triangle, and left out; those after have lower numbers than in the file");
+  if (welded.collapsed_triangles > 0)
+    mesh->notices.push_back(counted(static_cast<std::size_t>(welded.collapsed_triangles), "triangle has", "triangles have") +
+                            " two corners at one place, and left out");
+  for (const MeshFinding& finding : inspect(mesh->surface))
+    if (finding.fault != MeshFault::open_edge) mesh->notices.push_back(finding.message);
+  list_edges(*mesh);
   for (const Vec3& vertex : mesh->surface.vertices) mesh->bounds.extend(vertex);
   mesh->hash = hash_of(mesh->surface);
   return mesh;
@@ -71,7 +110,7 @@ Loading load(const std::string& file, const SceneFolder& folder) {
   if (fs::is_regular_file(path, error)) {
     ObjReading reading = read_obj(path);
     if (!reading.mesh) return {nullptr, "cannot be used: " + reading.problem};
-    SharedMesh mesh = prepared(file, std::move(*reading.mesh), false);
+    SharedMesh mesh = prepared(file, *reading.mesh, false);
     if (mesh->surface.triangles.empty())
       return {nullptr, "cannot be used: all of its triangles are degenerate"};
     return {std::move(mesh), {}};

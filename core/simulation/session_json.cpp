@@ -226,6 +226,8 @@ class SessionReader {
     if (const auto x = numbers(value, path, "target_m", 3); !x.empty()) pull.target = {x[0], x[1], x[2]};
     return pull;
   }
+
+  SceneFolder folder_;  ///< of the scene's meshes
 };
 
 void put_in_place(const JsonLocations& locations, const std::string& place, Problem& problem) {

@@ -21,7 +21,7 @@ StageInfo spring_stage(const Scene& scene, const ClothSystem& system, SpringFami
   const auto count = system.spring_count(family);
   if (count == 0 && family == SpringFamily::shear && system.is_mesh())
     return {name, false, "a mesh has edges and no cells to shear"};
-  if (count == 0) return {name, false, "the cloth is too small for any"};
+  if (count == 0) return {name, false, "the grid is too small for any"};
   return {name, true, fmt::format("{} springs of {} N/m", count, stiffness)};
 }
 

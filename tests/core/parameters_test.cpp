@@ -21,8 +21,9 @@ Scene full_scene() {
   scene.gravity = Vec3(0, -9.81, 0);
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane})
-    scene.obstacles.emplace_back().shape = shape;
+  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
+  scene.obstacles.back().mesh.file = "disc.obj";
+  load_meshes(scene);
   return scene;
 }
 
@@ -38,7 +39,7 @@ ParameterValue another_value(const ParameterInfo& info, const ParameterValue& no
     case Kind::choice:
       return info.choices[info.choices[0] == std::get<std::string>(now) ? 1 : 0];
     case Kind::text:
-      return std::string("another");
+      return std::string(info.key == "file" ? "cone-bed.obj" : "another");
     case Kind::words:
       return info.word_sets[info.word_sets[0] == std::get<Words>(now) ? 1 : 0];
   }
@@ -67,6 +68,7 @@ TEST(EveryParameter, CanBeSetByItsPathAndReadBack) {
 
     Scene set = scene;
     parameter.set(set, wanted);
+    load_meshes(set);
     EXPECT_EQ(set, *reading.scene) << parameter.path;
   }
 }
@@ -118,9 +120,11 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     EXPECT_EQ(with, scene) << offer.path;
   }
   EXPECT_EQ(offered, std::set<std::string>(
-                         {"springs", "deformation", "damping", "gravity", "air", "sphere", "box", "plane"}));
+                         {"springs", "deformation", "damping", "gravity", "air", "sphere", "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
-    EXPECT_TRUE(offer.path == "sphere" || offer.path == "box" || offer.path == "plane") << offer.path;
+    EXPECT_TRUE(std::any_of(all_shapes.begin(), all_shapes.end(),
+                            [&](Shape shape) { return offer.path == name_of(shape); }))
+        << offer.path;
 }
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {

@@ -247,7 +247,7 @@ TEST(Picture, IsMadeOfWhateverItIsGiven) {
   options.wireframe = true;
   options.arrows = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {std::nan(""), 0, 0}}};
   Obstacle odd = sheet.ball_at(0);
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::plane}) {
+  for (const Shape shape : all_shapes) {
     odd.shape = shape;
     odd.radius = 0;
     odd.size = odd.normal = {0, 0, 0};

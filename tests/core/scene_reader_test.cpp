@@ -155,11 +155,12 @@ TEST(SceneReader, NamesProblemsOfObstacles) {
   const auto refused = [](const std::string& obstacle, const std::string& expected) {
     EXPECT_EQ(problem_of("{\"cloth\": {}, \"obstacles\": [\n" + obstacle + "]}"), "name:2:" + expected);
   };
-  refused("{}", "1: obstacles.0.shape: must be given: \"sphere\", \"box\" or \"plane\"");
+  refused("{}", "1: obstacles.0.shape: must be given: \"sphere\", \"box\", \"plane\" or \"mesh\"");
   refused("{\"shape\": \"torus\"}",
-          "11: obstacles.0.shape = \"torus\": must be \"sphere\", \"box\" or \"plane\"");
-  refused("{\"shape\": \"mesh\"}",
-          "11: obstacles.0.shape = \"mesh\": mesh obstacles are not supported by this version");
+          "11: obstacles.0.shape = \"torus\": must be \"sphere\", \"box\", \"plane\" or \"mesh\"");
+  refused("{\"shape\": \"mesh\", \"radius\": 1, \"file\": \"disc.obj\"}",
+          "20: obstacles.0.radius: is not a known key; known here: file, friction, response, restitution, rotate, "
+          "scale, shape, translate");
   refused("{\"shape\": \"sphere\", \"radius\": 0}", "31: obstacles.0.radius = 0 m: must be > 0");
   refused("{\"shape\": \"box\", \"size\": [1, -1, 1]}", "26: obstacles.0.size = [1, -1, 1] m: must be > 0");
   refused("{\"shape\": \"plane\", \"normal\": [0, 0, 0]}",

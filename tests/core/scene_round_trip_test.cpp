@@ -24,8 +24,8 @@ void expect_reads_back(const Scene& scene) {
 TEST(BuiltinScenes, AreThoseOfTheIssue) {
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
-  EXPECT_EQ(names, std::vector<std::string>({"ball", "corners-free", "corners-shear", "corners-structural",
-                                             "cube", "curtain", "flag", "free-fall", "pendulum", "rectangle",
+  EXPECT_EQ(names, std::vector<std::string>({"ball", "bunny", "corners-free", "corners-shear",
+                                             "corners-structural", "cube", "curtain", "disc", "flag", "free-fall", "pendulum", "rectangle",
                                              "tablecloth", "wind"}));
 }
 

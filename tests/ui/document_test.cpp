@@ -278,6 +278,37 @@ class DocumentTest : public QObject {
     QCOMPARE(doc().title(), QString("free-fall"));
   }
 
+  void a_mesh_is_read_when_its_file_is_named_and_undone_with_it() {
+    QVERIFY(doc().addBlock("mesh"));
+    const auto loaded = [this] { return doc().scene().obstacles.at(0).mesh; };
+    QVERIFY(loaded().is_loaded());
+    QCOMPARE(doc().setParameter("obstacles.0.file", std::string("cone-bed.obj")), QString());
+    QVERIFY(loaded().is_loaded());
+    QCOMPARE(loaded().file, std::string("cone-bed.obj"));
+    doc().undoStack().undo();
+    QVERIFY(loaded().is_loaded());
+    QCOMPARE(loaded().file, std::string("bunny.obj"));
+  }
+
+  void a_mesh_that_cannot_be_read_is_refused_and_changes_nothing() {
+    QVERIFY(doc().addBlock("mesh"));
+    const cloth::Scene before = doc().scene();
+    QVERIFY(doc().setParameter("obstacles.0.file", std::string("none.obj")).contains("must be a file"));
+    QVERIFY(doc().scene() == before);
+  }
+
+  void vertices_of_a_mesh_are_pinned_by_their_numbers() {
+    cloth::Scene scene = hung_cloth();
+    scene.cloth.mesh.file = "disc.obj";
+    scene.cloth.pins.clear();
+    QVERIFY(load_meshes(scene).empty());
+    doc().load(scene, {});
+    doc().togglePin(0, 1800);
+    QCOMPARE(doc().scene().cloth.pins, std::vector<Pin>{(PinnedParticle{0, 1800})});
+    doc().togglePin(0, 1800);
+    QVERIFY(doc().scene().cloth.pins.empty());
+  }
+
   void modified_follows_undo_and_save() {
     doc().setParameter("springs.structural", 1.0);
     QVERIFY(doc().isModified());
@@ -290,7 +321,7 @@ class DocumentTest : public QObject {
   }
 
   void every_parameter_of_every_block_can_be_set_to_what_it_is() {
-    for (const char* offer : {"air", "air.gust", "deformation", "damping", "sphere", "box", "plane"})
+    for (const char* offer : {"air", "air.gust", "deformation", "damping", "sphere", "box", "plane", "mesh"})
       QVERIFY(doc().addBlock(offer));
     const int steps = doc().undoStack().count();
     for (const cloth::Parameter& parameter : parameters_of(doc().scene()))

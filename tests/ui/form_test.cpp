@@ -244,7 +244,7 @@ class FormTest : public FormFixture {
   }
 
   void every_control_has_an_accessible_name() {
-    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane"}) doc().addBlock(offer);
+    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane", "mesh"}) doc().addBlock(offer);
     for (const QWidget* widget : panel().findChildren<QWidget*>())
       if (widget->focusPolicy() & Qt::TabFocus) {
         QAccessibleInterface* face = QAccessible::queryAccessibleInterface(const_cast<QWidget*>(widget));
@@ -254,7 +254,7 @@ class FormTest : public FormFixture {
   }
 
   void nothing_is_wider_than_280_pixels() {
-    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane"}) doc().addBlock(offer);
+    for (const char* offer : {"air", "air.gust", "damping", "sphere", "box", "plane", "mesh"}) doc().addBlock(offer);
     panel().resize(280, 700);
     QCoreApplication::processEvents();
     QCOMPARE(panel().width(), 280);

@@ -26,6 +26,7 @@ bool holds(const std::vector<int>& ascending, int particle) {
 
 Pin pin_at(const ClothSheet& sheet, int row, int column) {
   const int particle = row * sheet.columns + column;
+  if (sheet.is_mesh()) return PinnedParticle{row, column};
   for (const NamedPin corner :
        {NamedPin::top_left, NamedPin::top_right, NamedPin::bottom_left, NamedPin::bottom_right})
     if (particles_of(sheet, corner) == std::vector<int>{particle}) return corner;

@@ -69,6 +69,9 @@ void ClothSurface::upload_topology(const ClothFrame& frame) {
   lay_out_attributes(pattern.size() / 2);
   gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[cells]);
   gl_.glBufferData(GL_ARRAY_BUFFER, bytes(pattern), pattern.data(), GL_STATIC_DRAW);
+  const std::vector<float> middle(frame.mesh ? pattern.size() : 0, 0.5F);
+  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[middles]);
+  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(middle), middle.data(), GL_STATIC_DRAW);
 
   std::vector<std::uint32_t> indices, lines;
   if (frame.mesh) {
@@ -124,14 +127,16 @@ void ClothSurface::draw_triangles() {
 }
 
 void ClothSurface::draw_plain_triangles() {
+  take_cells_from(middles);
+  draw_triangles();
+  take_cells_from(cells);
+}
+
+void ClothSurface::take_cells_from(Buffer buffer) {
   constexpr GLuint cell = 3;
   gl_.glBindVertexArray(vertex_array_);
-  gl_.glDisableVertexAttribArray(cell);
-  gl_.glVertexAttrib2f(cell, 0.5F, 0.5F);
-  gl_.glBindVertexArray(0);
-  draw_triangles();
-  gl_.glBindVertexArray(vertex_array_);
-  gl_.glEnableVertexAttribArray(cell);
+  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[buffer]);
+  gl_.glVertexAttribPointer(cell, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl_.glBindVertexArray(0);
 }
 

@@ -28,12 +28,13 @@ class ClothSurface {
   bool has_pinned_points() const { return pinned_count_ > 0; }
 
  private:
-  enum Buffer { moving, cells, triangles, edges, pinned, buffer_count };
+  enum Buffer { moving, cells, middles, triangles, edges, pinned, buffer_count };
 
   void upload_topology(const ClothFrame& frame);
   std::vector<float> pattern_of(const ClothFrame& frame) const;
   void upload_indices(Buffer buffer, const std::vector<std::uint32_t>& indices);
   void lay_out_attributes(std::size_t particles);
+  void take_cells_from(Buffer buffer);
   void upload_pins(const ClothFrame& frame);
   void upload_moving(const ClothFrame& frame);
 

@@ -64,11 +64,12 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  continuous_contact_.reset();
+  const std::unique_ptr<ContinuousContact> contact_before = std::move(continuous_contact_);
   if (has_continuous_contact(scene_))
-    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_);
+    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
+  if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
@@ -242,7 +243,8 @@ Checkpoint Simulation::checkpoint() const {
           .quantities = quantities_,
           .count = count_,
           .last_limit = last_limit_,
-          .last_contact = last_contact_};
+          .last_contact = last_contact_,
+          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{}};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -259,11 +261,19 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
+  if (continuous_contact_) restore_obstacles(checkpoint.obstacle_poses);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   if (checkpoint.method == scene_.integrator.method)
     integrator_->recall(checkpoint.memory);
   else
     integrator_->forget(Change::state);
+}
+
+/// Where the checkpoint's scene had others, they are where the present scene says.
+void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
+  std::vector<Pose> of_scene;
+  for (const Obstacle& obstacle : scene_.obstacles) of_scene.push_back(pose_of(obstacle, state_.time));
+  continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
 }
 
 void Simulation::set_threads(int threads) {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "contact/obstacle_contact.h"
+#include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
@@ -79,6 +80,7 @@ struct Checkpoint {
   StepCount count;
   LimiterReport last_limit;
   ContactReport last_contact;
+  std::vector<Pose> obstacle_poses;  ///< of continuous contact
 
   std::size_t bytes() const;
 };
@@ -151,6 +153,7 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);

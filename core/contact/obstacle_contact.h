@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
+#include "contact/contact_report.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -42,10 +43,6 @@ std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obsta
 
 /// "particle 40 moves 2 m in a step and obstacle 0 is 0.01 m thick: it can pass it unseen"
 std::string describe(const TunnellingRisk& risk);
-
-struct ContactReport {
-  int contacts = 0;  ///< particles that were put back, counted once per obstacle
-};
 
 class ObstacleContact {
  public:

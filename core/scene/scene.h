@@ -36,7 +36,7 @@ using Pin = std::variant<NamedPin, PinnedParticle>;
 /// its vertices instead, shifted by `origin`: they count as one row, and width, height, across and down say
 /// nothing.
 struct ClothSheet {
-  MeshChoice mesh;  ///< no file: a grid
+  MeshChoice mesh = {};  ///< no file: a grid
   int columns = 33, rows = 33;
   double width = 1.0, height = 1.0;  ///< m
   double mass = 0.25;                ///< kg, of the whole cloth
@@ -81,6 +81,15 @@ struct Deformation {
 enum class Shape { sphere, box, plane, mesh };
 inline constexpr std::array<Shape, 4> all_shapes{Shape::sphere, Shape::box, Shape::plane, Shape::mesh};
 
+/// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene
+/// describes it.
+struct Keyframe {
+  double time = 0;         ///< s
+  Vec3 position{0, 0, 0};  ///< m
+  Vec3 rotation{0, 0, 0};  ///< rad, along the axis
+  bool operator==(const Keyframe&) const = default;
+};
+
 /// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal;
 /// mesh: mesh, scale, rotate, translate (placed_mesh).
 struct Obstacle {
@@ -90,14 +99,30 @@ struct Obstacle {
   Vec3 size{0.4, 0.4, 0.4};
   Vec3 point{0, 0, 0};
   Vec3 normal{0, 1, 0};
-  MeshChoice mesh;
+  MeshChoice mesh = {};
   double scale = 1;
   Vec3 rotate{0, 0, 0};     ///< degrees about x, then y, then z
   Vec3 translate{0, 0, 0};  ///< m, after scaling and turning
   std::string response = "coulomb";
   double friction = 0.3;
   double restitution = 0;
+  Vec3 velocity{0, 0, 0};                ///< m/s
+  Vec3 spin{0, 0, 0};                    ///< rad/s along the axis, about the pivot
+  std::vector<Keyframe> keyframes = {};  ///< ascending in time; any: velocity and spin say nothing
   bool operator==(const Obstacle&) const = default;
+};
+
+/// Makes contact continuous: nothing comes through.
+struct ContactSettings {
+  double thickness = 0.005;  ///< m, kept between cloth and obstacles
+  bool operator==(const ContactSettings&) const = default;
+};
+
+/// The cloth does not pass through itself.
+struct SelfContact {
+  double thickness = 0.004;  ///< m
+  double friction = 0.3;
+  bool operator==(const SelfContact&) const = default;
 };
 
 /// Which of the settings matter depends on `method`: integrator_fields(method) lists them.
@@ -126,6 +151,8 @@ struct Scene {
   std::optional<Air> air;
   std::optional<Deformation> deformation;
   std::vector<Obstacle> obstacles;
+  std::optional<ContactSettings> contact;
+  std::optional<SelfContact> self_contact;
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;

@@ -40,10 +40,24 @@ Block obstacle_block(const Scene& scene, std::size_t index) {
                     [&](const Obstacle& other) { return other.shape == shape; });
   std::string title = name_of(shape);
   title.front() = static_cast<char>(std::toupper(title.front()));
+  const auto of_scene = [index](Scene& s) -> Obstacle& { return s.obstacles.at(index); };
+  std::vector<Parameter> parameters = bound<Obstacle>(path, obstacle_fields(shape), of_scene);
+  for (Parameter& parameter : bound<Obstacle>(path, motion_fields(), of_scene))
+    parameters.push_back(std::move(parameter));
   return {path, title + " " + std::to_string(same_before + 1),
-          "An obstacle that the cloth's particles cannot enter.", true,
-          bound<Obstacle>(path, obstacle_fields(shape),
-                          [index](Scene& s) -> Obstacle& { return s.obstacles.at(index); })};
+          "An obstacle that the cloth's particles cannot enter.", true, std::move(parameters)};
+}
+
+void add_contact_blocks(const Scene& scene, std::vector<Block>& blocks) {
+  if (scene.contact)
+    blocks.push_back(
+        {"contact", "Contact", "Contact without gaps: no vertex, edge or face comes through.", true,
+         bound<ContactSettings>("contact", contact_fields(),
+                                [](Scene& s) -> ContactSettings& { return s.contact.value(); })});
+  if (scene.self_contact)
+    blocks.push_back({"self_contact", "Self-contact", "The cloth does not pass through itself.", true,
+                      bound<SelfContact>("self_contact", self_contact_fields(),
+                                         [](Scene& s) -> SelfContact& { return s.self_contact.value(); })});
 }
 
 Block run_block() {
@@ -87,6 +101,14 @@ Obstacle starter_obstacle(Shape shape, const ClothSheet& cloth) {
   return obstacle;
 }
 
+/// As thick as the default says, or as the cells allow.
+SelfContact starter_self_contact(const ClothSheet& cloth) {
+  const double cell = std::min(cloth.width / (cloth.columns - 1), cloth.height / (cloth.rows - 1));
+  SelfContact self_contact;
+  self_contact.thickness = std::min(self_contact.thickness, 0.4 * cell);
+  return self_contact;
+}
+
 const SpringMaterial starter_springs{.structural = 500, .shear = 250, .flexion = 50, .damping = 0};
 constexpr double starter_damping = 0.001;
 const Vec3 starter_gravity{0, -9.81, 0};
@@ -103,6 +125,8 @@ Scene starter_scene(const Scene& like) {
   scene.air = starter_air;
   scene.air->gust = Gust{};
   scene.deformation = Deformation{};
+  scene.contact = ContactSettings{};
+  scene.self_contact = SelfContact{};
   scene.integrator.method = like.integrator.method;
   for (const Obstacle& obstacle : like.obstacles)
     scene.obstacles.push_back(starter_obstacle(obstacle.shape, like.cloth));
@@ -149,6 +173,7 @@ std::vector<Block> blocks_of(const Scene& scene) {
                                     [](Scene& s) -> Gust& { return s.air.value().gust.value(); })});
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) blocks.push_back(obstacle_block(scene, i));
+  add_contact_blocks(scene, blocks);
   blocks.push_back({"cloth", "Cloth",
                     scene.cloth.is_mesh() ? "A mesh: its vertices are particles, its edges springs."
                                           : "The sheet: how many particles, how large, how heavy.",
@@ -192,6 +217,12 @@ std::vector<BlockOffer> offers_for(const Scene& scene) {
   if (scene.air && !scene.air->gust)
     offers.push_back(
         {"air.gust", "Gusts", "A wind whose speed swings.", [](Scene& s) { s.air->gust = Gust{}; }});
+  if (!scene.contact && !scene.obstacles.empty())
+    offers.push_back({"contact", "Contact", "Contact without gaps: no vertex, edge or face comes through.",
+                      [](Scene& s) { s.contact = ContactSettings{}; }});
+  if (!scene.self_contact)
+    offers.push_back({"self_contact", "Self-contact", "The cloth does not pass through itself.",
+                      [](Scene& s) { s.self_contact = starter_self_contact(s.cloth); }});
   const auto obstacle = [&](Shape shape, const char* title, const char* doc) {
     offers.push_back({name_of(shape), title, doc, [shape](Scene& s) {
                         s.obstacles.push_back(starter_obstacle(shape, s.cloth));
@@ -211,6 +242,8 @@ void remove_block(Scene& scene, const std::string& path) {
   if (path == "damping") scene.damping.reset();
   if (path == "gravity") scene.gravity.reset();
   if (path == "air") scene.air.reset();
+  if (path == "contact") scene.contact.reset();
+  if (path == "self_contact") scene.self_contact.reset();
   if (path == "air.gust" && scene.air) scene.air->gust.reset();
   if (const auto index = obstacle_index(path); index && *index < scene.obstacles.size())
     scene.obstacles.erase(scene.obstacles.begin() + static_cast<long>(*index));

@@ -19,6 +19,10 @@ const Fields<Gust>& gust_fields();
 const Fields<Air>& air_fields();
 const Fields<Deformation>& deformation_fields();
 const Fields<Obstacle>& obstacle_fields(Shape shape);
+const Fields<Obstacle>& motion_fields();  ///< of any obstacle; in a file only where it moves
+const Fields<Keyframe>& keyframe_fields();
+const Fields<ContactSettings>& contact_fields();
+const Fields<SelfContact>& self_contact_fields();
 const Fields<IntegratorChoice>& integrator_fields(const std::string& method);  ///< with its own settings
 const Fields<Recording>& recording_fields();
 const Fields<Scene>& scene_fields();  ///< title, damping, gravity, duration: the keys of the root
@@ -36,7 +40,8 @@ struct Parameter {
 };
 
 /// A group of parameters that belongs to one piece of physics. `path` is its identity: "cloth", "springs",
-/// "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "integrator", "run".
+/// "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "contact",
+/// "self_contact", "integrator", "run".
 struct Block {
   std::string path;
   std::string title;

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "contact/rigid_motion.h"
+#include "contact/start_check.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
@@ -42,7 +44,7 @@ class SceneReader {
     if (!object(root, "")) return scene;
     known_keys(root, "",
                {"format", "title", "cloth", "springs", "damping", "gravity", "air", "deformation",
-                "obstacles", "integrator", "duration", "record"});
+                "obstacles", "contact", "self_contact", "integrator", "duration", "record"});
     if (const json* format = member(root, "format"); format && *format != scene_format)
       problem("format", *format, fmt::format("must be \"{}\"", scene_format));
 
@@ -55,6 +57,8 @@ class SceneReader {
     block(root, "deformation", deformation_fields(), scene.deformation);
     if (const json* air = member(root, "air")) read_air(*air, scene.air.emplace());
     if (const json* obstacles = member(root, "obstacles")) read_obstacles(*obstacles, scene.obstacles);
+    block(root, "contact", contact_fields(), scene.contact);
+    block(root, "self_contact", self_contact_fields(), scene.self_contact);
     if (const json* integrator = member(root, "integrator")) read_integrator(*integrator, scene.integrator);
     required_block(root, "record", recording_fields(), scene.record);
     return scene;
@@ -195,8 +199,24 @@ class SceneReader {
         continue;
       }
       obstacle.shape = *known;
-      known_keys(value[i], path, keys_of(obstacle_fields(obstacle.shape), {"shape"}));
+      known_keys(value[i], path,
+                 keys_of(obstacle_fields(obstacle.shape), keys_of(motion_fields(), {"shape", "keyframes"})));
       fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);
+      fields(value[i], path, motion_fields(), obstacle);
+      if (const json* keys = member(value[i], "keyframes"))
+        read_keyframes(*keys, path + ".keyframes", obstacle);
+    }
+  }
+
+  void read_keyframes(const json& value, const std::string& path, Obstacle& obstacle) {
+    if (!value.is_array()) return problem(path, value, "must be a list");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const std::string key_path = fmt::format("{}.{}", path, i);
+      Keyframe& key = obstacle.keyframes.emplace_back();
+      if (!object(value[i], key_path)) continue;
+      known_keys(value[i], key_path, keys_of(keyframe_fields()));
+      key.position = pivot_of(obstacle);
+      fields(value[i], key_path, keyframe_fields(), key);
     }
   }
 
@@ -332,6 +352,8 @@ SceneReading read_scene(const std::string& text, const std::string& place,
   for (const Problem& problem : reader.problems) named.insert(problem.path);
   for (Problem& problem : find_problems(scene))
     if (!named.count(problem.path)) reader.problems.push_back(std::move(problem));
+  const bool edits_a_run = meshes.known != nullptr;  // the cloth is elsewhere by now
+  if (reader.problems.empty() && !edits_a_run) reader.problems = find_start_problems(scene);
 
   if (reader.problems.empty()) return {std::move(scene), {}};
   for (Problem& problem : reader.problems) place_problem(problem);

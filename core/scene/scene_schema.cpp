@@ -83,6 +83,8 @@ json obstacles_schema() {
   json shapes = json::array();
   for (const Shape shape : all_shapes) {
     json entry = object_schema(obstacle_fields(shape), {{"shape", {{"const", name_of(shape)}}}});
+    entry["properties"].update(object_schema(motion_fields())["properties"]);
+    entry["properties"]["keyframes"] = {{"type", "array"}, {"items", object_schema(keyframe_fields())}};
     entry["required"] = shape == Shape::mesh ? json::array({"shape", "file"}) : json::array({"shape"});
     shapes.push_back(std::move(entry));
   }
@@ -124,6 +126,8 @@ std::string scene_schema() {
   properties["air"] = std::move(air);
   properties["deformation"] = object_schema(deformation_fields());
   properties["obstacles"] = obstacles_schema();
+  properties["contact"] = object_schema(contact_fields());
+  properties["self_contact"] = object_schema(self_contact_fields());
   properties["integrator"] = integrator_schema();
   properties["record"] = object_schema(recording_fields());
 

@@ -46,6 +46,12 @@ json pins_json(const ClothSheet& cloth) {
   return list;
 }
 
+/// What does not move says nothing of motion.
+void put_motion(const Obstacle& obstacle, json& into) {
+  if (!obstacle.velocity.isZero(0) || !obstacle.spin.isZero(0)) put_fields(motion_fields(), obstacle, into);
+  for (const Keyframe& key : obstacle.keyframes) into["keyframes"].push_back(block(keyframe_fields(), key));
+}
+
 json scene_json(const Scene& scene) {
   json root;
   root["format"] = scene_format;
@@ -65,9 +71,12 @@ json scene_json(const Scene& scene) {
     for (const Obstacle& obstacle : scene.obstacles) {
       json entry{{"shape", name_of(obstacle.shape)}};
       put_fields(obstacle_fields(obstacle.shape), obstacle, entry);
+      put_motion(obstacle, entry);
       root["obstacles"].push_back(std::move(entry));
     }
   }
+  if (scene.contact) root["contact"] = block(contact_fields(), *scene.contact);
+  if (scene.self_contact) root["self_contact"] = block(self_contact_fields(), *scene.self_contact);
   root["integrator"] = block(integrator_fields(scene.integrator.method), scene.integrator);
   root["duration"] = scene.duration;
   root["record"] = block(recording_fields(), scene.record);

@@ -26,7 +26,8 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
 /// Takes `count` steps at once, or none: where the scene needs every state, where the method cannot, and
 /// where one of the steps has to be looked at more closely.
 std::int64_t Simulation::advance_unseen(std::int64_t count) {
-  if (count < fewest || limiter_ || contact_ || !was_finite_ || !integrator_->gains_unseen(*forces_))
+  if (count < fewest || limiter_ || contact_ || continuous_contact_ || !was_finite_ ||
+      !integrator_->gains_unseen(*forces_))
     return 0;
   std::array<double, most_at_once> squares{};
   const std::span<double> of_steps(squares.data(), static_cast<std::size_t>(count));

@@ -32,6 +32,10 @@ StepCount StepCount::since(const StepCount& earlier) const {
 }
 
 std::string describe(const Divergence& d) {
+  const std::string where = d.on_grid ? fmt::format(" (row {}, column {})", d.row, d.column) : "";
+  if (d.pinched)
+    return fmt::format("pinched in step {} (t = {:.6g} s) at particle {}{}: {}", d.step, d.time, d.particle,
+                       where, d.cause);
   std::string advice;
   if (d.solver_failed)
     advice = fmt::format("the time step is {:.4g} s; a shorter one makes the equations easier", d.time_step);
@@ -43,7 +47,6 @@ std::string describe(const Divergence& d) {
   else
     advice = fmt::format("the time step is {:.4g} s, stable for this scene is up to {:.4g} s", d.time_step,
                          d.stable_step);
-  const std::string where = d.on_grid ? fmt::format(" (row {}, column {})", d.row, d.column) : "";
   return fmt::format("{} in step {} (t = {:.6g} s) at particle {}{}: {}; {}",
                      d.solver_failed ? "stopped" : "diverged", d.step, d.time, d.particle, where, d.cause,
                      advice);

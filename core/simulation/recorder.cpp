@@ -60,6 +60,8 @@ const std::vector<Column>& columns() {
       {"limiter_sweeps", [](Q q) { return q.limiter; }, [](M m) { return std::to_string(m.limiter_sweeps); }},
       {"limiter_excess", [](Q q) { return q.limiter; }, [](M m) { return csv_number(m.limiter_excess); }},
       {"contacts", [](Q q) { return q.contact; }, [](M m) { return std::to_string(m.contacts); }},
+      {"held_back", [](Q q) { return q.continuous_contact; },
+       [](M m) { return std::to_string(m.held_back); }},
   };
   return all;
 }

@@ -5,8 +5,7 @@
 
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
-#include "cloth/sums.h"
-#include "forces/gravity.h"
+#include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
 #include "measure/spectrum.h"
@@ -17,23 +16,11 @@
 namespace cloth {
 namespace {
 
-/// A kinetic energy this many times all that the scene can give is a run that has run away.
-constexpr double runaway_factor = 10;
-
-/// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
-constexpr double rounding_floor = 1e-6;
-
 double elastic_scale_of(const ClothSystem& system) {
   double energy = 0;
   for (const SpringRun& run : system.springs)
     energy += 0.5 * run.stiffness * run.rest_length * run.rest_length * run.count;
   return energy;
-}
-
-std::optional<int> first_not_finite(const Vec3Field& field) {
-  for (std::size_t i = 0; i < field.size(); ++i)
-    if (!field[i].allFinite()) return static_cast<int>(i);
-  return std::nullopt;
 }
 
 Vec3 gravity_of(const Scene& scene) {
@@ -77,10 +64,16 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  if (!scene_.obstacles.empty()) contact_.emplace(scene_.obstacles);
+  const std::unique_ptr<ContinuousContact> contact_before = std::move(continuous_contact_);
+  if (has_continuous_contact(scene_))
+    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, state_.time);
+  else if (!scene_.obstacles.empty())
+    contact_.emplace(scene_.obstacles);
+  if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
+  obstacle_speed_ = highest_obstacle_speed(scene_);
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
   last_limit_ = {};
@@ -93,9 +86,10 @@ void Simulation::assemble() {
       .brush = brush,
       .pull = pull,
       .limiter = limiter_.has_value(),
-      .contact = contact_.has_value(),
+      .contact = contact_ || continuous_contact_,
       .structural = system_.spring_count(SpringFamily::structural) > 0,
-      .shear = system_.spring_count(SpringFamily::shear) > 0};
+      .shear = system_.spring_count(SpringFamily::shear) > 0,
+      .continuous_contact = continuous_contact_ != nullptr};
 
   strongest_pull_ = find_strongest_pull();
   apply_hand();
@@ -137,13 +131,16 @@ std::optional<Divergence> Simulation::step() {
   const std::int64_t next = state_.step + 1;
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
+  if (continuous_contact_) position_before_ = state_.position;
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact();
+  if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
   state_.time = times.end;
   state_.step = next;
   count_step(report);
 
+  if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
   if (!report.failure) return find_divergence(report);
   Divergence stop = stop_at(report.failure->particle, report.failure->cause);
   stop.solver_failed = true;
@@ -186,6 +183,17 @@ void Simulation::resolve_contact() {
   if (!contact_->touches(system_, state_)) return;
   const double before = total_energy();
   last_contact_ = contact_->apply(system_, state_);
+  ledger_.contact += total_energy() - before;
+  integrator_->forget(Change::state);
+}
+
+void Simulation::resolve_continuous_contact(const StepTimes& times) {
+  last_contact_ = {};
+  const ContactTimes contact_times{times.begin, times.end, times.step};
+  if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return;
+  const double before = total_energy();
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_);
+  if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
   integrator_->forget(Change::state);
 }
@@ -235,7 +243,8 @@ Checkpoint Simulation::checkpoint() const {
           .quantities = quantities_,
           .count = count_,
           .last_limit = last_limit_,
-          .last_contact = last_contact_};
+          .last_contact = last_contact_,
+          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{}};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -252,11 +261,19 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
+  if (continuous_contact_) restore_obstacles(checkpoint.obstacle_poses);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   if (checkpoint.method == scene_.integrator.method)
     integrator_->recall(checkpoint.memory);
   else
     integrator_->forget(Change::state);
+}
+
+/// Where the checkpoint's scene had others, they are where the present scene says.
+void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
+  std::vector<Pose> of_scene;
+  for (const Obstacle& obstacle : scene_.obstacles) of_scene.push_back(pose_of(obstacle, state_.time));
+  continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
 }
 
 void Simulation::set_threads(int threads, ThreadUse use) {
@@ -296,85 +313,8 @@ Measurement Simulation::measure() const {
           .strain = measure_strain(system_, state_.position),
           .limiter_sweeps = last_limit_.sweeps,
           .limiter_excess = last_limit_.excess,
-          .contacts = last_contact_.contacts};
-}
-
-/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
-/// wind, what the hand did, what there was at the start.
-double Simulation::energy_scale_after(double fallen) const {
-  const double mass = total_mass_;
-  const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
-  double wind = 0;
-  if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
-  return std::max(drop, fallen) + 0.5 * mass * wind * wind + std::abs(ledger_.forces.brush) +
-         std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
-}
-
-double Simulation::energy_scale() const {
-  return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
-}
-
-bool Simulation::has_run_away(double kinetic) const {
-  if (!std::isfinite(kinetic)) return true;
-  if (kinetic <= runaway_factor * energy_scale_after(0)) return false;
-  return !(kinetic <= runaway_factor * energy_scale());
-}
-
-/// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2.
-bool Simulation::is_surely_slow(double speed_squares) const {
-  return 0.5 * largest_mass_ * speed_squares <= runaway_factor * energy_scale_after(0);
-}
-
-/// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
-/// all does not make the speeds too much, nothing has run away. Only else the state is looked at.
-std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
-  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ && is_surely_slow(*report.speed_squares))
-    return std::nullopt;
-  const auto x = state_.position.flat();
-  // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.
-  const double sum = ordered_sum(x.size(), [p = x.data()](std::size_t k) { return p[k]; });
-  const bool lost = !std::isfinite(sum) && first_not_finite(state_.position);
-  was_finite_ = !lost;
-  if (!lost && !has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
-  return stop_at_fastest("its speed has run away");
-}
-
-Divergence Simulation::stop_at_fastest(const std::string& cause) const {
-  if (const auto i = first_not_finite(state_.velocity)) return stop_at(*i, "its velocity is not finite");
-  if (const auto i = first_not_finite(state_.position)) return stop_at(*i, "its position is not finite");
-  int fastest = 0;
-  double highest_speed = -1;
-  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
-    if (const double speed = state_.velocity[i].stableNorm(); speed > highest_speed) {
-      highest_speed = speed;
-      fastest = static_cast<int>(i);
-    }
-  }
-  return stop_at(fastest, cause);
-}
-
-/// The longest stable step in s, 0 if there is none. Of a prepared cloth only the bound for any shape is
-/// known.
-double Simulation::method_limit() const {
-  const auto of_scene = stable_step(scene_.integrator.method, scene_);
-  if (!of_scene || !prepare_ || std::isinf(*of_scene)) return of_scene.value_or(0);
-  const auto of_system =
-      stable_step(scene_.integrator.method, guaranteed_frequency(system_), damping_rates(scene_));
-  return std::min(*of_scene, of_system.value_or(0));
-}
-
-Divergence Simulation::stop_at(int particle, std::string cause) const {
-  Divergence divergence;
-  divergence.step = state_.step;
-  divergence.time = state_.time;
-  divergence.particle = particle;
-  divergence.cause = std::move(cause);
-  divergence.time_step = time_step_;
-  divergence.stable_step = method_limit();
-  divergence.on_grid = !system_.is_mesh();
-  divergence.row = divergence.particle / system_.columns;
-  divergence.column = divergence.particle % system_.columns;
-  return divergence;
+          .contacts = last_contact_.contacts,
+          .held_back = last_contact_.held_back};
 }
 
 }  // namespace cloth

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "contact/obstacle_contact.h"
+#include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
@@ -19,6 +20,7 @@
 
 namespace cloth {
 
+class ContinuousContact;
 class WorkerTeam;
 
 /// What entered the cloth since t = 0, in J; the loss left it.
@@ -42,6 +44,7 @@ struct Measurement {
   std::int64_t limiter_sweeps = 0;  ///< of the last step
   double limiter_excess = 0;
   int contacts = 0;
+  int held_back = 0;  ///< particles that contact kept from getting where they should
   /// total - total(0) - works + losses: what the method itself added or lost, J
   double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
 };
@@ -50,6 +53,7 @@ struct Measurement {
 struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
   bool structural = false, shear = false;
+  bool continuous_contact = false;
   bool operator==(const Quantities&) const = default;
 };
 
@@ -76,6 +80,7 @@ struct Checkpoint {
   StepCount count;
   LimiterReport last_limit;
   ContactReport last_contact;
+  std::vector<Pose> obstacle_poses;  ///< of continuous contact
 
   std::size_t bytes() const;
 };
@@ -133,7 +138,8 @@ class Simulation {
   double time_step() const { return time_step_; }
   const Quantities& quantities() const { return quantities_; }
   const StepCount& count() const { return count_; }
-  const LimiterReport& last_limit() const { return last_limit_; }  ///< of the last step
+  const LimiterReport& last_limit() const { return last_limit_; }      ///< of the last step
+  const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
   Measurement measure() const;
@@ -154,9 +160,12 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  void restore_obstacles(const std::vector<Pose>& poses);
+  void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;
+  Divergence stop_at_pinch(const Pinch& pinch) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
   bool has_run_away(double kinetic) const;
@@ -170,7 +179,9 @@ class Simulation {
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<DeformationLimiter> limiter_;
-  std::optional<ObstacleContact> contact_;
+  std::optional<ObstacleContact> contact_;                 ///< particle by particle
+  std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
+  Vec3Field position_before_;                              ///< m, at the step's start, for the latter
 
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force
@@ -187,6 +198,7 @@ class Simulation {
   std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
+  double obstacle_speed_ = 0;                 ///< m/s, the highest of any point
   bool was_finite_ = false;                   ///< every position was finite after the last step
   ClothState before_unseen_;                  ///< to go back to
 };

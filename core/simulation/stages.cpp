@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
+#include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
 
@@ -60,8 +63,19 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
 
 StageInfo contact_stage(const Scene& scene) {
   if (scene.obstacles.empty()) return {"contact", false, "the scene has no \"obstacles\""};
+  const std::string count =
+      fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s");
+  if (!has_continuous_contact(scene)) return {"contact", true, count};
+  const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(), &moves);
   return {"contact", true,
-          fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s")};
+          fmt::format("{}{}, without gaps, {} m thick", count,
+                      moving > 0 ? fmt::format(" ({} moving)", moving) : "",
+                      scene.contact.value_or(ContactSettings{}).thickness)};
+}
+
+StageInfo self_contact_stage(const Scene& scene) {
+  if (!scene.self_contact) return {"self-contact", false, "the scene has no \"self_contact\""};
+  return {"self-contact", true, fmt::format("without gaps, {} m thick", scene.self_contact->thickness)};
 }
 
 std::string evaluations_text(const MethodFacts& method) {
@@ -76,7 +90,8 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
   const ClothSystem system = make_cloth(scene.cloth, material);
   const MethodFacts& method = facts_of(scene.integrator.method);
-  const bool moved_later = contact_stage(scene).present || limiter_stage(scene, system).present;
+  const bool moved_later =
+      contact_stage(scene).present || scene.self_contact || limiter_stage(scene, system).present;
   std::vector<StageInfo> stages;
   for (const SpringFamily family : spring_families) stages.push_back(spring_stage(scene, system, family));
   stages.push_back(positive_stage("spring damping", scene.springs.has_value(), "springs", material.damping,
@@ -94,6 +109,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
                                               : "")});
   stages.push_back(limiter_stage(scene, system));
   stages.push_back(contact_stage(scene));
+  stages.push_back(self_contact_stage(scene));
   return stages;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
@@ -70,7 +71,7 @@ class CellRun {
   double growth() const { return added_records_ > 0 ? added_ / added_records_ : 0; }
 
   void look_for_tunnelling() {
-    if (tunnelling_) return;
+    if (tunnelling_ || has_continuous_contact(simulation_.scene())) return;
     tunnelling_ = find_tunnelling(simulation_.scene().obstacles, simulation_.system(), simulation_.state(),
                                   simulation_.time_step());
     tunnelling_step_ = simulation_.state().step + 1;

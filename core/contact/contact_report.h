@@ -1,0 +1,27 @@
+// What contact did in a step.
+#pragma once
+
+#include <optional>
+
+#include "cloth/vec3_field.h"
+
+namespace cloth {
+
+/// An obstacle could not go its way without passing through cloth that cannot give way.
+struct Pinch {
+  int obstacle = 0;
+  int particle = 0;
+  Vec3 place{0, 0, 0};  ///< m
+};
+
+struct ContactReport {
+  bool acted = false;  ///< the state is another one than without contact
+  int contacts = 0;    ///< particles that were touched; particle by particle, once for each obstacle
+  int held_back = 0;   ///< particles that did not get where they should: something was in the way to the end
+  Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only continuous contact says it
+  int rounds = 0;         ///< of continuous contact
+  std::size_t pairs = 0;  ///< of features near each other, of the last round
+  std::optional<Pinch> pinch;
+};
+
+}  // namespace cloth

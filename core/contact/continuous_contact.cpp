@@ -1,0 +1,311 @@
+#include "contact/continuous_contact.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "cloth/mesh_cloth.h"
+
+namespace cloth {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
+constexpr double near_factor = 1.5;
+constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
+/// Of the thickness: what is left of a way that counts as none.
+constexpr double arrived_part = 1e-3;
+constexpr double solver_tolerance_part = 1e-5;
+constexpr int solver_sweeps = 20, velocity_sweeps = 50;
+constexpr double velocity_tolerance = 1e-9;  ///< m/s
+constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
+
+bool all_finite(const Vec3Field& field) {
+  const auto values = field.flat();
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::vector<ObstacleBody> bodies_of(const Scene& scene) {
+  std::vector<ObstacleBody> bodies;
+  for (const Obstacle& obstacle : scene.obstacles) bodies.push_back(body_of(obstacle));
+  return bodies;
+}
+
+double mean_edge(const Surface& surface, const Vec3Field& position) {
+  double sum = 0;
+  for (const auto& [a, b] : surface.edges) sum += (position[at(a)] - position[at(b)]).norm();
+  return sum / static_cast<double>(std::max<std::size_t>(1, surface.edges.size()));
+}
+
+}  // namespace
+
+bool has_continuous_contact(const Scene& scene) {
+  return scene.contact || scene.self_contact ||
+         std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                     [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
+}
+
+double highest_obstacle_speed(const Scene& scene) {
+  double highest = 0;
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
+  return highest;
+}
+
+ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, double time)
+    : surface_(make_surface(system.size(), triangles_of(system))),
+      bodies_(bodies_of(scene)),
+      obstacles_(scene.obstacles),
+      search_(surface_, bodies_, scene.self_contact.has_value(),
+              skin_part * mean_edge(surface_, system.start)),
+      thickness_(scene.contact.value_or(ContactSettings{}).thickness),
+      gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
+      poses_(bodies_.size()),
+      next_poses_(bodies_.size()),
+      end_poses_(bodies_.size()) {
+  for (const Obstacle& obstacle : obstacles_) starts_.push_back(pose_of(obstacle, time));
+  constexpr double edges_of_a_search = 4;
+  if (scene.self_contact) {
+    self_thickness_ = scene.self_contact->thickness;
+    self_friction_ = scene.self_contact->friction;
+  }
+  const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
+                                    [](const Obstacle& o) { return o.shape == Shape::mesh; });
+  longest_way_ =
+      scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
+}
+
+void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
+  assert(poses.size() == starts_.size());
+  starts_ = poses;
+}
+
+void ContinuousContact::follow(const ContinuousContact& before) {
+  for (std::size_t k = 0; k < std::min(bodies_.size(), before.bodies_.size()); ++k) {
+    const ObstacleBody &now = bodies_[k], &then = before.bodies_[k];
+    if (now.shape != then.shape) continue;
+    starts_[k] = before.starts_[k];
+    if (now.pivot == then.pivot && now.normal == then.normal) continue;
+    Eigen::Matrix3d turn = before.starts_[k].turn;
+    if (now.shape == Shape::plane) turn = turn * Eigen::Quaterniond::FromTwoVectors(now.normal, then.normal);
+    starts_[k] = {turn, before.starts_[k].at(then.pivot) - turn * now.pivot};
+  }
+}
+
+void ContinuousContact::begin(const ContactTimes& times) {
+  passages_.clear();
+  bool all_rest = true;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    poses_[k] = starts_[k];
+    end_poses_[k] = pose_of(obstacles_[k], times.end);
+    passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
+    all_rest = all_rest && passages_[k].rests();
+  }
+  starts_ = end_poses_;
+  part_ = all_rest ? 1 : 0;
+  was_rebased_ = false;
+  touches_.clear();
+}
+
+/// Whether there are any. Forgets what was pushed in earlier rounds.
+bool ContinuousContact::find_pairs() {
+  const double margin = 0.5 * std::max(thickness_, near_factor * self_thickness_);
+  boxes_.resize(safe_.size());
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    const Vec3 here = safe_[i];
+    const Vec3 way = wish_[i] - here;
+    const double length = way.norm();
+    const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
+    boxes_[i] = bounds_of(here, end).grown(margin);
+  }
+  search_.find(boxes_, passages_, near_factor * thickness_, pairs_);
+  memory_.assign(pairs_.size(), {});
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
+  return !pairs_.empty();
+}
+
+void ContinuousContact::separate_all() {
+  separations_.resize(pairs_.size());
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    separations_[k] = separate(pairs_[k], surface_, safe_, bodies_, poses_);
+}
+
+/// The pair at the end of the step: its plane is carried along by the obstacle.
+ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSystem& system,
+                                                   const Vec3Field& from) const {
+  const FeaturePair& pair = pairs_[k];
+  const Separation& s = separations_[k];
+  ContactConstraint contact;
+  contact.count = s.count;
+  contact.particle = s.particle;
+  contact.weight = s.weight;
+  contact.normal = s.normal;
+  contact.bound = memory_[k].thickness;
+  contact.friction = self_friction_;
+  contact.rest = contact.point(from);
+  if (pair.obstacle != FeaturePair::cloth_itself) {
+    const Passage& passage = passages_[at(pair.obstacle)];
+    const Plane at_end = carried_plane(pair.obstacle, {s.far_point, s.normal}, end_poses_);
+    const Vec3 local = poses_[at(pair.obstacle)].back(s.far_point);
+    contact.normal = at_end.normal;
+    contact.bound += contact.normal.dot(at_end.point);
+    contact.rest += passage.to().at(local) - passage.from().at(local);
+    const ObstacleBody& body = bodies_[at(pair.obstacle)];
+    contact.friction = body.reflects ? 0 : body.friction;
+  }
+  contact.mobility = mobility_of(contact, system.inverse_mass);
+  contact.push = memory_[k].push;
+  contact.rub = memory_[k].rub - contact.normal.dot(memory_[k].rub) * contact.normal;
+  return contact;
+}
+
+void ContinuousContact::solve_wish(const ClothSystem& system, const Vec3Field& from) {
+  constraints_.clear();
+  constraint_pair_.clear();
+  wish_ = base_;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const Separation& s = separations_[k];
+    const bool holds = s.nearest && s.distance < near_factor * memory_[k].thickness && !s.normal.isZero(0);
+    if (!holds) {
+      memory_[k].push = 0, memory_[k].rub.setZero();
+      continue;
+    }
+    constraints_.push_back(constraint_of(k, system, from));
+    constraint_pair_.push_back(k);
+    apply_pushes(constraints_.back(), system.inverse_mass, wish_);
+  }
+  solve_contacts(constraints_, system.inverse_mass, solver_sweeps, solver_tolerance_part * thickness_, wish_);
+}
+
+void ContinuousContact::keep_touches(double step) {
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    PairMemory& memory = memory_[constraint_pair_[c]];
+    const ContactConstraint& contact = constraints_[c];
+    memory.push = contact.push, memory.rub = contact.rub;
+    if (!(contact.push > 0)) {
+      if (memory.touch >= 0 && !was_rebased_) touches_[at(memory.touch)].contact.push = 0;
+      continue;
+    }
+    if (memory.touch < 0) {
+      memory.touch = static_cast<int>(touches_.size());
+      touches_.emplace_back();
+    }
+    Touch& touch = touches_[at(memory.touch)];
+    touch.contact = contact;
+    touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
+    touch.velocity.setZero();
+    if (touch.obstacle == FeaturePair::cloth_itself) continue;
+    const Vec3 local = poses_[at(touch.obstacle)].back(separations_[constraint_pair_[c]].far_point);
+    const Passage& passage = passages_[at(touch.obstacle)];
+    touch.velocity = (passage.to().at(local) - passage.from().at(local)) / step;
+  }
+}
+
+/// What is not finite is left as it is: the run stops there.
+bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state) {
+  if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
+  begin(times);
+  base_ = wish_ = state.position;
+  safe_ = from;
+  return find_pairs();
+}
+
+ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
+                                       const ContactTimes& times, ClothState& state) {
+  ContactReport report;
+  bool moved = false;
+  int stuck = 0, rounds_at_rest = 0;
+  const double arrived = arrived_part * thickness_;
+  while (true) {
+    ++report.rounds;
+    separate_all();
+    solve_wish(system, from);
+    keep_touches(times.step);
+    const Vec3Field before = safe_;
+    const double left = move_cloth();
+    moved = moved || left > 0;
+    if (part_ < 1) {
+      const double advance = advance_obstacles();
+      if (part_ < 1) base_ = wish_, was_rebased_ = true;
+      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
+      if (stuck > most_rounds_stuck || report.rounds > most_rounds_moving) {
+        report.pinch = pinch(system);
+        break;
+      }
+    }
+    if (part_ == 1 && (left <= arrived || ++rounds_at_rest > most_rounds_at_rest)) break;
+    if (outgrown_) {
+      const bool any = find_pairs();
+      if (!any) break;
+    }
+  }
+  if (!moved && touches_.empty()) return report;
+  report.acted = true;
+  report.pairs = pairs_.size();
+  report.contacts = count_touched();
+  state.position = safe_;
+  report.impulse = answer_velocities(system, times.step, state);
+  report.held_back = note_held_back(from, times.step, state);
+  return report;
+}
+
+double ContinuousContact::furthest_move(const Vec3Field& before) const {
+  double furthest = 0;
+  for (std::size_t i = 0; i < safe_.size(); ++i) furthest = std::max(furthest, (safe_[i] - before[i]).norm());
+  return furthest;
+}
+
+int ContinuousContact::count_touched() const {
+  std::vector<std::uint8_t> touched(safe_.size(), 0);
+  for (const Touch& touch : touches_)
+    for (int k = 0; k < touch.contact.count; ++k)
+      if (touch.contact.push > 0 && touch.contact.weight[at(k)] != 0)
+        touched[at(touch.contact.particle[at(k)])] = 1;
+  return static_cast<int>(std::count(touched.begin(), touched.end(), 1));
+}
+
+/// Impulses over the touching pairs; returns their sum in N s.
+Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, ClothState& state) {
+  const double least_bounce = 2 * gravity_ * step;  // slower, and a cloth at rest would dance
+  constraints_.clear();
+  for (const Touch& touch : touches_) {
+    if (!(touch.contact.push > 0)) continue;
+    ContactConstraint contact = touch.contact;
+    const double coming = contact.normal.dot(contact.point(state.velocity) - touch.velocity);
+    double restitution = 0;
+    if (touch.obstacle != FeaturePair::cloth_itself) {
+      const ObstacleBody& body = bodies_[at(touch.obstacle)];
+      restitution = body.reflects ? body.friction : body.restitution;
+    }
+    contact.bound = contact.normal.dot(touch.velocity) + (coming < -least_bounce ? -restitution * coming : 0);
+    contact.rest = touch.velocity;
+    contact.push = 0, contact.rub.setZero();
+    constraints_.push_back(contact);
+  }
+  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  Vec3 impulse = Vec3::Zero();
+  for (const ContactConstraint& contact : constraints_) {
+    double weight = 0;
+    for (int k = 0; k < contact.count; ++k)
+      if (!system.pinned[at(contact.particle[at(k)])]) weight += contact.weight[at(k)];
+    impulse += weight * (contact.push * contact.normal + contact.rub);
+  }
+  return impulse;
+}
+
+int ContinuousContact::note_held_back(const Vec3Field& from, double step, ClothState& state) const {
+  int held = 0;
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if ((wish_[i] - safe_[i]).norm() <= arrived_part * thickness_) continue;
+    ++held;
+    const Vec3 gone = (safe_[i] - from[i]) / step;
+    if (gone.norm() < state.velocity[i].norm()) state.velocity.set(i, gone);
+  }
+  return held;
+}
+
+}  // namespace cloth

@@ -1,0 +1,121 @@
+// Contact that lets nothing through. A step's motion is followed from where the particles were: pair by pair
+// a plane parts the features, and a particle goes only as far as it stays on its side of the planes of all
+// its pairs. Since each side of a plane is convex, no vertex, edge or face can pass another on the way, at
+// any speed and step; obstacles that move carry their planes along. What is left of the way is gone in
+// further rounds, with new planes. (Displacements bounded by distance: Wu et al., "A Safe and Fast Repulsion
+// Method for GPU-based Cloth Self Collisions", 2020; Chen et al., "Offset Geometric Contact", 2025. Here
+// planes instead of balls leave every motion along and away from an obstacle free.)
+//
+// Where the particles should go is solved for in each round: as near as possible to where the integrator has
+// put them, in the norm of their masses, with every near pair a thickness apart and Coulomb friction against
+// the slip of the step. Velocities follow by impulses over the same pairs.
+#pragma once
+
+#include "cloth/cloth_system.h"
+#include "contact/contact_report.h"
+#include "contact/contact_solver.h"
+#include "contact/near_pairs.h"
+
+namespace cloth {
+
+/// Whether the scene's contact is this one; otherwise obstacles are tested particle by particle.
+bool has_continuous_contact(const Scene& scene);
+
+/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest.
+double highest_obstacle_speed(const Scene& scene);
+
+/// Begin and end of a step, in s.
+struct ContactTimes {
+  double begin = 0, end = 0, step = 0;
+};
+
+class ContinuousContact {
+ public:
+  /// Obstacles are where the scene says they are at `time`, in s.
+  ContinuousContact(const Scene& scene, const ClothSystem& system, double time);
+  ContinuousContact(const ContinuousContact&) = delete;
+  ContinuousContact& operator=(const ContinuousContact&) = delete;
+
+  /// Where the obstacles are as the next step begins.
+  const std::vector<Pose>& poses() const { return starts_; }
+  void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
+
+  /// After an edit: obstacles that `before` had too, in the same order and shape, begin the next step where
+  /// they were, so that what the edit moved goes its way and pushes the cloth.
+  void follow(const ContinuousContact& before);
+
+  /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
+  bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
+
+  /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
+  /// pinch is reported the positions are the last ones that nothing passed.
+  ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
+                      ClothState& state);
+
+ private:
+  struct PairMemory {
+    double thickness = 0;  ///< m, to be kept
+    double push = 0;       ///< kg m, of the last round
+    Vec3 rub{0, 0, 0};     ///< kg m
+    int touch = -1;        ///< in touches_
+  };
+  struct Plane {
+    Vec3 point, normal;
+  };
+  struct Touch {
+    ContactConstraint contact;
+    int obstacle = FeaturePair::cloth_itself;
+    Vec3 velocity{0, 0, 0};  ///< m/s, of the obstacle there
+  };
+
+  void begin(const ContactTimes& times);
+  bool find_pairs();
+  void separate_all();
+  void solve_wish(const ClothSystem& system, const Vec3Field& from);
+  ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
+  void keep_touches(double step);
+  double move_cloth();
+  void bound_by_pairs();
+  void bound_by_boxes();
+  double advance_obstacles();
+  double turn_limit(std::size_t obstacle) const;
+  double shrink_to_planes();
+  double reached_gap(const Separation& separation) const;
+  double furthest_move(const Vec3Field& before) const;
+  Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
+  Pinch pinch(const ClothSystem& system) const;
+  int note_held_back(const Vec3Field& from, double step, ClothState& state) const;
+  int count_touched() const;
+  Vec3 answer_velocities(const ClothSystem& system, double step, ClothState& state);
+
+  Surface surface_;
+  std::vector<ObstacleBody> bodies_;
+  std::vector<Obstacle> obstacles_;
+  PairSearch search_;
+  double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
+  double gravity_ = 0;      ///< m/s^2
+  double longest_way_ = 0;  ///< m, that one search for pairs serves
+
+  std::vector<Pose> starts_;  ///< of the next step
+
+  // of the step in progress
+  std::vector<Passage> passages_;
+  std::vector<Pose> poses_, next_poses_, end_poses_;
+  double part_ = 0;  ///< of the obstacles' way that is behind them
+  Vec3Field base_;   ///< m, wished, before contact in this round
+  Vec3Field wish_;   ///< m, wished with contact
+  Vec3Field safe_;   ///< m, reached
+  std::vector<double> share_;
+  std::vector<Bounds> boxes_;
+  std::vector<FeaturePair> pairs_;
+  std::vector<PairMemory> memory_;
+  std::vector<Separation> separations_;
+  std::vector<ContactConstraint> constraints_;
+  std::vector<std::size_t> constraint_pair_;
+  std::vector<Touch> touches_;
+  std::size_t blocking_pair_ = 0;  ///< that stopped an obstacle last
+  bool outgrown_ = false;          ///< a particle was stopped by its box
+  bool was_rebased_ = false;       ///< contacts of earlier rounds are part of what is wished
+};
+
+}  // namespace cloth

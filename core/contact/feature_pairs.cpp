@@ -1,0 +1,269 @@
+#include "contact/feature_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Sines of angles by which a surface may bend towards the other without the pair counting as not nearest:
+/// the surface that a pair stands on, and the one beyond. Loose where the cloth is, since it is never quite
+/// flat.
+constexpr double slack_of_obstacle = 1e-3, slack_of_cloth = 0.1;
+constexpr double edge_weight = 1e-12;  ///< a weight up to this is one of a boundary
+
+/// One side of a pair: where its closest feature lies.
+struct Side {
+  int vertex = -1,
+      edge = -1;  ///< the closest point is this vertex or lies on this edge; neither: within the face
+};
+
+Side side_of_triangle(const Surface& surface, int triangle, const std::array<double, 3>& weights) {
+  const auto positive =
+      std::count_if(weights.begin(), weights.end(), [](double w) { return w > edge_weight; });
+  if (positive == 3) return {};
+  if (positive <= 1) {
+    const auto k = std::max_element(weights.begin(), weights.end()) - weights.begin();
+    return {surface.triangles[at(triangle)][static_cast<std::size_t>(k)], -1};
+  }
+  const auto k = std::min_element(weights.begin(), weights.end()) - weights.begin();
+  return {-1, surface.edges_of[at(triangle)][static_cast<std::size_t>((k + 1) % 3)]};
+}
+
+/// Whether the surface around an edge's or vertex's `point` does not come closer along `normal`, which points
+/// from it to the other feature.
+template <class Position>
+bool bends_away(const Surface& surface, const Side& side, const Vec3& point, const Vec3& normal, double slack,
+                const Position& position) {
+  const auto away = [&](int vertex) {
+    const Vec3 along = position(vertex) - point;
+    return normal.dot(along) <= slack * along.norm();
+  };
+  if (side.vertex >= 0) {
+    const int* list = surface.neighbours.data();
+    return std::all_of(list + surface.first_neighbour[at(side.vertex)],
+                       list + surface.first_neighbour[at(side.vertex) + 1], away);
+  }
+  if (side.edge >= 0) {
+    const auto& beside = surface.beside_edge[at(side.edge)];
+    return away(beside[0]) && (beside[1] < 0 || away(beside[1]));
+  }
+  return true;
+}
+
+void set_normal(Separation& s, const Vec3& separation, double squared_distance) {
+  s.distance = std::sqrt(squared_distance);
+  s.normal = s.distance > 0 ? Vec3(separation / s.distance) : Vec3::Zero();
+}
+
+/// Puts the particles of a feature of the cloth on the near (sign 1) or far (-1) side.
+template <std::size_t N>
+void add_particles(Separation& s, const std::array<int, N>& particles, const std::array<double, N>& weights,
+                   double sign) {
+  for (std::size_t k = 0; k < N; ++k, ++s.count) {
+    s.particle[at(s.count)] = particles[k];
+    s.weight[at(s.count)] = sign * weights[k];
+  }
+  if (sign > 0) s.near_count = s.count;
+}
+
+/// The cloth where it is, an obstacle in its pose, seen alike: a surface and where its vertices are.
+struct ClothSide {
+  const Surface& surface;
+  const Vec3Field& field;
+  Vec3 operator()(int vertex) const { return field[at(vertex)]; }
+};
+
+struct BodySide {
+  const Surface& surface;
+  const std::vector<Vec3>& vertices;
+  const Pose& pose;
+  Vec3 operator()(int vertex) const { return pose.at(vertices[at(vertex)]); }
+};
+
+template <class Far>
+void set_far_level(Separation& s, const Far& far, std::initializer_list<int> vertices) {
+  s.far_level = -std::numeric_limits<double>::infinity();
+  for (const int vertex : vertices) s.far_level = std::max(s.far_level, s.normal.dot(far(vertex)));
+}
+
+void set_near_level(Separation& s, const ClothSide& cloth) {
+  s.near_level = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < s.near_count; ++k)
+    s.near_level = std::min(s.near_level, s.normal.dot(cloth(s.particle[at(k)])));
+}
+
+template <class Far>
+Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
+                       double slack) {
+  const auto& [a, b, c] = far.surface.triangles[at(pair.foreign)];
+  const Vec3 p = cloth(pair.feature), pa = far(a), pb = far(b), pc = far(c);
+  const PointTriangle closest = closest_on_triangle(p, pa, pb, pc);
+  Separation s;
+  set_normal(s, closest.separation, closest.squared_distance);
+  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.near_level = s.normal.dot(p);
+  s.far_level = std::max({s.normal.dot(pa), s.normal.dot(pb), s.normal.dot(pc)});
+  s.far_point = p - closest.separation;
+  if (own) add_particles<3>(s, {a, b, c}, closest.weights, -1);
+
+  const Side side = side_of_triangle(far.surface, pair.foreign, closest.weights);
+  const bool in_charge = side.vertex >= 0 ? far.surface.triangle_of_vertex[at(side.vertex)] == pair.foreign
+                         : side.edge >= 0 ? far.surface.triangle_of_edge[at(side.edge)] == pair.foreign
+                                          : true;
+  s.nearest = in_charge && bends_away(far.surface, side, s.far_point, s.normal, slack, far);
+  return s;
+}
+
+template <class Far>
+Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
+                     double slack) {
+  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
+  const auto& [c, d] = far.surface.edges[at(pair.foreign)];
+  const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
+  const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
+  Separation s;
+  set_normal(s, closest.separation, closest.squared_distance);
+  add_particles<2>(s, {a, b}, {1 - closest.first, closest.first}, 1);
+  s.near_level = std::min(s.normal.dot(pa), s.normal.dot(pb));
+  s.far_level = std::max(s.normal.dot(pc), s.normal.dot(pd));
+  s.far_point = pc + closest.second * (pd - pc);
+  if (own) add_particles<2>(s, {c, d}, {1 - closest.second, closest.second}, -1);
+
+  const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
+  if (!inside(closest.first) || !inside(closest.second)) return s;  // a vertex's pair holds these
+  const Vec3 near_point = s.far_point + closest.separation;
+  s.nearest = bends_away(cloth.surface, {-1, pair.feature}, near_point, -s.normal, slack_of_cloth, cloth) &&
+              bends_away(far.surface, {-1, pair.foreign}, s.far_point, s.normal, slack, far);
+  return s;
+}
+
+Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex) {
+  const Triangle& face = cloth.surface.triangles[at(pair.feature)];
+  const PointTriangle closest = closest_on_triangle(vertex, cloth(face[0]), cloth(face[1]), cloth(face[2]));
+  Separation s;
+  set_normal(s, -closest.separation, closest.squared_distance);
+  add_particles<3>(s, face, closest.weights, 1);
+  set_near_level(s, cloth);
+  s.far_level = s.normal.dot(vertex);
+  s.far_point = vertex;
+
+  const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
+  if (side.vertex >= 0) return s;  // the vertex's own pair holds it
+  const bool in_charge = side.edge < 0 || cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature;
+  const Vec3 near_point = vertex - closest.separation;
+  s.nearest = in_charge && bends_away(cloth.surface, side, near_point, -s.normal, slack_of_cloth, cloth);
+  return s;
+}
+
+Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& plane,
+                        const Pose& pose) {
+  const Vec3 p = cloth(pair.feature);
+  Separation s;
+  s.normal = pose.turn * plane.normal;
+  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.near_level = s.normal.dot(p);
+  s.far_level = s.normal.dot(pose.at(plane.point));
+  s.distance = s.near_level - s.far_level;
+  s.far_point = p - s.distance * s.normal;
+  s.nearest = true;
+  return s;
+}
+
+Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
+                      const Pose& pose) {
+  const Vec3 p = cloth(pair.feature);
+  const PointBox closest = closest_on_box(pose.back(p), body.box);
+  Separation s;
+  s.normal = pose.turn * closest.normal;
+  s.distance = closest.distance;
+  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.far_point = pose.at(closest.point);
+  s.near_level = s.normal.dot(p);
+  s.far_level = s.near_level - s.distance;  // the whole box lies behind the plane through its closest point
+  s.nearest = true;
+  return s;
+}
+
+Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
+                       const Pose& pose) {
+  const Triangle& face = cloth.surface.triangles[at(pair.feature)];
+  const Vec3 center = pose.at(body.center);
+  const PointTriangle closest = closest_on_triangle(center, cloth(face[0]), cloth(face[1]), cloth(face[2]));
+  Separation s;
+  set_normal(s, -closest.separation, closest.squared_distance);
+  add_particles<3>(s, face, closest.weights, 1);
+  set_near_level(s, cloth);
+  s.distance -= body.radius;
+  s.far_level = s.normal.dot(center) + body.radius;
+  s.far_point = center + body.radius * s.normal;
+
+  const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
+  s.nearest = side.vertex >= 0 ? cloth.surface.triangle_of_vertex[at(side.vertex)] == pair.feature
+              : side.edge >= 0 ? cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature
+                               : true;
+  return s;
+}
+
+/// An edge of a box and the cloth's: nearest only where the normal lies between those of the box's two sides.
+Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
+                         const Pose& pose) {
+  const BodySide far{body.surface, body.vertices, pose};
+  const auto& [c, d] = body.surface.edges[at(pair.foreign)];
+  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
+  const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
+  const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
+  Separation s;
+  set_normal(s, closest.separation, closest.squared_distance);
+  add_particles<2>(s, {a, b}, {1 - closest.first, closest.first}, 1);
+  set_near_level(s, cloth);
+  set_far_level(s, far, {c, d});
+  s.far_point = pc + closest.second * (pd - pc);
+  const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
+  if (!inside(closest.first) || !inside(closest.second)) return s;
+
+  const Vec3 normal = body.box.axes.transpose() * (pose.turn.transpose() * s.normal);
+  s.nearest = bends_away(cloth.surface, {-1, pair.feature}, s.far_point + closest.separation, -s.normal,
+                         slack_of_cloth, cloth);
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((c ^ d) >> axis & 1) continue;  // along the edge
+    const double outward = (c >> axis & 1) ? normal[axis] : -normal[axis];
+    if (outward < -slack_of_obstacle) s.nearest = false;
+  }
+  return s;
+}
+
+}  // namespace
+
+Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
+                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses) {
+  const ClothSide cloth{surface, position};
+  if (pair.obstacle == FeaturePair::cloth_itself)
+    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, true, slack_of_cloth)
+                                              : edge_edge(pair, cloth, cloth, true, slack_of_cloth);
+  const ObstacleBody& body = bodies[at(pair.obstacle)];
+  const Pose& pose = poses[at(pair.obstacle)];
+  const BodySide far{body.surface, body.vertices, pose};
+  switch (pair.kind) {
+    case PairKind::vertex_plane:
+      return vertex_plane(pair, cloth, body, pose);
+    case PairKind::vertex_box:
+      return vertex_box(pair, cloth, body, pose);
+    case PairKind::face_sphere:
+      return face_sphere(pair, cloth, body, pose);
+    case PairKind::vertex_face:
+      return vertex_face(pair, cloth, far, false, slack_of_obstacle);
+    case PairKind::edge_edge:
+      return body.shape == Shape::box ? edge_box_edge(pair, cloth, body, pose)
+                                      : edge_edge(pair, cloth, far, false, slack_of_obstacle);
+    case PairKind::face_vertex:
+      return face_vertex(pair, cloth, far(pair.foreign));
+  }
+  return {};
+}
+
+}  // namespace cloth

@@ -1,0 +1,185 @@
+// How far particles and obstacles may go in a round: no feature leaves its side of the plane of any pair.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/continuous_contact.h"
+
+namespace cloth {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Features never come closer than this part of the thickness.
+constexpr double least_part = 1e-3;
+/// Of a gap a round may use up this part: enough that few rounds are needed, and something is always left.
+constexpr double used_part = 0.5;
+constexpr double least_advance = 1e-9;  ///< of a step; less is none
+/// What must be left of a gap after a round.
+double kept_gap(double gap, double thickness) {
+  const double least = least_part * thickness;
+  if (gap <= least) return gap;
+  return std::max(least, (1 - used_part) * std::min(gap, thickness));
+}
+
+/// The near side of these is told from the far one however deep a particle is.
+bool meets_solid(const FeaturePair& pair) {
+  return pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box ||
+         pair.kind == PairKind::face_sphere;
+}
+
+}  // namespace
+
+/// How much of its way each particle can go without leaving its side of any plane.
+void ContinuousContact::bound_by_pairs() {
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const Separation& s = separations_[k];
+    const double room = s.gap() - kept_gap(s.gap(), memory_[k].thickness);
+    double near_way = 0, far_way = 0;  // m, towards each other
+    std::array<double, 4> ahead{};
+    for (int j = 0; j < s.count; ++j) {
+      const auto i = at(s.particle[at(j)]);
+      ahead[at(j)] = s.normal.dot(wish_[i] - safe_[i]);
+      if (j < s.near_count)
+        near_way = std::max(near_way, -ahead[at(j)]);
+      else
+        far_way = std::max(far_way, ahead[at(j)]);
+    }
+    if (s.gap() > 0 && near_way + far_way <= room) continue;
+    const double near_room =
+        near_way + far_way > 0 ? std::max(room, 0.0) * near_way / (near_way + far_way) : 0;
+    for (int j = 0; j < s.count; ++j) {
+      const auto i = at(s.particle[at(j)]);
+      const bool is_near = j < s.near_count;
+      const double level = s.normal.dot(safe_[i]);
+      const double slack =
+          is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
+      const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
+      if (s.gap() <= 0 && (way > 0 || !meets_solid(pairs_[k])))
+        share_[i] = 0;  // an edit has put it there: of a solid the way out is open
+      else if (way > slack)
+        share_[i] = std::min(share_[i], std::max(slack, 0.0) / way);
+    }
+  }
+}
+
+void ContinuousContact::bound_by_boxes() {
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    const Vec3 here = safe_[i], way = wish_[i] - here;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double room =
+          way[axis] > 0 ? boxes_[i].upper[axis] - here[axis] : here[axis] - boxes_[i].lower[axis];
+      if (std::abs(way[axis]) * share_[i] <= room) continue;
+      share_[i] = std::max(room, 0.0) / std::abs(way[axis]);
+      outgrown_ = true;
+    }
+  }
+}
+
+/// Moves the particles; returns what is left of the longest way, in m.
+double ContinuousContact::move_cloth() {
+  share_.assign(safe_.size(), 1.0);
+  outgrown_ = false;
+  bound_by_pairs();
+  bound_by_boxes();
+  double left = 0;
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if (share_[i] == 1) {
+      safe_.set(i, wish_[i]);
+      continue;
+    }
+    const Vec3 way = wish_[i] - safe_[i];
+    left = std::max(left, (1 - share_[i]) * way.norm());
+    safe_.add(i, share_[i] * way);
+  }
+  return left;
+}
+
+/// A plane that an obstacle takes along; the turn of a sphere takes none.
+ContinuousContact::Plane ContinuousContact::carried_plane(int obstacle, const Plane& plane,
+                                                          const std::vector<Pose>& to) const {
+  const ObstacleBody& body = bodies_[at(obstacle)];
+  const Pose &from = poses_[at(obstacle)], &end = to[at(obstacle)];
+  if (body.shape == Shape::sphere)
+    return {plane.point + end.at(body.center) - from.at(body.center), plane.normal};
+  return {end.at(from.back(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
+}
+
+/// A part of the step in which a turning obstacle's points leave the chords of their ways by less than a
+/// quarter of the smallest gap: the second derivative of the way is at most angle^2 radius + 2 angle shift.
+double ContinuousContact::turn_limit(std::size_t obstacle) const {
+  const Passage& passage = passages_[obstacle];
+  if (!(passage.angle() > 0) || bodies_[obstacle].shape == Shape::sphere) return 1;
+  const Vec3 pivot = passage.pivot(part_);
+  double gap = infinity, radius = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (pairs_[k].obstacle != static_cast<int>(obstacle)) continue;
+    gap = std::min(gap, reached_gap(separations_[k]));
+    for (int j = 0; j < separations_[k].near_count; ++j)
+      radius = std::max(radius, (safe_[at(separations_[k].particle[at(j)])] - pivot).norm());
+  }
+  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
+  const double bend = passage.angle() * (passage.angle() * radius + 2 * shift);
+  return bend > 0 ? std::sqrt(2 * std::max(gap, 0.0) / bend) : 1;
+}
+
+/// The gap of a pair after the cloth has moved, in m.
+double ContinuousContact::reached_gap(const Separation& s) const {
+  double level = infinity;
+  for (int j = 0; j < s.near_count; ++j) level = std::min(level, s.normal.dot(safe_[at(s.particle[at(j)])]));
+  return level - s.far_level;
+}
+
+/// By what factor the advance to `next_poses_` must be shorter for the cloth to stay beyond every carried
+/// plane.
+double ContinuousContact::shrink_to_planes() {
+  constexpr double caution = 0.9;
+  double shrink = 1;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const FeaturePair& pair = pairs_[k];
+    if (pair.obstacle == FeaturePair::cloth_itself || passages_[at(pair.obstacle)].rests()) continue;
+    const Separation& s = separations_[k];
+    const Vec3 on_plane = s.far_point + (s.far_level - s.normal.dot(s.far_point)) * s.normal;
+    const Plane carried = carried_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
+    double gap = infinity;
+    for (int j = 0; j < s.near_count; ++j)
+      gap = std::min(gap, carried.normal.dot(safe_[at(s.particle[at(j)])] - carried.point));
+    const double now = reached_gap(s), kept = kept_gap(now, memory_[k].thickness);
+    if (gap >= kept) continue;
+    const double factor = caution * std::max(now - kept, 0.0) / (now - gap);
+    if (factor < shrink) shrink = factor, blocking_pair_ = k;
+  }
+  return shrink;
+}
+
+/// Moves the obstacles as far as the cloth, where it is now, lets them; returns how far, as a part of the
+/// step.
+double ContinuousContact::advance_obstacles() {
+  double advance = 1 - part_;
+  for (std::size_t k = 0; k < passages_.size(); ++k) advance = std::min(advance, turn_limit(k));
+  while (advance > least_advance) {
+    const bool to_end = advance >= 1 - part_;
+    for (std::size_t k = 0; k < passages_.size(); ++k)
+      next_poses_[k] = passages_[k].at(to_end ? 1 : part_ + advance);
+    const double shrink = shrink_to_planes();
+    if (shrink >= 1) {
+      poses_ = next_poses_;
+      part_ = to_end ? 1 : part_ + advance;
+      return advance;
+    }
+    advance *= shrink;
+  }
+  return 0;
+}
+
+/// The pair that an obstacle could not pass, at a pinned particle if it has one.
+Pinch ContinuousContact::pinch(const ClothSystem& system) const {
+  const Separation& s = separations_[blocking_pair_];
+  Pinch pinch{pairs_[blocking_pair_].obstacle, s.particle[0], s.far_point};
+  for (int j = 0; j < s.near_count; ++j)
+    if (system.pinned[at(s.particle[at(j)])]) pinch.particle = s.particle[at(j)];
+  return pinch;
+}
+
+}  // namespace cloth

@@ -1,0 +1,125 @@
+// When a run has run away, and what a stop says.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/sums.h"
+#include "contact/continuous_contact.h"
+#include "forces/gravity.h"
+#include "measure/spectrum.h"
+#include "measure/stability_limit.h"
+#include "simulation/simulation.h"
+
+namespace cloth {
+namespace {
+
+/// A kinetic energy this many times all that the scene can give is a run that has run away.
+constexpr double runaway_factor = 10;
+
+/// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
+constexpr double rounding_floor = 1e-6;
+
+std::optional<int> first_not_finite(const Vec3Field& field) {
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (!field[i].allFinite()) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+Vec3 gravity_of(const Scene& scene) {
+  return scene.gravity.value_or(Vec3::Zero());
+}
+
+}  // namespace
+
+/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
+/// wind, moving obstacles, what the hand did, what there was at the start.
+double Simulation::energy_scale_after(double fallen) const {
+  const double mass = total_mass_;
+  const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
+  double wind = 0;
+  if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
+  const double struck = 2 * obstacle_speed_;  // at most, off an obstacle that gives all speed back
+  return std::max(drop, fallen) + 0.5 * mass * (wind * wind + struck * struck) +
+         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) +
+         rounding_floor * elastic_scale_;
+}
+
+double Simulation::energy_scale() const {
+  return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
+}
+
+bool Simulation::has_run_away(double kinetic) const {
+  if (!std::isfinite(kinetic)) return true;
+  if (kinetic <= runaway_factor * energy_scale_after(0)) return false;
+  return !(kinetic <= runaway_factor * energy_scale());
+}
+
+/// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2.
+bool Simulation::is_surely_slow(double speed_squares) const {
+  return 0.5 * largest_mass_ * speed_squares <= runaway_factor * energy_scale_after(0);
+}
+
+/// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
+/// all does not make the speeds too much, nothing has run away. Only else the state is looked at.
+std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
+  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ && !continuous_contact_ &&
+      is_surely_slow(*report.speed_squares))
+    return std::nullopt;
+  const auto x = state_.position.flat();
+  // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.
+  const double sum = ordered_sum(x.size(), [p = x.data()](std::size_t k) { return p[k]; });
+  const bool lost = !std::isfinite(sum) && first_not_finite(state_.position);
+  was_finite_ = !lost;
+  if (!lost && !has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
+  return stop_at_fastest("its speed has run away");
+}
+
+Divergence Simulation::stop_at_fastest(const std::string& cause) const {
+  if (const auto i = first_not_finite(state_.velocity)) return stop_at(*i, "its velocity is not finite");
+  if (const auto i = first_not_finite(state_.position)) return stop_at(*i, "its position is not finite");
+  int fastest = 0;
+  double highest_speed = -1;
+  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
+    if (const double speed = state_.velocity[i].stableNorm(); speed > highest_speed) {
+      highest_speed = speed;
+      fastest = static_cast<int>(i);
+    }
+  }
+  return stop_at(fastest, cause);
+}
+
+/// The longest stable step in s, 0 if there is none. Of a prepared cloth only the bound for any shape is
+/// known.
+double Simulation::method_limit() const {
+  const auto of_scene = stable_step(scene_.integrator.method, scene_);
+  if (!of_scene || !prepare_ || std::isinf(*of_scene)) return of_scene.value_or(0);
+  const auto of_system =
+      stable_step(scene_.integrator.method, guaranteed_frequency(system_), damping_rates(scene_));
+  return std::min(*of_scene, of_system.value_or(0));
+}
+
+Divergence Simulation::stop_at_pinch(const Pinch& pinch) const {
+  Divergence stop = stop_at(
+      pinch.particle, fmt::format("obstacle {} cannot go on without passing through the cloth, which is held "
+                                  "at ({:.4g}, {:.4g}, {:.4g}) m",
+                                  pinch.obstacle, pinch.place.x(), pinch.place.y(), pinch.place.z()));
+  stop.pinched = true;
+  return stop;
+}
+
+Divergence Simulation::stop_at(int particle, std::string cause) const {
+  Divergence divergence;
+  divergence.step = state_.step;
+  divergence.time = state_.time;
+  divergence.particle = particle;
+  divergence.cause = std::move(cause);
+  divergence.time_step = time_step_;
+  divergence.stable_step = method_limit();
+  divergence.on_grid = !system_.is_mesh();
+  divergence.row = divergence.particle / system_.columns;
+  divergence.column = divergence.particle % system_.columns;
+  return divergence;
+}
+
+}  // namespace cloth

@@ -111,7 +111,7 @@ TEST(UnreachableRate, IsSaidOnceInTheSummaryOfARun) {
   scene.deformation = Deformation{};
   scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
   EXPECT_FALSE(Simulation(scene).unreachable_rate());  // pins at rest are always reachable
-  const std::string text = describe(UnreachableRate{0, 15, 1.5, 1.1}, 4);
+  const std::string text = describe(UnreachableRate{0, 15, 1.5, 1.1}, Simulation(scene).system());
   for (const char* word : {"(row 0, column 0)", "(row 3, column 3)", "1.5 m", "1.1 m"})
     EXPECT_NE(text.find(word), std::string::npos) << text;
 }

@@ -105,6 +105,12 @@ void check_pane_scene(const Comparison& comparison, std::size_t pane, const std:
     problems.push_back({fmt::format("panes.{}", pane), "", no_stable_step_text(scene), "", 0, 0});
 }
 
+/// Whether a new pane can go on from the state of the one before it, as duplicate_pane leaves them.
+bool is_copy(const Comparison& before, const Comparison& after, std::size_t pane) {
+  if (pane == 0 || !find_pane(before, after.panes[pane - 1].name)) return false;
+  return scene_of(after, pane) == scene_of(after, pane - 1);
+}
+
 }  // namespace
 
 std::vector<Pane> panes_for(const std::vector<std::string>& methods) {
@@ -238,12 +244,12 @@ std::vector<Problem> find_problems(const Comparison& comparison) {
 }
 
 bool acts_at_once(const Comparison& before, const Comparison& after) {
-  if (before.panes.size() != after.panes.size()) return false;
-  const bool controlled = before.reference == controlled_reference;
-  if (after.reference == controlled_reference && !controlled) return false;
+  if (after.reference == controlled_reference && before.reference != controlled_reference) return false;
   for (std::size_t i = 0; i < after.panes.size(); ++i) {
-    if (before.panes[i].name != after.panes[i].name) return false;
-    const Scene one = scene_of(before, i), other = scene_of(after, i);
+    const auto was = find_pane(before, after.panes[i].name);
+    if (!was && !is_copy(before, after, i)) return false;
+    if (!was) continue;
+    const Scene one = scene_of(before, *was), other = scene_of(after, i);
     // What needs a new start belongs to the cloth and the recording, which every scene has.
     for (const Parameter& parameter : parameters_of(other))
       if (parameter.info.cost == EditCost::restart && parameter.get(one) != parameter.get(other))

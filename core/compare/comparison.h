@@ -106,7 +106,9 @@ void remove_pane(Comparison& comparison, std::size_t pane);
 /// "panes.1.own.integrator.method".
 std::vector<Problem> find_problems(const Comparison& comparison);
 
-/// Whether a running comparison can go on as `after` (see LockStep::edit), or must start anew.
+/// Whether a running comparison can go on as `after` (see LockStep::edit), or must start anew: where a
+/// parameter needs it, a new pane is no copy of the one before it, or the reference is one that has not run
+/// so far.
 bool acts_at_once(const Comparison& before, const Comparison& after);
 
 }  // namespace cloth

@@ -22,6 +22,12 @@ std::vector<Quantities> quantities_of(const LockStep& lockstep) {
   return all;
 }
 
+std::vector<std::string> names_of(const Comparison& comparison) {
+  std::vector<std::string> names;
+  for (const Pane& pane : comparison.panes) names.push_back(pane.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<std::string> comparison_columns(const LockStep& lockstep) {
@@ -79,8 +85,9 @@ std::optional<IoError> ComparisonRecorder::open(const std::filesystem::path& fol
 }
 
 std::optional<IoError> ComparisonRecorder::open_part(const LockStep& lockstep) {
-  if (auto error = close()) return error;
+  if (auto error = close_rows()) return error;
   ++part_;
+  names_ = names_of(lockstep.comparison());
   quantities_ = quantities_of(lockstep);
   reference_ = lockstep.comparison().reference;
   const auto path = [&](const std::string& name) {
@@ -97,7 +104,8 @@ std::optional<IoError> ComparisonRecorder::open_part(const LockStep& lockstep) {
 }
 
 std::optional<IoError> ComparisonRecorder::add_row(const LockStep& lockstep) {
-  if (quantities_of(lockstep) != quantities_ || lockstep.comparison().reference != reference_)
+  if (names_of(lockstep.comparison()) != names_ || quantities_of(lockstep) != quantities_ ||
+      lockstep.comparison().reference != reference_)
     if (auto error = open_part(lockstep)) return error;
   for (std::size_t i = 0; i < panes_.size(); ++i) {
     const Lane& lane = lockstep.lane(i);
@@ -108,13 +116,30 @@ std::optional<IoError> ComparisonRecorder::add_row(const LockStep& lockstep) {
   return compare_->add(comparison_row(lockstep));
 }
 
+std::optional<IoError> ComparisonRecorder::log(const std::vector<std::string>& lines) {
+  if (lines.empty()) return std::nullopt;
+  if (!edits_.is_open())
+    if (auto error = edits_.open(folder_ / "edits.jsonl")) return error;
+  for (const std::string& line : lines)
+    if (auto error = edits_.add(line)) return error;
+  return std::nullopt;
+}
+
 std::optional<IoError> ComparisonRecorder::flush() {
+  if (edits_.is_open())
+    if (auto error = edits_.flush()) return error;
   for (const auto& pane : panes_)
     if (auto error = pane->flush()) return error;
   return compare_ ? compare_->flush() : std::nullopt;
 }
 
 std::optional<IoError> ComparisonRecorder::close() {
+  auto error = close_rows();
+  const auto of_edits = edits_.is_open() ? edits_.close() : std::nullopt;
+  return error ? error : of_edits;
+}
+
+std::optional<IoError> ComparisonRecorder::close_rows() {
   std::optional<IoError> first;
   const auto end = [&](CsvFile& file) {
     auto error = file.is_open() ? file.close() : std::nullopt;

@@ -1,5 +1,6 @@
-// What a comparison leaves in its folder: a recording of each pane (A.csv, ...), and compare.csv, a row for
-// each common time. The window and the command line write the same.
+// What a comparison leaves in its folder: a recording of each pane (A.csv, ...), compare.csv, a row for each
+// common time, and edits.jsonl if something was done to it meanwhile. The window and the command line write
+// the same.
 #pragma once
 
 #include <filesystem>
@@ -25,22 +26,28 @@ class ComparisonRecorder {
   /// Makes the folder, writes comparison.json and begins the files; `lockstep` stands at a common time.
   std::optional<IoError> open(const std::filesystem::path& folder, const LockStep& lockstep);
 
-  /// A row of each pane that is going, and one of compare.csv. Where an edit gave a pane other quantities,
-  /// all files go on in a next part (A-2.csv, ..., compare-2.csv).
+  /// A row of each pane that is going, and one of compare.csv. Where an edit gave a pane other quantities, or
+  /// other panes, all files go on in a next part (A-2.csv, ..., compare-2.csv).
   std::optional<IoError> add_row(const LockStep& lockstep);
+
+  /// Lines of edits.jsonl (see comparison_log.h).
+  std::optional<IoError> log(const std::vector<std::string>& lines);
 
   std::optional<IoError> flush();
   std::optional<IoError> close();
 
  private:
   std::optional<IoError> open_part(const LockStep& lockstep);
+  std::optional<IoError> close_rows();
 
   std::filesystem::path folder_;
   int part_ = 0;
   std::string reference_;
+  std::vector<std::string> names_;      ///< of the panes
   std::vector<Quantities> quantities_;  ///< one of each pane
   std::vector<std::unique_ptr<CsvFile>> panes_;
   std::unique_ptr<CsvFile> compare_;
+  LineFile edits_;  ///< open once there is a line
 };
 
 /// The comparison as it is run: steps resolved, so that running it again gives the same rows.

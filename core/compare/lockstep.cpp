@@ -73,7 +73,8 @@ void LockStep::add_lane(const std::string& name, const std::string& title, const
   auto lane = std::make_unique<Lane>();
   lane->name = name;
   lane->title = title;
-  lane->simulation = std::make_unique<Simulation>(in_lock_step(scene));
+  lane->start_ = in_lock_step(scene);
+  lane->simulation = std::make_unique<Simulation>(lane->start_);
   lane->steps_each_ = steps_per_row(interval_, lane->simulation->time_step());
   lane->notice = notice_of(scene, *lane->simulation);
   arrive(*lane, 0);
@@ -178,12 +179,67 @@ std::optional<double> LockStep::rms_over_time(std::size_t pane) const {
   return std::sqrt(error.squares / static_cast<double>(error.times));
 }
 
+/// Another run of the same past: it goes on as `from` does, to the bit.
+std::unique_ptr<Lane> LockStep::copy_of(const Lane& from) {
+  auto lane = std::make_unique<Lane>();
+  lane->notice = from.notice;
+  lane->simulation = std::make_unique<Simulation>(from.start_);
+  lane->simulation->edit(from.simulation->scene());
+  lane->simulation->restore(from.simulation->checkpoint());
+  lane->index = from.index;
+  lane->state = from.state;
+  lane->measurement = from.measurement;
+  lane->step_time = from.step_time;
+  lane->wall = from.wall;
+  lane->max_strain = from.max_strain;
+  lane->limiter_excess = from.limiter_excess;
+  lane->divergence = from.divergence;
+  lane->first_index_ = from.first_index_;
+  lane->first_step_ = from.first_step_;
+  lane->steps_each_ = from.steps_each_;
+  lane->start_ = from.start_;
+  return lane;
+}
+
+/// Lanes and errors in the order of the edited panes; a new pane's are those of the pane before it.
+void LockStep::take_panes(const Comparison& edited) {
+  std::vector<std::unique_ptr<Lane>> lanes;
+  std::vector<Error> errors;
+  for (const Pane& pane : edited.panes) {
+    if (const auto was = find_pane(comparison_, pane.name)) {
+      lanes.push_back(std::move(lanes_[*was]));
+      errors.push_back(std::move(errors_[*was]));
+    } else {
+      lanes.push_back(copy_of(*lanes.back()));
+      lanes.back()->name = pane.name;
+      errors.push_back(errors.back());
+    }
+  }
+  if (edited.reference == controlled_reference)
+    std::move(lanes_.begin() + static_cast<std::ptrdiff_t>(pane_count()), lanes_.end(),
+              std::back_inserter(lanes));
+  lanes_ = std::move(lanes);
+  errors_ = std::move(errors);
+}
+
+/// What is in force already stays untouched: an edit makes a method forget what it remembers.
+void LockStep::edit_lane(Lane& lane, const Scene& scene) {
+  const Scene resolved = in_lock_step(scene);
+  if (resolved == lane.simulation->scene()) return;
+  lane.simulation->edit(resolved);
+  lane.first_index_ = lane.index;
+  lane.first_step_ = lane.simulation->state().step;
+  lane.steps_each_ = steps_per_row(interval_, lane.simulation->time_step());
+  lane.notice = notice_of(scene, *lane.simulation);
+  lane.measurement = lane.simulation->measure();
+}
+
 void LockStep::edit(const Comparison& edited) {
   assert(acts_at_once(comparison_, edited));
+  take_panes(edited);
   if (edited.reference != comparison_.reference) {
     for (Error& error : errors_) error = {};
     floor_ = {};
-    lanes_.resize(pane_count());
   }
   comparison_ = edited;
   last_index_ = steps_to_cover(comparison_.scene.duration, interval_);
@@ -196,15 +252,8 @@ void LockStep::edit(const Comparison& edited) {
   }
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = *lanes_[i];
-    const Scene& scene = scenes[i];
-    lane.title = i < pane_count() ? title_of(comparison_, i) : controlled_title(scene);
-    if (!lane.going()) continue;
-    lane.simulation->edit(in_lock_step(scene));
-    lane.first_index_ = lane.index;
-    lane.first_step_ = lane.simulation->state().step;
-    lane.steps_each_ = steps_per_row(interval_, lane.simulation->time_step());
-    lane.notice = notice_of(scene, *lane.simulation);
-    lane.measurement = lane.simulation->measure();
+    lane.title = i < pane_count() ? title_of(comparison_, i) : controlled_title(scenes[i]);
+    if (lane.going()) edit_lane(lane, scenes[i]);
   }
   share_pull_strength();
   compare();

@@ -49,6 +49,7 @@ struct Lane {
   friend class LockStep;
   std::int64_t first_index_ = 0, first_step_ = 0;  ///< when the present time step came in force
   std::int64_t steps_each_ = 1;                    ///< between two common times
+  Scene start_;                                    ///< as it was run at first
   std::int64_t steps_since_ = 0;                   ///< the last common time
   double wall_since_ = 0;
 };
@@ -98,7 +99,9 @@ class LockStep {
   // --- Between common times reached by all, acting on all lanes that are going ---
 
   /// Puts an edited comparison in force. Precondition: acts_at_once(comparison(), edited), and
-  /// find_problems(edited) is empty. Another pane as reference forgets the differences so far.
+  /// find_problems(edited) is empty. A new pane goes on from where the one it is a copy of stands; panes that
+  /// the edit does not touch go on as without it, to the bit. Another reference forgets the differences so
+  /// far.
   void edit(const Comparison& edited);
   void set_brush(const std::optional<BrushGust>& brush);
   /// As strong as the weakest hand of the lanes, so that it pulls all alike; see Simulation::strongest_pull.
@@ -114,6 +117,9 @@ class LockStep {
 
   void measure(Error& error, std::size_t lane, std::size_t against);
   void add_lane(const std::string& name, const std::string& title, const Scene& scene);
+  static std::unique_ptr<Lane> copy_of(const Lane& from);
+  void take_panes(const Comparison& edited);
+  void edit_lane(Lane& lane, const Scene& scene);
   void arrive(Lane& lane, std::int64_t index);
   void share_pull_strength();
 

@@ -278,18 +278,18 @@ std::string write_session(const Session& session) {
   return out + "\n}\n";
 }
 
+std::vector<SceneEdit> logged_values(const SessionAction& action) {
+  if (const auto* edits = std::get_if<Edits>(&action)) return *edits;
+  if (const auto* brush = std::get_if<std::optional<BrushGust>>(&action))
+    return {{"brush", hand_json(*brush).dump()}};
+  return {{"pull", hand_json(std::get<std::optional<Pull>>(action)).dump()}};
+}
+
 std::vector<std::string> edit_log_lines(const SessionCommand& command) {
   std::vector<std::string> lines;
-  const auto add = [&](const std::string& path, const std::string& value) {
+  for (const auto& [path, value] : logged_values(command.action))
     lines.push_back(fmt::format("{{\"step\":{},\"time_s\":{},\"path\":{},\"value\":{}}}", command.step,
                                 command.time, json(path).dump(), value));
-  };
-  if (const auto* edits = std::get_if<Edits>(&command.action))
-    for (const SceneEdit& edit : *edits) add(edit.path, edit.value);
-  else if (const auto* brush = std::get_if<std::optional<BrushGust>>(&command.action))
-    add("brush", hand_json(*brush).dump());
-  else
-    add("pull", hand_json(std::get<std::optional<Pull>>(command.action)).dump());
   return lines;
 }
 

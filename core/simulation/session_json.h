@@ -26,6 +26,9 @@ std::string write_session(const Session& session);
 void place_in_session(const std::string& text, const std::string& place, std::size_t command,
                       std::vector<Problem>& problems);
 
+/// What an action sets, with values as JSON: parameters, "brush" or "pull" ("null": let go).
+std::vector<SceneEdit> logged_values(const SessionAction& action);
+
 /// {"step":...,"time_s":...,"path":...,"value":...}, one for each value that the command sets.
 std::vector<std::string> edit_log_lines(const SessionCommand& command);
 

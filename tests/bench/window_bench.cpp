@@ -2,6 +2,7 @@
 // judges nothing, ends with 0. Needs a display of some 1700 x 900 px (an Xvfb will do).
 //
 //     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain]
+//                           [--panes 2 4] [--pane-side 128] [--study-rounds 0] [--study-side 33]
 //                           [--seconds 4] [--idle 5] [--json]
 //
 // For each size and look, while the simulation runs beside it as fast as it goes:
@@ -14,9 +15,15 @@
 //   cpu         ms of processor time for a picture in all of the program's threads. It hardly depends on
 //               what else the machine does: the figure to compare between two builds.
 // Then the charts, 900 px wide with a full history: ms of processor time to bring all three up to date, and
-// to paint each. At last the paused window: its share of one processor, and its events.
+// to paint each, and the paused window: its share of one processor, and its events. At last comparisons of
+// that many panes, for each look:
+//   at once     the most pictures made in one event
+//   longest     ms of the longest event by the clock, what the thread itself did of that, and which it was
+//   most cpu    ms of the event that the thread was busiest in
+//   load        of the machine in the last minute: above its cores, "longest" is also what others took
+// and with --study-rounds the interval between two pictures, and the time of a step, of a run at real time,
+// alone and beside a study. --sides 0 leaves out all but comparisons and study.
 #include <fmt/format.h>
-#include <time.h>
 
 #include <CLI/CLI.hpp>
 #include <QStandardPaths>
@@ -26,10 +33,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench_tools.h"
 #include "main_window/main_window.h"
+#include "pane_rows.h"
 #include "scene/builtin_scenes.h"
+#include "study_rows.h"
+#include "support/timed_application.h"
 #include "theme/theme.h"
-#include "timed_application.h"
 #include "viewport/gl/gl_probe.h"
 
 namespace clothlab {
@@ -46,32 +56,12 @@ const std::map<std::string, ViewMode> looks{
 struct Options {
   std::vector<int> sides{33, 128, 256};
   std::vector<std::string> looks{"textured", "wireframe", "strain"};
+  std::vector<int> panes{2, 4};
+  int pane_side = 128;
+  int study_side = 33, study_rounds = 0;
   double seconds = 4, idle = 5;
   bool json = false;
 };
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-double median(const std::vector<double>& values) {
-  return quantile(values, 0.5);
-}
-
-/// s, of all threads.
-double processor_time() {
-  timespec t{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-void run_events(double seconds) {
-  QEventLoop loop;
-  QTimer::singleShot(static_cast<int>(1000 * seconds), Qt::PreciseTimer, &loop, &QEventLoop::quit);
-  loop.exec();
-}
 
 class WindowBench {
  public:
@@ -176,13 +166,13 @@ class WindowBench {
             .interval_p95 = quantile(intervals, 0.95),
             .drawing = median(drawings_),
             .upload = median(uploads_),
-            .longest = application_.longest(),
+            .longest = application_.longest().wall,
             .steps_per_second = window_.simulation().status().steps_per_second,
             .chart = median(application_.times({"clothlab::PlotView", QEvent::Paint})),
             .chart_updates =
                 static_cast<double>(application_.times({"clothlab::ChartPanel", QEvent::Timer}).size()) /
                 options_.seconds,
-            .longest_kind = application_.longest_kind()};
+            .longest_kind = application_.longest().kind};
   }
 
   Replay watch_replay() {
@@ -263,8 +253,7 @@ void print_row(const json& row) {
   std::fflush(stdout);
 }
 
-int run(TimedApplication& application, const Options& options) {
-  json result{{"renderer", gl_abilities().renderer.toStdString()}, {"rows", json::array()}};
+void measure_window(TimedApplication& application, const Options& options, json& result) {
   WindowBench bench(application, options);
   run_events(0.5);
   const QSize size = bench.size_of_view();
@@ -281,16 +270,34 @@ int run(TimedApplication& application, const Options& options) {
     }
   result["charts"] = chart_row(application);
   result["idle"] = bench.idle_row();
-  if (options.json) {
-    fmt::print("{}\n", result.dump(2));
-    return 0;
-  }
+  if (options.json) return;
   fmt::print(
       "\ncharts {} px wide, {} samples: {:.2f} ms to bring all three up to date, {:.2f} ms to paint each\n",
       result["charts"]["width_px"].get<int>(), result["charts"]["samples"].get<int>(),
       result["charts"]["update_ms"].get<double>(), result["charts"]["repaint_ms_each"].get<double>());
   fmt::print("paused for {:.0f} s: {:.2f} % of a processor, {} events\n", options.idle,
              100 * result["idle"]["processor_share"].get<double>(), result["idle"]["events"].get<int>());
+}
+
+void measure_panes(TimedApplication& application, const Options& options, json& result) {
+  if (options.panes == std::vector{0}) return;
+  if (!options.json) print_pane_head();
+  for (const int panes : options.panes)
+    for (const std::string& look : options.looks) {
+      result["panes"].push_back(pane_row(application, panes, options.pane_side, look, options.seconds));
+      if (!options.json) print_pane_row(result["panes"].back());
+    }
+}
+
+int run(TimedApplication& application, const Options& options) {
+  json result{{"renderer", gl_abilities().renderer.toStdString()}, {"rows", json::array()}};
+  if (options.sides != std::vector{0}) measure_window(application, options, result);
+  measure_panes(application, options, result);
+  if (options.study_rounds > 0) {
+    result["study"] = study_row(options.study_side, options.seconds, options.study_rounds);
+    if (!options.json) print_study_head(), print_study_row(result["study"]);
+  }
+  if (options.json) fmt::print("{}\n", result.dump(2));
   return 0;
 }
 
@@ -302,9 +309,17 @@ int main(int argc, char** argv) {
   QStandardPaths::setTestModeEnabled(true);
   clothlab::Options options;
   CLI::App app{"What a drawing takes in the window."};
-  app.add_option("--sides", options.sides, "Particles per side")->check(CLI::Range(2, 2048));
+  app.add_option("--sides", options.sides, "Particles per side; 0: only the comparisons")
+      ->check(CLI::Range(0, 2048));
   app.add_option("--looks", options.looks, "Looks of the cloth")
       ->check(CLI::IsMember({"textured", "wireframe", "strain"}));
+  app.add_option("--panes", options.panes, "Panes of the comparisons; 0: none")->check(CLI::Range(0, 4));
+  app.add_option("--pane-side", options.pane_side, "Particles per side of a pane")
+      ->check(CLI::Range(2, 2048));
+  app.add_option("--study-rounds", options.study_rounds, "Rounds of a run beside a study; 0: none")
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--study-side", options.study_side, "Particles per side of that run")
+      ->check(CLI::Range(2, 2048));
   app.add_option("--seconds", options.seconds, "Seconds of each row")->check(CLI::Range(0.2, 600.0));
   app.add_option("--idle", options.idle, "Seconds of the paused window")->check(CLI::Range(0.2, 600.0));
   app.add_flag("--json", options.json, "Give the result as one JSON object");

@@ -136,7 +136,7 @@ TEST(CompareWorker, AnEditWhileItPlaysActsAtACommonTime) {
   EXPECT_EQ(status.panes[1].time_step, 0.0005);
 }
 
-TEST(CompareWorker, AnotherPaneStartsAllAnewAndGoesOnPlaying) {
+TEST(CompareWorker, ACopiedPaneJoinsTheRunAndARemovedOneLeavesIt) {
   CompareWorker worker;
   cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
   comparison.scene.duration = 1000;
@@ -146,13 +146,95 @@ TEST(CompareWorker, AnotherPaneStartsAllAnewAndGoesOnPlaying) {
   ASSERT_TRUE(eventually([&] { return worker.status().time > 0.05; }));
   cloth::duplicate_pane(comparison, 0);
   worker.send(command::Edit{comparison});
+  cloth::set_own(comparison.panes[1], "integrator.method", std::string("rk4"));
+  worker.send(command::Edit{comparison});  // on the heels of it: the copy is made before it becomes another
+  worker.wait_until_idle();
+  EXPECT_EQ(worker.status().panes.size(), 3u);
+  cloth::remove_pane(comparison, 2);
+  worker.send(command::Edit{comparison});
+  worker.wait_until_idle();
+  EXPECT_TRUE(worker.status().playing);
+  EXPECT_EQ(worker.status().new_starts, 0);
+  worker.send(command::Pause{});
+  worker.wait_until_idle();
+  const auto samples = worker.take_samples();
+  ASSERT_FALSE(samples.empty());
+  EXPECT_EQ(samples.front().time_s, 0) << "the run goes on";
+  EXPECT_GT(samples.back().time_s, 0.05);
+  EXPECT_TRUE(std::isfinite(samples.back().panes[2].total_J)) << "C's column, wherever C stands";
+  EXPECT_TRUE(std::isnan(samples.back().panes[1].total_J)) << "B is gone";
+  EXPECT_EQ(std::count_if(samples.begin(), samples.end(), [](const auto& s) { return s.is_start; }), 1);
+}
+
+TEST(CompareWorker, APaneWithoutAPastStartsAllAnewAndGoesOnPlaying) {
+  CompareWorker worker;
+  cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
+  comparison.scene.duration = 1000;
+  worker.send(command::Load{comparison});
+  worker.send(command::Speed{fastest});
+  worker.send(command::Play{});
+  ASSERT_TRUE(eventually([&] { return worker.status().time > 0.05; }));
+  cloth::duplicate_pane(comparison, 0);
+  cloth::set_own(comparison.panes[1], "integrator.method", std::string("bdf2"));
+  worker.send(command::Edit{comparison});
   ASSERT_TRUE(eventually([&] { return worker.status().panes.size() == 3; }));
   EXPECT_TRUE(worker.status().playing);
+  EXPECT_EQ(worker.status().new_starts, 1);
   worker.send(command::Pause{});
   worker.wait_until_idle();
   const auto samples = worker.take_samples();
   ASSERT_FALSE(samples.empty());
   EXPECT_TRUE(samples.front().is_start) << "samples of the run before are gone";
+}
+
+TEST(CompareWorker, PausedShowsTheTimeAtWhichItPauses) {
+  CompareWorker worker;
+  cloth::Comparison comparison = small_comparison();
+  comparison.scene.duration = 1000;
+  worker.send(command::Load{comparison});
+  worker.send(command::Speed{fastest});
+  for (int again = 0; again < 20; ++again) {  // frames are rarer than common times: one would do by luck
+    worker.send(command::Play{});
+    const double before = worker.status().time;
+    ASSERT_TRUE(eventually([&] { return worker.status().time > before; }));
+    worker.send(command::Pause{});
+    worker.wait_until_idle();
+    for (std::size_t pane = 0; pane < 3; ++pane) {
+      const auto frame = worker.take_frame(pane);
+      ASSERT_TRUE(frame);
+      EXPECT_NEAR(frame->time, worker.status().time, 1e-9);
+    }
+  }
+}
+
+TEST(CompareWorker, LogsBesideTheRowsWhatWasDoneMeanwhile) {
+  const ScratchFolder folder;
+  CompareWorker worker;
+  cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
+  worker.send(command::Load{comparison});
+  worker.send(command::StartRecording{folder / "recording"});
+  worker.send(command::SingleStep{});
+  cloth::duplicate_pane(comparison, 1);
+  worker.send(command::Edit{comparison});
+  worker.send(command::Pull{cloth::Pull{.particle = 3, .target = {0, 0, 1}}});
+  worker.send(command::SingleStep{});
+  worker.send(command::StopRecording{});
+  worker.wait_until_idle();
+  EXPECT_EQ(worker.status().recording_error, "");
+  const std::string log = text_of(folder / "recording" / "edits.jsonl");
+  EXPECT_EQ(log.find(R"({"time_s":0.01,"pane":"C","copy_of":"B"})"), 0u) << log;
+  EXPECT_NE(log.find(R"({"time_s":0.01,"path":"pull","value":{"particle":3)"), std::string::npos) << log;
+  EXPECT_EQ(timeless_rows(folder / "recording" / "A.csv").size(), 2u);
+  EXPECT_EQ(timeless_rows(folder / "recording" / "C-2.csv").size(), 1u) << "more panes: the next part";
+}
+
+TEST(CompareWorker, WithoutEditsARecordingHasNoLogOfThem) {
+  const ScratchFolder folder;
+  CompareWorker worker;
+  worker.send(command::Load{small_comparison()});
+  worker.send(command::StartRecording{folder / "recording"});
+  play_to_the_end(worker);
+  EXPECT_FALSE(std::filesystem::exists(folder / "recording" / "edits.jsonl"));
 }
 
 TEST(CompareWorker, RefusesWhatHasProblemsAndKeepsWhatRuns) {

@@ -7,6 +7,7 @@
 
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
+#include "compare/comparison_log.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/time_step.h"
 #include "study/reference_solution.h"
@@ -141,11 +142,47 @@ TEST(AnEditOfAComparison, StartsAnewOnlyForWhatCannotActAtOnce) {
   EXPECT_TRUE(acts([](Comparison& c) { c.reference = "A"; }));
   EXPECT_FALSE(acts([](Comparison& c) { c.scene.cloth.rows = 7; }));
   EXPECT_FALSE(acts([](Comparison& c) { c.scene.record.interval = 0.02; }));
-  EXPECT_FALSE(acts([](Comparison& c) { duplicate_pane(c, 0); }));
+  EXPECT_TRUE(acts([](Comparison& c) { duplicate_pane(c, 0); }));
+  EXPECT_FALSE(acts([](Comparison& c) {
+    duplicate_pane(c, 0);
+    set_own(c.panes[1], "damping", 0.5);
+  })) << "a pane whose past nobody has run";
   EXPECT_FALSE(acts([](Comparison& c) { set_own(c.panes[0], "cloth.width", 2.0); }));
   Comparison without = before;
   without.reference = "A";
   EXPECT_FALSE(acts_at_once(without, before)) << "a reference that did not run from the start";
+}
+
+TEST(ALogOfEdits, SaysWhatChangedWhenAndWhere) {
+  const Comparison before = two_panes();
+  Comparison after = before;
+  set_shared_value(after, "gravity", Vec3(0, -3, 0));
+  set_own(after.panes[1], "integrator.time_step", 0.0005);
+  after.reference = "A";
+  duplicate_pane(after, 0);
+  ASSERT_TRUE(acts_at_once(before, after));
+  EXPECT_EQ(
+      comparison_log_lines(before, after, 0.3),
+      (std::vector<std::string>{R"({"time_s":0.3,"path":"gravity","value":[0.0,-3.0,0.0]})",
+                                R"({"time_s":0.3,"pane":"C","copy_of":"A"})",
+                                R"({"time_s":0.3,"pane":"B","path":"integrator.time_step","value":0.0005})",
+                                R"({"time_s":0.3,"reference":"A"})"}));
+  Comparison fewer = after;
+  remove_pane(fewer, 2);
+  EXPECT_EQ(comparison_log_lines(after, fewer, 0.4),
+            std::vector<std::string>{R"({"time_s":0.4,"pane":"B","removed":true})"});
+  EXPECT_TRUE(comparison_log_lines(after, after, 0.3).empty());
+}
+
+TEST(ALogOfEdits, SaysThatAValueIsSharedAgainAndThatTheHandLetsGo) {
+  Comparison before = two_panes();
+  set_own(before.panes[0], "damping", 0.5);
+  Comparison after = before;
+  set_shared(after.panes[0], "damping");
+  EXPECT_EQ(comparison_log_lines(before, after, 0),
+            std::vector<std::string>{R"({"time_s":0.0,"pane":"A","path":"damping","value":null})"});
+  EXPECT_EQ(comparison_log_lines(std::optional<Pull>(), 0.5),
+            std::vector<std::string>{R"({"time_s":0.5,"path":"pull","value":null})"});
 }
 
 // --- The file ---

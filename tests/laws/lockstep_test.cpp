@@ -285,6 +285,71 @@ TEST(AnEdit, ToAnotherReferenceForgetsTheDifferencesSoFar) {
   EXPECT_DOUBLE_EQ(*lockstep.rms_over_time(0), lockstep.difference(0)->rms);
 }
 
+/// With memory of earlier steps, a limiter, and a hand that holds.
+Comparison three_methods() {
+  Scene scene = smooth_scene(5, 5);
+  scene.deformation = Deformation{.rate = 0.02};
+  Comparison comparison = comparison_of(scene, {"verlet", "bdf2", "rk4"}, 0.001);
+  comparison.reference = "A";
+  return comparison;
+}
+
+void advance_to(LockStep& lockstep, std::int64_t index) {
+  for (std::int64_t k = lockstep.index() + 1; k <= index; ++k) ASSERT_TRUE(lockstep.advance(k));
+}
+
+TEST(APaneAddedOrRemoved, LeavesTheOthersToTheBit) {
+  Comparison comparison = three_methods();
+  LockStep alone(comparison), changed(comparison);
+  advance_to(alone, 12);
+  advance_to(changed, 4);
+  duplicate_pane(comparison, 1);
+  changed.edit(comparison);
+  advance_to(changed, 8);
+  remove_pane(comparison, 1);  // the one that was copied
+  changed.edit(comparison);
+  advance_to(changed, 12);
+  ASSERT_EQ(changed.pane_count(), 3u);
+  EXPECT_EQ(changed.lane(1).name, "D");
+  for (const std::size_t i : {0U, 2U}) EXPECT_EQ(changed.lane(i).state, alone.lane(i).state) << i;
+  EXPECT_EQ(*changed.rms_over_time(2), *alone.rms_over_time(2));
+}
+
+TEST(APaneThatIsACopy, GoesOnAsItsSourceDoesToTheBit) {
+  Comparison comparison = three_methods();
+  comparison.scene.cloth.pins = {};
+  LockStep lockstep(comparison);
+  advance_to(lockstep, 3);
+  set_shared_value(comparison, "damping", 0.004);  // its past is more than its scene
+  lockstep.edit(comparison);
+  lockstep.set_pull(Pull{.particle = 20, .target = {0.3, 0.2, 0.4}});
+  advance_to(lockstep, 6);
+  for (const std::size_t source : {2U, 1U, 0U}) {
+    Comparison copied = comparison;
+    duplicate_pane(copied, source);
+    ASSERT_TRUE(acts_at_once(comparison, copied));
+    lockstep.edit(copied);
+    advance_to(lockstep, lockstep.index() + 4);
+    EXPECT_EQ(lockstep.lane(source + 1).state, lockstep.lane(source).state) << source;
+    EXPECT_EQ(lockstep.lane(source + 1).measurement.energy_error(),
+              lockstep.lane(source).measurement.energy_error());
+    EXPECT_EQ(lockstep.lane(source + 1).name, "D");
+    lockstep.edit(comparison);
+  }
+}
+
+TEST(AnEdit, OfOnePaneLeavesTheOthersToTheBit) {
+  Comparison comparison = three_methods();
+  LockStep alone(comparison), edited(comparison);
+  advance_to(alone, 8);
+  advance_to(edited, 4);
+  set_own(comparison.panes[2], "integrator.time_step", 0.0005);
+  edited.edit(comparison);
+  advance_to(edited, 8);
+  EXPECT_EQ(edited.lane(1).state, alone.lane(1).state);
+  EXPECT_NE(edited.lane(2).state, alone.lane(2).state);
+}
+
 TEST(ARecordedComparison, RunAgainFromItsFolderGivesTheSameRows) {
   Comparison comparison = comparison_of(smooth_scene(5, 5), {"verlet", "rk4"}, 0.003);
   comparison.scene.integrator.time_step.reset();

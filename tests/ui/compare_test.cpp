@@ -1,41 +1,24 @@
 // What a user does with methods side by side, by real clicks, keys and drags.
 #include <QApplication>
 #include <QClipboard>
-#include <QComboBox>
 #include <QLabel>
 #include <QMenu>
-#include <QMouseEvent>
 #include <QPushButton>
 #include <QStandardPaths>
-#include <QTabBar>
 #include <QTemporaryDir>
-#include <QToolButton>
-#include <QtTest>
 #include <cmath>
 
-#include "compare/compare_window.h"
 #include "compare/comparison_json.h"
 #include "compare/run_comparison.h"
+#include "compare_bench.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
-#include "params/exact_field.h"
-#include "scene/builtin_scenes.h"
 #include "theme/theme.h"
 #include "viewport/picking.h"
 
 namespace clothlab::test {
 namespace {
-
-cloth::Comparison small_comparison(const std::vector<std::string>& methods = {"verlet", "rk4"}) {
-  cloth::Comparison comparison;
-  comparison.scene = cloth::builtin_scene("wind");
-  comparison.scene.cloth.columns = comparison.scene.cloth.rows = 9;
-  comparison.scene.duration = 0.3;
-  comparison.panes = cloth::panes_for(methods);
-  comparison.reference = "A";
-  return comparison;
-}
 
 std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path& path) {
   std::string text;
@@ -49,71 +32,6 @@ std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path&
   }
   return rows;
 }
-
-void drag(QWidget* on, QPoint from, QPoint to, Qt::MouseButton button = Qt::LeftButton) {
-  QTest::mousePress(on, button, Qt::NoModifier, from);
-  for (int part = 1; part <= 8; ++part) {
-    const QPointF at = QPointF(from) + (QPointF(to) - QPointF(from)) * part / 8.0;
-    QMouseEvent move(QEvent::MouseMove, at, on->mapToGlobal(at), Qt::NoButton, button, Qt::NoModifier);
-    QApplication::sendEvent(on, &move);
-    QTest::qWait(15);
-  }
-  QTest::mouseRelease(on, button, Qt::NoModifier, to);
-}
-
-/// A comparison's window on the display with a hand on it.
-class CompareBench {
- public:
-  explicit CompareBench(const cloth::Comparison& comparison = small_comparison()) {
-    window.setAsksToSave(false);
-    window.show();
-    if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
-    window.document().load(comparison);
-    window.simulation().settle();
-  }
-
-  const CompareStatus& status() { return window.simulation().status(); }
-  const cloth::Comparison& comparison() { return window.document().comparison(); }
-  void settle() { window.simulation().settle(); }
-  QAction* action(const char* name) { return window.findChild<QAction*>(QLatin1String(name)); }
-
-  template <class Widget>
-  Widget* part(std::size_t pane, const char* name) {
-    return window.panes().pane(pane).findChild<Widget*>(QLatin1String(name));
-  }
-  /// From the pane's menu.
-  void choose(std::size_t pane, const char* name) { part<QAction>(pane, name)->trigger(); }
-
-  QWidget* editor(const char* path, const char* name) {
-    auto* editor =
-        window.parameters().findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
-    return editor ? editor->findChild<QWidget*>(QLatin1String(name)) : nullptr;
-  }
-
-  /// Clicks the tab: 0 is what all share, 1 pane A.
-  void scope(int tab) {
-    auto* tabs = window.findChild<QTabBar*>("scopes");
-    QTest::mouseClick(tabs, Qt::LeftButton, Qt::NoModifier, tabs->tabRect(tab).center());
-  }
-
-  void type_step(std::size_t pane, const QString& text) {
-    auto* field = part<ExactField>(pane, "step");
-    field->setFocus();
-    field->selectAll();
-    QTest::keyClicks(field, text);
-    QTest::keyClick(field, Qt::Key_Return);
-  }
-
-  void play_to_the_end() {
-    window.findChild<QComboBox*>("speed")->setCurrentIndex(7);  // fastest
-    QTest::mouseClick(window.findChild<QToolButton*>("playButton"), Qt::LeftButton);
-    settle();
-    QTRY_VERIFY_WITH_TIMEOUT(!status().playing, 120000);
-    settle();
-  }
-
-  CompareWindow window;
-};
 
 }  // namespace
 
@@ -165,7 +83,7 @@ class CompareTest : public QObject {
     QCOMPARE(*bench.status().panes[1].rms, expected.difference(1)->rms);
     QVERIFY(bench.part<QLabel>(1, "difference")->text().startsWith("RMS "));
     QCOMPARE(bench.part<QLabel>(0, "difference")->text(), QString("Reference"));
-    QVERIFY(bench.part<QLabel>(0, "cost")->text().endsWith("s/s"));
+    QVERIFY(bench.part<Reading>(0, "cost")->text().endsWith("s/s"));
   }
 
   void dragging_a_shared_slider_acts_on_all_panes_and_is_one_undo_step() {
@@ -251,6 +169,28 @@ class CompareTest : public QObject {
     QCOMPARE(bench.status().panes[1].style, 3);
     bench.action("undo")->trigger();
     QCOMPARE(bench.window.panes().paneCount(), std::size_t{4});
+  }
+
+  void a_pane_added_while_it_runs_joins_the_run() {
+    CompareBench bench;
+    bench.action("step")->trigger();
+    bench.action("step")->trigger();
+    bench.settle();
+    const double time = bench.status().time;
+    QVERIFY(time > 0);
+    const std::size_t recorded = bench.window.charts().record().samples.size();
+    bench.choose(1, "duplicate");
+    bench.settle();
+    QCOMPARE(bench.status().time, time);
+    QCOMPARE(bench.window.panes().pane(2).view().frame()->positions,
+             bench.window.panes().pane(1).view().frame()->positions);
+    QCOMPARE(bench.window.charts().record().samples.size(), recorded);
+    QVERIFY(bench.window.notice().text().isEmpty());
+    bench.choose(0, "removePane");  // the reference: another one has to be run from the start
+    bench.settle();
+    QCOMPARE(bench.status().time, 0.0);
+    QVERIFY2(bench.window.notice().text().startsWith("Started anew"),
+             qPrintable(bench.window.notice().text()));
   }
 
   void a_pane_that_diverges_says_why_and_the_others_go_on() {
@@ -348,6 +288,26 @@ class CompareTest : public QObject {
     }
   }
 
+  void the_charts_are_saved_with_a_column_for_each_pane_and_quantity() {
+    QTemporaryDir folder;
+    CompareBench bench;
+    bench.play_to_the_end();
+    CompareCharts& charts = bench.window.charts();
+    QCOMPARE(charts.exportPng(folder.filePath("charts.png")), QString());
+    QCOMPARE(QImage(folder.filePath("charts.png")).size(), QSize(1600, 1400));
+    QCOMPARE(charts.exportSvg(folder.filePath("charts.svg")), QString());
+    QCOMPARE(charts.exportCsv(folder.filePath("charts.csv")), QString());
+    std::string text;
+    cloth::read_text_file(folder.filePath("charts.csv").toStdString(), text);
+    const cloth::CsvTable table = cloth::parse_csv(text);
+    QCOMPARE(table.header, (std::vector<std::string>{"time_s", "A_total_J", "A_max_strain", "A_step_ms",
+                                                     "A_rms_difference_m", "B_total_J", "B_max_strain",
+                                                     "B_step_ms", "B_rms_difference_m"}));
+    QCOMPARE(table.rows.size(), charts.record().samples.size());
+    QCOMPARE(std::stod(table.rows.back().back()), *bench.status().panes[1].rms);
+    QVERIFY(!charts.exportCsv(folder.filePath("no/such/folder.csv")).isEmpty());
+  }
+
   void a_comparison_is_saved_and_opened_again() {
     QTemporaryDir folder;
     CompareBench bench;
@@ -365,34 +325,6 @@ class CompareTest : public QObject {
     again.window.openComparison(folder.filePath("missing.compare.json"));
     QVERIFY(again.window.notice().text().contains("missing.compare.json"));
     QCOMPARE(again.comparison(), saved);
-  }
-
-  /// Prints; how fast the machine is is no law.
-  void the_windows_thread_stays_free_with_four_large_panes() {
-    cloth::Comparison comparison = small_comparison({"verlet", "semi-implicit-euler", "rk4", "verlet"});
-    comparison.scene = cloth::builtin_scene("corners-free");
-    comparison.scene.cloth.rows = comparison.scene.cloth.columns = 128;
-    CompareBench bench(comparison);
-    bench.window.findChild<QAction*>("modeStrain")->trigger();
-    double longest = 0;
-    QElapsedTimer whole;
-    whole.start();
-    QTimer beat;
-    QElapsedTimer since;
-    since.start();
-    beat.setTimerType(Qt::PreciseTimer);
-    connect(&beat, &QTimer::timeout, this, [&] {
-      longest = std::max(longest, 1e-6 * static_cast<double>(since.nsecsElapsed()));
-      since.restart();
-    });
-    beat.start(0);  // between any two events
-    bench.action("play")->trigger();
-    QTest::qWait(4000);
-    bench.action("play")->trigger();
-    beat.stop();
-    qInfo("four panes of 128 x 128 for %.1f s: %.3f s simulated, longest event %.0f ms",
-          1e-3 * static_cast<double>(whole.elapsed()), bench.status().time, longest);
-    QVERIFY(bench.status().refusal.empty());
   }
 };
 

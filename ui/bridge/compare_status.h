@@ -2,13 +2,13 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bridge/recording_status.h"
 #include "compare/ranking.h"
 
 namespace clothlab {
@@ -25,10 +25,10 @@ struct PaneSample {
 struct CompareSample {
   double time_s = 0;
   bool is_start = false;                            ///< of a new run: what came before belongs to another
-  std::array<PaneSample, cloth::most_panes> panes;  ///< in the order of the comparison's panes
+  std::array<PaneSample, cloth::most_panes> panes;  ///< by style_of(pane): A, B, C, D, whatever their order
 };
 
-struct CompareStatus {
+struct CompareStatus : RecordingStatus {
   bool playing = false;
   double time = 0;  ///< s, the common time that all panes have reached
   double duration = 0;
@@ -42,11 +42,8 @@ struct CompareStatus {
   std::string reference_failure;                        ///< not empty: the reference stopped, and why
   std::optional<double> floor;                          ///< m, see cloth::LockStep::floor
   std::string refusal;                                  ///< why the last comparison or edit is not in force
+  std::int64_t new_starts = 0;  ///< how often an edit could not be put in force in the middle of the run
 
-  bool recording = false;
-  std::filesystem::path recording_folder;
-  std::int64_t recorded_rows = 0;
-  std::string recording_error;
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bridge/fill_frame.h"
+#include "compare/comparison_log.h"
 
 namespace clothlab {
 namespace {
@@ -14,7 +15,6 @@ using Clock = WorkerPace::Clock;
 
 constexpr auto frame_interval = std::chrono::milliseconds(14);
 constexpr auto flush_interval = std::chrono::milliseconds(500);
-constexpr std::size_t most_samples = 1 << 18;
 
 /// Where cores are few, the window draws first. The threads that the panes run on inherit it.
 void yield_to_the_window() {
@@ -53,32 +53,6 @@ CompareWorker::~CompareWorker() {
   if (thread_.joinable()) thread_.join();
 }
 
-void CompareWorker::send(CompareCommand command) {
-  {
-    const std::lock_guard lock(mutex_);
-    inbox_.push_back(std::move(command));
-    ++sent_;
-    busy_ = true;
-    has_mail_ = true;
-  }
-  wake_.notify_one();
-}
-
-std::vector<CompareSample> CompareWorker::take_samples() {
-  const std::lock_guard lock(mutex_);
-  return std::move(samples_);
-}
-
-CompareStatus CompareWorker::status() const {
-  const std::lock_guard lock(mutex_);
-  return shared_status_;
-}
-
-void CompareWorker::wait_until_idle() {
-  std::unique_lock lock(mutex_);
-  idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
-}
-
 void CompareWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {
@@ -86,11 +60,8 @@ void CompareWorker::run(const std::stop_token& stop) {
     handle_waiting();
     if (status_.playing || under_way_) play_for_a_moment();
     publish_status();
-    const std::lock_guard lock(mutex_);
-    busy_ = has_work() || !inbox_.empty();
-    if (done_ == handled_ || under_way_) continue;
-    done_ = handled_;
-    idle_.notify_all();
+    if (!under_way_) settled_ = handled_;
+    channel_.settle(settled_, has_work());
   }
   end_recording();
 }
@@ -101,23 +72,18 @@ bool CompareWorker::has_work() const {
 
 /// Until there is a command, or the panes are due at their next common time. Takes the commands in.
 void CompareWorker::wait_for_work(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  const auto has_command = [this] { return !inbox_.empty(); };
-  if (!has_work()) {
-    wake_.wait(lock, stop, has_command);
-  } else if (waiting_.empty() && !under_way_) {
-    const auto due = pace_.due_time(lockstep_->time_of(lockstep_->index() + 1));
-    if (due > Clock::now()) wake_.wait_until(lock, stop, due, has_command);
-  }
-  std::move(inbox_.begin(), inbox_.end(), std::back_inserter(waiting_));
-  inbox_.clear();
-  has_mail_ = false;
+  std::optional<Clock::time_point> due;
+  if (has_work()) due = Clock::now();
+  if (status_.playing && waiting_.empty() && !under_way_)
+    due = pace_.due_time(lockstep_->time_of(lockstep_->index() + 1));
+  auto commands = channel_.receive(stop, due);
+  std::move(commands.begin(), commands.end(), std::back_inserter(waiting_));
 }
 
 /// In their order, up to the first one that has to wait for a common time.
 void CompareWorker::handle_waiting() {
   while (!waiting_.empty()) {
-    if (waiting_.size() > 1 && is_overtaken_by(waiting_[0], waiting_[1])) {
+    if (waiting_.size() > 1 && is_overtaken_by(waiting_[0], waiting_[1]) && !changes_panes(waiting_[0])) {
       waiting_.pop_front();
       ++handled_;
       continue;
@@ -128,6 +94,15 @@ void CompareWorker::handle_waiting() {
     std::visit([this](const auto& c) { handle(c); }, command);
     ++handled_;
   }
+}
+
+/// Such an edit is not overtaken: a pane that was copied and then changed is another than a new one.
+bool CompareWorker::changes_panes(const CompareCommand& command) const {
+  const auto* edit = std::get_if<compare_command::Edit>(&command);
+  return edit && lockstep_ &&
+         !std::equal(edit->comparison.panes.begin(), edit->comparison.panes.end(),
+                     lockstep_->comparison().panes.begin(), lockstep_->comparison().panes.end(),
+                     [](const cloth::Pane& one, const cloth::Pane& other) { return one.name == other.name; });
 }
 
 void CompareWorker::handle(const compare_command::Load& load) {
@@ -154,10 +129,7 @@ void CompareWorker::start(const cloth::Comparison& comparison) {
   ++topology_;
   pace_.restart(0, Clock::now());
   meter_.restart(0, Clock::now());
-  {
-    const std::lock_guard lock(mutex_);
-    samples_.clear();  // of the run before
-  }
+  channel_.drop_samples();  // of the run before
   take_sample(true);
   publish_frames();
 }
@@ -169,7 +141,11 @@ void CompareWorker::handle(const compare_command::Edit& edit) {
     status_.refusal = problems.front().text();
     return;
   }
-  if (!cloth::acts_at_once(lockstep_->comparison(), edit.comparison)) return start(edit.comparison);
+  if (!cloth::acts_at_once(lockstep_->comparison(), edit.comparison)) {
+    if (lockstep_->index() > 0) ++status_.new_starts;
+    return start(edit.comparison);
+  }
+  if (recorder_) log(cloth::comparison_log_lines(lockstep_->comparison(), edit.comparison, now()));
   lockstep_->edit(edit.comparison);
   publish_frames();
 }
@@ -177,13 +153,14 @@ void CompareWorker::handle(const compare_command::Edit& edit) {
 void CompareWorker::handle(const compare_command::Play&) {
   if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
   status_.playing = true;
-  const double now = lockstep_->time_of(lockstep_->index());
-  pace_.restart(now, Clock::now());
-  meter_.restart(now, Clock::now());
+  const double time = now();
+  pace_.restart(time, Clock::now());
+  meter_.restart(time, Clock::now());
 }
 
 void CompareWorker::handle(const compare_command::Pause&) {
   status_.playing = false;
+  if (lockstep_ && !under_way_) publish_frames();  // what was computed since the last ones
 }
 
 void CompareWorker::handle(const compare_command::SingleStep&) {
@@ -198,11 +175,15 @@ void CompareWorker::handle(const compare_command::Speed& speed) {
 }
 
 void CompareWorker::handle(const compare_command::Brush& brush) {
-  if (lockstep_) lockstep_->set_brush(brush.gust);
+  if (!lockstep_) return;
+  if (recorder_) log(cloth::comparison_log_lines(brush.gust, now()));
+  lockstep_->set_brush(brush.gust);
 }
 
 void CompareWorker::handle(const compare_command::Pull& pull) {
-  if (lockstep_) lockstep_->set_pull(pull.pull);
+  if (!lockstep_) return;
+  if (recorder_) log(cloth::comparison_log_lines(pull.pull, now()));
+  lockstep_->set_pull(pull.pull);
 }
 
 void CompareWorker::handle(const compare_command::Colour& colour) {
@@ -227,6 +208,15 @@ void CompareWorker::handle(const compare_command::StopRecording&) {
   end_recording();
 }
 
+/// s, the common time that all panes have reached.
+double CompareWorker::now() const {
+  return lockstep_->time_of(lockstep_->index());
+}
+
+void CompareWorker::log(const std::vector<std::string>& lines) {
+  if (recorder_) note_record(recorder_->log(lines));
+}
+
 /// To the next common time, if it is due, or as far as it goes until there is a command.
 void CompareWorker::play_for_a_moment() {
   if (!under_way_) {
@@ -235,14 +225,14 @@ void CompareWorker::play_for_a_moment() {
     under_way_ = next;
   }
   const std::stop_token stop = thread_.get_stop_token();
-  const auto may_go_on = [this, &stop] { return !has_mail_ && !stop.stop_requested(); };
+  const auto may_go_on = [this, &stop] { return !channel_.has_mail() && !stop.stop_requested(); };
   if (!lockstep_->advance(*under_way_, may_go_on, threads_)) return;
   under_way_.reset();
   arrive();
 }
 
 void CompareWorker::arrive() {
-  const double time = lockstep_->time_of(lockstep_->index());
+  const double time = now();
   meter_.count(time, Clock::now());
   if (lockstep_->all_stopped()) {
     status_.playing = false;
@@ -271,18 +261,15 @@ void CompareWorker::take_sample(bool is_start) {
   for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) {
     const cloth::Lane& lane = lockstep_->lane(i);
     if (!lane.going()) continue;
-    sample.panes[i].total_J = lane.measurement.energy.total();
-    sample.panes[i].max_strain = lane.measurement.strain.maximum();
+    const int style = style_of(lockstep_->comparison().panes[i]);
+    PaneSample& pane = sample.panes[static_cast<std::size_t>(style)];
+    pane.total_J = lane.measurement.energy.total();
+    pane.max_strain = lane.measurement.strain.maximum();
     if (is_start) continue;  // no step was taken, and all panes are alike
-    sample.panes[i].step_ms = 1e3 * lane.step_time;
-    if (const cloth::Difference* difference = lockstep_->difference(i))
-      sample.panes[i].rms_m = difference->rms;
+    pane.step_ms = 1e3 * lane.step_time;
+    if (const cloth::Difference* difference = lockstep_->difference(i)) pane.rms_m = difference->rms;
   }
-  const std::lock_guard lock(mutex_);
-  if (samples_.size() < most_samples)
-    samples_.push_back(sample);
-  else
-    ++status_.lost_samples;
+  if (!channel_.deliver(sample)) ++status_.lost_samples;
 }
 
 void CompareWorker::note_record(const std::optional<cloth::IoError>& error) {
@@ -332,8 +319,7 @@ void CompareWorker::publish_status() {
     status_.reference_failure = failed ? cloth::describe(*lockstep_->lane(*reference).divergence) : "";
     status_.floor = lockstep_->floor() ? std::optional(lockstep_->floor()->rms) : std::nullopt;
   }
-  const std::lock_guard lock(mutex_);
-  shared_status_ = status_;
+  channel_.publish(status_);
 }
 
 }  // namespace clothlab

@@ -4,17 +4,15 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <variant>
 #include <vector>
 
 #include "bridge/compare_status.h"
 #include "bridge/frame_exchange.h"
+#include "bridge/worker_channel.h"
 #include "bridge/worker_pace.h"
 #include "compare/comparison_recorder.h"
 
@@ -30,7 +28,7 @@ struct Load {
 struct Restart {};  ///< the comparison in force, from t = 0, paused
 struct Edit {
   cloth::Comparison comparison;
-};  ///< in force at once where it can be, else from t = 0; goes on playing
+};  ///< in force at once where it can be (see cloth::acts_at_once), else from t = 0; goes on playing
 struct Play {};
 struct Pause {};       ///< at the common time that is next
 struct SingleStep {};  ///< to the next common time
@@ -67,26 +65,27 @@ class CompareWorker {
   CompareWorker(const CompareWorker&) = delete;
   CompareWorker& operator=(const CompareWorker&) = delete;
 
-  void send(CompareCommand command);
+  void send(CompareCommand command) { channel_.send(std::move(command)); }
 
   /// The pane's newest frame that was not fetched yet, or nullptr.
   std::shared_ptr<const ClothFrame> take_frame(std::size_t pane) { return frames_[pane].take(); }
   /// Every sample since the last call, in order.
-  std::vector<CompareSample> take_samples();
-  CompareStatus status() const;
+  std::vector<CompareSample> take_samples() { return channel_.take_samples(); }
+  CompareStatus status() const { return channel_.status(); }
 
   /// True while fetching is worth while: playing, or something is waiting to be done or fetched.
-  bool is_busy() const { return busy_; }
+  bool is_busy() const { return channel_.is_busy(); }
 
   /// Blocks until every command sent before is in force. For tests and for closing; the window never calls
   /// it.
-  void wait_until_idle();
+  void wait_until_idle() { channel_.wait_until_idle(); }
 
  private:
   void run(const std::stop_token& stop);
   void wait_for_work(const std::stop_token& stop);
   bool has_work() const;
   void handle_waiting();
+  bool changes_panes(const CompareCommand& command) const;
   void handle(const compare_command::Load& load);
   void handle(const compare_command::Restart&);
   void handle(const compare_command::Edit& edit);
@@ -101,6 +100,8 @@ class CompareWorker {
   void handle(const compare_command::StopRecording&);
 
   void start(const cloth::Comparison& comparison);
+  double now() const;
+  void log(const std::vector<std::string>& lines);
   void play_for_a_moment();
   void arrive();
   void take_sample(bool is_start);
@@ -111,20 +112,13 @@ class CompareWorker {
   void publish_status();
 
   // Shared with the window.
-  mutable std::mutex mutex_;
-  std::condition_variable_any wake_, idle_;
-  std::vector<CompareCommand> inbox_;
-  std::vector<CompareSample> samples_;
-  CompareStatus shared_status_;
-  std::uint64_t sent_ = 0, done_ = 0;  ///< commands
-  std::atomic<bool> busy_{false};
-  std::atomic<bool> has_mail_{false};  ///< panes look at it before each step
+  WorkerChannel<CompareCommand, CompareSample, CompareStatus> channel_;
   std::array<FrameExchange, cloth::most_panes> frames_;
 
   // The worker's own.
   int threads_;
   std::deque<CompareCommand> waiting_;
-  std::uint64_t handled_ = 0;
+  std::uint64_t handled_ = 0, settled_ = 0;  ///< commands; the second: with the step that they asked for
   std::unique_ptr<cloth::LockStep> lockstep_;
   std::optional<std::int64_t> under_way_;  ///< the common time that panes are on their way to
   std::optional<cloth::ComparisonRecorder> recorder_;

@@ -1,17 +1,15 @@
-// The worker as the window sees it: a QObject that fetches what is new at the screen's pace while there is
-// anything to fetch, and does nothing at all while there is not.
+// The simulation's worker as the window sees it.
 #pragma once
 
-#include <QObject>
-#include <QTimer>
 #include <memory>
 #include <vector>
 
 #include "bridge/simulation_worker.h"
+#include "bridge/worker_link.h"
 
 namespace clothlab {
 
-class SimulationLink : public QObject {
+class SimulationLink : public WorkerLink {
   Q_OBJECT
 
  public:
@@ -31,10 +29,9 @@ class SimulationLink : public QObject {
   void statusChanged(const clothlab::WorkerStatus& status);
 
  private:
-  void fetch();
+  bool fetch() override;
 
   SimulationWorker worker_;
-  QTimer timer_;
   WorkerStatus status_;
   std::uint64_t sent_ = 0;  ///< commands
 };

@@ -16,7 +16,6 @@ using Clock = WorkerPace::Clock;
 constexpr auto frame_interval =
     std::chrono::milliseconds(14);                         // a little more often than a 60 Hz screen asks
 constexpr auto batch_time = std::chrono::milliseconds(5);  // between two looks at the inbox
-constexpr std::size_t most_samples = 1 << 18;              // an hour at 60 a second
 
 double seconds(Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -54,40 +53,10 @@ SimulationWorker::~SimulationWorker() {
   if (thread_.joinable()) thread_.join();
 }
 
-void SimulationWorker::send(Command command) {
-  {
-    const std::lock_guard lock(mutex_);
-    inbox_.push_back(std::move(command));
-    ++sent_;
-    busy_ = true;
-  }
-  wake_.notify_one();
-}
-
-std::vector<ChartSample> SimulationWorker::take_samples() {
-  const std::lock_guard lock(mutex_);
-  return std::move(samples_);
-}
-
-WorkerStatus SimulationWorker::status() const {
-  const std::lock_guard lock(mutex_);
-  return shared_status_;
-}
-
-void SimulationWorker::wait_until_idle() {
-  std::unique_lock lock(mutex_);
-  idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
-}
-
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {
-    std::vector<Command> commands;
-    {
-      std::unique_lock lock(mutex_);
-      wait_for_work(lock, stop);
-      commands.swap(inbox_);
-    }
+    const std::vector<Command> commands = wait_for_work(stop);
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
         batch_is_done_ = i + 1 == commands.size();
@@ -97,25 +66,15 @@ void SimulationWorker::run(const std::stop_token& stop) {
     if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
     status_.commands += commands.size();
     publish_status();
-    if (!commands.empty()) {
-      const std::lock_guard lock(mutex_);
-      done_ += commands.size();
-      busy_ = status_.playing || !inbox_.empty();
-      idle_.notify_all();
-    }
+    channel_.settle(status_.commands, status_.playing);
   }
   if (recording_.is_active()) end_recording();
 }
 
 /// Until there is a command, or the next step is due.
-void SimulationWorker::wait_for_work(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
-  if (inbox_.empty()) busy_ = status_.playing;
-  const auto has_command = [this] { return !inbox_.empty(); };
-  if (!status_.playing)
-    wake_.wait(lock, stop, has_command);
-  else if (const auto due = pace_.due_time(simulation_->time() + simulation_->time_step());
-           due > Clock::now())
-    wake_.wait_until(lock, stop, due, has_command);
+std::vector<Command> SimulationWorker::wait_for_work(const std::stop_token& stop) {
+  if (!status_.playing) return channel_.receive(stop, std::nullopt);
+  return channel_.receive(stop, pace_.due_time(simulation_->time() + simulation_->time_step()));
 }
 
 void SimulationWorker::handle(const command::Load& load) {
@@ -147,10 +106,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   wall_since_row_ = 0;
   steps_since_row_ = 0;
   meter_.restart(0, Clock::now());
-  {
-    const std::lock_guard lock(mutex_);
-    samples_.clear();  // of the run before
-  }
+  channel_.drop_samples();  // of the run before
   take_sample();
   return true;
 }
@@ -298,11 +254,7 @@ void SimulationWorker::take_sample() {
 }
 
 void SimulationWorker::deliver(const ChartSample& sample) {
-  const std::lock_guard lock(mutex_);
-  if (samples_.size() < most_samples)
-    samples_.push_back(sample);
-  else
-    ++status_.lost_samples;
+  if (!channel_.deliver(sample)) ++status_.lost_samples;
 }
 
 /// The view keeps the last good state, and so does the simulation: after an edit it can go on from there.
@@ -362,8 +314,7 @@ void SimulationWorker::publish_status() {
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   status_.recording = recording_.is_active();
   status_.recorded_rows = recording_.rows();
-  const std::lock_guard lock(mutex_);
-  shared_status_ = status_;
+  channel_.publish(status_);
 }
 
 }  // namespace clothlab

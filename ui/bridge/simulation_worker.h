@@ -2,10 +2,7 @@
 // status; it never locks the simulation and never waits for it. Edits are put in force between steps.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -13,6 +10,7 @@
 #include "bridge/chart_sample.h"
 #include "bridge/frame_exchange.h"
 #include "bridge/live_recording.h"
+#include "bridge/worker_channel.h"
 #include "bridge/worker_pace.h"
 #include "bridge/worker_status.h"
 #include "simulation/history.h"
@@ -69,24 +67,24 @@ class SimulationWorker {
   SimulationWorker(const SimulationWorker&) = delete;
   SimulationWorker& operator=(const SimulationWorker&) = delete;
 
-  void send(Command command);
+  void send(Command command) { channel_.send(std::move(command)); }
 
   /// The newest frame that was not fetched yet, or nullptr.
   std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }
   /// Every sample since the last call, in order.
-  std::vector<ChartSample> take_samples();
-  WorkerStatus status() const;
+  std::vector<ChartSample> take_samples() { return channel_.take_samples(); }
+  WorkerStatus status() const { return channel_.status(); }
 
   /// True while fetching is worth while: playing, or something is waiting to be done or fetched.
-  bool is_busy() const { return busy_; }
+  bool is_busy() const { return channel_.is_busy(); }
 
   /// Blocks until every command sent before is in force. For tests and for closing; the window never calls
   /// it.
-  void wait_until_idle();
+  void wait_until_idle() { channel_.wait_until_idle(); }
 
  private:
   void run(const std::stop_token& stop);
-  void wait_for_work(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
+  std::vector<Command> wait_for_work(const std::stop_token& stop);
   void handle(const command::Load& load);
   void handle(const command::Restart&);
   void handle(const command::Edit& edit);
@@ -122,13 +120,7 @@ class SimulationWorker {
   void publish_status();
 
   // Shared with the window.
-  mutable std::mutex mutex_;
-  std::condition_variable_any wake_, idle_;
-  std::vector<Command> inbox_;
-  std::vector<ChartSample> samples_;
-  WorkerStatus shared_status_;
-  std::uint64_t sent_ = 0, done_ = 0;  ///< commands
-  std::atomic<bool> busy_{false};
+  WorkerChannel<Command, ChartSample, WorkerStatus> channel_;
   FrameExchange frames_;
 
   // The worker's own.

@@ -40,10 +40,7 @@ bool SimulationWorker::may_go_on() {
   rows_.follow(*simulation_);
   if (rows_.due(simulation_->state().step)) take_sample();
   if (thread_.get_stop_token().stop_requested()) return false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (batch_is_done_ && !inbox_.empty() && ends_a_way(inbox_.front())) return false;
-  }
+  if (batch_is_done_ && channel_.next_is(ends_a_way)) return false;
   if (Clock::now() - last_frame_ < glimpse_interval) return true;
   publish_frame();
   publish_status();

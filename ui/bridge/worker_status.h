@@ -1,11 +1,11 @@
 // What the window shows of the worker besides the cloth and the curves.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "bridge/recording_status.h"
 #include "scene/scene.h"
 #include "simulation/outcome.h"
 
@@ -19,7 +19,7 @@ struct HistoryStatus {
   std::size_t bytes = 0, most_bytes = 0;
 };
 
-struct WorkerStatus {
+struct WorkerStatus : RecordingStatus {
   bool playing = false;
   double time = 0;  ///< s
   std::int64_t step = 0;
@@ -27,12 +27,8 @@ struct WorkerStatus {
   double speed = 1;      ///< simulated seconds per second asked for
   double steps_per_second = 0, real_time_factor = 0;
   std::optional<cloth::Divergence> divergence;
-  std::string notice;   ///< e.g. a rate that the pins make unreachable
-  std::string refusal;  ///< why the last scene or edit is not in force
-  bool recording = false;
-  std::filesystem::path recording_folder;
-  std::int64_t recorded_rows = 0;
-  std::string recording_error;
+  std::string notice;             ///< e.g. a rate that the pins make unreachable
+  std::string refusal;            ///< why the last scene or edit is not in force
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
 
   std::uint64_t commands = 0;  ///< sent so far that are carried out, or were overtaken by a later one

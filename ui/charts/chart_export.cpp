@@ -2,8 +2,10 @@
 
 #include <QBuffer>
 #include <QCoreApplication>
+#include <QFileDialog>
 #include <QFileInfo>
 #include <QImage>
+#include <QMessageBox>
 #include <QPainter>
 #include <QSaveFile>
 #include <QSvgGenerator>
@@ -108,15 +110,15 @@ void append_number(QByteArray& line, double value) {
   line.append(digits, end.ptr - digits);
 }
 
-void append_row(QByteArray& csv, const ChartRecord& record, double time_s, std::optional<std::size_t> sample,
-                std::optional<std::size_t> draw) {
+void append_row(QByteArray& csv, const ChartRecord& record, const std::vector<CsvColumn>& columns,
+                double time_s, std::optional<std::size_t> sample, std::optional<std::size_t> draw) {
   append_number(csv, time_s);
-  for (std::size_t column = 0; column < sample_columns; ++column) {
+  for (const CsvColumn& column : columns) {
     csv += ',';
-    if (sample) append_number(csv, record.samples.value(column, *sample));
+    const bool of_samples = column.source == Source::samples;
+    const SampleSeries& series = of_samples ? record.samples : record.draws;
+    if (const auto row = of_samples ? sample : draw) append_number(csv, series.value(column.column, *row));
   }
-  csv += ',';
-  if (draw) append_number(csv, record.draws.value(0, *draw));
   csv += '\n';
 }
 
@@ -155,8 +157,21 @@ QString save_svg(const QString& path, QSize size, const ChartPicture& picture) {
   return write_file(path, bytes);
 }
 
-QString save_csv(const QString& path, const ChartRecord& record, Range time) {
-  QByteArray csv("time_s,kinetic_J,elastic_J,gravity_J,total_J,max_strain,step_ms,draw_ms\n");
+std::vector<CsvColumn> run_columns() {
+  return {{"kinetic_J", Source::samples, kinetic},
+          {"elastic_J", Source::samples, elastic},
+          {"gravity_J", Source::samples, gravity},
+          {"total_J", Source::samples, total},
+          {"max_strain", Source::samples, strain},
+          {"step_ms", Source::samples, step_time},
+          {"draw_ms", Source::draws, 0}};
+}
+
+QString save_csv(const QString& path, const ChartRecord& record, const std::vector<CsvColumn>& columns,
+                 Range time) {
+  QByteArray csv("time_s");
+  for (const CsvColumn& column : columns) csv += ',' + column.name;
+  csv += '\n';
   const SampleSeries& samples = record.samples;
   const SampleSeries& draws = record.draws;
   std::size_t s = samples.lower_bound(time.low), d = draws.lower_bound(time.low);
@@ -165,10 +180,26 @@ QString save_csv(const QString& path, const ChartRecord& record, Range time) {
     const bool sample_first = d == d_end || (s < s_end && samples.time(s) <= draws.time(d));
     const bool draw_first = s == s_end || (d < d_end && draws.time(d) <= samples.time(s));
     const double t = sample_first ? samples.time(s) : draws.time(d);
-    append_row(csv, record, t, sample_first ? std::optional(s++) : std::nullopt,
+    append_row(csv, record, columns, t, sample_first ? std::optional(s++) : std::nullopt,
                draw_first ? std::optional(d++) : std::nullopt);
   }
   return write_file(path, csv);
+}
+
+void save_charts_by_dialog(QWidget* parent,
+                           const std::function<QString(const QString& path, const QString& ending)>& save) {
+  const QString png = tr("Picture (*.png)"), svg = tr("Drawing (*.svg)"), csv = tr("Points (*.csv)");
+  QString filter = png;
+  QString path = QFileDialog::getSaveFileName(parent, tr("Save charts"), QStringLiteral("charts"),
+                                              QStringList{png, svg, csv}.join(";;"), &filter);
+  if (path.isEmpty()) return;
+  QString ending = QFileInfo(path).suffix().toLower();
+  if (ending != "png" && ending != "svg" && ending != "csv") {
+    ending = filter == png ? "png" : filter == svg ? "svg" : "csv";
+    path += "." + ending;
+  }
+  const QString problem = save(path, ending);
+  if (!problem.isEmpty()) QMessageBox::warning(parent, tr("Save charts"), problem);
 }
 
 }  // namespace clothlab

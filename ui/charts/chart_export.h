@@ -2,14 +2,17 @@
 // that could not be written whole is not left behind, and one that was there before stays as it was.
 #pragma once
 
+#include <QByteArray>
 #include <QFont>
 #include <QSize>
 #include <QString>
+#include <functional>
 #include <vector>
 
 #include "charts/chart_record.h"
 
 class QPainter;
+class QWidget;
 
 namespace clothlab {
 
@@ -26,10 +29,25 @@ struct ChartPicture {
 QString save_png(const QString& path, QSize size, const ChartPicture& picture);
 QString save_svg(const QString& path, QSize size, const ChartPicture& picture);
 
-/// RFC 4180, lines ended by LF as in record.csv, one header row: time_s, kinetic_J, ... , draw_ms. Every
-/// recorded point of `time` with 17 significant digits and a decimal point whatever the locale; an empty
-/// field is a quantity that this point does not have. The strain is a fraction. A drawing that falls on no
-/// sample's time has a row of its own.
-QString save_csv(const QString& path, const ChartRecord& record, Range time);
+/// One quantity of the record as a column of a file.
+struct CsvColumn {
+  QByteArray name;  ///< with its unit
+  Source source = Source::samples;
+  std::size_t column = 0;
+};
+
+/// kinetic_J, elastic_J, gravity_J, total_J, max_strain (a fraction), step_ms, draw_ms.
+std::vector<CsvColumn> run_columns();
+
+/// RFC 4180, lines ended by LF as in record.csv, one header row: time_s and the columns. Every recorded point
+/// of `time` with 17 significant digits and a decimal point whatever the locale; an empty field is a quantity
+/// that this point does not have. A drawing that falls on no sample's time has a row of its own.
+QString save_csv(const QString& path, const ChartRecord& record, const std::vector<CsvColumn>& columns,
+                 Range time);
+
+/// Asks for a file name, whose ending chooses "png", "svg" or "csv", has `save` write it, and shows what
+/// `save` says went wrong.
+void save_charts_by_dialog(QWidget* parent,
+                           const std::function<QString(const QString& path, const QString& ending)>& save);
 
 }  // namespace clothlab

@@ -1,10 +1,7 @@
 #include "charts/chart_panel.h"
 
 #include <QButtonGroup>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QKeyEvent>
-#include <QMessageBox>
 #include <QPainter>
 #include <QTimer>
 #include <QToolTip>
@@ -219,24 +216,13 @@ QString ChartPanel::exportSvg(const QString& path, QSize size) {
 }
 
 QString ChartPanel::exportCsv(const QString& path) const {
-  return save_csv(path, parts_->record, parts_->time.shown(parts_->record.times()));
+  return save_csv(path, parts_->record, run_columns(), parts_->time.shown(parts_->record.times()));
 }
 
 void ChartPanel::saveAs() {
-  const QString png = tr("Picture (*.png)"), svg = tr("Drawing (*.svg)"), csv = tr("Points (*.csv)");
-  QString filter = png;
-  QString path = QFileDialog::getSaveFileName(this, tr("Save charts"), QStringLiteral("charts"),
-                                              QStringList{png, svg, csv}.join(";;"), &filter);
-  if (path.isEmpty()) return;
-  QString ending = QFileInfo(path).suffix().toLower();
-  if (ending != "png" && ending != "svg" && ending != "csv") {
-    ending = filter == png ? "png" : filter == svg ? "svg" : "csv";
-    path += "." + ending;
-  }
-  const QString problem = ending == "png"   ? exportPng(path)
-                          : ending == "svg" ? exportSvg(path)
-                                            : exportCsv(path);
-  if (!problem.isEmpty()) QMessageBox::warning(this, tr("Save charts"), problem);
+  save_charts_by_dialog(this, [this](const QString& path, const QString& ending) {
+    return ending == "png" ? exportPng(path) : ending == "svg" ? exportSvg(path) : exportCsv(path);
+  });
 }
 
 void ChartPanel::data_changed() {

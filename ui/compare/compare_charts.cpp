@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <algorithm>
 
+#include "charts/chart_export.h"
 #include "compare/pane_style.h"
 
 namespace clothlab {
@@ -13,21 +14,28 @@ constexpr int refresh_interval = 34;  // ms
 constexpr int chart_gap = spacing / 2;
 constexpr double least_gutter = 30, gutter_slack = 12;  // px
 
-/// Columns of the record: a group for each quantity, a column in it for each pane.
+/// Columns of the record: a group for each quantity, a column in it for each pane that there can be, by its
+/// style.
 constexpr std::size_t quantities = 4;
 
 struct Quantity {
   const char* key;
+  const char* column;  ///< in files
   QString title, unit;
   double scale;  ///< sample to chart
   bool from_zero, logarithmic;
 };
 
 std::array<Quantity, quantities> chart_quantities() {
-  return {{{"compare_energy", CompareCharts::tr("Total energy (J)"), "J", 1, false, false},
-           {"compare_strain", CompareCharts::tr("Maximum strain (%)"), "%", 100, true, false},
-           {"compare_step_time", CompareCharts::tr("Step time (ms)"), "ms", 1, true, false},
-           {"compare_difference", CompareCharts::tr("RMS difference (mm)"), "mm", 1000, false, true}}};
+  return {{{"compare_energy", "total_J", CompareCharts::tr("Total energy (J)"), "J", 1, false, false},
+           {"compare_strain", "max_strain", CompareCharts::tr("Maximum strain (%)"), "%", 100, true, false},
+           {"compare_step_time", "step_ms", CompareCharts::tr("Step time (ms)"), "ms", 1, false, true},
+           {"compare_difference", "rms_difference_m", CompareCharts::tr("RMS difference (mm)"), "mm", 1000,
+            false, true}}};
+}
+
+std::size_t column_of(std::size_t quantity, int style) {
+  return quantity * cloth::most_panes + static_cast<std::size_t>(style);
 }
 
 ChartRecord empty_record() {
@@ -58,9 +66,26 @@ void CompareCharts::setPanes(const cloth::Comparison& comparison) {
     curves.names.push_back(QString::fromStdString(pane.name));
   }
   if (curves == curves_) return;
+  std::vector<int> kept;
+  std::copy_if(curves.styles.begin(), curves.styles.end(), std::back_inserter(kept), [this](int style) {
+    return std::find(curves_.styles.begin(), curves_.styles.end(), style) != curves_.styles.end();
+  });
   curves_ = std::move(curves);
-  record_ = empty_record();
+  forgetAllBut(kept);
   makeCharts();
+}
+
+/// A pane that went leaves nothing to one that takes its name.
+void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
+  ChartRecord record = empty_record();
+  std::array<double, quantities * cloth::most_panes> row;
+  for (std::size_t i = 0; i < record_.samples.size(); ++i) {
+    row.fill(PaneSample::none);
+    for (std::size_t q = 0; q < quantities; ++q)
+      for (const int style : styles) row[column_of(q, style)] = record_.samples.value(column_of(q, style), i);
+    record.samples.append(record_.samples.time(i), row);
+  }
+  record_ = std::move(record);
 }
 
 void CompareCharts::makeCharts() {
@@ -75,8 +100,8 @@ void CompareCharts::makeCharts() {
     spec->unit = all[q].unit;
     spec->from_zero = all[q].from_zero;
     for (std::size_t i = 0; i < curves_.styles.size(); ++i)
-      spec->curves.push_back({curves_.names[i], Source::samples, q * cloth::most_panes + i, all[q].scale,
-                              pane_curve(curves_.styles[i])});
+      spec->curves.push_back({curves_.names[i], Source::samples, column_of(q, curves_.styles[i]),
+                              all[q].scale, pane_curve(curves_.styles[i])});
     auto* chart = new LiveChart(*spec, q + 1 == quantities, this);
     chart->set_logarithmic(all[q].logarithmic);
     connectChart(chart);
@@ -133,14 +158,40 @@ void CompareCharts::append(const std::vector<CompareSample>& samples) {
       follow();
     }
     std::array<double, quantities * cloth::most_panes> row;
-    for (std::size_t i = 0; i < cloth::most_panes; ++i) {
-      const PaneSample& pane = sample.panes[i];
+    for (int style = 0; style < static_cast<int>(cloth::most_panes); ++style) {
+      const PaneSample& pane = sample.panes[static_cast<std::size_t>(style)];
       const double values[quantities] = {pane.total_J, pane.max_strain, pane.step_ms, pane.rms_m};
-      for (std::size_t q = 0; q < quantities; ++q) row[q * cloth::most_panes + i] = values[q];
+      for (std::size_t q = 0; q < quantities; ++q) row[column_of(q, style)] = values[q];
     }
     record_.samples.append(sample.time_s, row);
   }
   changeLater();
+}
+
+QString CompareCharts::exportPng(const QString& path, QSize size) {
+  refresh();
+  return save_png(path, size, {record_, charts_, font()});
+}
+
+QString CompareCharts::exportSvg(const QString& path, QSize size) {
+  refresh();
+  return save_svg(path, size, {record_, charts_, font()});
+}
+
+QString CompareCharts::exportCsv(const QString& path) const {
+  std::vector<CsvColumn> columns;
+  const auto all = chart_quantities();
+  for (std::size_t i = 0; i < curves_.styles.size(); ++i)
+    for (std::size_t q = 0; q < quantities; ++q)
+      columns.push_back({curves_.names[i].toUtf8() + '_' + all[q].column, Source::samples,
+                         column_of(q, curves_.styles[i])});
+  return save_csv(path, record_, columns, time_.shown(record_.times()));
+}
+
+void CompareCharts::saveAs() {
+  save_charts_by_dialog(this, [this](const QString& path, const QString& ending) {
+    return ending == "png" ? exportPng(path) : ending == "svg" ? exportSvg(path) : exportCsv(path);
+  });
 }
 
 void CompareCharts::follow() {

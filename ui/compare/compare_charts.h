@@ -20,15 +20,24 @@ class CompareCharts : public QWidget {
   explicit CompareCharts(QWidget* parent = nullptr);
   ~CompareCharts() override;
 
-  /// Begins anew with the curves of these panes.
+  /// The curves of these panes; of those that were there before with what was recorded of them.
   void setPanes(const cloth::Comparison& comparison);
   void append(const std::vector<CompareSample>& samples);
+
+  /// The charts as they look, `size` in logical px. Empty, or what went wrong in a sentence for the user.
+  QString exportPng(const QString& path, QSize size = {1600, 1400});
+  QString exportSvg(const QString& path, QSize size = {1600, 1400});
+  /// The recorded points of the times shown: time_s, then for each pane A_total_J, A_max_strain, A_step_ms,
+  /// A_rms_difference_m (see chart_export.h).
+  QString exportCsv(const QString& path) const;
+  /// Asks for a file name; the ending chooses PNG, SVG or CSV.
+  void saveAs();
 
   const ChartRecord& record() const { return record_; }
   LiveChart* chart(const QString& key) const;
 
   QSize sizeHint() const override { return {400, 600}; }
-  QSize minimumSizeHint() const override { return {280, 320}; }
+  QSize minimumSizeHint() const override { return {250, 320}; }
 
  protected:
   void changeEvent(QEvent* event) override;
@@ -44,6 +53,7 @@ class CompareCharts : public QWidget {
   };
 
   void makeCharts();
+  void forgetAllBut(const std::vector<int>& styles);
   void connectChart(LiveChart* chart);
   void follow();
   void changeLater();

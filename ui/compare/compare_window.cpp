@@ -3,28 +3,27 @@
 #include <QAction>
 #include <QCloseEvent>
 #include <QComboBox>
-#include <QDesktopServices>
 #include <QDockWidget>
 #include <QLabel>
-#include <QMessageBox>
 #include <QScreen>
 #include <QSignalBlocker>
 #include <QTabBar>
-#include <QUrl>
 #include <QVBoxLayout>
 #include <algorithm>
 
 #include "compare/comparison_files.h"
 #include "compare/pane_style.h"
+#include "document/document_actions.h"
 #include "params/wording.h"
 #include "scene/scene_parameters.h"
 #include "theme/theme.h"
+#include "widgets/run_actions.h"
 
 namespace clothlab {
 namespace {
 
 constexpr QSize pleasant_size{1600, 1000};
-constexpr int parameters_width = 310, charts_width = 380, ranking_height = 170;  // px
+constexpr int parameters_width = 284, charts_width = 330, ranking_height = 170;  // px
 constexpr int title_bar_height = 32;
 constexpr int ranking_interval = 200;  // ms between two fillings of the table while it runs
 
@@ -62,7 +61,7 @@ void CompareWindow::makeScopeTabs() {
   scopes_ = new QTabBar(this);
   scopes_->setObjectName("scopes");
   scopes_->setAccessibleName(tr("Whose values the form shows"));
-  scopes_->setExpanding(true);
+  scopes_->setExpanding(false);
   scopes_->setUsesScrollButtons(false);
   scopes_->setIconSize({12, 12});
   scopes_->setStyleSheet("QTabBar::tab { padding: 6px 6px; margin-right: 0; }");
@@ -114,6 +113,7 @@ void CompareWindow::connectDocument() {
   connect(&document_, &CompareDocument::loaded, this, [this] {
     followDocument();
     grid_->resetCamera();
+    notice_->withdraw("new-start");
     link_.send(compare_command::Load{document_.comparison()});
   });
   connect(&document_, &CompareDocument::changed, this, [this] {
@@ -269,12 +269,7 @@ void CompareWindow::brush(const cloth::BrushGust& gust) {
 }
 
 void CompareWindow::followStatus(const CompareStatus& status) {
-  // An action that is told what it knows still has its bar laid out anew, and with it the whole window.
-  if (play_->isChecked() != status.playing || shown_status_.playing != status.playing) {
-    play_->setChecked(status.playing);
-    play_->setIcon(icon(status.playing ? "pause" : "play"));
-    play_->setText(status.playing ? tr("Pause") : tr("Play"));
-  }
+  follow_playing(*play_, status.playing);
   play_->setEnabled(status.refusal.empty());
   step_->setEnabled(status.refusal.empty());
   if (status.time > status.duration)  // played on beyond its end
@@ -302,25 +297,11 @@ void CompareWindow::followStatus(const CompareStatus& status) {
   else
     notice_->withdraw("reference");
   reference_->setToolTip(tr("Differences are from: %1").arg(QString::fromStdString(status.reference)));
-  followRecording(status);
+  if (status.new_starts != shown_status_.new_starts)
+    notice_->show("new-start", NoticeBar::Level::info,
+                  tr("Started anew from 0 s: this change cannot be put in force in the middle of a run."));
+  follow_recording(*record_, *notice_, shown_status_, status);
   shown_status_ = status;
-}
-
-void CompareWindow::followRecording(const CompareStatus& status) {
-  if (record_->isChecked() != status.recording || shown_status_.recording != status.recording) {
-    record_->setChecked(status.recording);
-    record_->setIcon(icon(status.recording ? "stop-record" : "record"));
-  }
-  if (status.recording_error != shown_status_.recording_error && !status.recording_error.empty()) {
-    notice_->show("recording", NoticeBar::Level::error,
-                  tr("Recording stopped: %1. What was written before is valid.")
-                      .arg(QString::fromStdString(status.recording_error)));
-  } else if (shown_status_.recording && !status.recording) {
-    const QString folder = QString::fromStdString(status.recording_folder.string());
-    notice_->show("recording", NoticeBar::Level::info,
-                  tr("Recorded %1 rows in %2").arg(status.recorded_rows).arg(folder), tr("Open folder"),
-                  [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
-  }
 }
 
 void CompareWindow::startRecording(const QString& folder) {
@@ -334,10 +315,8 @@ void CompareWindow::updateTitle() {
 
 bool CompareWindow::mayLoseChanges() {
   if (!asks_to_save_ || !document_.isModified()) return true;
-  const auto answer = QMessageBox::question(
-      this, tr("Unsaved changes"), tr("The comparison \"%1\" was changed. Save it?").arg(document_.title()),
-      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
-  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
+  return ask_to_save(this, tr("The comparison \"%1\" was changed. Save it?").arg(document_.title()),
+                     [this] { return save(); });
 }
 
 void CompareWindow::closeEvent(QCloseEvent* event) {

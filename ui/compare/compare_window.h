@@ -4,13 +4,14 @@
 
 #include <QMainWindow>
 
+#include "bridge/compare_link.h"
 #include "compare/compare_charts.h"
 #include "compare/compare_document.h"
-#include "compare/compare_link.h"
 #include "compare/pane_grid.h"
 #include "compare/ranking_table.h"
-#include "main_window/notice_bar.h"
 #include "params/parameter_panel.h"
+#include "widgets/notice_bar.h"
+#include "widgets/reading.h"
 
 class QActionGroup;
 class QComboBox;
@@ -60,7 +61,6 @@ class CompareWindow : public QMainWindow {
   void connectSimulation();
   void followDocument();
   void followStatus(const CompareStatus& status);
-  void followRecording(const CompareStatus& status);
   void showScope();
   void showOwnership();
   void showReferences();
@@ -92,8 +92,8 @@ class CompareWindow : public QMainWindow {
   QLabel* scope_hint_ = nullptr;
   QComboBox* reference_ = nullptr;
   QComboBox* speed_ = nullptr;
-  QLabel* time_ = nullptr;
-  QLabel* rate_ = nullptr;
+  Reading* time_ = nullptr;
+  Reading* rate_ = nullptr;
   QAction* play_ = nullptr;
   QAction* step_ = nullptr;
   QAction* reset_ = nullptr;

@@ -15,9 +15,10 @@
 #include "compare/builtin_comparisons.h"
 #include "compare/compare_window.h"
 #include "compare/comparison_files.h"
-#include "main_window/action_button.h"
-#include "main_window/scene_library.h"
+#include "document/document_actions.h"
+#include "document/recording_folder.h"
 #include "theme/theme.h"
+#include "widgets/action_button.h"
 
 namespace clothlab {
 namespace {
@@ -64,17 +65,15 @@ void CompareWindow::makeMenus() {
   file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   file->addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
   file->addSeparator();
+  QAction* save_plots = file->addAction(icon("export-plot"), tr("Save plots…"), QKeySequence("Ctrl+Shift+P"),
+                                        charts_, &CompareCharts::saveAs);
+  save_plots->setObjectName("savePlots");
+  save_plots->setToolTip(tr("Save the charts as PNG, SVG or CSV"));
+  file->addSeparator();
   file->addAction(tr("Close"), QKeySequence::Close, this, &QWidget::close);
 
   QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  QAction* undo = document_.undoStack().createUndoAction(this, tr("Undo"));
-  undo->setObjectName("undo");
-  undo->setIcon(icon("undo"));
-  undo->setShortcut(QKeySequence::Undo);
-  QAction* redo = document_.undoStack().createRedoAction(this, tr("Redo"));
-  redo->setObjectName("redo");
-  redo->setIcon(icon("redo"));
-  redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
+  const auto [undo, redo] = make_undo_actions(document_.undoStack(), this);
   edit->addActions({undo, redo});
   edit->addSeparator();
   QAction* copy = edit->addAction(tr("Copy ranking"), this, [this] { ranking_->copy(); });
@@ -193,16 +192,11 @@ void CompareWindow::makeTransport() {
           [this](int index) { link_.send(compare_command::Speed{speed_->itemData(index).toDouble()}); });
   row->addWidget(speed_);
   row->addSpacing(spacing);
-  time_ = new QLabel(frame);
+  time_ = new Reading("000.000 of 00.00 s", Reading::Look::bold, frame);
   time_->setObjectName("timeLabel");
-  QFont bold = time_->font();
-  bold.setBold(true);
-  time_->setFont(bold);
-  time_->setMinimumWidth(time_->fontMetrics().horizontalAdvance("000.000 of 00.00 s"));
   row->addWidget(time_);
-  rate_ = new QLabel(frame);
+  rate_ = new Reading("00.00x real time", Reading::Look::muted, frame);
   rate_->setObjectName("rateLabel");
-  rate_->setProperty("muted", true);
   row->addWidget(rate_, 1);
 
   auto* bottom = new QToolBar(tr("Run"), this);

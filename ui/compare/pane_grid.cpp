@@ -11,9 +11,6 @@ namespace {
 
 constexpr double least_difference = 1e-9;  // m, at the top of the colours
 constexpr int glide_interval = 16;         // ms
-constexpr double most_drawing = 20;        // ms of all panes together in one event
-constexpr int turn_interval = 8;           // ms from one pane's drawing to the next one's
-constexpr int rest_delay = 150;            // ms from one pane's smooth picture to the next one's
 
 }  // namespace
 
@@ -34,9 +31,6 @@ PaneGrid::PaneGrid(QWidget* parent)
   colour_timer_.setSingleShot(true);
   colour_timer_.setInterval(glide_interval);
   connect(&colour_timer_, &QTimer::timeout, this, &PaneGrid::followColours);
-  turn_timer_.setSingleShot(true);
-  turn_timer_.setInterval(turn_interval);
-  connect(&turn_timer_, &QTimer::timeout, this, &PaneGrid::showNextFrame);
   colour_clock_.start();
 }
 
@@ -60,7 +54,7 @@ void PaneGrid::addPane() {
   auto* pane = new PaneView(this);
   ClothView* view = &pane->view();
   view->setTool(tool_);
-  view->setRestDelay(playing_ ? -1 : rest_delay * static_cast<int>(panes_.size() + 1));
+  view->setSmoothAtRest(!playing_);
   view->setMode(mode_);
   if (!panes_.empty()) {
     ClothView& first = panes_.front()->view();
@@ -105,38 +99,14 @@ void PaneGrid::followCamera(const ClothView& moved, const CameraPose& pose) {
 }
 
 void PaneGrid::showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame) {
-  if (pane >= panes_.size()) return;
-  pending_[pane] = std::move(frame);
-  if (!takes_turns_)
-    panes_[pane]->view().showFrame(std::exchange(pending_[pane], nullptr));
-  else if (!turn_timer_.isActive())
-    turn_timer_.start();
+  if (pane < panes_.size()) panes_[pane]->view().showFrame(std::move(frame));
 }
 
-/// All panes in one event would hold the window's thread for as long as their drawings take together. Where
-/// that is long, each has an event of its own; what is shown at rest is of one time.
-void PaneGrid::showNextFrame() {
-  for (std::size_t i = 1; i <= panes_.size(); ++i) {
-    const std::size_t next = (turn_ + i) % panes_.size();
-    if (!pending_[next]) continue;
-    turn_ = next;
-    panes_[next]->view().showFrame(std::exchange(pending_[next], nullptr));
-    turn_timer_.start();
-    return;
-  }
-}
-
+/// Between two pictures of one pane the others have theirs: that is no rest.
 void PaneGrid::followPlaying(bool playing) {
-  double together = 0;  // ms
-  for (PaneView* pane : panes_) together += pane->view().lastDrawMilliseconds();
-  takes_turns_ = playing && together > most_drawing;
-  if (!takes_turns_)
-    for (std::size_t i = 0; i < panes_.size(); ++i)
-      if (pending_[i]) panes_[i]->view().showFrame(std::exchange(pending_[i], nullptr));
   if (playing == playing_) return;
   playing_ = playing;
-  int delay = 0;
-  for (PaneView* pane : panes_) pane->view().setRestDelay(playing ? -1 : delay += rest_delay);
+  for (PaneView* pane : panes_) pane->view().setSmoothAtRest(!playing);
 }
 
 void PaneGrid::showResults(const CompareStatus& status) {
@@ -155,7 +125,7 @@ void PaneGrid::followColours() {
   for (PaneView* pane : panes_) {
     const auto& frame = pane->view().frame();
     if (!frame) continue;
-    for (const float value : frame->strain) largest = std::max(largest, static_cast<double>(value));
+    largest = std::max(largest, static_cast<double>(frame->largest_strain));
     difference = frame->shows_difference;
     if (!difference) rate = std::max(rate, frame->deformation_rate);
   }

@@ -4,7 +4,6 @@
 #include <QElapsedTimer>
 #include <QTimer>
 #include <QWidget>
-#include <array>
 #include <vector>
 
 #include "bridge/compare_worker.h"
@@ -54,17 +53,12 @@ class PaneGrid : public QWidget {
   void addPane();
   void layOut();
   void followPlaying(bool playing);
-  void showNextFrame();
   void followCamera(const ClothView& moved, const CameraPose& pose);
   void followColours();
 
   QGridLayout* grid_;
   ColourBar* colour_bar_;
   std::vector<PaneView*> panes_;
-  std::array<std::shared_ptr<const ClothFrame>, cloth::most_panes> pending_;  ///< frames not shown yet
-  QTimer turn_timer_;         ///< when the next pane's turn comes
-  std::size_t turn_ = 0;      ///< the pane that was drawn last
-  bool takes_turns_ = false;  ///< panes are drawn one after the other
   bool playing_ = false;
   Tool tool_ = Tool::pull;
   ViewMode mode_ = ViewMode::textured;

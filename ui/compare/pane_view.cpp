@@ -11,11 +11,12 @@
 
 #include "compare/pane_style.h"
 #include "integrators/registry.h"
-#include "main_window/stability_gauge.h"
 #include "params/exact_field.h"
 #include "params/number_text.h"
 #include "params/panel_parts.h"
 #include "theme/theme.h"
+#include "widgets/reading.h"
+#include "widgets/stability_gauge.h"
 
 namespace clothlab {
 namespace {
@@ -48,7 +49,7 @@ PaneView::PaneView(QWidget* parent)
       method_(new QuietCombo(this)),
       step_(new ExactField(this)),
       gauge_(new StabilityGauge(this)),
-      cost_(new QLabel(this)),
+      cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
       stopped_(new QLabel(this)) {
   auto* column = new QVBoxLayout(this);
@@ -71,12 +72,13 @@ QWidget* PaneView::makeHeader() {
 
   method_->setObjectName("method");
   method_->setAccessibleName(tr("Method"));
+  method_->setMinimumContentsLength(2);  // where the window is narrow, the panes share it
   for (const cloth::MethodFacts& facts : cloth::integrator_facts())
     method_->addItem(QString::fromStdString(facts.title), QString::fromStdString(facts.name));
   step_->setObjectName("step");
   step_->setUnit("s");
   step_->setAccessibleName(tr("Time step"));
-  step_->setFixedWidth(104);
+  step_->setFixedWidth(80);
   auto* more = new QToolButton(header);
   more->setObjectName("more");
   more->setText(QStringLiteral("⋯"));
@@ -96,7 +98,6 @@ QWidget* PaneView::makeHeader() {
   auto* second = new QHBoxLayout;
   second->addWidget(gauge_, 1);
   cost_->setObjectName("cost");
-  cost_->setProperty("muted", true);
   cost_->setToolTip(tr("Seconds of stepping for each simulated second"));
   second->addWidget(cost_);
   second->addSpacing(spacing / 2);
@@ -173,7 +174,7 @@ void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, b
 }
 
 void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
-  set_text(*cost_, result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
+  cost_->setText(result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
   set_text(*difference_, difference_text(result, has_reference));
   difference_->setToolTip(result.notice.empty() ? difference_->text()
                                                 : QString::fromStdString(result.notice));

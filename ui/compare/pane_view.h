@@ -17,6 +17,7 @@ namespace clothlab {
 
 class ExactField;
 class PaneBadge;
+class Reading;
 class StabilityGauge;
 
 class PaneView : public QFrame {
@@ -57,7 +58,7 @@ class PaneView : public QFrame {
   QComboBox* method_;
   ExactField* step_;
   StabilityGauge* gauge_;
-  QLabel* cost_;
+  Reading* cost_;
   QLabel* difference_;
   QLabel* stopped_;
   QAction* duplicate_;

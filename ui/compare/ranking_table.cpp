@@ -14,6 +14,8 @@ namespace {
 
 constexpr double last = std::numeric_limits<double>::infinity();  // what is missing sorts behind all values
 
+constexpr int key_role = Qt::UserRole, style_role = Qt::UserRole + 1;
+
 enum Column {
   pane,
   method,
@@ -78,7 +80,7 @@ Cell cell_of(const cloth::PaneResult& r, int column, std::size_t place) {
 class KeyedItem : public QTableWidgetItem {
  public:
   bool operator<(const QTableWidgetItem& other) const override {
-    return data(Qt::UserRole).toDouble() < other.data(Qt::UserRole).toDouble();
+    return data(key_role).toDouble() < other.data(key_role).toDouble();
   }
 };
 
@@ -107,6 +109,7 @@ RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
   verticalHeader()->setDefaultSectionSize(26);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
   horizontalHeader()->setHighlightSections(false);
+  horizontalHeader()->setMinimumSectionSize(24);
   setEditTriggers(NoEditTriggers);
   setSelectionBehavior(SelectRows);
   setShowGrid(false);
@@ -132,10 +135,14 @@ void RankingTable::showResults(const std::vector<cloth::PaneResult>& results) {
         setItem(static_cast<int>(row), column, shown);
       }
       const Cell cell = cell_of(result, column, order[row]);
-      shown->setText(cell.text);
-      shown->setData(Qt::UserRole, cell.key);
-      if (column == pane) shown->setIcon(pane_icon(result.style));
-      shown->setForeground(result.divergence ? theme().error : theme().text);
+      const QColor colour = result.divergence ? theme().error : theme().text;
+      // What an item is told it tells the view, new or not.
+      if (shown->text() != cell.text) shown->setText(cell.text);
+      if (shown->data(key_role) != cell.key) shown->setData(key_role, cell.key);
+      if (shown->foreground() != colour) shown->setForeground(colour);
+      if (column != pane || shown->data(style_role) == result.style) continue;
+      shown->setData(style_role, result.style);
+      shown->setIcon(pane_icon(result.style));
     }
   }
   setSortingEnabled(true);
@@ -164,8 +171,9 @@ void RankingTable::keyPressEvent(QKeyEvent* event) {
 
 void RankingTable::changeEvent(QEvent* event) {
   QTableWidget::changeEvent(event);
-  if (event->type() == QEvent::PaletteChange && !results_.empty())
-    showResults(std::vector<cloth::PaneResult>(results_));
+  if (event->type() != QEvent::PaletteChange || results_.empty()) return;
+  setRowCount(0);  // icons and colours of the look before
+  showResults(std::vector<cloth::PaneResult>(results_));
 }
 
 }  // namespace clothlab

@@ -2,7 +2,6 @@
 
 #include <QAction>
 #include <QCloseEvent>
-#include <QDesktopServices>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QMessageBox>
@@ -11,10 +10,9 @@
 #include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "document/document_actions.h"
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
@@ -247,102 +245,9 @@ void MainWindow::takeStableStep() {
   document_.setParameter("integrator.time_step", std::string("auto"));
 }
 
-void MainWindow::followStatus(const WorkerStatus& status) {
-  play_->setChecked(status.playing);
-  if (status.playing != shown_status_.playing) {  // an action tells everybody, whether its icon is new or not
-    play_->setIcon(icon(status.playing ? "pause" : "play"));
-    play_->setText(status.playing ? tr("Pause") : tr("Play"));
-  }
-  play_->setEnabled(status.refusal.empty());
-  step_->setEnabled(status.refusal.empty());
-  transport_->showStatus(status);
-  timeline_->showStatus(status, link_.isUpToDate());
-  play_again_->setEnabled(status.refusal.empty() && !status.playing &&
-                          status.step < status.history.last_step);
-
-  if (!status.refusal.empty())
-    notice_->show("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
-  else
-    notice_->withdraw("refusal");
-  if (status.notice != shown_status_.notice) {
-    if (status.notice.empty())
-      notice_->withdraw("unreachable");
-    else
-      notice_->show("unreachable", NoticeBar::Level::warning, QString::fromStdString(status.notice));
-  }
-  followDivergence(status);
-  followRecording(status);
-  followSession(status);
-  followScene(status);
-  shown_status_ = status;
-}
-
-/// The run is at a time when another scene was in force: the document becomes that scene, unless it has edits
-/// of its own on the way.
-void MainWindow::followScene(const WorkerStatus& status) {
-  if (!status.scene || !link_.isUpToDate() || !status.refusal.empty()) return;
-  timeline_->track().setStep(std::max(status.scene->record.interval, status.time_step));
-  if (std::exchange(followed_, status.scene) != status.scene || status.jumps != shown_status_.jumps)
-    document_.follow(*status.scene);
-}
-
-void MainWindow::followSession(const WorkerStatus& status) {
-  if (!status.session_error.empty()) {
-    if (status.session_error != shown_status_.session_error || !saving_session_.isEmpty())
-      notice_->show("session", NoticeBar::Level::error,
-                    tr("Session: %1").arg(QString::fromStdString(status.session_error)));
-    if (link_.isUpToDate()) saving_session_.clear();
-  } else if (!saving_session_.isEmpty() && link_.isUpToDate()) {
-    notice_->show("session", NoticeBar::Level::info,
-                  tr("Saved the session of %1 s in %2")
-                      .arg(status.history.last_time, 0, 'f', 3)
-                      .arg(std::exchange(saving_session_, QString())));
-  }
-  if (!status.session_agrees || status.session_agrees == shown_status_.session_agrees) return;
-  if (*status.session_agrees)
-    notice_->show("session", NoticeBar::Level::info, tr("The session came out the same, to the bit."));
-  else
-    notice_->show("session", NoticeBar::Level::warning,
-                  tr("The session came out different from its file. Another version, compiler or processor "
-                     "may round differently."));
-}
-
 void MainWindow::saveSession(const QString& path) {
   saving_session_ = path;
   link_.send(command::SaveSession{path.toStdString()});
-}
-
-void MainWindow::followDivergence(const WorkerStatus& status) {
-  if (!status.divergence) {
-    if (shown_status_.divergence) notice_->withdraw("divergence");
-    return;
-  }
-  if (shown_status_.divergence) return;
-  const QString text = tr("The run %1. The view shows the last good state.")
-                           .arg(QString::fromStdString(cloth::describe(*status.divergence)));
-  if (status.divergence->stable_step > 0 && std::isfinite(status.divergence->stable_step))
-    notice_->show("divergence", NoticeBar::Level::error, text, tr("Use auto and restart"), [this] {
-      takeStableStep();
-      restart();
-    });
-  else
-    notice_->show("divergence", NoticeBar::Level::error, text);
-}
-
-void MainWindow::followRecording(const WorkerStatus& status) {
-  record_->setChecked(status.recording);
-  if (status.recording != shown_status_.recording)
-    record_->setIcon(icon(status.recording ? "stop-record" : "record"));
-  if (status.recording_error != shown_status_.recording_error && !status.recording_error.empty()) {
-    notice_->show("recording", NoticeBar::Level::error,
-                  tr("Recording stopped: %1. What was written before is valid.")
-                      .arg(QString::fromStdString(status.recording_error)));
-  } else if (shown_status_.recording && !status.recording) {
-    const QString folder = QString::fromStdString(status.recording_folder.string());
-    notice_->show("recording", NoticeBar::Level::info,
-                  tr("Recorded %1 rows in %2").arg(status.recorded_rows).arg(folder), tr("Open folder"),
-                  [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
-  }
 }
 
 bool MainWindow::hasAir() const {
@@ -381,10 +286,8 @@ void MainWindow::updateTitle() {
 
 bool MainWindow::mayLoseChanges() {
   if (!asks_to_save_ || !document_.isModified()) return true;
-  const auto answer = QMessageBox::question(
-      this, tr("Unsaved changes"), tr("\"%1\" was changed. Save the changes?").arg(document_.title()),
-      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
-  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
+  return ask_to_save(this, tr("\"%1\" was changed. Save the changes?").arg(document_.title()),
+                     [this] { return save(); });
 }
 
 bool MainWindow::mayStopStudy() {

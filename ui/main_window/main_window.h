@@ -8,11 +8,11 @@
 #include "bridge/simulation_link.h"
 #include "charts/chart_panel.h"
 #include "document/lab_document.h"
-#include "main_window/notice_bar.h"
 #include "main_window/transport_bar.h"
 #include "params/parameter_panel.h"
 #include "timeline/timeline.h"
 #include "viewport/cloth_view.h"
+#include "widgets/notice_bar.h"
 
 class QDockWidget;
 class QMenu;
@@ -69,11 +69,6 @@ class MainWindow : public QMainWindow {
   void startSimulation();
   void restart();
   void play(bool on);
-  void followStatus(const WorkerStatus& status);
-  void followScene(const WorkerStatus& status);
-  void followSession(const WorkerStatus& status);
-  void followRecording(const WorkerStatus& status);
-  void followDivergence(const WorkerStatus& status);
   void readStability();
   void takeStableStep();
   void brush(const cloth::BrushGust& gust);
@@ -83,6 +78,12 @@ class MainWindow : public QMainWindow {
   bool mayLoseChanges();
   bool mayStopStudy();
   void openRun(const cloth::Scene& scene, const QString& note);
+
+  // main_window_follow.cpp
+  void followStatus(const WorkerStatus& status);
+  void followScene(const WorkerStatus& status);
+  void followSession(const WorkerStatus& status);
+  void followDivergence(const WorkerStatus& status);
 
   // main_window_menus.cpp
   void makeActions();

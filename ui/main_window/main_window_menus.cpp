@@ -11,6 +11,8 @@
 
 #include "compare/builtin_comparisons.h"
 #include "compare/compare_window.h"
+#include "document/document_actions.h"
+#include "document/recording_folder.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
 #include "main_window/scene_library.h"
@@ -94,14 +96,7 @@ void MainWindow::makeMenus() {
   file->addAction(tr("Quit"), QKeySequence::Quit, this, &QWidget::close);
 
   QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  QAction* undo = document_.undoStack().createUndoAction(this, tr("Undo"));
-  undo->setObjectName("undo");
-  undo->setIcon(icon("undo"));
-  undo->setShortcut(QKeySequence::Undo);
-  QAction* redo = document_.undoStack().createRedoAction(this, tr("Redo"));
-  redo->setObjectName("redo");
-  redo->setIcon(icon("redo"));
-  redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
+  const auto [undo, redo] = make_undo_actions(document_.undoStack(), this);
   edit->addActions({undo, redo});
 
   QMenu* run = menuBar()->addMenu(tr("&Run"));

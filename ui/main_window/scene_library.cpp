@@ -1,10 +1,7 @@
 #include "main_window/scene_library.h"
 
-#include <QDateTime>
-#include <QDir>
 #include <QFileInfo>
 #include <QSettings>
-#include <QStandardPaths>
 
 #include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
@@ -83,18 +80,6 @@ void remember_scene(const QString& path) {
   recent.removeAll(absolute);
   recent.prepend(absolute);
   QSettings().setValue(recent_key, QStringList(recent.mid(0, most_recent)));
-}
-
-QString new_recording_folder(const QString& title) {
-  QString name;
-  for (const QChar c : title.toLower()) name += c.isLetterOrNumber() ? c : QChar('-');
-  while (name.contains("--")) name.replace("--", "-");
-  const QString stamp = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
-  const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
-  const QString base = QDir(documents).filePath("Clothlab/" + stamp + "-" + name.left(40));
-  QString folder = base;
-  for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);
-  return folder;
 }
 
 }  // namespace clothlab

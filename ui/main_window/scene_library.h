@@ -30,7 +30,4 @@ QString save_scene_file(const cloth::Scene& scene, const QString& path);
 QStringList recent_scenes();
 void remember_scene(const QString& path);
 
-/// A new folder's path for a recording of this scene, in the user's documents.
-QString new_recording_folder(const QString& title);
-
 }  // namespace clothlab

@@ -6,8 +6,8 @@
 #include <QToolButton>
 #include <limits>
 
-#include "main_window/action_button.h"
 #include "theme/theme.h"
+#include "widgets/action_button.h"
 
 namespace clothlab {
 namespace {

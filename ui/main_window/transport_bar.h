@@ -4,8 +4,8 @@
 #include <QFrame>
 
 #include "bridge/worker_status.h"
-#include "main_window/reading.h"
-#include "main_window/stability_gauge.h"
+#include "widgets/reading.h"
+#include "widgets/stability_gauge.h"
 
 class QAction;
 class QComboBox;

@@ -250,7 +250,7 @@ QString StudiesPanel::summary() const {
   return tr("%1 runs%2, in %3")
       .arg(cloth::finished_runs(*table_))
       .arg(cloth::is_complete(*table_) ? QString() : tr(" (stopped before the end)"))
-      .arg(QDir::toNativeSeparators(folder_));
+      .arg(shown_path(folder_));
 }
 
 void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {

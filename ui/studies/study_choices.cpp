@@ -77,8 +77,8 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
   makeForms();
   folder_ = new QLineEdit(this);
   folder_->setObjectName("studyFolder");
-  folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(studies_folder()));
-  folder_->setPlaceholderText(tr("a new one in %1").arg(studies_folder()));
+  folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(shown_path(studies_folder())));
+  folder_->setPlaceholderText(tr("a new one in %1").arg(shown_path(studies_folder())));
 
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
@@ -215,7 +215,7 @@ std::variant<StudyOrder, QString> StudyChoices::order() const {
     result = StudyOrder{scene_, options, {}, made_by};
   }
   if (auto* order = std::get_if<StudyOrder>(&result)) {
-    const QString folder = folder_->text().trimmed();
+    const QString folder = path_from(folder_->text().trimmed());
     order->folder =
         (folder.isEmpty() ? new_study_folder(kind_->currentText(), QString::fromStdString(scene_.title))
                           : folder)

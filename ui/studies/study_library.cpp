@@ -34,6 +34,16 @@ QString new_study_folder(const QString& kind, const QString& title) {
   return folder;
 }
 
+QString shown_path(const QString& path) {
+  const QString home = QDir::homePath();
+  const bool within = path == home || path.startsWith(home + '/');
+  return QDir::toNativeSeparators(within ? "~" + path.mid(home.size()) : path);
+}
+
+QString path_from(const QString& shown) {
+  return shown == "~" || shown.startsWith("~/") ? QDir::homePath() + shown.mid(1) : shown;
+}
+
 QStringList recent_studies() {
   QStringList existing;
   for (const QString& folder : QSettings().value(recent_key).toStringList())

@@ -12,6 +12,10 @@ QString studies_folder();
 /// A new folder's path in it: date, kind and scene.
 QString new_study_folder(const QString& kind, const QString& title);
 
+/// A path as people write it and back: "~" is the home folder.
+QString shown_path(const QString& path);
+QString path_from(const QString& shown);
+
 /// Newest first, those that still hold a study.
 QStringList recent_studies();
 void remember_study(const QString& folder);

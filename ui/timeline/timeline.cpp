@@ -3,8 +3,8 @@
 #include <QHBoxLayout>
 #include <QLabel>
 
-#include "main_window/action_button.h"
 #include "theme/theme.h"
+#include "widgets/action_button.h"
 
 namespace clothlab {
 namespace {

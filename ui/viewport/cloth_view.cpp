@@ -11,6 +11,7 @@
 #include "theme/theme.h"
 #include "viewport/gl/cloth_renderer.h"
 #include "viewport/gl/gl_probe.h"
+#include "viewport/gl/weave.h"
 
 // Outside any namespace, as Qt's macro wants it: a static library's resources are linked only if something
 // asks.
@@ -38,6 +39,7 @@ ClothView::ClothView(QWidget* parent) : ClothView(suitable_canvas(), parent) {}
 
 ClothView::ClothView(CanvasKind canvas, QWidget* parent) : QWidget(parent) {
   load_viewport_resources();
+  begin_shared_weave_tile();
   setMinimumSize(160, 120);
   setMouseTracking(true);
   setFocusPolicy(Qt::ClickFocus);
@@ -150,8 +152,8 @@ void ClothView::setColourMaximum(std::optional<double> maximum) {
   if (mode_ == ViewMode::strain) redraw();
 }
 
-void ClothView::setRestDelay(int milliseconds) {
-  if (canvas_) canvas_->setRestDelay(milliseconds);
+void ClothView::setSmoothAtRest(bool on) {
+  if (canvas_) canvas_->setSmoothAtRest(on);
 }
 
 // ---- camera

@@ -78,13 +78,13 @@ class ClothView : public QWidget {
   double brushSpeedPerPixel() const { return brush_speed_per_pixel_; }  ///< m/s per px of displacement
   void setBrushSpeedPerPixel(double speed) { brush_speed_per_pixel_ = speed; }
 
-  /// Where the processor draws: how long after the last movement (ms) the view is drawn once more, smoothly;
-  /// negative: not at all.
-  void setRestDelay(int milliseconds);
+  /// Where the processor draws: whether the view is drawn once more, smoothly, a moment after the last
+  /// movement.
+  void setSmoothAtRest(bool on);
 
   /// The view with its overlays, in device pixels.
   QImage grabPicture();
-  /// ms spent drawing last time. Where the processor draws, until the picture was complete; a graphics
+  /// ms spent drawing last time. Where the processor draws, until the picture was made; a graphics
   /// card is not waited for, since waiting would slow it, so there it is the time to hand the picture over.
   double lastDrawMilliseconds() const { return last_draw_; }
   /// Of these, for giving a new frame's geometry to OpenGL; 0 where there was none.

@@ -4,8 +4,8 @@
 //   memory  For a processor that draws. A window that contains a QOpenGLWidget is slow there as a whole: with
 //           any label's change all its pixels go through OpenGL again. So the picture is drawn into memory
 //           and put into the window like any other widget's. It is kept, too: what lies over it changes
-//           without drawing it again. And as multisampling costs a third of a frame there, a running cloth
-//           is drawn without and quickly, and once properly when it rests.
+//           without drawing it again, and several views take turns. And as multisampling costs a third of a
+//           frame there, a running cloth is drawn without and quickly, and once properly when it rests.
 //
 // Either is a child of the view and shows the same picture.
 #pragma once
@@ -32,7 +32,7 @@ class GlCanvas {
     std::function<void(int width, int height)> resized;  ///< device-independent px
     std::function<void(bool quick)> draw;                ///< into the framebuffer bound
     std::function<void(QPainter& painter)> paint_over;   ///< what lies over the picture
-    std::function<void(double milliseconds)> shown;      ///< after both, and how long they took
+    std::function<void(double milliseconds)> shown;      ///< the picture is made, and how long that took
   };
 
   virtual ~GlCanvas() = default;
@@ -49,9 +49,8 @@ class GlCanvas {
   /// Only what lies over the picture has changed.
   virtual void repaintOver() = 0;
 
-  /// Where the processor draws: how long after the last change (ms) the picture is made smooth; negative: not
-  /// at all.
-  virtual void setRestDelay(int) {}
+  /// Where the processor draws: whether the picture is made smooth a moment after the last change.
+  virtual void setSmoothAtRest(bool) {}
 
   /// The smooth picture as it is now, with what lies over it; in device pixels.
   virtual QImage grab() = 0;

@@ -1,9 +1,10 @@
 #include "viewport/memory_canvas.h"
 
-#include <QElapsedTimer>
-#include <QOpenGLFunctions>
+#include <QOpenGLExtraFunctions>
 #include <QPainter>
+#include <utility>
 
+#include "theme/theme.h"
 #include "viewport/cloth_view.h"
 
 namespace clothlab {
@@ -22,25 +23,44 @@ std::unique_ptr<QOpenGLFramebufferObject> make_target(QSize size, int samples) {
 
 }  // namespace
 
-MemoryCanvas::MemoryCanvas(QWidget* parent, Callbacks callbacks)
-    : QWidget(parent), callbacks_(std::move(callbacks)), context_(std::make_unique<QOpenGLContext>()) {
-  setAttribute(Qt::WA_TransparentForMouseEvents);
-  setAttribute(Qt::WA_OpaquePaintEvent);
+std::shared_ptr<MemoryCanvas::SharedContext> MemoryCanvas::SharedContext::of_the_application() {
+  static std::weak_ptr<SharedContext> known;
+  auto shared = known.lock();
+  if (!shared) known = shared = std::make_shared<SharedContext>();
+  return shared;
+}
+
+bool MemoryCanvas::SharedContext::ensure() {
+  if (context.isValid()) return true;
   QSurfaceFormat format = ClothView::surface_format();
   format.setSamples(0);
-  surface_.setFormat(format);
-  context_->setFormat(format);
+  surface.setFormat(format);
+  context.setFormat(format);
+  surface.create();
+  return context.create();
+}
+
+MemoryCanvas::MemoryCanvas(QWidget* parent, Callbacks callbacks)
+    : QWidget(parent), callbacks_(std::move(callbacks)), shared_(SharedContext::of_the_application()) {
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  setAttribute(Qt::WA_OpaquePaintEvent);
+  fence_timer_.setSingleShot(true);
+  fence_timer_.setInterval(fence_interval_ms);
+  fence_timer_.setTimerType(Qt::PreciseTimer);
+  QObject::connect(&fence_timer_, &QTimer::timeout, this, &MemoryCanvas::fetchPicture);
   rest_timer_.setSingleShot(true);
   rest_timer_.setInterval(rest_time_ms);
   QObject::connect(&rest_timer_, &QTimer::timeout, this, [this] {
-    drawPicture(Quality::smooth);
-    update();
+    rested_ = true;
+    askForTurn();
   });
 }
 
 MemoryCanvas::~MemoryCanvas() {
+  DrawingTurns::ofTheApplication().leave(this);
   if (!initialised_) return;
   makeCurrent();
+  dropFence();
   plain_.reset();
   multisampled_.reset();
   doneCurrent();
@@ -48,10 +68,9 @@ MemoryCanvas::~MemoryCanvas() {
 
 bool MemoryCanvas::initialise() {
   if (initialised_ || failed_) return initialised_;
-  surface_.create();
-  initialised_ = context_->create() && context_->makeCurrent(&surface_);
+  initialised_ = shared_->ensure() && shared_->context.makeCurrent(&shared_->surface);
   failed_ = !initialised_;
-  top_row_first_ = initialised_ && context_->hasExtension("GL_MESA_pack_invert");
+  top_row_first_ = initialised_ && shared_->context.hasExtension("GL_MESA_pack_invert");
   callbacks_.initialise();
   return initialised_;
 }
@@ -62,44 +81,82 @@ QSize MemoryCanvas::pixels() const {
 
 void MemoryCanvas::redraw() {
   stale_ = true;
+  rested_ = false;
   rest_timer_.stop();
-  update();
+  askForTurn();
 }
 
-void MemoryCanvas::setRestDelay(int milliseconds) {
-  smooths_at_rest_ = milliseconds >= 0;
-  rest_timer_.stop();
-  if (!smooths_at_rest_) return;
-  rest_timer_.setInterval(milliseconds);
-  rest_timer_.start();
+/// A picture that nobody sees is drawn once it is painted.
+void MemoryCanvas::askForTurn() {
+  if (!unseen_ && !fence_ && isVisible()) DrawingTurns::ofTheApplication().ask(this);
 }
 
-void MemoryCanvas::drawPicture(Quality quality) {
-  if (!initialise()) return;
+/// Hands the drawing over. OpenGL's own threads fill the pixels; waiting for them here would hold the window.
+void MemoryCanvas::takeTurn() {
+  if ((!stale_ && !rested_) || fence_ || failed_) return;
+  if (!initialised_) {  // which takes long enough for a turn
+    initialise();
+    return askForTurn();
+  }
+  drawing_time_.start();
+  drawing_ = stale_ ? Quality::quick : Quality::smooth;
+  rested_ = false;
   makeCurrent();
+  submit(drawing_);
+  fence_ = shared_->context.extraFunctions()->glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  shared_->context.functions()->glFlush();
+  fence_timer_.start();
+}
+
+void MemoryCanvas::fetchPicture() {
+  makeCurrent();
+  QOpenGLExtraFunctions* gl = shared_->context.extraFunctions();
+  if (gl->glClientWaitSync(fence_, 0, 0) == GL_TIMEOUT_EXPIRED) {
+    fence_timer_.start();
+    return;
+  }
+  dropFence();
+  readPicture();
+  unseen_ = true;
+  update();
+  if (drawing_ == Quality::smooth) return;
+  if (!stale_ && smooth_at_rest_) rest_timer_.start();
+  callbacks_.shown(1e-6 * static_cast<double>(drawing_time_.nsecsElapsed()));
+}
+
+void MemoryCanvas::dropFence() {
+  fence_timer_.stop();
+  if (fence_) shared_->context.extraFunctions()->glDeleteSync(std::exchange(fence_, nullptr));
+}
+
+void MemoryCanvas::setSmoothAtRest(bool on) {
+  if (on == smooth_at_rest_) return;
+  smooth_at_rest_ = on;
+  rested_ = false;
+  rest_timer_.stop();
+  if (on && !stale_) rest_timer_.start();
+}
+
+/// Leaves the picture in `plain_`, bound. With a current context.
+void MemoryCanvas::submit(Quality quality) {
   if (!plain_ || plain_->size() != pixels()) {
     plain_ = make_target(pixels(), 0);
     multisampled_.reset();
-    picture_ = QImage(pixels(), QImage::Format_RGB32);
-    picture_.fill(Qt::black);
   }
-  picture_.setDevicePixelRatio(devicePixelRatioF());
   const bool smooth = quality == Quality::smooth;
   if (smooth && !multisampled_) multisampled_ = make_target(pixels(), samples);
   stale_ = false;  // before drawing, which may ask for the next picture
   (smooth ? multisampled_ : plain_)->bind();
-  context_->functions()->glViewport(0, 0, picture_.width(), picture_.height());
+  shared_->context.functions()->glViewport(0, 0, plain_->width(), plain_->height());
   callbacks_.draw(!smooth);
-  if (smooth) {
-    QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
-    plain_->bind();
-  }
-  readPicture();
-  if (!smooth && !stale_ && smooths_at_rest_) rest_timer_.start();
+  if (smooth) QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
+  plain_->bind();
 }
 
 void MemoryCanvas::readPicture() {
-  QOpenGLFunctions* gl = context_->functions();
+  if (picture_.size() != plain_->size()) picture_ = QImage(plain_->size(), QImage::Format_RGB32);
+  picture_.setDevicePixelRatio(devicePixelRatioF());
+  QOpenGLFunctions* gl = shared_->context.functions();
   gl->glPixelStorei(GL_PACK_ALIGNMENT, 4);
   if (top_row_first_) gl->glPixelStorei(gl_pack_invert_mesa, GL_TRUE);
   gl->glReadPixels(0, 0, picture_.width(), picture_.height(), gl_bgra, GL_UNSIGNED_BYTE, picture_.bits());
@@ -110,16 +167,18 @@ void MemoryCanvas::readPicture() {
 }
 
 void MemoryCanvas::paintEvent(QPaintEvent*) {
-  QElapsedTimer timer;
-  timer.start();
-  const bool drawn = stale_;
-  if (stale_) drawPicture(Quality::quick);
-  {
-    QPainter painter(this);
-    painter.drawImage(0, 0, picture_);
+  unseen_ = false;
+  QPainter painter(this);
+  if (picture_.isNull()) {
+    QLinearGradient empty(0, 0, 0, height());
+    empty.setColorAt(0, theme().view_top);
+    empty.setColorAt(1, theme().view_bottom);
+    painter.fillRect(rect(), empty);
+  } else {
+    painter.drawImage(QRectF(rect()), picture_);  // of another size until its turn comes
     callbacks_.paint_over(painter);
   }
-  if (drawn) callbacks_.shown(1e-6 * static_cast<double>(timer.nsecsElapsed()));
+  if (stale_) askForTurn();
 }
 
 void MemoryCanvas::resizeEvent(QResizeEvent* event) {
@@ -131,7 +190,12 @@ void MemoryCanvas::resizeEvent(QResizeEvent* event) {
 QImage MemoryCanvas::grab() {
   QElapsedTimer timer;
   timer.start();
-  drawPicture(Quality::smooth);
+  if (initialise()) {
+    makeCurrent();
+    dropFence();
+    submit(Quality::smooth);
+    readPicture();
+  }
   QImage picture = picture_;
   {
     QPainter painter(&picture);

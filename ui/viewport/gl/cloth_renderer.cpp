@@ -11,7 +11,6 @@
 #include "geometry/mesh_look.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
-#include "viewport/gl/weave.h"
 #include "viewport/picking.h"
 #include "viewport/strain_scale.h"
 
@@ -70,102 +69,18 @@ QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
 
 }  // namespace
 
-ClothRenderer::~ClothRenderer() {
-  if (textures_[weave] != 0) glDeleteTextures(texture_count, textures_);
-}
-
 bool ClothRenderer::initialise(bool frugal, QString* problem) {
   if (!initializeOpenGLFunctions()) {
     *problem = QStringLiteral("the functions of OpenGL 3.3 are missing");
     return false;
   }
-  frugal_ = frugal;
-  if (!build_programs(problem)) return false;
+  kit_ = RendererKit::of_the_context(frugal, problem);
+  if (!kit_) return false;
   QOpenGLFunctions_3_3_Core& gl = *this;
   surface_ = std::make_unique<ClothSurface>(gl);
   solids_ = std::make_unique<Solids>(gl);
   bodies_ = std::make_unique<MeshBodies>(gl);
-  make_textures();
   return true;
-}
-
-bool ClothRenderer::build_programs(QString* problem) {
-  using Light = ShaderPrelude::Light;
-  for (std::size_t look = 0; look < cloth_.size(); ++look) {
-    const QByteArray definition = "#define LOOK " + QByteArray::number(static_cast<int>(look)) + '\n';
-    if (!build_program(cloth_[look], "cloth.vert", "cloth.frag", {Light::fragment, definition}, problem))
-      return false;
-    const QByteArray quick = definition + "#define QUICK\n";
-    if (frugal_ &&
-        !build_program(quick_cloth_[look], "cloth.vert", "cloth.frag", {Light::vertex, quick}, problem))
-      return false;
-  }
-  return build_program(background_, "background.vert", "background.frag", {}, problem) &&
-         build_program(plane_, "plane.vert", "plane.frag", {}, problem) &&
-         build_program(solid_, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
-         build_program(marker_, "marker.vert", "marker.frag", {}, problem) &&
-         build_program(thread_, "thread.vert", "thread.frag", {}, problem);
-}
-
-void ClothRenderer::make_textures() {
-  const QImage tile = weave_tile();
-  glGenTextures(texture_count, textures_);
-  glBindTexture(GL_TEXTURE_2D, textures_[weave]);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, tile.width(), tile.height(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               tile.constBits());
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  // The extension's numbers: OpenGL 3.3's own headers do not have them (core since 4.6).
-  constexpr GLenum texture_max_anisotropy = 0x84FE, max_texture_max_anisotropy = 0x84FF;
-  if (!frugal_ && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
-    GLfloat most = 1;
-    glGetFloatv(max_texture_max_anisotropy, &most);
-    glTexParameterf(GL_TEXTURE_2D, texture_max_anisotropy, std::min(most, 8.0F));
-  }
-
-  std::array<std::uint8_t, 4 * strain_colour_count> row{};
-  for (std::size_t i = 0; i < strain_colours().size(); ++i) {
-    const QColor& c = strain_colours()[i];
-    row[4 * i] = static_cast<std::uint8_t>(c.red());
-    row[4 * i + 1] = static_cast<std::uint8_t>(c.green());
-    row[4 * i + 2] = static_cast<std::uint8_t>(c.blue());
-    row[4 * i + 3] = 255;
-  }
-  glBindTexture(GL_TEXTURE_2D, textures_[palette]);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, strain_colour_count, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               row.data());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  if (frugal_) {
-    store(weave, stored_weave);
-    store(palette, stored_palette);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // 256 colours are smooth enough
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  }
-  glBindTexture(GL_TEXTURE_2D, 0);
-}
-
-/// The same texture with all its levels, but sampled as it is stored. Leaves it bound.
-void ClothRenderer::store(Texture decoded, Texture stored) {
-  std::vector<std::uint8_t> values;
-  for (GLint level = 0;; ++level) {
-    GLint width = 0, height = 0;
-    glBindTexture(GL_TEXTURE_2D, textures_[decoded]);
-    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_WIDTH, &width);
-    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_HEIGHT, &height);
-    if (width == 0 || height == 0) break;
-    values.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    glGetTexImage(GL_TEXTURE_2D, level, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
-    glBindTexture(GL_TEXTURE_2D, textures_[stored]);
-    glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
-  }
-  glBindTexture(GL_TEXTURE_2D, textures_[stored]);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);  // half the work
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
 void ClothRenderer::set_frame(const ClothFrame& frame) {
@@ -231,11 +146,11 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
 }
 
 void ClothRenderer::draw_background(const Theme& theme) {
-  background_.bind();
-  background_.setUniformValue("top", as_srgb(theme.view_top));
-  background_.setUniformValue("bottom", as_srgb(theme.view_bottom));
+  kit_->background.bind();
+  kit_->background.setUniformValue("top", as_srgb(theme.view_top));
+  kit_->background.setUniformValue("bottom", as_srgb(theme.view_bottom));
   solids_->draw_screen();
-  background_.release();
+  kit_->background.release();
 }
 
 void ClothRenderer::light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme) {
@@ -250,11 +165,11 @@ void ClothRenderer::light(QOpenGLShaderProgram& program, const Shot& shot, const
 }
 
 void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
-  solid_.bind();
-  light(solid_, shot, theme);
+  kit_->solid.bind();
+  light(kit_->solid, shot, theme);
   const QColor body = theme.dark ? mixed(theme.view_top, QColor(0xA6, 0xAB, 0xB3), 0.62F)
                                  : mixed(theme.view_top, QColor(0xB4, 0xB8, 0xBE), 0.75F);
-  solid_.setUniformValue("body_colour", linear_light(body));
+  kit_->solid.setUniformValue("body_colour", linear_light(body));
   // Cloth rests on the obstacles' surface with its particles, and its flat triangles cut below: the drawn
   // body is pushed back in depth, and a ball made smaller by the height of the arc over a cell's diagonal.
   glEnable(GL_CULL_FACE);  // pushed back, a near face could fall behind a far one
@@ -264,37 +179,38 @@ void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
     if (o.shape == cloth::Shape::plane) continue;
     if (o.shape == cloth::Shape::mesh) {
       if (!o.mesh.loaded) continue;
-      solid_.setUniformValue("center", vector(o.translate));
-      solid_.setUniformValue("turn", matrix(cloth::turn_of(o)));
-      solid_.setUniformValue("scale", vector(Eigen::Vector3d::Constant(o.scale)));
+      kit_->solid.setUniformValue("center", vector(o.translate));
+      kit_->solid.setUniformValue("turn", matrix(cloth::turn_of(o)));
+      kit_->solid.setUniformValue("scale", vector(Eigen::Vector3d::Constant(o.scale)));
       bodies_->draw(*o.mesh.loaded);
       continue;
     }
-    solid_.setUniformValue("center", vector(o.center));
-    solid_.setUniformValue("turn", QMatrix3x3());
+    kit_->solid.setUniformValue("center", vector(o.center));
+    kit_->solid.setUniformValue("turn", QMatrix3x3());
     if (o.shape == cloth::Shape::sphere) {
       const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
-      solid_.setUniformValue("scale",
-                             vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
+      kit_->solid.setUniformValue(
+          "scale", vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
       solids_->draw_sphere();
     } else {
-      solid_.setUniformValue("scale", vector(0.995 * o.size));
+      kit_->solid.setUniformValue("scale", vector(0.995 * o.size));
       solids_->draw_box();
     }
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_CULL_FACE);
-  solid_.release();
+  kit_->solid.release();
 }
 
 void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
   constexpr double small_cell = 16;  // px
-  const bool quick = shot.quick && frugal_ && cell_on_screen(shot) < small_cell;
-  QOpenGLShaderProgram& cloth = (quick ? quick_cloth_ : cloth_)[static_cast<std::size_t>(shot.mode)];
+  const bool quick = shot.quick && kit_->frugal() && cell_on_screen(shot) < small_cell;
+  QOpenGLShaderProgram& cloth =
+      (quick ? kit_->quick_cloth : kit_->cloth)[static_cast<std::size_t>(shot.mode)];
   cloth.bind();
   light(cloth, shot, theme);
   if (shot.mode == ViewMode::textured) {
-    glBindTexture(GL_TEXTURE_2D, textures_[quick ? stored_weave : weave]);
+    glBindTexture(GL_TEXTURE_2D, kit_->textures[quick ? RendererKit::stored_weave : RendererKit::weave]);
     cloth.setUniformValue("weave", 0);
     cloth.setUniformValue("tiles_per_cell", tiles_per_cell_);
   } else if (shot.mode == ViewMode::wireframe) {
@@ -309,7 +225,7 @@ void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
     cloth.setUniformValue("sheet_colour", mixable(sheet));
     cloth.setUniformValue("thread_colour", mixable(thread_colour(theme)));
   } else {
-    glBindTexture(GL_TEXTURE_2D, textures_[quick ? stored_palette : palette]);
+    glBindTexture(GL_TEXTURE_2D, kit_->textures[quick ? RendererKit::stored_palette : RendererKit::palette]);
     cloth.setUniformValue("strain_palette", 0);
     cloth.setUniformValue("strain_maximum", number(shot.strain_maximum));
   }
@@ -328,11 +244,11 @@ void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
 }
 
 void ClothRenderer::draw_threads(const Shot& shot, const Theme& theme) {
-  thread_.bind();
-  thread_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
-  thread_.setUniformValue("thread_colour", as_srgb(thread_colour(theme)));
+  kit_->thread.bind();
+  kit_->thread.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->thread.setUniformValue("thread_colour", as_srgb(thread_colour(theme)));
   surface_->draw_edges();
-  thread_.release();
+  kit_->thread.release();
 }
 
 double ClothRenderer::cell_on_screen(const Shot& shot) const {
@@ -340,19 +256,19 @@ double ClothRenderer::cell_on_screen(const Shot& shot) const {
 }
 
 void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
-  plane_.bind();
-  plane_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
-  plane_.setUniformValue("line_width", number(shot.pixel_ratio));
-  plane_.setUniformValue("line_colour",
-                         as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
-  plane_.setUniformValue("floor_colour",
-                         as_srgb(theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(0xFF, 0xFF, 0xFF)));
-  plane_.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
-  plane_.setUniformValue("floor_opacity", theme.dark ? 0.22F : 0.35F);
+  kit_->plane.bind();
+  kit_->plane.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->plane.setUniformValue("line_width", number(shot.pixel_ratio));
+  kit_->plane.setUniformValue("line_colour",
+                              as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
+  kit_->plane.setUniformValue("floor_colour",
+                              as_srgb(theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(0xFF, 0xFF, 0xFF)));
+  kit_->plane.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
+  kit_->plane.setUniformValue("floor_opacity", theme.dark ? 0.22F : 0.35F);
   for (const cloth::Obstacle& o : obstacles_)
     if (o.shape == cloth::Shape::plane) draw_plane(shot, o.point, o.normal.normalized());
   if (!shot.ground.is_obstacle) draw_plane(shot, {0, shot.ground.height, 0}, Eigen::Vector3d::UnitY());
-  plane_.release();
+  kit_->plane.release();
 }
 
 void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
@@ -365,12 +281,12 @@ void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
       std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d u = (hint - hint.dot(normal) * normal).normalized(), v = normal.cross(u);
   const Eigen::Vector3d middle = about - (about - point).dot(normal) * normal;
-  plane_.setUniformValue("middle", vector(middle));
-  plane_.setUniformValue("axis_u", vector(u));
-  plane_.setUniformValue("axis_v", vector(v));
-  plane_.setUniformValue("reach", number(2.2 * size));
-  plane_.setUniformValue("grid_step", number(grid_step_for(size)));
-  plane_.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
+  kit_->plane.setUniformValue("middle", vector(middle));
+  kit_->plane.setUniformValue("axis_u", vector(u));
+  kit_->plane.setUniformValue("axis_v", vector(v));
+  kit_->plane.setUniformValue("reach", number(2.2 * size));
+  kit_->plane.setUniformValue("grid_step", number(grid_step_for(size)));
+  kit_->plane.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
   solids_->draw_strip();
 }
 
@@ -378,15 +294,16 @@ void ClothRenderer::draw_pins(const Shot& shot, const Theme& theme) {
   // Smaller where a whole edge is pinned, so that the markers stay a row of dots.
   const double diameter =
       std::clamp(0.85 * cell_on_screen(shot), 4 * shot.pixel_ratio, 11 * shot.pixel_ratio);
-  marker_.bind();
-  marker_.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
-  marker_.setUniformValue("diameter", number(diameter));
-  marker_.setUniformValue("disc_colour", as_srgb(theme.accent));
-  marker_.setUniformValue("rim_colour", as_srgb(theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white)));
+  kit_->marker.bind();
+  kit_->marker.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->marker.setUniformValue("diameter", number(diameter));
+  kit_->marker.setUniformValue("disc_colour", as_srgb(theme.accent));
+  kit_->marker.setUniformValue("rim_colour",
+                               as_srgb(theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white)));
   glEnable(GL_PROGRAM_POINT_SIZE);
   surface_->draw_pinned_points();
   glDisable(GL_PROGRAM_POINT_SIZE);
-  marker_.release();
+  kit_->marker.release();
 }
 
 }  // namespace clothlab

@@ -4,13 +4,12 @@
 
 #include <Eigen/Core>
 #include <QOpenGLFunctions_3_3_Core>
-#include <QOpenGLShaderProgram>
-#include <array>
 #include <memory>
 
 #include "bridge/frame.h"
 #include "viewport/gl/cloth_surface.h"
 #include "viewport/gl/mesh_body.h"
+#include "viewport/gl/renderer_kit.h"
 #include "viewport/gl/solids.h"
 #include "viewport/scene_extent.h"
 #include "viewport/view_mode.h"
@@ -38,7 +37,6 @@ struct Shot {
 class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
  public:
   ClothRenderer() = default;
-  ~ClothRenderer();
   ClothRenderer(const ClothRenderer&) = delete;
   ClothRenderer& operator=(const ClothRenderer&) = delete;
 
@@ -53,11 +51,6 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   void draw(const Shot& shot, const Theme& theme);
 
  private:
-  enum Texture { weave, palette, stored_weave, stored_palette, texture_count };
-
-  bool build_programs(QString* problem);
-  void make_textures();
-  void store(Texture decoded, Texture stored);
   void light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme);
   void draw_background(const Theme& theme);
   void draw_obstacles(const Shot& shot, const Theme& theme);
@@ -69,13 +62,10 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   void draw_plane(const Shot& shot, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
   void draw_pins(const Shot& shot, const Theme& theme);
 
-  QOpenGLShaderProgram background_, plane_, solid_, marker_, thread_;
-  std::array<QOpenGLShaderProgram, 3> cloth_, quick_cloth_;  // by ViewMode; quick_cloth_ only if frugal
+  std::shared_ptr<RendererKit> kit_;
   std::unique_ptr<ClothSurface> surface_;
   std::unique_ptr<Solids> solids_;
   std::unique_ptr<MeshBodies> bodies_;
-  GLuint textures_[texture_count] = {};  // the stored ones give sRGB; only if frugal
-  bool frugal_ = false;
 
   bool has_cloth_ = false, is_mesh_ = false;
   std::uint64_t topology_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <numbers>
 
 namespace clothlab {
@@ -53,7 +54,21 @@ QRgb blend(const QColor& colour, double shade) {
   return qRgba(channel(colour.redF()), channel(colour.greenF()), channel(colour.blueF()), 255);
 }
 
+/// Begun by the first call.
+const std::shared_future<QImage>& shared_tile() {
+  static const std::shared_future<QImage> tile = std::async(std::launch::async, [] { return weave_tile(); });
+  return tile;
+}
+
 }  // namespace
+
+void begin_shared_weave_tile() {
+  shared_tile();
+}
+
+const QImage& shared_weave_tile() {
+  return shared_tile().get();
+}
 
 QColor warp_colour() {
   return {0xF5, 0xEB, 0xDF};

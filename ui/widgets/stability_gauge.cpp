@@ -1,4 +1,4 @@
-#include "main_window/stability_gauge.h"
+#include "widgets/stability_gauge.h"
 
 #include <QPainter>
 #include <algorithm>

@@ -7,6 +7,8 @@
 namespace clothlab {
 
 class Reading : public QWidget {
+  Q_OBJECT
+
  public:
   enum class Look { plain, bold, muted };
 

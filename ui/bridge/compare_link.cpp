@@ -1,21 +1,12 @@
-#include "compare/compare_link.h"
+#include "bridge/compare_link.h"
 
 namespace clothlab {
-namespace {
 
-constexpr int fetch_interval = 16;  // ms: a 60 Hz screen
-
-}  // namespace
-
-CompareLink::CompareLink(QObject* parent) : QObject(parent) {
-  timer_.setInterval(fetch_interval);
-  timer_.setTimerType(Qt::PreciseTimer);
-  connect(&timer_, &QTimer::timeout, this, &CompareLink::fetch);
-}
+CompareLink::CompareLink(QObject* parent) : WorkerLink(parent) {}
 
 void CompareLink::send(CompareCommand command) {
   worker_.send(std::move(command));
-  if (!timer_.isActive()) timer_.start();
+  wake();
 }
 
 void CompareLink::settle() {
@@ -23,14 +14,14 @@ void CompareLink::settle() {
   fetch();
 }
 
-void CompareLink::fetch() {
+bool CompareLink::fetch() {
   const bool more_to_come = worker_.is_busy();  // asked first: what comes after it is fetched next time
   for (std::size_t pane = 0; pane < cloth::most_panes; ++pane)
     if (const auto frame = worker_.take_frame(pane)) Q_EMIT frameReady(pane, frame);
   if (const auto samples = worker_.take_samples(); !samples.empty()) Q_EMIT samplesReady(samples);
   status_ = worker_.status();
   Q_EMIT statusChanged(status_);
-  if (!more_to_come) timer_.stop();
+  return more_to_come;
 }
 
 }  // namespace clothlab

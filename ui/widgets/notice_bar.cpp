@@ -1,4 +1,4 @@
-#include "main_window/notice_bar.h"
+#include "widgets/notice_bar.h"
 
 #include <QEvent>
 #include <QHBoxLayout>

@@ -1,4 +1,4 @@
-#include "main_window/reading.h"
+#include "widgets/reading.h"
 
 #include <QPainter>
 

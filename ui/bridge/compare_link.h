@@ -1,15 +1,12 @@
-// The worker of a comparison as the window sees it: fetches what is new at the screen's pace while there is
-// anything to fetch.
+// The worker of a comparison as the window sees it.
 #pragma once
 
-#include <QObject>
-#include <QTimer>
-
 #include "bridge/compare_worker.h"
+#include "bridge/worker_link.h"
 
 namespace clothlab {
 
-class CompareLink : public QObject {
+class CompareLink : public WorkerLink {
   Q_OBJECT
 
  public:
@@ -28,10 +25,9 @@ class CompareLink : public QObject {
   void statusChanged(const clothlab::CompareStatus& status);
 
  private:
-  void fetch();
+  bool fetch() override;
 
   CompareWorker worker_;
-  QTimer timer_;
   CompareStatus status_;
 };
 

@@ -13,12 +13,25 @@
 /// The receiver's class (for a timer: its parent's) and the QEvent::Type.
 using EventKind = std::pair<std::string, int>;
 
+/// One event that no other event was being handled for. On a machine that does other things as well, `wall`
+/// is also what those took; `processor` is what the thread itself did.
+struct EventTime {
+  EventKind kind;
+  double wall = 0, processor = 0;  ///< ms
+};
+
 class TimedApplication : public QApplication {
  public:
   using QApplication::QApplication;
 
   bool notify(QObject* receiver, QEvent* event) override {
-    if (!watching_) return QApplication::notify(receiver, event);
+    if (depth_ == 0) ++events_;
+    if (!watching_) {
+      ++depth_;
+      const bool handled = QApplication::notify(receiver, event);
+      --depth_;
+      return handled;
+    }
     const int type = event->type();
     const QObject* named = type == QEvent::Timer && receiver->parent() ? receiver->parent() : receiver;
     const char* const name = named->metaObject()->className();  // the receiver may not outlive the event
@@ -28,16 +41,17 @@ class TimedApplication : public QApplication {
     ++depth_;
     const bool handled = QApplication::notify(receiver, event);
     --depth_;
-    const double taken = 1e-6 * static_cast<double>(timer.nsecsElapsed());
-    if (depth_ == 0 && taken > longest_) longest_ = taken, longest_kind_ = {name, type};
-    if (depth_ == 0 || type == QEvent::Paint) times_[{name, type}].push_back(processor_time() - before);
+    const double wall = 1e-6 * static_cast<double>(timer.nsecsElapsed());
+    const double processor = processor_time() - before;
+    if (depth_ == 0 && wall > longest_.wall) longest_ = {{name, type}, wall, processor};
+    if (depth_ == 0 && processor > busiest_.processor) busiest_ = {{name, type}, wall, processor};
+    if (depth_ == 0 || type == QEvent::Paint) times_[{name, type}].push_back(processor);
     return handled;
   }
 
   void watch() {
     times_.clear();
-    longest_ = 0;
-    longest_kind_ = {};
+    longest_ = busiest_ = {};
     watching_ = true;
   }
   void stop_watching() { watching_ = false; }
@@ -49,8 +63,12 @@ class TimedApplication : public QApplication {
     const auto found = times_.find(kind);
     return found == times_.end() ? std::vector<double>() : found->second;
   }
-  double longest() const { return longest_; }  ///< ms of the clock
-  const EventKind& longest_kind() const { return longest_kind_; }
+  const EventTime& longest() const { return longest_; }  ///< by the clock
+  const EventTime& busiest() const { return busiest_; }  ///< by the thread's processor time
+
+  /// Counts the events that no other event was being handled for: two things done under one number were done
+  /// in one event.
+  std::int64_t event_number() const { return events_; }
 
  private:
   static double processor_time() {
@@ -61,7 +79,7 @@ class TimedApplication : public QApplication {
 
   bool watching_ = false;
   int depth_ = 0;
+  std::int64_t events_ = 0;
   std::map<EventKind, std::vector<double>> times_;
-  double longest_ = 0;
-  EventKind longest_kind_;
+  EventTime longest_, busiest_;
 };

@@ -1,0 +1,115 @@
+#include "viewport/gl/renderer_kit.h"
+
+#include <QImage>
+#include <QOpenGLContext>
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "viewport/gl/shader_program.h"
+#include "viewport/gl/weave.h"
+#include "viewport/strain_scale.h"
+
+namespace clothlab {
+
+std::shared_ptr<RendererKit> RendererKit::of_the_context(bool frugal, QString* problem) {
+  static std::map<std::pair<const QOpenGLContext*, bool>, std::weak_ptr<RendererKit>> kits;
+  std::erase_if(kits, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<RendererKit>& known = kits[{QOpenGLContext::currentContext(), frugal}];
+  if (auto kit = known.lock()) return kit;
+  std::shared_ptr<RendererKit> kit(new RendererKit(frugal));
+  if (!kit->initializeOpenGLFunctions()) {
+    *problem = QStringLiteral("the functions of OpenGL 3.3 are missing");
+    return nullptr;
+  }
+  if (!kit->build_programs(problem)) return nullptr;
+  kit->make_textures();
+  known = kit;
+  return kit;
+}
+
+RendererKit::~RendererKit() {
+  if (textures[weave] != 0) glDeleteTextures(texture_count, textures);
+}
+
+bool RendererKit::build_programs(QString* problem) {
+  using Light = ShaderPrelude::Light;
+  for (std::size_t look = 0; look < cloth.size(); ++look) {
+    const QByteArray definition = "#define LOOK " + QByteArray::number(static_cast<int>(look)) + '\n';
+    if (!build_program(cloth[look], "cloth.vert", "cloth.frag", {Light::fragment, definition}, problem))
+      return false;
+    const QByteArray quick = definition + "#define QUICK\n";
+    if (frugal_ &&
+        !build_program(quick_cloth[look], "cloth.vert", "cloth.frag", {Light::vertex, quick}, problem))
+      return false;
+  }
+  return build_program(background, "background.vert", "background.frag", {}, problem) &&
+         build_program(plane, "plane.vert", "plane.frag", {}, problem) &&
+         build_program(solid, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
+         build_program(marker, "marker.vert", "marker.frag", {}, problem) &&
+         build_program(thread, "thread.vert", "thread.frag", {}, problem);
+}
+
+void RendererKit::make_textures() {
+  const QImage& tile = shared_weave_tile();
+  glGenTextures(texture_count, textures);
+  glBindTexture(GL_TEXTURE_2D, textures[weave]);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, tile.width(), tile.height(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               tile.constBits());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // The extension's numbers: OpenGL 3.3's own headers do not have them (core since 4.6).
+  constexpr GLenum texture_max_anisotropy = 0x84FE, max_texture_max_anisotropy = 0x84FF;
+  if (!frugal_ && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
+    GLfloat most = 1;
+    glGetFloatv(max_texture_max_anisotropy, &most);
+    glTexParameterf(GL_TEXTURE_2D, texture_max_anisotropy, std::min(most, 8.0F));
+  }
+
+  std::array<std::uint8_t, 4 * strain_colour_count> row{};
+  for (std::size_t i = 0; i < strain_colours().size(); ++i) {
+    const QColor& c = strain_colours()[i];
+    row[4 * i] = static_cast<std::uint8_t>(c.red());
+    row[4 * i + 1] = static_cast<std::uint8_t>(c.green());
+    row[4 * i + 2] = static_cast<std::uint8_t>(c.blue());
+    row[4 * i + 3] = 255;
+  }
+  glBindTexture(GL_TEXTURE_2D, textures[palette]);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, strain_colour_count, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               row.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  if (frugal_) {
+    store(weave, stored_weave);
+    store(palette, stored_palette);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // 256 colours are smooth enough
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  }
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+/// The same texture with all its levels, but sampled as it is stored. Leaves it bound.
+void RendererKit::store(Texture decoded, Texture stored) {
+  std::vector<std::uint8_t> values;
+  for (GLint level = 0;; ++level) {
+    GLint width = 0, height = 0;
+    glBindTexture(GL_TEXTURE_2D, textures[decoded]);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_WIDTH, &width);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_HEIGHT, &height);
+    if (width == 0 || height == 0) break;
+    values.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    glGetTexImage(GL_TEXTURE_2D, level, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
+    glBindTexture(GL_TEXTURE_2D, textures[stored]);
+    glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
+  }
+  glBindTexture(GL_TEXTURE_2D, textures[stored]);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);  // half the work
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+}  // namespace clothlab

@@ -1,0 +1,41 @@
+// The programs and textures that all renderers of a context draw with. They take a tenth of a second to make,
+// once for each context.
+#pragma once
+
+#include <QOpenGLFunctions_3_3_Core>
+#include <QOpenGLShaderProgram>
+#include <array>
+#include <memory>
+
+namespace clothlab {
+
+/// The context must be current whenever one is made or the last holder lets go of it.
+class RendererKit : protected QOpenGLFunctions_3_3_Core {
+ public:
+  enum Texture { weave, palette, stored_weave, stored_palette, texture_count };
+
+  /// That of the current context (OpenGL 3.3 core or later). None: `problem` says why. `frugal`: with what a
+  /// processor draws quickly.
+  static std::shared_ptr<RendererKit> of_the_context(bool frugal, QString* problem);
+
+  ~RendererKit();
+  RendererKit(const RendererKit&) = delete;
+  RendererKit& operator=(const RendererKit&) = delete;
+
+  bool frugal() const { return frugal_; }
+
+  QOpenGLShaderProgram background, plane, solid, marker, thread;
+  std::array<QOpenGLShaderProgram, 3> cloth, quick_cloth;  ///< by ViewMode; quick_cloth only if frugal
+  GLuint textures[texture_count] = {};                     ///< the stored ones give sRGB; only if frugal
+
+ private:
+  explicit RendererKit(bool frugal) : frugal_(frugal) {}
+
+  bool build_programs(QString* problem);
+  void make_textures();
+  void store(Texture decoded, Texture stored);
+
+  bool frugal_;
+};
+
+}  // namespace clothlab

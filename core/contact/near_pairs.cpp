@@ -85,9 +85,12 @@ class PairSearch::Step {
 
   void meet_itself() {
     obstacle_ = FeaturePair::cloth_itself;
-    for (const BoxPair& both : search_.own_overlaps_)
-      if (both.query != both.index && overlap(search_.faces_[at(both.query)], search_.faces_[at(both.index)]))
-        meet_own_face(both.query, both.index);
+    for (const auto& [a, b] : search_.own_overlaps_) {
+      if (!overlap(search_.faces_[at(a)], search_.faces_[at(b)])) continue;
+      meet_own_vertices(a, b);
+      meet_own_vertices(b, a);
+      meet_own_edges(a, b);
+    }
   }
 
  private:
@@ -149,19 +152,17 @@ class PairSearch::Step {
   }
 
   void meet_mesh(const ObstacleBody& body, const Passage& passage) {
-    const BoxTree& tree = search_.mesh_trees_[at(obstacle_)];
     seen_from_body(body, passage, particles_, reach_, search_.seen_);
-    for (const BoxPair& both : search_.mesh_overlaps_[at(obstacle_)])
-      meet_face(both.query, both.index, tree, body);
+    for (const BoxPair& both : search_.mesh_overlaps_[at(obstacle_)]) meet_face(both.query, both.index, body);
   }
 
   /// Each feature is met by the triangle that answers for it, so that no pair comes twice.
-  void meet_face(int face, int triangle, const BoxTree& tree, const ObstacleBody& body) {
+  void meet_face(int face, int triangle, const ObstacleBody& body) {
     const std::vector<Bounds>& seen = search_.seen_;
     const Triangle& own = cloth_.triangles[at(face)];
     const Bounds near = merged(merged(seen[at(own[0])], seen[at(own[1])]), seen[at(own[2])]);
     const Surface& mesh = body.surface;
-    const Bounds& far = tree.box(triangle);
+    const Bounds& far = search_.mesh_boxes_[at(obstacle_)][at(triangle)];
     if (!overlap(near, far)) return;
     for (std::size_t k = 0; k < 3; ++k) {
       if (cloth_.answers_for_vertex(face, static_cast<int>(k)) && overlap(seen[at(own[k])], far))
@@ -187,13 +188,15 @@ class PairSearch::Step {
   }
 
   /// The same among the cloth's own.
-  void meet_own_face(int near, int far) {
+  void meet_own_vertices(int near, int far) {
     const Triangle &a = cloth_.triangles[at(near)], &b = cloth_.triangles[at(far)];
     for (std::size_t k = 0; k < 3; ++k)
       if (cloth_.answers_for_vertex(near, static_cast<int>(k)) && !has_vertex(b, a[k]) &&
           overlap(particles_[at(a[k])], search_.faces_[at(far)]))
         add(PairKind::vertex_face, a[k], far);
-    if (near > far) return;
+  }
+
+  void meet_own_edges(int near, int far) {
     for (int k = 0; k < 3; ++k) {
       if (!cloth_.answers_for_edge(near, k)) continue;
       const int e = cloth_.edges_of[at(near)][at(k)];
@@ -223,16 +226,16 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       bodies_(bodies),
       with_itself_(with_itself),
       skin_(skin),
+      mesh_boxes_(bodies.size()),
       mesh_trees_(bodies.size()),
       mesh_overlaps_(bodies.size()) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies[k].shape != Shape::mesh) continue;
     needs_trees_ = true;
-    std::vector<Bounds> boxes;
+    const std::vector<Vec3>& vertices = bodies[k].vertices;
     for (const auto& [a, b, c] : bodies[k].surface.triangles)
-      boxes.push_back(
-          bounds_of(bodies[k].vertices[at(a)], bodies[k].vertices[at(b)], bodies[k].vertices[at(c)]));
-    mesh_trees_[k] = BoxTree(boxes);
+      mesh_boxes_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
+    mesh_trees_[k] = BoxTree(mesh_boxes_[k]);
   }
   needs_trees_ = needs_trees_ || with_itself_;
 }
@@ -262,7 +265,7 @@ void PairSearch::look_in_trees(const std::vector<Bounds>& particles, const std::
     else
       cloth_tree_.refit(faces_);
     own_overlaps_.clear();
-    cloth_tree_.collect(faces_, own_overlaps_);
+    cloth_tree_.collect_own(own_overlaps_);
   }
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].shape != Shape::mesh) continue;

@@ -33,7 +33,8 @@ class PairSearch {
   const std::vector<ObstacleBody>& bodies_;
   bool with_itself_, needs_trees_ = false;
   double skin_;
-  std::vector<BoxTree> mesh_trees_;  ///< of each body; empty unless it is a mesh
+  std::vector<std::vector<Bounds>> mesh_boxes_;  ///< of each body's triangles
+  std::vector<BoxTree> mesh_trees_;              ///< of each body; empty unless it is a mesh
   BoxTree cloth_tree_;
   std::vector<Bounds> faces_, seen_;
 

@@ -50,8 +50,8 @@ void ContinuousContact::bound_by_pairs() {
       const double slack =
           is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
       const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
-      if (s.gap() <= 0)
-        share_[i] = 0;
+      if (s.gap() <= 0 && way > 0)
+        share_[i] = 0;  // it is in already, by an edit: only the way out is open
       else if (way > slack)
         share_[i] = std::min(share_[i], std::max(slack, 0.0) / way);
     }

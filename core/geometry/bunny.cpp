@@ -17,8 +17,8 @@ struct Part {
 
 /// A limb between two points, thinner or thicker towards its end.
 struct Limb {
-  Vec3 from, to;                 // m
-  double radius, end, flatness;  // m, m, of the thickness across z
+  Vec3 from, to;       // m
+  double radius, end;  // m
   double melt;
 };
 
@@ -35,11 +35,11 @@ const std::array<Part, 9> parts{{
     {{0.345, 0.63, 0.085}, {0.025, 0.028, 0.02}, 0.015},  // eye
 }};
 const std::array<Limb, 3> limbs{{
-    {{0.215, 0.66, 0.05}, {0.04, 0.94, 0.115}, 0.045, 0.05, 1.0, 0.03},   // ear
-    {{0.20, 0.22, 0.095}, {0.23, 0.06, 0.10}, 0.062, 0.05, 1.0, 0.05},    // foreleg
-    {{-0.16, 0.055, 0.17}, {0.10, 0.05, 0.185}, 0.058, 0.05, 1.0, 0.05},  // hind foot
+    {{0.215, 0.66, 0.05}, {0.04, 0.94, 0.115}, 0.045, 0.05, 0.03},   // ear
+    {{0.20, 0.22, 0.095}, {0.23, 0.06, 0.10}, 0.062, 0.05, 0.05},    // foreleg
+    {{-0.16, 0.055, 0.17}, {0.10, 0.05, 0.185}, 0.058, 0.05, 0.05},  // hind foot
 }};
-const Limb paw{{0.23, 0.05, 0.10}, {0.315, 0.045, 0.10}, 0.05, 0.042, 1.0, 0.03};
+const Limb paw{{0.23, 0.05, 0.10}, {0.315, 0.045, 0.10}, 0.05, 0.042, 0.03};
 
 /// Nearly the distance, of the right sign (Quilez, "Ellipsoid - SDF").
 double distance_to(const Part& part, const Vec3& x) {

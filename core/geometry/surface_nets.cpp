@@ -33,7 +33,7 @@ class SurfaceNets {
 
  private:
   static constexpr double far = 1e9;
-  static constexpr double margin = 0.15;  // of a cell
+  static constexpr double margin = 0.03;  // of a cell
 
   std::size_t node(const Cell& c) const {
     const auto along = [&](std::size_t axis) { return static_cast<std::size_t>(cells_[axis] + 1); };

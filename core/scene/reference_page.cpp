@@ -85,6 +85,13 @@ std::string method_settings() {
   return rows;
 }
 
+/// What a cloth from a mesh has in place of rows, columns, lengths and directions.
+std::string mesh_cloth_settings() {
+  Scene scene;
+  scene.cloth.mesh.file = "disc.obj";
+  return row(scene, find_parameter(scene, "cloth.mesh").value(), " of a mesh");
+}
+
 }  // namespace
 
 std::string reference_page() {
@@ -102,6 +109,7 @@ std::string reference_page() {
         block.title, block.doc);
     for (const Parameter& parameter : block.parameters) page += row(scene, parameter);
     if (block.path == "integrator") page += method_settings();
+    if (block.path == "cloth") page += mesh_cloth_settings();
   }
   return page;
 }

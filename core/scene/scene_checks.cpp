@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -60,6 +62,43 @@ void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
                       "must not be parallel to cloth.across", "", 0, 0});
 }
 
+void check_keyframes(const Scene& scene, std::vector<Problem>& problems) {
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
+    const std::vector<Keyframe>& keys = scene.obstacles[k].keyframes;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const std::string path = fmt::format("obstacles.{}.keyframes.{}", k, i);
+      for (const Field<Keyframe>& field : keyframe_fields())
+        if (const auto rule = broken_rule(field.info, field.get(keys[i])))
+          problems.push_back(
+              {path + "." + field.info.key, value_text(field.info, field.get(keys[i])), *rule, "", 0, 0});
+      if (i > 0 && !(keys[i].time > keys[i - 1].time))
+        problems.push_back({path + ".time", fmt::format("{} s", keys[i].time),
+                            fmt::format("must be later than the key before, {} s", keys[i - 1].time), "", 0,
+                            0});
+    }
+  }
+}
+
+/// m, of the springs that the cloth would have if it had any.
+double shortest_edge(const ClothSheet& cloth) {
+  if (!cloth.is_mesh()) return std::min(cloth.width / (cloth.columns - 1), cloth.height / (cloth.rows - 1));
+  double shortest = infinity;
+  const std::vector<Vec3>& vertices = cloth.mesh.loaded->surface.vertices;
+  for (const auto& [a, b] : cloth.mesh.loaded->edges)
+    shortest = std::min(
+        shortest, (vertices[static_cast<std::size_t>(a)] - vertices[static_cast<std::size_t>(b)]).norm());
+  return shortest;
+}
+
+void check_self_contact(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.self_contact || (scene.cloth.is_mesh() && !scene.cloth.mesh.is_loaded())) return;
+  const double most = 0.5 * shortest_edge(scene.cloth);
+  if (scene.self_contact->thickness <= most) return;
+  problems.push_back({"self_contact.thickness", fmt::format("{} m", scene.self_contact->thickness),
+                      fmt::format("must be at most half of the shortest structural spring, {:.4g} m", most),
+                      "", 0, 0});
+}
+
 }  // namespace
 
 std::string Problem::text() const {
@@ -75,6 +114,8 @@ std::vector<Problem> find_problems(const Scene& scene) {
   check_meshes(scene, problems);
   check_pins(scene.cloth, problems);
   check_directions(scene.cloth, problems);
+  check_keyframes(scene, problems);
+  check_self_contact(scene, problems);
   return problems;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "contact/rigid_motion.h"
+#include "contact/start_check.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
@@ -351,6 +352,8 @@ SceneReading read_scene(const std::string& text, const std::string& place,
   for (const Problem& problem : reader.problems) named.insert(problem.path);
   for (Problem& problem : find_problems(scene))
     if (!named.count(problem.path)) reader.problems.push_back(std::move(problem));
+  const bool edits_a_run = meshes.known != nullptr;  // the cloth is elsewhere by now
+  if (reader.problems.empty() && !edits_a_run) reader.problems = find_start_problems(scene);
 
   if (reader.problems.empty()) return {std::move(scene), {}};
   for (Problem& problem : reader.problems) place_problem(problem);

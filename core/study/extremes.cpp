@@ -92,7 +92,7 @@ class CellRun {
           fmt::format("{:.3g} of the energy scale was added, more than {}", growth(), growth_threshold));
     if (!divergence_ && simulation_.count().steps < last_) facts.push_back(why_short());
     if (simulation_.unreachable_rate())
-      facts.push_back(describe(*simulation_.unreachable_rate(), simulation_.system().columns));
+      facts.push_back(describe(*simulation_.unreachable_rate(), simulation_.system()));
     if (simulation_.quantities().limiter && largest_excess_ > 0 && !divergence_)
       facts.push_back(fmt::format("excess over the rate at most {:.2g}, at the end {:.2g}", largest_excess_,
                                   last_excess_));

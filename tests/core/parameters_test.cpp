@@ -129,7 +129,7 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {
   Scene scene = full_scene();
-  for (const char* path : {"obstacles.3", "obstacles.x", "obstacles.", "cloth", "nothing", ""}) {
+  for (const char* path : {"obstacles.4", "obstacles.x", "obstacles.", "cloth", "nothing", ""}) {
     remove_block(scene, path);
     EXPECT_EQ(scene, full_scene()) << path;
   }

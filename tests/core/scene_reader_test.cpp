@@ -159,7 +159,7 @@ TEST(SceneReader, NamesProblemsOfObstacles) {
   refused("{\"shape\": \"torus\"}",
           "11: obstacles.0.shape = \"torus\": must be \"sphere\", \"box\", \"plane\" or \"mesh\"");
   refused("{\"shape\": \"mesh\", \"radius\": 1, \"file\": \"disc.obj\"}",
-          "20: obstacles.0.radius: is not a known key; known here: file, friction, response, restitution, rotate, "
+          "19: obstacles.0.radius: is not a known key; known here: file, friction, response, restitution, rotate, "
           "scale, shape, translate");
   refused("{\"shape\": \"sphere\", \"radius\": 0}", "31: obstacles.0.radius = 0 m: must be > 0");
   refused("{\"shape\": \"box\", \"size\": [1, -1, 1]}", "26: obstacles.0.size = [1, -1, 1] m: must be > 0");

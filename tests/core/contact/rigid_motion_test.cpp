@@ -1,0 +1,73 @@
+#include "contact/rigid_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace cloth::test {
+namespace {
+
+using std::numbers::pi;
+
+Obstacle ball() {
+  Obstacle obstacle;
+  obstacle.center = {1, 2, 3};
+  return obstacle;
+}
+
+TEST(AnObstacle, RestsWithoutMotion) {
+  EXPECT_FALSE(moves(ball()));
+  EXPECT_EQ(pose_of(ball(), 7), Pose{});
+}
+
+TEST(AnObstacle, MovesByItsVelocity) {
+  Obstacle obstacle = ball();
+  obstacle.velocity = {1, 0, -2};
+  EXPECT_LE((pose_of(obstacle, 2).at({1, 2, 3}) - Vec3(3, 2, -1)).norm(), 1e-15);
+}
+
+TEST(AnObstacle, TurnsAboutItsCentre) {
+  Obstacle obstacle = ball();
+  obstacle.spin = {0, 0, pi};
+  const Pose pose = pose_of(obstacle, 0.5);
+  EXPECT_LE((pose.at({1, 2, 3}) - Vec3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LE((pose.at({2, 2, 3}) - Vec3(1, 3, 3)).norm(), 1e-15);
+  EXPECT_LE((pose.back(pose.at({4, 5, 6})) - Vec3(4, 5, 6)).norm(), 1e-14);
+}
+
+TEST(Keyframes, HoldOutsideAndAreStraightBetween) {
+  Obstacle obstacle = ball();
+  obstacle.keyframes = {{1, {0, 0, 0}, {0, 0, 0}}, {3, {2, 0, 0}, {0, pi / 2, 0}}};
+  EXPECT_LE((pose_of(obstacle, 0).at({1, 2, 3}) - Vec3(0, 0, 0)).norm(), 1e-15);
+  EXPECT_LE((pose_of(obstacle, 9).at({1, 2, 3}) - Vec3(2, 0, 0)).norm(), 1e-15);
+  const Pose middle = pose_of(obstacle, 2);
+  EXPECT_LE((middle.at({1, 2, 3}) - Vec3(1, 0, 0)).norm(), 1e-15);
+  const double half = std::sqrt(0.5);
+  EXPECT_LE((middle.at({2, 2, 3}) - Vec3(1 + half, 0, -half)).norm(), 1e-14);
+}
+
+TEST(APassage, EndsAtItsPosesToTheBit) {
+  Obstacle obstacle = ball();
+  obstacle.spin = {1, 2, 3}, obstacle.velocity = {3, 2, 1};
+  const Pose from = pose_of(obstacle, 0.1), to = pose_of(obstacle, 0.2);
+  const Passage passage(obstacle.center, from, to);
+  EXPECT_EQ(passage.at(0), from);
+  EXPECT_EQ(passage.at(1), to);
+  EXPECT_FALSE(passage.rests());
+  EXPECT_NEAR(passage.angle(), 0.1 * std::sqrt(14.0), 1e-12);
+  const Pose there = pose_of(obstacle, 0.15), between = passage.at(0.5);
+  EXPECT_LE((there.turn - between.turn).norm(), 1e-13);
+  EXPECT_LE((there.shift - between.shift).norm(), 1e-13);
+}
+
+TEST(TheHighestSpeed, IsThatOfTheFastestPoint) {
+  Obstacle obstacle = ball();
+  obstacle.velocity = {3, 0, 0}, obstacle.spin = {0, 2, 0};
+  EXPECT_DOUBLE_EQ(highest_speed(obstacle, 0.5), 4);
+  obstacle.keyframes = {{0, {0, 0, 0}, {0, 0, 0}}, {2, {2, 0, 0}, {0, 1, 0}}};
+  EXPECT_NEAR(highest_speed(obstacle, 4), 1 + 4 * 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace cloth::test

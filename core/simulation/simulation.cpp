@@ -72,7 +72,8 @@ void Simulation::assemble() {
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
-  obstacle_speed_ = highest_obstacle_speed(scene_);
+  if (continuous_contact_) continuous_contact_->set_carries(carries_);
+  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_));
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
   last_limit_ = {};
@@ -200,6 +201,9 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
+  carries_ = continuous_contact_ && has_continuous_contact(scene)
+                 ? carries_after(scene_.obstacles, scene.obstacles, carries_, state_.time)
+                 : ObstacleCarries{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -226,7 +230,7 @@ void Simulation::edit(const Scene& scene) {
 std::size_t Checkpoint::bytes() const {
   std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
-  return sizeof(Checkpoint) + sizeof(double) * numbers;
+  return sizeof(Checkpoint) + sizeof(double) * numbers + sizeof(ObstacleCarry) * carries.size();
 }
 
 Checkpoint Simulation::checkpoint() const {
@@ -242,7 +246,9 @@ Checkpoint Simulation::checkpoint() const {
           .quantities = quantities_,
           .count = count_,
           .last_limit = last_limit_,
-          .last_contact = last_contact_};
+          .last_contact = last_contact_,
+          .carries = carries_,
+          .obstacle_speed = obstacle_speed_};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -259,6 +265,12 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
+  carries_ = checkpoint.carries;
+  obstacle_speed_ = checkpoint.obstacle_speed;
+  if (continuous_contact_) {
+    continuous_contact_->set_carries(carries_);
+    continuous_contact_->forget_touches();
+  }
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   if (checkpoint.method == scene_.integrator.method)
     integrator_->recall(checkpoint.memory);
@@ -288,6 +300,23 @@ void Simulation::set_pull(const std::optional<Pull>& pull) {
   if (pull) quantities_.pull = true;
   forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
   integrator_->forget(Change::forces);
+}
+
+Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {
+  return carried_pose(scene_.obstacles, carries_, obstacle, time);
+}
+
+void Simulation::append_contact_marks(std::vector<ContactMark>& marks) const {
+  if (contact_) contact_->append_marks(state_.position, marks);
+  if (continuous_contact_) continuous_contact_->append_marks(state_.position, marks);
+}
+
+int Simulation::hierarchy_depth(int obstacle) const {
+  return continuous_contact_ ? continuous_contact_->hierarchy_depth(obstacle) : 0;
+}
+
+void Simulation::append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes) {
+  if (continuous_contact_) continuous_contact_->append_boxes(obstacle, level, state_.position, boxes);
 }
 
 double Simulation::total_energy() const {

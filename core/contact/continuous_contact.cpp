@@ -1,6 +1,7 @@
 #include "contact/continuous_contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
@@ -55,7 +56,7 @@ double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries
   return highest + carried;
 }
 
-ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system)
+ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, double time)
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
@@ -66,6 +67,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       poses_(bodies_.size()),
       next_poses_(bodies_.size()),
       end_poses_(bodies_.size()) {
+  for (const Obstacle& obstacle : obstacles_) starts_.push_back(pose_of(obstacle, time));
   constexpr double edges_of_a_search = 4;
   if (scene.self_contact) {
     self_thickness_ = scene.self_contact->thickness;
@@ -77,15 +79,33 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
 }
 
+void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
+  assert(poses.size() == starts_.size());
+  starts_ = poses;
+}
+
+void ContinuousContact::follow(const ContinuousContact& before) {
+  for (std::size_t k = 0; k < std::min(bodies_.size(), before.bodies_.size()); ++k) {
+    const ObstacleBody &now = bodies_[k], &then = before.bodies_[k];
+    if (now.shape != then.shape) continue;
+    starts_[k] = before.starts_[k];
+    if (now.pivot == then.pivot && now.normal == then.normal) continue;
+    Eigen::Matrix3d turn = before.starts_[k].turn;
+    if (now.shape == Shape::plane) turn = turn * Eigen::Quaterniond::FromTwoVectors(now.normal, then.normal);
+    starts_[k] = {turn, before.starts_[k].at(then.pivot) - turn * now.pivot};
+  }
+}
+
 void ContinuousContact::begin(const ContactTimes& times) {
   passages_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    poses_[k] = carried_pose(obstacles_, carries_, k, times.begin);
+    poses_[k] = starts_[k];
     end_poses_[k] = carried_pose(obstacles_, carries_, k, times.end);
     passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
     all_rest = all_rest && passages_[k].rests();
   }
+  starts_ = end_poses_;
   part_ = all_rest ? 1 : 0;
   was_rebased_ = false;
   touches_.clear();

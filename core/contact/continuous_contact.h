@@ -33,9 +33,18 @@ struct ContactTimes {
 
 class ContinuousContact {
  public:
-  ContinuousContact(const Scene& scene, const ClothSystem& system);
+  /// Obstacles are where the scene says they are at `time`, in s.
+  ContinuousContact(const Scene& scene, const ClothSystem& system, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
+
+  /// Where the obstacles are as the next step begins.
+  const std::vector<Pose>& poses() const { return starts_; }
+  void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
+
+  /// After an edit: obstacles that `before` had too, in the same order and shape, begin the next step where
+  /// they were, so that what the edit moved goes its way and pushes the cloth.
+  void follow(const ContinuousContact& before);
 
   /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
@@ -103,6 +112,8 @@ class ContinuousContact {
   double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
   double gravity_ = 0;      ///< m/s^2
   double longest_way_ = 0;  ///< m, that one search for pairs serves
+
+  std::vector<Pose> starts_;  ///< of the next step
 
   // of the step in progress
   std::vector<Passage> passages_;

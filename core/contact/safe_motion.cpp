@@ -23,6 +23,12 @@ double kept_gap(double gap, double thickness) {
   return std::max(least, (1 - used_part) * std::min(gap, thickness));
 }
 
+/// The near side of these is told from the far one however deep a particle is.
+bool meets_solid(const FeaturePair& pair) {
+  return pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box ||
+         pair.kind == PairKind::face_sphere;
+}
+
 }  // namespace
 
 /// How much of its way each particle can go without leaving its side of any plane.
@@ -50,8 +56,8 @@ void ContinuousContact::bound_by_pairs() {
       const double slack =
           is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
       const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
-      if (s.gap() <= 0 && way > 0)
-        share_[i] = 0;  // it is in already, by an edit: only the way out is open
+      if (s.gap() <= 0 && (way > 0 || !meets_solid(pairs_[k])))
+        share_[i] = 0;  // an edit has put it there: of a solid the way out is open
       else if (way > slack)
         share_[i] = std::min(share_[i], std::max(slack, 0.0) / way);
     }

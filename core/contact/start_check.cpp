@@ -75,12 +75,37 @@ class StartCheck {
     }
     if (scene_.self_contact) {
       const std::optional<int> face = first_in_itself();
-      if (face) add("self_contact", "the cloth starts passing through itself", *face);
+      if (face)
+        add("self_contact", "the cloth starts passing through itself", *face);
+      else
+        check_own_distance();
     }
     return std::move(problems_);
   }
 
  private:
+  /// Features that share no particle must be apart at the start, or contact would tear at a cloth at rest.
+  void check_own_distance() {
+    const double thickness = scene_.self_contact->thickness;
+    Vec3Field position(vertices_.size());
+    std::vector<Bounds> around;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      position.set(i, vertices_[i]);
+      around.push_back(bounds_of(vertices_[i]).grown(0.5 * thickness));
+    }
+    const Surface surface = make_surface(static_cast<int>(vertices_.size()), triangles_);
+    std::vector<FeaturePair> pairs;
+    PairSearch(surface, {}, true, 0).find(around, {}, 0, pairs);
+    double least = thickness;
+    for (const FeaturePair& pair : pairs)
+      least = std::min(least, separate(pair, surface, position, {}, {}).distance);
+    if (least < thickness)
+      problems_.push_back(
+          {"self_contact.thickness", fmt::format("{} m", thickness),
+           fmt::format("must be at most {:.4g} m: so near parts of the cloth are at the start", least), "", 0,
+           0});
+  }
+
   static Corners corners_of(const std::vector<Vec3>& vertices, const Triangle& t) {
     return {vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])]};
   }

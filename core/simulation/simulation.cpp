@@ -64,11 +64,12 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  continuous_contact_.reset();
+  const std::unique_ptr<ContinuousContact> contact_before = std::move(continuous_contact_);
   if (has_continuous_contact(scene_))
-    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_);
+    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
+  if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
@@ -247,6 +248,7 @@ Checkpoint Simulation::checkpoint() const {
           .count = count_,
           .last_limit = last_limit_,
           .last_contact = last_contact_,
+          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
           .carries = carries_,
           .obstacle_speed = obstacle_speed_};
 }
@@ -265,6 +267,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
+  if (continuous_contact_) restore_obstacles(checkpoint.obstacle_poses);
   carries_ = checkpoint.carries;
   obstacle_speed_ = checkpoint.obstacle_speed;
   if (continuous_contact_) {
@@ -276,6 +279,14 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     integrator_->recall(checkpoint.memory);
   else
     integrator_->forget(Change::state);
+}
+
+/// Where the checkpoint's scene had others, they are where the present scene says.
+void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
+  std::vector<Pose> of_scene;
+  for (std::size_t k = 0; k < scene_.obstacles.size(); ++k)
+    of_scene.push_back(carried_pose(scene_.obstacles, carries_, k, state_.time));
+  continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
 }
 
 void Simulation::set_threads(int threads) {
@@ -303,6 +314,7 @@ void Simulation::set_pull(const std::optional<Pull>& pull) {
 }
 
 Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {
+  if (continuous_contact_ && time == state_.time) return continuous_contact_->poses()[obstacle];
   return carried_pose(scene_.obstacles, carries_, obstacle, time);
 }
 

@@ -11,6 +11,7 @@
 
 #include "contact/obstacle_carry.h"
 #include "contact/obstacle_contact.h"
+#include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"
@@ -81,6 +82,7 @@ struct Checkpoint {
   StepCount count;
   LimiterReport last_limit;
   ContactReport last_contact;
+  std::vector<Pose> obstacle_poses;  ///< of continuous contact
   ObstacleCarries carries;
   double obstacle_speed = 0;  ///< m/s, the highest so far
 
@@ -168,6 +170,7 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);

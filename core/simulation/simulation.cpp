@@ -267,11 +267,12 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
-  if (continuous_contact_) restore_obstacles(checkpoint.obstacle_poses);
-  carries_ = checkpoint.carries;
+  const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
+  carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
   obstacle_speed_ = checkpoint.obstacle_speed;
   if (continuous_contact_) {
     continuous_contact_->set_carries(carries_);
+    restore_obstacles(checkpoint.obstacle_poses);
     continuous_contact_->forget_touches();
   }
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);

@@ -48,11 +48,12 @@ bool has_continuous_contact(const Scene& scene) {
                      [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
 }
 
-double highest_obstacle_speed(const Scene& scene) {
-  double highest = 0;
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries) {
+  double carried = 0, highest = 0;
+  for (const ObstacleCarry& carry : carries) carried = std::max(carried, carry.speed());
   for (const Obstacle& obstacle : scene.obstacles)
     if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
-  return highest;
+  return highest + carried;
 }
 
 ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, double time)
@@ -100,7 +101,7 @@ void ContinuousContact::begin(const ContactTimes& times) {
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     poses_[k] = starts_[k];
-    end_poses_[k] = pose_of(obstacles_[k], times.end);
+    end_poses_[k] = carried_pose(obstacles_, carries_, k, times.end);
     passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
     all_rest = all_rest && passages_[k].rests();
   }
@@ -266,6 +267,17 @@ int ContinuousContact::count_touched() const {
       if (touch.contact.push > 0 && touch.contact.weight[at(k)] != 0)
         touched[at(touch.contact.particle[at(k)])] = 1;
   return static_cast<int>(std::count(touched.begin(), touched.end(), 1));
+}
+
+void ContinuousContact::append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const {
+  for (const Touch& touch : touches_) {
+    if (!(touch.contact.push > 0)) continue;
+    ContactMark mark{Vec3::Zero(), touch.contact.normal, touch.contact.push};
+    for (int k = 0; k < touch.contact.count; ++k)  // the weights of the near side add up to 1
+      if (const double weight = touch.contact.weight[at(k)]; weight > 0)
+        mark.point += weight * position[at(touch.contact.particle[at(k)])];
+    marks.push_back(mark);
+  }
 }
 
 /// Impulses over the touching pairs; returns their sum in N s.

@@ -12,9 +12,11 @@
 #pragma once
 
 #include "cloth/cloth_system.h"
+#include "contact/contact_mark.h"
 #include "contact/contact_report.h"
 #include "contact/contact_solver.h"
 #include "contact/near_pairs.h"
+#include "contact/obstacle_carry.h"
 
 namespace cloth {
 
@@ -22,7 +24,7 @@ namespace cloth {
 bool has_continuous_contact(const Scene& scene);
 
 /// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest.
-double highest_obstacle_speed(const Scene& scene);
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries);
 
 /// Begin and end of a step, in s.
 struct ContactTimes {
@@ -51,6 +53,20 @@ class ContinuousContact {
   /// pinch is reported the positions are the last ones that nothing passed.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
                       ClothState& state);
+
+  /// From the next step on.
+  void set_carries(ObstacleCarries carries) { carries_ = std::move(carries); }
+
+  /// Appends the touches of the last step; `position` is what it ended with.
+  void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
+  /// The last step is another one than was computed last: there are no touches to tell of.
+  void forget_touches() { touches_.clear(); }
+
+  /// See PairSearch.
+  int hierarchy_depth(int body) const { return search_.hierarchy_depth(body); }
+  void append_boxes(int body, int level, const Vec3Field& position, std::vector<Bounds>& boxes) {
+    search_.append_boxes(body, level, position, 0.5 * self_thickness_, boxes);
+  }
 
  private:
   struct PairMemory {
@@ -91,6 +107,7 @@ class ContinuousContact {
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
   std::vector<Obstacle> obstacles_;
+  ObstacleCarries carries_;
   PairSearch search_;
   double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
   double gravity_ = 0;      ///< m/s^2

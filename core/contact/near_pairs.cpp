@@ -260,10 +260,7 @@ void PairSearch::look_in_trees(const std::vector<Bounds>& particles, const std::
   for (const Passage& passage : passages) kept_poses_.push_back(passage.to());
   find_faces(kept_);
   if (with_itself_) {
-    if (cloth_tree_.size() == 0)
-      cloth_tree_ = BoxTree(faces_);
-    else
-      cloth_tree_.refit(faces_);
+    refit_cloth();
     own_overlaps_.clear();
     cloth_tree_.collect_own(own_overlaps_);
   }
@@ -273,6 +270,13 @@ void PairSearch::look_in_trees(const std::vector<Bounds>& particles, const std::
     mesh_overlaps_[k].clear();
     mesh_trees_[k].collect(seen_, mesh_overlaps_[k]);
   }
+}
+
+void PairSearch::refit_cloth() {
+  if (cloth_tree_.size() == 0)
+    cloth_tree_ = BoxTree(faces_);
+  else
+    cloth_tree_.refit(faces_);
 }
 
 void PairSearch::find_faces(const std::vector<Bounds>& particles) {
@@ -293,6 +297,26 @@ void PairSearch::find(const std::vector<Bounds>& particles, const std::vector<Pa
   Step step(*this, particles, reach, pairs);
   if (with_itself_) step.meet_itself();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), passages[k]);
+}
+
+int PairSearch::hierarchy_depth(int body) const {
+  if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].depth();
+  if (!with_itself_) return 0;
+  if (cloth_tree_.size() > 0) return cloth_tree_.depth();
+  return BoxTree::depth_of(cloth_.triangles.size());
+}
+
+void PairSearch::append_boxes(int body, int level, const Vec3Field& position, double reach,
+                              std::vector<Bounds>& boxes) {
+  if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].append_rounded_boxes(level, boxes);
+  if (!with_itself_) return;
+  faces_.resize(cloth_.triangles.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const auto& [a, b, c] = cloth_.triangles[f];
+    faces_[f] = bounds_of(position[at(a)], position[at(b)], position[at(c)]).grown(reach);
+  }
+  refit_cloth();
+  cloth_tree_.append_rounded_boxes(level, boxes);
 }
 
 }  // namespace cloth

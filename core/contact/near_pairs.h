@@ -22,11 +22,18 @@ class PairSearch {
   void find(const std::vector<Bounds>& particles, const std::vector<Passage>& passages, double reach,
             std::vector<FeaturePair>& pairs);
 
+  /// Levels of a body's hierarchy, or with `FeaturePair::cloth_itself` of the cloth's; 0 where there is none.
+  int hierarchy_depth(int body) const;
+  /// Appends its boxes `level` below the root, for drawing: of a mesh as the scene has it, of the cloth
+  /// around these positions, grown by `reach`, in m. Changes no pair of a later search.
+  void append_boxes(int body, int level, const Vec3Field& position, double reach, std::vector<Bounds>& boxes);
+
  private:
   class Step;
 
   void look_in_trees(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
                      double reach);
+  void refit_cloth();
   void find_faces(const std::vector<Bounds>& particles);
 
   const Surface& cloth_;

@@ -113,4 +113,16 @@ bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state
   });
 }
 
+void ObstacleContact::append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const {
+  constexpr double rounding = 1e-9;  // m, far above it
+  for (Obstacle grown : obstacles_) {
+    grown.radius += rounding;
+    grown.size += Vec3::Constant(2 * rounding);
+    grown.point += rounding * grown.normal.normalized();
+    for (std::size_t i = 0; i < position.size(); ++i)
+      if (const auto surface = penetration(grown, position[i]))
+        marks.push_back({position[i], surface->normal, 0});
+  }
+}
+
 }  // namespace cloth

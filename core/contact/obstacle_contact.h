@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
+#include "contact/contact_mark.h"
 #include "contact/contact_report.h"
 #include "scene/scene.h"
 
@@ -52,6 +53,9 @@ class ObstacleContact {
 
   /// Particles that `apply` would move.
   bool touches(const ClothSystem& system, const ClothState& state) const;
+
+  /// Appends the particles that lie on an obstacle's surface, to rounding.
+  void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
 
  private:
   std::vector<Obstacle> obstacles_;

@@ -168,6 +168,13 @@ BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(b
   refit(boxes);
 }
 
+int BoxTree::depth_of(std::size_t boxes) {
+  if (boxes == 0) return 0;
+  int depth = 1;
+  for (std::size_t room = width; room < boxes; room *= width) ++depth;
+  return depth;
+}
+
 void BoxTree::refit(std::span<const Bounds> boxes) {
   assert(boxes.size() == boxes_.size());
   for (std::size_t place = 0; place < boxes_.size(); ++place)
@@ -241,6 +248,37 @@ std::vector<Bounds> BoxTree::boxes_at(int level) const {
     if (level_of[number] == level) found.push_back(below[number]);
   }
   return found;
+}
+
+void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const {
+  struct Place {
+    int node, level;
+  };
+  if (nodes_.empty()) return;
+  std::array<Place, deepest*(width - 1) + 1> waiting;
+  std::size_t count = 0;
+  waiting[count++] = {0, 0};
+  if (level <= 0) boxes.emplace_back();
+  while (count > 0) {
+    const Place here = waiting[--count];
+    const Node& node = nodes_[static_cast<std::size_t>(here.node)];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(std::popcount(node.used)); ++k) {
+      if (node.child[k] >= 0 && here.level + 1 < level) {
+        waiting[count++] = {node.child[k], here.level + 1};
+        continue;
+      }
+      Bounds box;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        box.lower[a] = origin_[a] + static_cast<double>(node.lower[axis][k]);
+        box.upper[a] = origin_[a] + static_cast<double>(node.upper[axis][k]);
+      }
+      if (level <= 0)
+        boxes.back().add(box);
+      else
+        boxes.push_back(box);
+    }
+  }
 }
 
 }  // namespace cloth

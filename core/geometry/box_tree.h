@@ -53,9 +53,13 @@ class BoxTree {
 
   /// Levels of nodes: 0 without boxes.
   int depth() const { return depth_; }
+  static int depth_of(std::size_t boxes);
 
   /// The boxes of the nodes `level` below the root, for drawing; those of level depth() are the given ones.
   std::vector<Bounds> boxes_at(int level) const;
+  /// Appends the same and, of branches that end above `level`, their ends, so that everything is in a box.
+  /// Rounded to single precision; allocates in `boxes` alone.
+  void append_rounded_boxes(int level, std::vector<Bounds>& boxes) const;
 
  private:
   static constexpr int width = 8;

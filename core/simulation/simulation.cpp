@@ -73,7 +73,8 @@ void Simulation::assemble() {
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
-  obstacle_speed_ = highest_obstacle_speed(scene_);
+  if (continuous_contact_) continuous_contact_->set_carries(carries_);
+  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_));
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
   last_limit_ = {};
@@ -201,6 +202,9 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
+  carries_ = continuous_contact_ && has_continuous_contact(scene)
+                 ? carries_after(scene_.obstacles, scene.obstacles, carries_, state_.time)
+                 : ObstacleCarries{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -227,7 +231,7 @@ void Simulation::edit(const Scene& scene) {
 std::size_t Checkpoint::bytes() const {
   std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
-  return sizeof(Checkpoint) + sizeof(double) * numbers;
+  return sizeof(Checkpoint) + sizeof(double) * numbers + sizeof(ObstacleCarry) * carries.size();
 }
 
 Checkpoint Simulation::checkpoint() const {
@@ -244,7 +248,9 @@ Checkpoint Simulation::checkpoint() const {
           .count = count_,
           .last_limit = last_limit_,
           .last_contact = last_contact_,
-          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{}};
+          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
+          .carries = carries_,
+          .obstacle_speed = obstacle_speed_};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -261,7 +267,14 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   first_step_ = same_step ? checkpoint.first_step : state_.step;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
-  if (continuous_contact_) restore_obstacles(checkpoint.obstacle_poses);
+  const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
+  carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
+  obstacle_speed_ = checkpoint.obstacle_speed;
+  if (continuous_contact_) {
+    continuous_contact_->set_carries(carries_);
+    restore_obstacles(checkpoint.obstacle_poses);
+    continuous_contact_->forget_touches();
+  }
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   if (checkpoint.method == scene_.integrator.method)
     integrator_->recall(checkpoint.memory);
@@ -272,7 +285,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
 /// Where the checkpoint's scene had others, they are where the present scene says.
 void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
   std::vector<Pose> of_scene;
-  for (const Obstacle& obstacle : scene_.obstacles) of_scene.push_back(pose_of(obstacle, state_.time));
+  for (std::size_t k = 0; k < scene_.obstacles.size(); ++k)
+    of_scene.push_back(carried_pose(scene_.obstacles, carries_, k, state_.time));
   continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
 }
 
@@ -299,6 +313,24 @@ void Simulation::set_pull(const std::optional<Pull>& pull) {
   if (pull) quantities_.pull = true;
   forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
   integrator_->forget(Change::forces);
+}
+
+Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {
+  if (continuous_contact_ && time == state_.time) return continuous_contact_->poses()[obstacle];
+  return carried_pose(scene_.obstacles, carries_, obstacle, time);
+}
+
+void Simulation::append_contact_marks(std::vector<ContactMark>& marks) const {
+  if (contact_) contact_->append_marks(state_.position, marks);
+  if (continuous_contact_) continuous_contact_->append_marks(state_.position, marks);
+}
+
+int Simulation::hierarchy_depth(int obstacle) const {
+  return continuous_contact_ ? continuous_contact_->hierarchy_depth(obstacle) : 0;
+}
+
+void Simulation::append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes) {
+  if (continuous_contact_) continuous_contact_->append_boxes(obstacle, level, state_.position, boxes);
 }
 
 double Simulation::total_energy() const {

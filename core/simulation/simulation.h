@@ -9,9 +9,11 @@
 #include <memory>
 #include <optional>
 
+#include "contact/obstacle_carry.h"
 #include "contact/obstacle_contact.h"
 #include "contact/rigid_motion.h"
 #include "forces/force_model.h"
+#include "geometry/bounds.h"
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
 #include "measure/energy.h"
@@ -81,6 +83,8 @@ struct Checkpoint {
   LimiterReport last_limit;
   ContactReport last_contact;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
+  ObstacleCarries carries;
+  double obstacle_speed = 0;  ///< m/s, the highest so far
 
   std::size_t bytes() const;
 };
@@ -142,6 +146,19 @@ class Simulation {
   const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
+  /// Where an obstacle is at a time, in s, with what edits still carry of it.
+  Pose obstacle_pose(std::size_t obstacle, double time) const;
+
+  // Contact as one can see it. Nothing of it is computed unless it is asked for.
+  /// Appends where the cloth touched something at the end of the last step; nothing after an edit or a
+  /// restore(), until there is a next step, where contact is continuous.
+  void append_contact_marks(std::vector<ContactMark>& marks) const;
+  /// Levels of the hierarchy of boxes around an obstacle's mesh, or with -1 around the cloth; 0: there is
+  /// none.
+  int hierarchy_depth(int obstacle) const;
+  /// Appends its boxes `level` below the root; of a mesh as the scene has it, before any motion.
+  void append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes);
+
   Measurement measure() const;
 
   /// The most kinetic energy in J that the scene could have given so far; what divergence is judged by.
@@ -198,9 +215,10 @@ class Simulation {
   std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
-  double obstacle_speed_ = 0;                 ///< m/s, the highest of any point
-  bool was_finite_ = false;                   ///< every position was finite after the last step
-  ClothState before_unseen_;                  ///< to go back to
+  double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
+  ObstacleCarries carries_;
+  bool was_finite_ = false;   ///< every position was finite after the last step
+  ClothState before_unseen_;  ///< to go back to
 };
 
 }  // namespace cloth

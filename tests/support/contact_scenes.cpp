@@ -43,8 +43,7 @@ TriangleMesh moved(TriangleMesh mesh, const Pose& pose) {
   return mesh;
 }
 
-Count crossings_of(const TriangleMesh& cloth, const Obstacle& obstacle, double time) {
-  const Pose pose = pose_of(obstacle, time);
+Count crossings_of(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose) {
   switch (obstacle.shape) {
     case Shape::sphere:
       return triangles_in_sphere(cloth, pose.at(obstacle.center), obstacle.radius);
@@ -133,7 +132,8 @@ Count all_crossings(const Simulation& simulation) {
   };
   const Scene& scene = simulation.scene();
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
-    add(crossings_of(cloth, scene.obstacles[k], simulation.time()), fmt::format("obstacle {}", k));
+    add(crossings_of(cloth, scene.obstacles[k], simulation.obstacle_pose(k, simulation.time())),
+        fmt::format("obstacle {}", k));
   if (scene.self_contact) add(self_crossings(cloth), "itself");
   return all;
 }

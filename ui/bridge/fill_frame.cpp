@@ -20,6 +20,16 @@ void interleave(const cloth::Vec3Field& field, std::vector<float>& values) {
   }
 }
 
+void fill_poses(const cloth::Simulation& simulation, double time, ClothFrame& frame) {
+  const auto& obstacles = simulation.scene().obstacles;
+  frame.poses.clear();
+  frame.targets.clear();
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    frame.poses.push_back(simulation.obstacle_pose(k, time));
+    frame.targets.push_back(cloth::pose_of(obstacles[k], time));
+  }
+}
+
 float largest_of(const std::vector<float>& strain) {
   float largest = 0;
   for (const float value : strain)
@@ -58,6 +68,7 @@ void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& st
   frame.largest_strain = largest_of(frame.strain);
   frame.pinned = system.pinned;
   frame.obstacles = simulation.scene().obstacles;
+  fill_poses(simulation, state.time, frame);
   const auto& deformation = simulation.scene().deformation;
   frame.deformation_rate = simulation.quantities().limiter ? deformation->rate : -1;
   frame.time = state.time;

@@ -6,9 +6,32 @@
 #include <memory>
 #include <vector>
 
+#include "contact/rigid_motion.h"
 #include "scene/scene.h"
 
 namespace clothlab {
+
+/// What of contact a view wants to be told; nothing costs nothing.
+struct ContactChoice {
+  bool marks = false;  ///< where the cloth touches something
+  int box_level = -1;  ///< boxes of the hierarchies so far below their roots; negative: none
+  bool operator==(const ContactChoice&) const = default;
+};
+
+/// Contact as it is drawn.
+struct ContactPicture {
+  struct Boxes {
+    int obstacle =
+        -1;  ///< in whose coordinates they are, as the scene has it; -1: the cloth's, in the world's
+    int count = 0;
+  };
+  bool has_marks = false;
+  std::vector<float>
+      marks;  ///< 7 for each touch: point in m, normal, and its push as a share of the strongest
+  std::vector<float> boxes;   ///< 6 for each box: its lower and its upper corner, m
+  std::vector<Boxes> groups;  ///< that `boxes` consists of, in order
+  int depth = 0;              ///< levels of the deepest hierarchy of the scene, shown or not; 0: it has none
+};
 
 struct ClothFrame {
   std::uint64_t topology = 0;  ///< changes when rows, columns or a new start change the mesh
@@ -21,11 +44,18 @@ struct ClothFrame {
   bool shows_difference = false;     ///< `strain` holds distances from a reference, m, in place of strains
   std::vector<std::uint8_t> pinned;  ///< per particle: 1 where pinned
   std::vector<cloth::Obstacle> obstacles;
+  std::vector<cloth::Pose> poses;    ///< of the obstacles now; none: all are where the scene has them
+  std::vector<cloth::Pose> targets;  ///< and where they would be, were an edit's move not still under way
+  ContactPicture contact;
   double deformation_rate = -1;  ///< negative: the scene has none
   double time = 0;               ///< s
   std::int64_t step = 0;
 
   bool has_cloth() const { return mesh || (rows > 1 && columns > 1); }
+  cloth::Pose pose(std::size_t obstacle) const { return poses.empty() ? cloth::Pose{} : poses[obstacle]; }
+  cloth::Pose target(std::size_t obstacle) const {
+    return targets.empty() ? cloth::Pose{} : targets[obstacle];
+  }
 };
 
 }  // namespace clothlab

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "bridge/fill_frame.h"
+#include "contact/start_check.h"
 #include "scene/scene_checks.h"
 #include "simulation/time_step.h"
 
@@ -94,6 +95,9 @@ void SimulationWorker::handle(const command::Restart&) {
 bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   status_.playing = false;
   status_.refusal = refusal_of(scene);
+  if (status_.refusal.empty())
+    if (const auto problems = cloth::find_start_problems(scene); !problems.empty())
+      status_.refusal = problems.front().text();
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
   history_.begin(*simulation_);
@@ -198,6 +202,11 @@ void SimulationWorker::handle(const command::StopRecording&) {
   if (recording_.is_active()) end_recording();
 }
 
+void SimulationWorker::handle(const command::ShowContact& show) {
+  contact_ = show.choice;
+  publish_frame();
+}
+
 /// Steps that are due, for a few milliseconds at most; then a frame, if the last one is old enough.
 void SimulationWorker::play_for_a_moment() {
   const Clock::time_point start = Clock::now();
@@ -287,6 +296,7 @@ void SimulationWorker::publish_frame() {
   const auto frame = frames_.blank();
   frame->topology = topology_;
   fill_frame(*simulation_, normals_, *frame);
+  contact_filler_.fill(*simulation_, contact_, *frame);
   frames_.publish(frame);
   last_frame_ = Clock::now();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bridge/chart_sample.h"
+#include "bridge/fill_contact.h"
 #include "bridge/frame_exchange.h"
 #include "bridge/live_recording.h"
 #include "bridge/worker_channel.h"
@@ -51,12 +52,16 @@ struct SaveSession {
 struct OpenSession {
   std::variant<std::filesystem::path, cloth::Session> session;
 };  ///< a new start, paused, with the session as its history: GoTo and PlayAgain go through it
+struct ShowContact {
+  ContactChoice choice;
+};  ///< what frames tell of contact from now on
 }  // namespace command
 
-using Command = std::variant<command::Load, command::Restart, command::Edit, command::Play, command::Pause,
-                             command::SingleStep, command::Speed, command::Brush, command::Pull,
-                             command::StartRecording, command::StopRecording, command::GoTo,
-                             command::PlayAgain, command::SaveSession, command::OpenSession>;
+using Command =
+    std::variant<command::Load, command::Restart, command::Edit, command::Play, command::Pause,
+                 command::SingleStep, command::Speed, command::Brush, command::Pull, command::StartRecording,
+                 command::StopRecording, command::GoTo, command::PlayAgain, command::SaveSession,
+                 command::OpenSession, command::ShowContact>;
 
 class SimulationWorker {
  public:
@@ -100,6 +105,7 @@ class SimulationWorker {
   void handle(const command::PlayAgain&);
   void handle(const command::SaveSession& save);
   void handle(const command::OpenSession& open);
+  void handle(const command::ShowContact& show);
 
   bool start_simulation(const cloth::Scene& scene);
   std::vector<cloth::Problem> perform(const cloth::SessionAction& action);
@@ -135,7 +141,9 @@ class SimulationWorker {
   WorkerPace pace_;
   RateMeter meter_;
   std::uint64_t topology_ = 0;
-  cloth::Vec3Field normals_;                 ///< scratch
+  cloth::Vec3Field normals_;  ///< scratch
+  ContactChoice contact_;
+  ContactFiller contact_filler_;
   std::optional<ChartSample> first_sample_;  ///< held back until there is a second one: one point is no curve
   double wall_since_row_ = 0;                ///< s
   std::int64_t steps_since_row_ = 0;

@@ -27,6 +27,13 @@ constexpr int parameters_width = 330, charts_width = 400;  // px
 constexpr int studies_height = 400;                        // px
 constexpr int title_bar_height = 32;                       // px, at least what a desktop puts above a window
 
+/// Of the parameter that says where an obstacle is; empty: there is no such obstacle.
+std::string place_path(const cloth::Scene& scene, int obstacle) {
+  const auto k = static_cast<std::size_t>(obstacle);
+  if (k >= scene.obstacles.size()) return {};
+  return "obstacles." + std::to_string(k) + "." + place_key(scene.obstacles[k].shape);
+}
+
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
@@ -136,6 +143,12 @@ void MainWindow::connectView() {
     const int columns = document_.scene().cloth.columns;
     document_.togglePin(particle / columns, particle % columns);
   });
+  view_->setObstaclesMovable(true);
+  connect(view_, &ClothView::obstacleMoveStarted, this, &MainWindow::startObstacleMove);
+  connect(view_, &ClothView::obstacleMoved, this, &MainWindow::moveObstacle);
+  connect(view_, &ClothView::obstacleMoveEnded, this, &MainWindow::endObstacleMove);
+  connect(view_, &ClothView::contactChosen, this,
+          [this](const ContactChoice& choice) { link_.send(command::ShowContact{choice}); });
   connect(view_, &ClothView::openGlFailed, this, [this] {
     notice_->show("opengl", NoticeBar::Level::warning,
                   tr("The view needs OpenGL 3.3, which this machine does not give. Everything else works."));
@@ -262,6 +275,24 @@ void MainWindow::brush(const cloth::BrushGust& gust) {
     return;
   }
   link_.send(command::Brush{gust});
+}
+
+void MainWindow::startObstacleMove(int obstacle) {
+  const auto start = document_.value(place_path(document_.scene(), obstacle));
+  if (!start) return;
+  obstacle_start_ = std::get<cloth::Vec3>(*start);
+  document_.beginDrag();
+}
+
+/// Only while the drag lasts that began: a scene that was opened meanwhile keeps its obstacles.
+void MainWindow::moveObstacle(int obstacle, const cloth::Vec3& by) {
+  if (document_.presentDrag() == 0) return;
+  document_.setParameter(place_path(document_.scene(), obstacle), cloth::Vec3(obstacle_start_ + by));
+}
+
+void MainWindow::endObstacleMove(int obstacle, bool kept) {
+  if (!kept) moveObstacle(obstacle, cloth::Vec3::Zero());
+  document_.endDrag();
 }
 
 void MainWindow::addStillAir() {

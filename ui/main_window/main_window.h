@@ -72,6 +72,9 @@ class MainWindow : public QMainWindow {
   void readStability();
   void takeStableStep();
   void brush(const cloth::BrushGust& gust);
+  void startObstacleMove(int obstacle);
+  void moveObstacle(int obstacle, const cloth::Vec3& by);
+  void endObstacleMove(int obstacle, bool kept);
   void addStillAir();
   bool hasAir() const;
   void updateTitle();
@@ -125,6 +128,7 @@ class MainWindow : public QMainWindow {
   std::optional<cloth::Session> session_;         ///< to be opened in the place of the document's scene
   QString saving_session_;                        ///< the file, until it is written
   bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
+  cloth::Vec3 obstacle_start_{0, 0, 0};           ///< m, of one that is being dragged
   bool asks_to_save_ = true;
 };
 

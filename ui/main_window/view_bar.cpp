@@ -4,6 +4,7 @@
 #include <QActionGroup>
 #include <QHBoxLayout>
 #include <QMenu>
+#include <QSpinBox>
 #include <QToolButton>
 
 #include "theme/theme.h"
@@ -31,6 +32,8 @@ ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
   addTools(*row);
   row->addSpacing(2 * spacing);
   addModes(*row);
+  row->addSpacing(2 * spacing);
+  addContact(*row);
   row->addStretch(1);
   addCamera(*row);
   row->addWidget(make_action_button(save_picture, this));
@@ -92,6 +95,40 @@ void ViewBar::addModes(QHBoxLayout& row) {
   }
 }
 
+/// The spin box is there only where a scene has a hierarchy of boxes.
+void ViewBar::addContact(QHBoxLayout& row) {
+  contact_ = new QAction(icon("contact"), tr("Contact"), this);
+  contact_->setObjectName("showContact");
+  contact_->setCheckable(true);
+  contact_->setShortcut(QStringLiteral("C"));
+  contact_->setToolTip(with_shortcut(tr("Where the cloth touches something, and the way it is pushed"), "C"));
+  row.addWidget(make_action_button(contact_, this));
+
+  box_level_ = new QSpinBox(this);
+  box_level_->setObjectName("boxLevel");
+  box_level_->setAccessibleName(tr("Boxes of the hierarchy"));
+  box_level_->setToolTip(tr("Boxes that contact is looked for in, so many levels below the one around all"));
+  box_level_->setMinimum(-1);
+  box_level_->setSpecialValueText(tr("No boxes"));
+  box_level_->setPrefix(tr("Boxes: level "));
+  box_level_->setValue(-1);
+  box_level_->hide();
+  row.addWidget(box_level_);
+
+  const auto choose = [this] {
+    const bool shown = contact_->isChecked();
+    box_level_->setEnabled(shown);
+    view_.setContact({.marks = shown, .box_level = shown ? box_level_->value() : -1});
+  };
+  box_level_->setEnabled(false);
+  connect(contact_, &QAction::toggled, this, choose);
+  connect(box_level_, &QSpinBox::valueChanged, this, choose);
+  connect(&view_, &ClothView::hierarchyDepthChanged, this, [this](int depth) {
+    box_level_->setMaximum(depth);
+    box_level_->setVisible(depth > 0);
+  });
+}
+
 void ViewBar::addCamera(QHBoxLayout& row) {
   const struct {
     CameraPreset preset;
@@ -131,6 +168,8 @@ void ViewBar::fillMenu(QMenu& menu) const {
   menu.addActions(tools_->actions());
   menu.addSeparator();
   menu.addActions(modes_->actions());
+  menu.addSeparator();
+  menu.addAction(contact_);
   menu.addSeparator();
   menu.addActions(camera_);
   menu.addAction(frame_all_);

@@ -8,6 +8,7 @@
 class QActionGroup;
 class QHBoxLayout;
 class QMenu;
+class QSpinBox;
 
 namespace clothlab {
 
@@ -25,11 +26,14 @@ class ViewBar : public QFrame {
                      const QString& shortcut, const QString& name);
   void addTools(QHBoxLayout& row);
   void addModes(QHBoxLayout& row);
+  void addContact(QHBoxLayout& row);
   void addCamera(QHBoxLayout& row);
 
   ClothView& view_;
   QActionGroup* tools_;
   QActionGroup* modes_;
+  QAction* contact_ = nullptr;
+  QSpinBox* box_level_ = nullptr;
   QList<QAction*> camera_;
   QAction* frame_all_;
 };

@@ -112,12 +112,13 @@ void ClothView::showFrame(std::shared_ptr<const ClothFrame> frame) {
   const bool new_topology = !frame_ || frame_->topology != frame->topology || frame_->rows != frame->rows ||
                             frame_->columns != frame->columns;
   if (new_topology) {
-    if (gesture_ == Gesture::pull || gesture_ == Gesture::pin) endGesture();
+    if (gesture_ == Gesture::pull || gesture_ == Gesture::pin || gesture_ == Gesture::obstacle) endGesture();
     hovered_.reset();
     strain_range_.reset();
   }
   frame_ = std::move(frame);
   frame_uploaded_ = false;
+  followHierarchy();
   learnExtent(new_topology);
   if (new_topology) fitUnmovedCamera();
   redraw();
@@ -265,6 +266,7 @@ Shot ClothView::shot() const {
   shot.metres_per_pixel = camera_.metres_per_pixel() / shot.pixel_ratio;
   shot.mode = mode_;
   shot.strain_maximum = colourMaximum();
+  shot.contact = contact_.marks || contact_.box_level >= 0;
   shot.ground = ground_;
   shot.extent = extent_;
   return shot;
@@ -301,6 +303,8 @@ void ClothView::paintOverlays(QPainter& painter) {
   if (mode_ == ViewMode::strain && !colour_maximum_)
     overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
   overlay_.mode_name(painter, look, mode_, quantity);
+  paintContactNote(painter);
+  paintHandle(painter);
   paintHand(painter);
 }
 
@@ -313,7 +317,8 @@ void ClothView::paintHand(QPainter& painter) {
     const QPointF start = blowing ? gesture_start_ : cursor_;
     const double speed = brush_speed_per_pixel_ * QLineF(start, cursor_).length();
     overlay_.brush(painter, look, {cursor_, start, brush_radius_, speed, blowing});
-  } else if (hovered_ && (gesture_ == Gesture::none || gesture_ == Gesture::pin)) {
+  } else if (hovered_ && handle_part_ == ObstacleHandle::Part::none &&
+             (gesture_ == Gesture::none || gesture_ == Gesture::pin)) {
     Overlay::Ring ring = Overlay::Ring::highlight;
     if (tool_ == Tool::pin)
       ring = frame_->pinned[static_cast<std::size_t>(*hovered_)] ? Overlay::Ring::remove : Overlay::Ring::add;

@@ -3,6 +3,7 @@
 //
 //   left-drag      on the cloth: pull a particle; beside it: orbit   (tool pin: click pins or frees a
 //   particle) Shift+left     wind brush, also without Shift when it is the tool; wheel while blowing: radius
+//   left-drag      on the handle that a hovered obstacle shows: move the obstacle; Escape: back
 //   right, middle  orbit (also Alt+left); with Ctrl+right or Shift+middle: pan; wheel: zoom towards the
 //   cursor
 #pragma once
@@ -18,6 +19,7 @@
 #include "forces/hand.h"
 #include "viewport/camera.h"
 #include "viewport/gl_canvas.h"
+#include "viewport/obstacle_handle.h"
 #include "viewport/overlay.h"
 #include "viewport/scene_extent.h"
 #include "viewport/strain_scale.h"
@@ -62,6 +64,13 @@ class ClothView : public QWidget {
   Tool tool() const { return tool_; }
   void setTool(Tool tool);
 
+  /// What is shown of contact; frames have it once contactChosen() has reached whoever makes them.
+  const ContactChoice& contact() const { return contact_; }
+  void setContact(const ContactChoice& choice);
+  int hierarchyDepth() const { return hierarchy_depth_; }
+  /// Whether obstacles show a handle to drag them by.
+  void setObstaclesMovable(bool movable);
+
   const Camera& camera() const { return camera_; }
   void setCameraPose(const CameraPose& pose);
   bool cameraWasMoved() const { return camera_moved_; }  ///< by the user, since resetCamera()
@@ -101,7 +110,12 @@ class ClothView : public QWidget {
   void pinToggled(int particle);
   void toolChanged(clothlab::Tool tool);
   void modeChanged(clothlab::ViewMode mode);
-  void cameraMoved(const clothlab::CameraPose& pose);  ///< by the user, also on the way of a flight
+  void contactChosen(const clothlab::ContactChoice& choice);
+  void hierarchyDepthChanged(int depth);  ///< levels of the scene's hierarchies of boxes, 0: it has none
+  void obstacleMoveStarted(int obstacle);
+  void obstacleMoved(int obstacle, const Eigen::Vector3d& by);  ///< m, since the start
+  void obstacleMoveEnded(int obstacle, bool kept);              ///< not kept: it was taken back
+  void cameraMoved(const clothlab::CameraPose& pose);           ///< by the user, also on the way of a flight
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -116,7 +130,7 @@ class ClothView : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  enum class Gesture { none, orbit, pan, pull, brush, pin };
+  enum class Gesture { none, orbit, pan, pull, brush, pin, obstacle };
 
   void initialiseGl();
   void resizeGl(int width, int height);
@@ -133,6 +147,8 @@ class ClothView : public QWidget {
   double colourMaximum() const { return colour_maximum_.value_or(strain_range_.maximum()); }
   void paintOverlays(QPainter& painter);
   void paintHand(QPainter& painter);
+  void paintHandle(QPainter& painter);
+  void paintContactNote(QPainter& painter);
   QPointF screenPoint(int particle) const;
 
   void startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers);
@@ -141,6 +157,11 @@ class ClothView : public QWidget {
   void sendPull();
   void sendBrush();
   void updateHover();
+  void updateHandle();
+  void followHierarchy();
+  bool startObstacleMove(QPointF at);
+  void sendObstacleMove();
+  void cancelObstacleMove();
   void followShift(bool held);
   bool brushShown() const;
   void updateCursor();
@@ -177,6 +198,12 @@ class ClothView : public QWidget {
   bool cursor_inside_ = false, shift_held_ = false;
   std::optional<int> hovered_, grabbed_;
   Eigen::Vector3d grab_point_{0, 0, 0};  // m
+  ContactChoice contact_;
+  int hierarchy_depth_ = 0;
+  bool obstacles_movable_ = false, obstacle_move_kept_ = true;
+  std::optional<ObstacleHandle> handle_;  // shown; its place as when the move began
+  ObstacleHandle::Part handle_part_ = ObstacleHandle::Part::none;
+  Eigen::Vector2d handle_start_{0, 0};   // px
   double brush_radius_ = 80;             // px
   double brush_speed_per_pixel_ = 0.05;  // m/s
 };

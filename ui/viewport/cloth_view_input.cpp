@@ -54,6 +54,7 @@ bool ClothView::brushShown() const {
 void ClothView::updateHover() {
   if (gesture_ != Gesture::none) return;
   std::optional<int> found;
+  updateHandle();
   if (cursor_inside_ && !brushShown()) found = pick(cursor_);
   if (found != hovered_) {
     hovered_ = found;
@@ -66,12 +67,14 @@ void ClothView::updateCursor() {
   Qt::CursorShape shape = Qt::ArrowCursor;
   if (gesture_ == Gesture::pull)
     shape = Qt::ClosedHandCursor;
-  else if (gesture_ == Gesture::pan)
+  else if (gesture_ == Gesture::pan || gesture_ == Gesture::obstacle)
     shape = Qt::SizeAllCursor;
   else if (gesture_ == Gesture::orbit)
     shape = Qt::ArrowCursor;
   else if (brushShown())
     shape = Qt::CrossCursor;
+  else if (handle_part_ != ObstacleHandle::Part::none)
+    shape = Qt::SizeAllCursor;
   else if (hovered_)
     shape = tool_ == Tool::pin ? Qt::PointingHandCursor : Qt::OpenHandCursor;
   if (cursor().shape() != shape) setCursor(shape);
@@ -109,6 +112,7 @@ void ClothView::startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers) {
     gesture_ = Gesture::brush;
     return;
   }
+  if (startObstacleMove(at)) return;
   grabbed_ = pick(at);
   if (!grabbed_) {
     gesture_ = Gesture::orbit;
@@ -141,6 +145,9 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
     case Gesture::pull:
       sendPull();
       break;
+    case Gesture::obstacle:
+      sendObstacleMove();
+      break;
     case Gesture::brush:
       sendBrush();
       break;
@@ -165,6 +172,7 @@ void ClothView::endGesture() {
   repaintOver();
   if (ended == Gesture::pull) Q_EMIT pullEnded();
   if (ended == Gesture::brush) Q_EMIT brushEnded();
+  if (ended == Gesture::obstacle) Q_EMIT obstacleMoveEnded(handle_->obstacle, obstacle_move_kept_);
 }
 
 void ClothView::moveCamera(QPointF by) {
@@ -203,7 +211,8 @@ void ClothView::wheelEvent(QWheelEvent* event) {
     if (gesture_ == Gesture::brush) sendBrush();
     return;
   }
-  if (gesture_ == Gesture::pull) return;  // its plane belongs to this distance
+  if (gesture_ == Gesture::pull || gesture_ == Gesture::obstacle)
+    return;  // its plane belongs to this distance
   flight_.stop();
   camera_moved_ = true;
   camera_.zoom(std::pow(1.18, notches), as_vector(event->position()));
@@ -227,6 +236,10 @@ bool ClothView::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() == QEvent::KeyPress || event->type() == QEvent::KeyRelease) {
     const auto* key = static_cast<QKeyEvent*>(event);
     if (key->key() == Qt::Key_Shift) followShift(event->type() == QEvent::KeyPress);
+    if (key->key() == Qt::Key_Escape && gesture_ == Gesture::obstacle) {
+      cancelObstacleMove();
+      return true;
+    }
   }
   return QWidget::eventFilter(watched, event);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "theme/theme.h"
+#include "viewport/obstacle_handle.h"
 #include "viewport/strain_scale.h"
 
 namespace clothlab {
@@ -47,8 +48,8 @@ QColor halo_of(const Theme& theme) {
   return faded(theme.dark ? QColor(Qt::black) : QColor(Qt::white), 0.65);
 }
 
-void arrow(QPainter& painter, const QLineF& line, const Theme& theme) {
-  haloed_line(painter, line, theme.accent, halo_of(theme), 2);
+void arrow(QPainter& painter, const QLineF& line, const QColor& colour, const QColor& halo, double width) {
+  haloed_line(painter, line, colour, halo, width);
   const double length = line.length(), head = std::min(11.0, 0.5 * length);
   const QPointF along = (line.p2() - line.p1()) / length, across(-along.y(), along.x());
   QPainterPath tip(line.p2() + 2 * along);
@@ -56,8 +57,8 @@ void arrow(QPainter& painter, const QLineF& line, const Theme& theme) {
   tip.lineTo(line.p2() - 0.7 * head * along);
   tip.lineTo(line.p2() - head * along - 0.5 * head * across);
   tip.closeSubpath();
-  painter.setPen(QPen(halo_of(theme), 1));
-  painter.setBrush(theme.accent);
+  painter.setPen(QPen(halo, 1));
+  painter.setBrush(colour);
   painter.drawPath(tip);
 }
 
@@ -84,7 +85,7 @@ void PaintedLayer::lay(QPainter& view, const QRectF& area, const Key& key,
 }
 
 void Overlay::forget() {
-  for (PaintedLayer* layer : {&bar_, &mode_, &brush_, &ring_, &line_, &message_}) layer->forget();
+  for (PaintedLayer* layer : {&bar_, &mode_, &contact_, &brush_, &ring_, &line_, &message_}) layer->forget();
 }
 
 void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum,
@@ -158,6 +159,42 @@ void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quant
   });
 }
 
+void Overlay::contact_note(QPainter& view, const Theme& theme, int touches) {
+  const QString note = touches == 1 ? tr("1 touch") : tr("%1 touches").arg(touches);
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
+  const QRectF area(2 * spacing, 3 * spacing + metrics.height() + 8, metrics.horizontalAdvance(note) + 20,
+                    metrics.height() + 8);
+  contact_.lay(view, area, {static_cast<double>(touches)}, [&](QPainter& p) {
+    card(p, area, theme);
+    p.setFont(font_of(p, 0.9, QFont::Normal));
+    p.setPen(theme.text);
+    p.drawText(area, Qt::AlignCenter, note);
+  });
+}
+
+void Overlay::handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips,
+                     int active) {
+  view.save();
+  view.setRenderHint(QPainter::Antialiasing);
+  const std::array<QColor, 3> colours{theme.dark ? QColor(0xFF, 0x6B, 0x6B) : QColor(0xC9, 0x2A, 0x2A),
+                                      theme.dark ? QColor(0x69, 0xDB, 0x7C) : QColor(0x2B, 0x8A, 0x3E),
+                                      theme.dark ? QColor(0x74, 0xC0, 0xFC) : QColor(0x18, 0x64, 0xAB)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const QLineF whole(at, tips[axis]);
+    constexpr double least = ObstacleHandle::ring_radius + 6;
+    if (whole.length() < least) continue;  // it looks along the axis
+    const QPointF start = whole.pointAt((ObstacleHandle::ring_radius + 2) / whole.length());
+    const bool is_active = active == static_cast<int>(axis) + 1;
+    arrow(view, {start, tips[axis]}, colours[axis], halo_of(theme), is_active ? 3.5 : 2);
+  }
+  view.setBrush(faded(theme.accent, active == 0 ? 0.45 : 0.15));
+  view.setPen(QPen(halo_of(theme), 5));
+  view.drawEllipse(at, ObstacleHandle::ring_radius, ObstacleHandle::ring_radius);
+  view.setPen(QPen(theme.accent, active == 0 ? 3 : 2));
+  view.drawEllipse(at, ObstacleHandle::ring_radius, ObstacleHandle::ring_radius);
+  view.restore();
+}
+
 void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
   const QLineF drag(brush.start, brush.cursor);
   const bool has_arrow = brush.blowing && drag.length() > 4;
@@ -186,7 +223,7 @@ void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
     p.setPen(Qt::NoPen);
     p.setBrush(theme.accent);
     p.drawEllipse(brush.start, 3, 3);
-    arrow(p, drag, theme);
+    arrow(p, drag, theme.accent, halo_of(theme), 2);
     card(p, label, theme);
     p.setFont(font_of(p, 0.9, QFont::DemiBold));
     p.setPen(theme.text);

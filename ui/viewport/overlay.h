@@ -55,10 +55,14 @@ class Overlay {
   void brush(QPainter& view, const Theme& theme, const Brush& brush);
   void ring(QPainter& view, const Theme& theme, QPointF at, Ring ring);
   void pull_line(QPainter& view, const Theme& theme, QPointF particle, QPointF cursor);
+  /// How many places touch, under the mode's name.
+  void contact_note(QPainter& view, const Theme& theme, int touches);
+  /// A ring with arrows along x, y and z; `active`: 0 the ring, 1 to 3 an arrow, else none.
+  void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
   void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);
 
  private:
-  PaintedLayer bar_, mode_, brush_, ring_, line_, message_;
+  PaintedLayer bar_, mode_, contact_, brush_, ring_, line_, message_;
 };
 
 }  // namespace clothlab

@@ -6,19 +6,6 @@
 namespace clothlab {
 namespace {
 
-/// Distance along the ray to the triangle p q r, from either side; negative if it passes by (Moeller and
-/// Trumbore 1997).
-double distance_to_triangle(const Ray& ray, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                            const Eigen::Vector3d& r) {
-  const Eigen::Vector3d e = q - p, f = r - p, h = ray.direction.cross(f);
-  const double det = e.dot(h);
-  if (det == 0) return -1;
-  const Eigen::Vector3d s = ray.origin - p, k = s.cross(e);
-  const double u = s.dot(h) / det, v = ray.direction.dot(k) / det;
-  if (!(u >= 0 && v >= 0 && u + v <= 1)) return -1;
-  return f.dot(k) / det;
-}
-
 template <class Visit>  // visit(triangle)
 void for_each_triangle(const ClothFrame& frame, Visit visit) {
   if (frame.mesh) {
@@ -53,6 +40,17 @@ std::optional<int> nearest_hit(const ClothFrame& frame, const Ray& ray) {
 }
 
 }  // namespace
+
+double distance_to_triangle(const Ray& ray, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                            const Eigen::Vector3d& r) {
+  const Eigen::Vector3d e = q - p, f = r - p, h = ray.direction.cross(f);
+  const double det = e.dot(h);
+  if (det == 0) return -1;
+  const Eigen::Vector3d s = ray.origin - p, k = s.cross(e);
+  const double u = s.dot(h) / det, v = ray.direction.dot(k) / det;
+  if (!(u >= 0 && v >= 0 && u + v <= 1)) return -1;
+  return f.dot(k) / det;
+}
 
 Eigen::Vector3d particle_position(const ClothFrame& frame, int particle) {
   const float* p = frame.positions.data() + 3 * static_cast<std::size_t>(particle);

@@ -15,6 +15,11 @@ inline constexpr double picking_tolerance = 12;  ///< px, around particles the r
 std::optional<int> pick_particle(const ClothFrame& frame, const Camera& camera,
                                  const Eigen::Vector2d& cursor);
 
+/// m along the ray to the triangle p q r, from either side; negative if it passes by (Moeller and Trumbore
+/// 1997).
+double distance_to_triangle(const Ray& ray, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                            const Eigen::Vector3d& r);
+
 Eigen::Vector3d particle_position(const ClothFrame& frame, int particle);  ///< m
 
 }  // namespace clothlab

@@ -1,9 +1,7 @@
 #include "viewport/gl/cloth_renderer.h"
 
-#include <QMatrix4x4>
 #include <QOpenGLContext>
 #include <QVector2D>
-#include <QVector3D>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "geometry/mesh_look.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
+#include "viewport/gl/uniforms.h"
 #include "viewport/picking.h"
 #include "viewport/strain_scale.h"
 
@@ -18,24 +17,6 @@ namespace clothlab {
 namespace {
 
 constexpr double tiles_along_cloth = 9;  // of the weave, over the longer side
-
-QVector3D vector(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-QMatrix3x3 matrix(const Eigen::Matrix3d& m) {
-  QMatrix3x3 result;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) result(r, c) = static_cast<float>(m(r, c));
-  return result;
-}
-
-QMatrix4x4 matrix(const Eigen::Matrix4d& m) {
-  QMatrix4x4 result;
-  for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) result(r, c) = static_cast<float>(m(r, c));
-  return result;
-}
 
 float number(double value) {
   return static_cast<float>(value);
@@ -80,12 +61,16 @@ bool ClothRenderer::initialise(bool frugal, QString* problem) {
   surface_ = std::make_unique<ClothSurface>(gl);
   solids_ = std::make_unique<Solids>(gl);
   bodies_ = std::make_unique<MeshBodies>(gl);
+  contact_ = std::make_unique<ContactLayer>(gl);
   return true;
 }
 
 void ClothRenderer::set_frame(const ClothFrame& frame) {
   obstacles_ = frame.obstacles;
+  poses_ = frame.poses;
+  targets_ = frame.targets;
   bodies_->keep(obstacles_);
+  contact_->upload(frame);
   has_cloth_ = frame.has_cloth();
   is_mesh_ = frame.mesh != nullptr;
   if (!has_cloth_) return;
@@ -140,6 +125,9 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
   glDepthMask(GL_FALSE);
   draw_planes(shot, theme);
   if (has_cloth_ && surface_->has_pinned_points()) draw_pins(shot, theme);
+  draw_targets(shot, theme);
+  if (shot.contact)
+    contact_->draw(*kit_, {shot.world_to_clip, shot.metres_per_pixel, shot.pixel_ratio}, theme);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
@@ -154,52 +142,70 @@ void ClothRenderer::draw_background(const Theme& theme) {
 }
 
 void ClothRenderer::light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme) {
-  program.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
-  program.setUniformValue("eye", vector(shot.eye));
+  program.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
+  program.setUniformValue("eye", uniform_vector(shot.eye));
   // The key light goes half way with the eye: folds read the same from every side, yet turning shows relief.
   const Eigen::Vector3d key = Eigen::Vector3d(-0.20, 0.70, 0.20) - 0.35 * shot.forward - 0.65 * shot.right;
   const Eigen::Vector3d fill = 0.9 * shot.right - 0.45 * shot.forward - 0.1 * shot.up;
-  program.setUniformValue("key_direction", vector(key.normalized()));
-  program.setUniformValue("fill_direction", vector(fill.normalized()));
+  program.setUniformValue("key_direction", uniform_vector(key.normalized()));
+  program.setUniformValue("fill_direction", uniform_vector(fill.normalized()));
   program.setUniformValue("exposure", theme.dark ? 0.92F : 1.05F);
 }
 
-void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
+void ClothRenderer::begin_obstacles(const Shot& shot, const Theme& theme, float opacity) {
   kit_->solid.bind();
   light(kit_->solid, shot, theme);
   const QColor body = theme.dark ? mixed(theme.view_top, QColor(0xA6, 0xAB, 0xB3), 0.62F)
                                  : mixed(theme.view_top, QColor(0xB4, 0xB8, 0xBE), 0.75F);
-  kit_->solid.setUniformValue("body_colour", linear_light(body));
+  kit_->solid.setUniformValue("body_colour", linear_light(opacity < 1 ? theme.accent : body));
+  kit_->solid.setUniformValue("opacity", opacity);
   // Cloth rests on the obstacles' surface with its particles, and its flat triangles cut below: the drawn
   // body is pushed back in depth, and a ball made smaller by the height of the arc over a cell's diagonal.
   glEnable(GL_CULL_FACE);  // pushed back, a near face could fall behind a far one
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 4.0F);
-  for (const cloth::Obstacle& o : obstacles_) {
-    if (o.shape == cloth::Shape::plane) continue;
-    if (o.shape == cloth::Shape::mesh) {
-      if (!o.mesh.loaded) continue;
-      kit_->solid.setUniformValue("center", vector(o.translate));
-      kit_->solid.setUniformValue("turn", matrix(cloth::turn_of(o)));
-      kit_->solid.setUniformValue("scale", vector(Eigen::Vector3d::Constant(o.scale)));
-      bodies_->draw(*o.mesh.loaded);
-      continue;
-    }
-    kit_->solid.setUniformValue("center", vector(o.center));
-    kit_->solid.setUniformValue("turn", QMatrix3x3());
-    if (o.shape == cloth::Shape::sphere) {
-      const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
-      kit_->solid.setUniformValue(
-          "scale", vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
-      solids_->draw_sphere();
-    } else {
-      kit_->solid.setUniformValue("scale", vector(0.995 * o.size));
-      solids_->draw_box();
-    }
-  }
+}
+
+void ClothRenderer::end_obstacles() {
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_CULL_FACE);
   kit_->solid.release();
+}
+
+void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
+  begin_obstacles(shot, theme, 1);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    draw_obstacle(obstacles_[k], k < poses_.size() ? poses_[k] : cloth::Pose{});
+  end_obstacles();
+}
+
+/// Where an edit has put obstacles that are still on their way.
+void ClothRenderer::draw_targets(const Shot& shot, const Theme& theme) {
+  if (targets_ == poses_) return;
+  begin_obstacles(shot, theme, 0.28F);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    if (targets_[k] != poses_[k]) draw_obstacle(obstacles_[k], targets_[k]);
+  end_obstacles();
+}
+
+void ClothRenderer::draw_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose) {
+  if (o.shape == cloth::Shape::plane || (o.shape == cloth::Shape::mesh && !o.mesh.loaded)) return;
+  const bool is_mesh = o.shape == cloth::Shape::mesh;
+  const Eigen::Matrix3d turn = is_mesh ? Eigen::Matrix3d(pose.turn * cloth::turn_of(o)) : pose.turn;
+  kit_->solid.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
+  kit_->solid.setUniformValue("turn", uniform_matrix(turn));
+  if (is_mesh) {
+    kit_->solid.setUniformValue("scale", uniform_vector(Eigen::Vector3d::Constant(o.scale)));
+    bodies_->draw(*o.mesh.loaded);
+  } else if (o.shape == cloth::Shape::sphere) {
+    const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
+    kit_->solid.setUniformValue(
+        "scale", uniform_vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
+    solids_->draw_sphere();
+  } else {
+    kit_->solid.setUniformValue("scale", uniform_vector(0.995 * o.size));
+    solids_->draw_box();
+  }
 }
 
 void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
@@ -245,7 +251,7 @@ void ClothRenderer::draw_cloth(const Shot& shot, const Theme& theme) {
 
 void ClothRenderer::draw_threads(const Shot& shot, const Theme& theme) {
   kit_->thread.bind();
-  kit_->thread.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->thread.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
   kit_->thread.setUniformValue("thread_colour", as_srgb(thread_colour(theme)));
   surface_->draw_edges();
   kit_->thread.release();
@@ -257,7 +263,7 @@ double ClothRenderer::cell_on_screen(const Shot& shot) const {
 
 void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
   kit_->plane.bind();
-  kit_->plane.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->plane.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
   kit_->plane.setUniformValue("line_width", number(shot.pixel_ratio));
   kit_->plane.setUniformValue("line_colour",
                               as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
@@ -265,8 +271,11 @@ void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
                               as_srgb(theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(0xFF, 0xFF, 0xFF)));
   kit_->plane.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
   kit_->plane.setUniformValue("floor_opacity", theme.dark ? 0.22F : 0.35F);
-  for (const cloth::Obstacle& o : obstacles_)
-    if (o.shape == cloth::Shape::plane) draw_plane(shot, o.point, o.normal.normalized());
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const cloth::Obstacle& o = obstacles_[k];
+    const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
+    if (o.shape == cloth::Shape::plane) draw_plane(shot, pose.at(o.point), pose.turn * o.normal.normalized());
+  }
   if (!shot.ground.is_obstacle) draw_plane(shot, {0, shot.ground.height, 0}, Eigen::Vector3d::UnitY());
   kit_->plane.release();
 }
@@ -281,9 +290,9 @@ void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
       std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d u = (hint - hint.dot(normal) * normal).normalized(), v = normal.cross(u);
   const Eigen::Vector3d middle = about - (about - point).dot(normal) * normal;
-  kit_->plane.setUniformValue("middle", vector(middle));
-  kit_->plane.setUniformValue("axis_u", vector(u));
-  kit_->plane.setUniformValue("axis_v", vector(v));
+  kit_->plane.setUniformValue("middle", uniform_vector(middle));
+  kit_->plane.setUniformValue("axis_u", uniform_vector(u));
+  kit_->plane.setUniformValue("axis_v", uniform_vector(v));
   kit_->plane.setUniformValue("reach", number(2.2 * size));
   kit_->plane.setUniformValue("grid_step", number(grid_step_for(size)));
   kit_->plane.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
@@ -295,7 +304,7 @@ void ClothRenderer::draw_pins(const Shot& shot, const Theme& theme) {
   const double diameter =
       std::clamp(0.85 * cell_on_screen(shot), 4 * shot.pixel_ratio, 11 * shot.pixel_ratio);
   kit_->marker.bind();
-  kit_->marker.setUniformValue("world_to_clip", matrix(shot.world_to_clip));
+  kit_->marker.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
   kit_->marker.setUniformValue("diameter", number(diameter));
   kit_->marker.setUniformValue("disc_colour", as_srgb(theme.accent));
   kit_->marker.setUniformValue("rim_colour",

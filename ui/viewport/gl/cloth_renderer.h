@@ -8,6 +8,7 @@
 
 #include "bridge/frame.h"
 #include "viewport/gl/cloth_surface.h"
+#include "viewport/gl/contact_layer.h"
 #include "viewport/gl/mesh_body.h"
 #include "viewport/gl/renderer_kit.h"
 #include "viewport/gl/solids.h"
@@ -29,6 +30,7 @@ struct Shot {
   /// For a picture that is gone in a moment: where the cloth's cells are a few pixels, light is worked out
   /// per particle instead of per pixel. Has an effect only with a frugal renderer.
   bool quick = false;
+  bool contact = false;  ///< what the frame tells of it is drawn
   Ground ground;
   Eigen::AlignedBox3d extent;  ///< m: how large the grid of the ground is drawn, and about where
 };
@@ -53,7 +55,11 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
  private:
   void light(QOpenGLShaderProgram& program, const Shot& shot, const Theme& theme);
   void draw_background(const Theme& theme);
+  void begin_obstacles(const Shot& shot, const Theme& theme, float opacity);
+  void end_obstacles();
   void draw_obstacles(const Shot& shot, const Theme& theme);
+  void draw_targets(const Shot& shot, const Theme& theme);
+  void draw_obstacle(const cloth::Obstacle& obstacle, const cloth::Pose& pose);
   void measure_cloth(const ClothFrame& frame);
   void draw_cloth(const Shot& shot, const Theme& theme);
   void draw_threads(const Shot& shot, const Theme& theme);
@@ -66,6 +72,7 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   std::unique_ptr<ClothSurface> surface_;
   std::unique_ptr<Solids> solids_;
   std::unique_ptr<MeshBodies> bodies_;
+  std::unique_ptr<ContactLayer> contact_;
 
   bool has_cloth_ = false, is_mesh_ = false;
   std::uint64_t topology_ = 0;
@@ -73,6 +80,7 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   double cell_length_ = 0;    // m, between neighbours when the run began
   QVector2D tiles_per_cell_;  // of the weave; of a mesh a metre takes the cell's place
   std::vector<cloth::Obstacle> obstacles_;
+  std::vector<cloth::Pose> poses_, targets_;
 };
 
 }  // namespace clothlab

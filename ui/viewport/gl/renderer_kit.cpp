@@ -48,7 +48,9 @@ bool RendererKit::build_programs(QString* problem) {
          build_program(plane, "plane.vert", "plane.frag", {}, problem) &&
          build_program(solid, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
          build_program(marker, "marker.vert", "marker.frag", {}, problem) &&
-         build_program(thread, "thread.vert", "thread.frag", {}, problem);
+         build_program(thread, "thread.vert", "thread.frag", {}, problem) &&
+         build_program(contact_box, "contact_box.vert", "contact_line.frag", {}, problem) &&
+         build_program(contact_line, "contact_line.vert", "contact_line.frag", {}, problem);
 }
 
 void RendererKit::make_textures() {

@@ -45,7 +45,7 @@ TEST_P(EveryMethod, LetsNothingThroughAtAnyStep) {
     int stride;
   };
   for (const std::string& name : contact_scene_names())
-    for (const Pace& pace : {Pace{1e-4, 0.03, 20}, Pace{1e-3, 0.15, 10}, Pace{1.0 / 60, 0.5, 1}}) {
+    for (const Pace& pace : {Pace{1e-4, 0.012, 20}, Pace{1e-3, 0.08, 10}, Pace{1.0 / 60, 0.2, 1}}) {
       Scene scene = contact_scene(name);
       scene.integrator.method = GetParam();
       scene.integrator.time_step = pace.time_step;

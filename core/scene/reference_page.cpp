@@ -18,6 +18,8 @@ Scene full_scene() {
   scene.gravity = Vec3::Zero();
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
+  scene.contact.emplace();
+  scene.self_contact.emplace();
   for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   return scene;
 }

@@ -30,7 +30,8 @@ TEST(Explain, SaysWhichStagesAreInAndWhyTheRestIsLeftOut) {
                                                 {"air drag", "the scene has no \"air\""},
                                                 {"wind", "there is no air to blow"},
                                                 {"deformation rate", "the scene has no \"deformation\""},
-                                                {"contact", "the scene has no \"obstacles\""}}));
+                                                {"contact", "the scene has no \"obstacles\""},
+                                                {"self-contact", "the scene has no \"self_contact\""}}));
   const std::string text = cli("explain free-fall").output;
   for (const auto& [name, reason] : left_out) {
     EXPECT_NE(text.find(name), std::string::npos) << text;

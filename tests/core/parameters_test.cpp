@@ -21,7 +21,17 @@ Scene full_scene() {
   scene.gravity = Vec3(0, -9.81, 0);
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
-  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
+  scene.contact.emplace();
+  // So far apart that no value below lets the cloth start in an obstacle.
+  scene.cloth.origin = {-0.5, 20, 30};
+  for (const Shape shape : all_shapes) {
+    Obstacle& obstacle = scene.obstacles.emplace_back();
+    obstacle.shape = shape;
+    Vec3& place = shape == Shape::plane  ? obstacle.point
+                  : shape == Shape::mesh ? obstacle.translate
+                                         : obstacle.center;
+    place = {0, -50, 0};
+  }
   scene.obstacles.back().mesh.file = "disc.obj";
   load_meshes(scene);
   return scene;
@@ -119,12 +129,13 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     remove_block(with, obstacle ? "obstacles.0" : offer.path);
     EXPECT_EQ(with, scene) << offer.path;
   }
-  EXPECT_EQ(offered, std::set<std::string>({"springs", "deformation", "damping", "gravity", "air", "sphere",
-                                            "box", "plane", "mesh"}));
+  EXPECT_EQ(offered, std::set<std::string>({"springs", "deformation", "damping", "gravity", "air",
+                                            "self_contact", "sphere", "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
-    EXPECT_TRUE(std::any_of(all_shapes.begin(), all_shapes.end(), [&](Shape shape) {
-      return offer.path == name_of(shape);
-    })) << offer.path;
+    EXPECT_TRUE(offer.path == "self_contact" ||
+                std::any_of(all_shapes.begin(), all_shapes.end(),
+                            [&](Shape shape) { return offer.path == name_of(shape); }))
+        << offer.path;
 }
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {

@@ -45,7 +45,8 @@ class SceneMeshFile : public ::testing::Test {
 
 TEST_F(SceneMeshFile, IsFoundBesideTheSceneFile) {
   write("meshes/t.obj", tetrahedron);
-  const SceneReading reading = read(scene_with(R"({"shape": "mesh", "file": "meshes/t.obj"})"));
+  const SceneReading reading =
+      read(scene_with(R"({"shape": "mesh", "file": "meshes/t.obj", "translate": [0, -9, 0]})"));
   ASSERT_TRUE(reading.scene) << reading.problems.front().text();
   const Obstacle& obstacle = reading.scene->obstacles.front();
   ASSERT_TRUE(obstacle.mesh.is_loaded());
@@ -56,7 +57,7 @@ TEST_F(SceneMeshFile, IsFoundBesideTheSceneFile) {
 
 TEST_F(SceneMeshFile, GoesBeforeABuiltInMeshOfItsNameExceptInABuiltInScene) {
   write("disc.obj", tetrahedron);
-  const std::string text = scene_with(R"({"shape": "mesh", "file": "disc.obj"})");
+  const std::string text = scene_with(R"({"shape": "mesh", "file": "disc.obj", "translate": [0, -9, 0]})");
   const auto triangles = [](const SceneReading& reading) {
     return reading.scene ? reading.scene->obstacles.front().mesh.loaded->surface.triangles.size() : 0U;
   };
@@ -75,7 +76,8 @@ TEST_F(SceneMeshFile, ThatIsMissingIsAProblemWithPlaceValueAndRule) {
 
 TEST_F(SceneMeshFile, ThatIsBrokenIsOneProblemWithTheLineInTheFile) {
   write("t.obj", "v 0 0 0\nv 1 nan 0\n");
-  const std::string problem = only_problem_of(read(scene_with(R"({"shape": "mesh", "file": "t.obj"})")));
+  const std::string problem =
+      only_problem_of(read(scene_with(R"({"shape": "mesh", "file": "t.obj", "translate": [0, -9, 0]})")));
   EXPECT_NE(problem.find("t.obj:2:"), std::string::npos) << problem;
   EXPECT_EQ(problem.find(folder(), 1), std::string::npos)
       << "no machine's path but the scene's own: " << problem;
@@ -89,7 +91,8 @@ TEST_F(SceneMeshFile, MustBeGiven) {
 
 TEST_F(SceneMeshFile, ThatIsOpenOrUnevenWorksAndIsNoticed) {
   write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 1\nf 1 3 2\nf 1 2 5\nf 1 3 4\n");
-  const SceneReading reading = read(scene_with(R"({"shape": "mesh", "file": "t.obj"})"));
+  const SceneReading reading =
+      read(scene_with(R"({"shape": "mesh", "file": "t.obj", "translate": [0, -9, 0]})"));
   ASSERT_TRUE(reading.scene);
   const std::vector<std::string> notices = mesh_notices(*reading.scene);
   EXPECT_EQ(notices.size(), 3U);  // welded, winding, open
@@ -97,9 +100,11 @@ TEST_F(SceneMeshFile, ThatIsOpenOrUnevenWorksAndIsNoticed) {
 }
 
 TEST(SceneMesh, ComesBackFromWhatIsWritten) {
-  for (const std::string& text :
-       {scene_with(R"({"shape": "mesh", "file": "cone-bed.obj", "scale": 0.1, "rotate": [1, 2, 3.5]})"),
-        cloth_of(R"({"mesh": "disc.obj", "origin": [0, 1, 2], "mass": 0.2, "pins": [3, 1800]})")}) {
+  for (
+      const std::string& text :
+      {scene_with(
+           R"({"shape": "mesh", "file": "cone-bed.obj", "scale": 0.1, "rotate": [1, 2, 3.5], "translate": [0, -9, 0]})"),
+       cloth_of(R"({"mesh": "disc.obj", "origin": [0, 1, 2], "mass": 0.2, "pins": [3, 1800]})")}) {
     const SceneReading once = read_scene(text, "x");
     ASSERT_TRUE(once.scene) << once.problems.front().text();
     const SceneReading again = read_scene(write_scene(*once.scene), "y");
@@ -126,7 +131,7 @@ TEST(SceneMesh, ClothRefusesWhatOnlyAGridHas) {
 }
 
 TEST(SceneMesh, OverridesReachIt) {
-  const std::string text = scene_with(R"({"shape": "mesh", "file": "disc.obj"})");
+  const std::string text = scene_with(R"({"shape": "mesh", "file": "disc.obj", "translate": [0, -9, 0]})");
   const SceneReading reading =
       read_scene(text, "x", {{"obstacles.0.scale", "2"}, {"obstacles.0.file", "cone-bed.obj"}});
   ASSERT_TRUE(reading.scene);
@@ -137,7 +142,8 @@ TEST(SceneMesh, OverridesReachIt) {
 }
 
 TEST(SceneMesh, IsReadAgainWhenItsNameIsEdited) {
-  Scene scene = *read_scene(scene_with(R"({"shape": "mesh", "file": "disc.obj"})"), "x").scene;
+  Scene scene =
+      *read_scene(scene_with(R"({"shape": "mesh", "file": "disc.obj", "translate": [0, -9, 0]})"), "x").scene;
   const Scene before = scene;
   find_parameter(scene, "obstacles.0.file")->set(scene, std::string("cone-bed.obj"));
   EXPECT_EQ(find_problems(scene).size(), 1U) << "until it is read";
@@ -151,7 +157,8 @@ TEST(SceneMesh, IsReadAgainWhenItsNameIsEdited) {
 
 TEST_F(SceneMeshFile, EditsKeepWhatIsLoadedWhateverBecomesOfTheFile) {
   write("t.obj", tetrahedron);
-  const Scene scene = *read(scene_with(R"({"shape": "mesh", "file": "t.obj"})")).scene;
+  const Scene scene =
+      *read(scene_with(R"({"shape": "mesh", "file": "t.obj", "translate": [0, -9, 0]})")).scene;
   std::filesystem::remove(folder_ / "t.obj");
   const SceneReading edited = edited_scene(scene, {{"obstacles.0.scale", "3"}});
   ASSERT_TRUE(edited.scene);
@@ -160,7 +167,8 @@ TEST_F(SceneMeshFile, EditsKeepWhatIsLoadedWhateverBecomesOfTheFile) {
 
 TEST_F(SceneMeshFile, IsNamedAsSeenFromWhereTheSceneIsWritten) {
   write("meshes/t.obj", tetrahedron);
-  const Scene scene = *read(scene_with(R"({"shape": "mesh", "file": "meshes/t.obj"})")).scene;
+  const Scene scene =
+      *read(scene_with(R"({"shape": "mesh", "file": "meshes/t.obj", "translate": [0, -9, 0]})")).scene;
   const Scene moved = moved_to_folder(scene, (folder_ / "runs/one").string());
   EXPECT_EQ(moved.obstacles.front().mesh.file, "../../meshes/t.obj");
   std::filesystem::create_directories(folder_ / "runs/one");

@@ -50,8 +50,9 @@ TEST(SceneReader, ReportsAllProblemsAtOnceInTheOrderOfTheFile) {
       Texts({"name:1:25: cloth.columns = 1: must be >= 2 and <= 4096",
              "name:2:22: cloth.rows = 1: must be >= 2 and <= 4096",
              "name:3:22: cloth.mass = -0.25 kg: must be > 0",
-             "name:4:3: sprigns: is not a known key; known here: air, cloth, damping, deformation, duration, "
-             "format, gravity, integrator, obstacles, record, springs, title",
+             "name:4:3: sprigns: is not a known key; known here: air, cloth, contact, damping, deformation, "
+             "duration, "
+             "format, gravity, integrator, obstacles, record, self_contact, springs, title",
              "name:5:14: damping = \"much\": must be a number", "name:6:15: duration = 0 s: must be > 0"}));
 }
 
@@ -159,9 +160,10 @@ TEST(SceneReader, NamesProblemsOfObstacles) {
   refused("{\"shape\": \"torus\"}",
           "11: obstacles.0.shape = \"torus\": must be \"sphere\", \"box\", \"plane\" or \"mesh\"");
   refused("{\"shape\": \"mesh\", \"radius\": 1, \"file\": \"disc.obj\"}",
-          "19: obstacles.0.radius: is not a known key; known here: file, friction, response, restitution, "
+          "19: obstacles.0.radius: is not a known key; known here: file, friction, keyframes, response, "
+          "restitution, "
           "rotate, "
-          "scale, shape, translate");
+          "scale, shape, spin, translate, velocity");
   refused("{\"shape\": \"sphere\", \"radius\": 0}", "31: obstacles.0.radius = 0 m: must be > 0");
   refused("{\"shape\": \"box\", \"size\": [1, -1, 1]}", "26: obstacles.0.size = [1, -1, 1] m: must be > 0");
   refused("{\"shape\": \"plane\", \"normal\": [0, 0, 0]}",

@@ -21,12 +21,15 @@ void expect_reads_back(const Scene& scene) {
   EXPECT_EQ(write_scene(*reading.scene), text);
 }
 
-TEST(BuiltinScenes, AreThoseOfTheIssue) {
+TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
-  EXPECT_EQ(names, std::vector<std::string>({"ball", "bunny", "corners-free", "corners-shear",
-                                             "corners-structural", "cube", "curtain", "disc", "flag",
-                                             "free-fall", "pendulum", "rectangle", "tablecloth", "wind"}));
+  EXPECT_EQ(names,
+            std::vector<std::string>(
+                {"ball",      "bunny",    "corner",    "corners-free", "corners-shear", "corners-structural",
+                 "cube",      "curtain",  "disc",      "fast-ball",    "flag",          "fold",
+                 "free-fall", "pendulum", "rectangle", "slope",        "spikes",        "tablecloth",
+                 "twist",     "wind"}));
 }
 
 TEST(BuiltinScenes, AllReadAndKeepEveryRule) {

@@ -20,12 +20,13 @@ std::vector<std::string> scenes_of_contact() {
 
 class ASceneOfContact : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ASceneOfContact, LetsNothingThroughFromBeginningToEnd) {
+TEST_P(ASceneOfContact, LetsNothingThrough) {
   Scene scene = builtin_scene(GetParam());
   scene.cloth.rows = (scene.cloth.rows + 1) / 2;
   scene.cloth.columns = (scene.cloth.columns + 1) / 2;
+  scene.duration = std::min(scene.duration, 1.0);
   scene.integrator.time_step = resolved_time_step(scene).value();
-  constexpr int shown = 40;
+  constexpr int shown = 20;
   const auto steps = static_cast<int>(std::lround(scene.duration / *scene.integrator.time_step));
   const int stride = std::max(1, steps / shown);
 

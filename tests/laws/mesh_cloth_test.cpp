@@ -110,7 +110,9 @@ TEST(MeshCloth, EdgesAreStructuralAndVerticesAcrossThemFlexionSprings) {
   EXPECT_EQ(structural.size(), across.size());
   for (const auto& [edge, corners] : across) {
     EXPECT_EQ(structural[edge], 1);
-    if (corners.size() == 2) EXPECT_EQ(flexion[std::minmax(corners[0], corners[1])], 1);
+    if (corners.size() == 2) {
+      EXPECT_EQ(flexion[std::minmax(corners[0], corners[1])], 1);
+    }
   }
 }
 
@@ -181,7 +183,9 @@ TEST(MeshCloth, LosesNoEnergyToAnAccurateMethod) {
     while (simulation.time() < 0.3) ASSERT_FALSE(simulation.step());
     const double error = std::abs(simulation.measure().energy_error());
     EXPECT_LT(error, 1e-4);
-    if (last > 0) EXPECT_LT(error, last / 8);
+    if (last > 0) {
+      EXPECT_LT(error, last / 8);
+    }
     last = error;
   }
 }

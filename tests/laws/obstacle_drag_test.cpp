@@ -67,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle,
                                            Case{Shape::sphere, "verlet"}, Case{Shape::sphere, "rk4"},
                                            Case{Shape::box, "semi-implicit-euler"},
                                            Case{Shape::box, "verlet"}, Case{Shape::box, "rk4"}),
-                         [](const auto& info) {
+                         [](const auto& tested) {
                            std::string name =
-                               std::string(name_of(info.param.shape)) + "_" + info.param.method;
+                               std::string(name_of(tested.param.shape)) + "_" + tested.param.method;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

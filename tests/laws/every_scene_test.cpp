@@ -33,10 +33,11 @@ TEST_P(EveryScene, RunsToItsEndAtTheAutomaticStepOrIsToldThatThereIsNone) {
   constexpr double newton_duration = 0.3;
   if (facts_of(method).settings == MethodSettings::newton)
     scene.duration = std::min(scene.duration, newton_duration);
-  // Scenes of continuous contact are run to their ends elsewhere, with the checker of crossings.
-  constexpr double steps_of_contact = 300;
+  // Scenes of continuous contact are run on elsewhere, with the checker of crossings.
+  constexpr double steps_of_contact = 300, seconds_of_contact = 0.1;
   if (has_continuous_contact(scene))
-    scene.duration = std::min(scene.duration, steps_of_contact * *resolved_time_step(scene));
+    scene.duration =
+        std::min({scene.duration, seconds_of_contact, steps_of_contact * *resolved_time_step(scene)});
   const auto start = std::chrono::steady_clock::now();
   const RunResult result = run_scene(scene, {.folder = {}, .progress = {}});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

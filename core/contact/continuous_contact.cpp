@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
+#include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
@@ -15,7 +16,11 @@ std::size_t at(int index) {
 
 /// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
 constexpr double near_factor = 1.5;
-constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
+/// Of the thickness: how far a particle may leave the straight line to where it is wished without a new
+/// search.
+constexpr double margin_part = 0.1;
+constexpr std::size_t least_share = 500;  ///< pairs that are worth a thread of their own
+constexpr double skin_part = 0.25;        ///< of a mean edge: how far overlaps that were found serve again
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
@@ -113,26 +118,65 @@ void ContinuousContact::begin(const ContactTimes& times) {
 
 /// Whether there are any. Forgets what was pushed in earlier rounds.
 bool ContinuousContact::find_pairs() {
-  const double margin = 0.5 * std::max(thickness_, near_factor * self_thickness_);
-  boxes_.resize(safe_.size());
+  const double margin = margin_part * std::max(thickness_, self_thickness_);
+  ways_.reach = thickness_, ways_.own_reach = self_thickness_;
+  ways_.particles.resize(safe_.size());
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     const Vec3 here = safe_[i];
     const Vec3 way = wish_[i] - here;
     const double length = way.norm();
     const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
-    boxes_[i] = bounds_of(here, end).grown(margin);
+    ways_.particles[i] = {here, end, margin};
   }
-  search_.find(boxes_, passages_, near_factor * thickness_, pairs_);
+  search_.find(ways_, passages_, pairs_);
   memory_.assign(pairs_.size(), {});
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
+  separate_all();
+  drop_far_pairs();
+  is_separated_ = true;
   return !pairs_.empty();
 }
 
 void ContinuousContact::separate_all() {
   separations_.resize(pairs_.size());
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    separations_[k] = separate(pairs_[k], surface_, safe_, bodies_, poses_);
+  const auto separate_share = [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      separations_[k] =
+          separate(pairs_[k], surface_, safe_, bodies_, poses_, near_factor * memory_[k].thickness);
+  };
+  in_shares(team_, pairs_.size(), least_share, separate_share);
+}
+
+/// m, at most, of any point of an obstacle in this step.
+double ContinuousContact::obstacle_way(int obstacle) const {
+  const Passage& passage = passages_[at(obstacle)];
+  if (passage.rests()) return 0;
+  const ObstacleBody& body = bodies_[at(obstacle)];
+  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
+  if (body.shape == Shape::sphere || passage.angle() == 0) return shift;
+  return body.shape == Shape::plane ? infinity : shift + passage.angle() * body.reach;
+}
+
+/// Pairs that cannot come nearer than the thickness as long as all particles stay in their ways.
+void ContinuousContact::drop_far_pairs() {
+  std::vector<double> obstacle_ways;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) obstacle_ways.push_back(obstacle_way(static_cast<int>(k)));
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const Separation& s = separations_[k];
+    double near_way = 0, far_way = 0;
+    for (int j = 0; j < s.count; ++j) {
+      const Capsule& way = ways_.particles[at(s.particle[at(j)])];
+      double& longest = j < s.near_count ? near_way : far_way;
+      longest = std::max(longest, (way.to - way.from).norm() + way.radius);
+    }
+    if (pairs_[k].obstacle != FeaturePair::cloth_itself) far_way = obstacle_ways[at(pairs_[k].obstacle)];
+    if (s.distance > memory_[k].thickness + near_way + far_way) continue;
+    pairs_[kept] = pairs_[k], memory_[kept] = memory_[k], separations_[kept] = s;
+    ++kept;
+  }
+  pairs_.resize(kept), memory_.resize(kept), separations_.resize(kept);
 }
 
 /// The pair at the end of the step: its plane is carried along by the obstacle.
@@ -223,7 +267,8 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   const double arrived = arrived_part * thickness_;
   while (true) {
     ++report.rounds;
-    separate_all();
+    if (!is_separated_) separate_all();
+    is_separated_ = false;
     solve_wish(system, from);
     keep_touches(times.step);
     const Vec3Field before = safe_;
@@ -239,10 +284,7 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
       }
     }
     if (part_ == 1 && (left <= arrived || ++rounds_at_rest > most_rounds_at_rest)) break;
-    if (outgrown_) {
-      const bool any = find_pairs();
-      if (!any) break;
-    }
+    if (outgrown_) find_pairs();
   }
   if (!moved && touches_.empty()) return report;
   report.acted = true;

@@ -54,6 +54,9 @@ class ContinuousContact {
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
                       ClothState& state);
 
+  /// The same to the bit for any team; none: one thread.
+  void set_team(WorkerTeam* team) { team_ = team, search_.set_team(team); }
+
   /// From the next step on.
   void set_carries(ObstacleCarries carries) { carries_ = std::move(carries); }
 
@@ -86,13 +89,15 @@ class ContinuousContact {
 
   void begin(const ContactTimes& times);
   bool find_pairs();
+  void drop_far_pairs();
+  double obstacle_way(int obstacle) const;
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
   void keep_touches(double step);
   double move_cloth();
   void bound_by_pairs();
-  void bound_by_boxes();
+  void bound_by_ways();
   double advance_obstacles();
   double turn_limit(std::size_t obstacle) const;
   double shrink_to_planes();
@@ -109,6 +114,7 @@ class ContinuousContact {
   std::vector<Obstacle> obstacles_;
   ObstacleCarries carries_;
   PairSearch search_;
+  WorkerTeam* team_ = nullptr;
   double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
   double gravity_ = 0;      ///< m/s^2
   double longest_way_ = 0;  ///< m, that one search for pairs serves
@@ -123,7 +129,7 @@ class ContinuousContact {
   Vec3Field wish_;   ///< m, wished with contact
   Vec3Field safe_;   ///< m, reached
   std::vector<double> share_;
-  std::vector<Bounds> boxes_;
+  Ways ways_;  ///< where the particles may go until pairs are found anew
   std::vector<FeaturePair> pairs_;
   std::vector<PairMemory> memory_;
   std::vector<Separation> separations_;
@@ -131,7 +137,8 @@ class ContinuousContact {
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
   std::size_t blocking_pair_ = 0;  ///< that stopped an obstacle last
-  bool outgrown_ = false;          ///< a particle was stopped by its box
+  bool outgrown_ = false;          ///< a particle was stopped by its way
+  bool is_separated_ = false;      ///< the separations are of where all is now
   bool was_rebased_ = false;       ///< contacts of earlier rounds are part of what is wished
 };
 

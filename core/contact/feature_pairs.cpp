@@ -99,7 +99,7 @@ void set_near_level(Separation& s, const ClothSide& cloth) {
 
 template <class Far>
 Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
-                       double slack) {
+                       double slack, double within) {
   const auto& [a, b, c] = far.surface.triangles[at(pair.foreign)];
   const Vec3 p = cloth(pair.feature), pa = far(a), pb = far(b), pc = far(c);
   const PointTriangle closest = closest_on_triangle(p, pa, pb, pc);
@@ -110,6 +110,7 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
   s.far_level = std::max({s.normal.dot(pa), s.normal.dot(pb), s.normal.dot(pc)});
   s.far_point = p - closest.separation;
   if (own) add_particles<3>(s, {a, b, c}, closest.weights, -1);
+  if (s.distance >= within) return s;
 
   const Side side = side_of_triangle(far.surface, pair.foreign, closest.weights);
   const bool in_charge = side.vertex >= 0 ? far.surface.triangle_of_vertex[at(side.vertex)] == pair.foreign
@@ -120,8 +121,8 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
 }
 
 template <class Far>
-Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
-                     double slack) {
+Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own, double slack,
+                     double within) {
   const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
   const auto& [c, d] = far.surface.edges[at(pair.foreign)];
   const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
@@ -133,6 +134,7 @@ Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far&
   s.far_level = std::max(s.normal.dot(pc), s.normal.dot(pd));
   s.far_point = pc + closest.second * (pd - pc);
   if (own) add_particles<2>(s, {c, d}, {1 - closest.second, closest.second}, -1);
+  if (s.distance >= within) return s;
 
   const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
   if (!inside(closest.first) || !inside(closest.second)) return s;  // a vertex's pair holds these
@@ -142,7 +144,7 @@ Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far&
   return s;
 }
 
-Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex) {
+Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex, double within) {
   const Triangle& face = cloth.surface.triangles[at(pair.feature)];
   const PointTriangle closest = closest_on_triangle(vertex, cloth(face[0]), cloth(face[1]), cloth(face[2]));
   Separation s;
@@ -151,6 +153,7 @@ Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Ve
   set_near_level(s, cloth);
   s.far_level = s.normal.dot(vertex);
   s.far_point = vertex;
+  if (s.distance >= within) return s;
 
   const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
   if (side.vertex >= 0) return s;  // the vertex's own pair holds it
@@ -211,7 +214,7 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
 
 /// An edge of a box and the cloth's: nearest only where the normal lies between those of the box's two sides.
 Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
-                         const Pose& pose) {
+                         const Pose& pose, double within) {
   const BodySide far{body.surface, body.vertices, pose};
   const auto& [c, d] = body.surface.edges[at(pair.foreign)];
   const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
@@ -223,6 +226,7 @@ Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const 
   set_near_level(s, cloth);
   set_far_level(s, far, {c, d});
   s.far_point = pc + closest.second * (pd - pc);
+  if (s.distance >= within) return s;
   const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
   if (!inside(closest.first) || !inside(closest.second)) return s;
 
@@ -240,11 +244,11 @@ Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const 
 }  // namespace
 
 Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
-                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses) {
+                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within) {
   const ClothSide cloth{surface, position};
   if (pair.obstacle == FeaturePair::cloth_itself)
-    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, true, slack_of_cloth)
-                                              : edge_edge(pair, cloth, cloth, true, slack_of_cloth);
+    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, true, slack_of_cloth, within)
+                                              : edge_edge(pair, cloth, cloth, true, slack_of_cloth, within);
   const ObstacleBody& body = bodies[at(pair.obstacle)];
   const Pose& pose = poses[at(pair.obstacle)];
   const BodySide far{body.surface, body.vertices, pose};
@@ -256,12 +260,12 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
     case PairKind::face_sphere:
       return face_sphere(pair, cloth, body, pose);
     case PairKind::vertex_face:
-      return vertex_face(pair, cloth, far, false, slack_of_obstacle);
+      return vertex_face(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::edge_edge:
-      return body.shape == Shape::box ? edge_box_edge(pair, cloth, body, pose)
-                                      : edge_edge(pair, cloth, far, false, slack_of_obstacle);
+      return body.shape == Shape::box ? edge_box_edge(pair, cloth, body, pose, within)
+                                      : edge_edge(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::face_vertex:
-      return face_vertex(pair, cloth, far(pair.foreign));
+      return face_vertex(pair, cloth, far(pair.foreign), within);
   }
   return {};
 }

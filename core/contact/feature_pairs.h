@@ -53,8 +53,9 @@ struct Separation {
   double gap() const { return near_level - far_level; }
 };
 
-/// Positions in m; `poses` of the bodies, in their order.
+/// Positions in m; `poses` of the bodies, in their order. Whether a pair is the nearest is only looked into
+/// up to the distance `within`, in m.
 Separation separate(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
-                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses);
+                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within);
 
 }  // namespace cloth

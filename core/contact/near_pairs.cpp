@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/face_meeting.h"
+#include "kernels/in_shares.h"
+
 namespace cloth {
 namespace {
+
+/// Overlaps that are worth a thread of their own.
+constexpr std::size_t least_share = 1000;
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
@@ -19,11 +25,6 @@ double bulge(const Passage& passage, double radius) {
 Bounds swept(const Passage& passage, const Vec3& pivot, const Vec3& point, double reach) {
   return bounds_of(passage.from().at(point), passage.to().at(point))
       .grown(reach + bulge(passage, (point - pivot).norm()));
-}
-
-Bounds merged(Bounds a, const Bounds& b) {
-  a.add(b);
-  return a;
 }
 
 /// A box as it is seen from an obstacle.
@@ -53,18 +54,18 @@ bool holds(const Bounds& outer, const Bounds& inner) {
          (inner.upper.array() <= outer.upper.array()).all();
 }
 
-bool has_vertex(const Triangle& triangle, int vertex) {
-  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
 }  // namespace
 
 /// One search.
 class PairSearch::Step {
  public:
-  Step(PairSearch& search, const std::vector<Bounds>& particles, double reach,
-       std::vector<FeaturePair>& pairs)
-      : search_(search), cloth_(search.cloth_), particles_(particles), reach_(reach), pairs_(pairs) {
+  Step(PairSearch& search, const Ways& ways, std::vector<FeaturePair>& pairs)
+      : search_(search),
+        cloth_(search.cloth_),
+        particles_(search.particles_),
+        ways_(ways),
+        reach_(ways.reach),
+        pairs_(pairs) {
     for (const Bounds& box : particles_) whole_.add(box);
   }
 
@@ -84,23 +85,27 @@ class PairSearch::Step {
   }
 
   void meet_itself() {
-    obstacle_ = FeaturePair::cloth_itself;
-    for (const auto& [a, b] : search_.own_overlaps_) {
-      if (!overlap(search_.faces_[at(a)], search_.faces_[at(b)])) continue;
-      meet_own_vertices(a, b);
-      meet_own_vertices(b, a);
-      meet_own_edges(a, b);
+    std::vector<Capsule>& near = search_.seen_capsules_;
+    near.clear();
+    for (const Capsule& way : ways_.particles) near.push_back(way.grown(0.5 * ways_.own_reach));
+    std::vector<Slab>& faces = search_.own_faces_;
+    faces.resize(cloth_.triangles.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto& [a, b, c] = cloth_.triangles[f];
+      faces[f] = slab_of(near[at(a)], near[at(b)], near[at(c)]);
     }
+    meet_faces<Capsule, Capsule>(search_.own_overlaps_,
+                                 {FeaturePair::cloth_itself, cloth_, near, cloth_, near, faces});
   }
 
  private:
   Bounds box_of_edge(int edge) const {
     const auto& [a, b] = cloth_.edges[at(edge)];
-    return merged(particles_[at(a)], particles_[at(b)]);
+    return bounds_of(particles_[at(a)], particles_[at(b)]);
   }
   Bounds box_of_face(int face) const {
     const auto& [a, b, c] = cloth_.triangles[at(face)];
-    return merged(merged(particles_[at(a)], particles_[at(b)]), particles_[at(c)]);
+    return bounds_of(particles_[at(a)], particles_[at(b)], particles_[at(c)]);
   }
   void add(PairKind kind, int feature, int foreign) { pairs_.push_back({obstacle_, kind, feature, foreign}); }
 
@@ -140,7 +145,7 @@ class PairSearch::Step {
       const Bounds box = box_of_edge(e);
       if (!overlap(box, way)) continue;
       for (std::size_t k = 0; k < 12; ++k)
-        if (overlap(box, merged(corner[at(box_edges[k][0])], corner[at(box_edges[k][1])])))
+        if (overlap(box, bounds_of(corner[at(box_edges[k][0])], corner[at(box_edges[k][1])])))
           add(PairKind::edge_edge, e, static_cast<int>(k));
     }
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f) {
@@ -152,68 +157,40 @@ class PairSearch::Step {
   }
 
   void meet_mesh(const ObstacleBody& body, const Passage& passage) {
-    seen_from_body(body, passage, particles_, reach_, search_.seen_);
-    for (const BoxPair& both : search_.mesh_overlaps_[at(obstacle_)]) meet_face(both.query, both.index, body);
-  }
-
-  /// Each feature is met by the triangle that answers for it, so that no pair comes twice.
-  void meet_face(int face, int triangle, const ObstacleBody& body) {
-    const std::vector<Bounds>& seen = search_.seen_;
-    const Triangle& own = cloth_.triangles[at(face)];
-    const Bounds near = merged(merged(seen[at(own[0])], seen[at(own[1])]), seen[at(own[2])]);
-    const Surface& mesh = body.surface;
-    const Bounds& far = search_.mesh_boxes_[at(obstacle_)][at(triangle)];
-    if (!overlap(near, far)) return;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (cloth_.answers_for_vertex(face, static_cast<int>(k)) && overlap(seen[at(own[k])], far))
-        add(PairKind::vertex_face, own[k], triangle);
-      const int vertex = mesh.triangles[at(triangle)][k];
-      if (mesh.answers_for_vertex(triangle, static_cast<int>(k)) &&
-          overlap(near, bounds_of(body.vertices[at(vertex)])))
-        add(PairKind::face_vertex, face, vertex);
-    }
-    for (int k = 0; k < 3; ++k) {
-      if (!cloth_.answers_for_edge(face, k)) continue;
-      const int e = cloth_.edges_of[at(face)][at(k)];
-      const Bounds box = merged(seen[at(cloth_.edges[at(e)][0])], seen[at(cloth_.edges[at(e)][1])]);
-      if (!overlap(box, far)) continue;
-      for (int j = 0; j < 3; ++j) {
-        if (!mesh.answers_for_edge(triangle, j)) continue;
-        const int g = mesh.edges_of[at(triangle)][at(j)];
-        const auto& [c, d] = mesh.edges[at(g)];
-        if (overlap(box, bounds_of(body.vertices[at(c)], body.vertices[at(d)])))
-          add(PairKind::edge_edge, e, g);
-      }
+    const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
+    const std::vector<Slab>& faces = search_.mesh_faces_[at(obstacle_)];
+    if (passage.rests()) {
+      std::vector<Capsule>& near = search_.seen_capsules_;
+      near.clear();
+      const Pose& pose = passage.from();
+      for (const Capsule& way : ways_.particles)
+        near.push_back({pose.back(way.from), pose.back(way.to), way.radius + reach_});
+      meet_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
+    } else {
+      std::vector<Bounds>& near = search_.seen_;
+      seen_from_body(body, passage, particles_, reach_, near);
+      meet_faces<Bounds, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     }
   }
 
-  /// The same among the cloth's own.
-  void meet_own_vertices(int near, int far) {
-    const Triangle &a = cloth_.triangles[at(near)], &b = cloth_.triangles[at(far)];
-    for (std::size_t k = 0; k < 3; ++k)
-      if (cloth_.answers_for_vertex(near, static_cast<int>(k)) && !has_vertex(b, a[k]) &&
-          overlap(particles_[at(a[k])], search_.faces_[at(far)]))
-        add(PairKind::vertex_face, a[k], far);
-  }
-
-  void meet_own_edges(int near, int far) {
-    for (int k = 0; k < 3; ++k) {
-      if (!cloth_.answers_for_edge(near, k)) continue;
-      const int e = cloth_.edges_of[at(near)][at(k)];
-      const Bounds box = box_of_edge(e);
-      for (int j = 0; j < 3; ++j) {
-        if (!cloth_.answers_for_edge(far, j)) continue;
-        const int g = cloth_.edges_of[at(far)][at(j)];
-        const auto &p = cloth_.edges[at(e)], &q = cloth_.edges[at(g)];
-        const bool share = p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1];
-        if (!share && overlap(box, box_of_edge(g))) add(PairKind::edge_edge, e, g);
-      }
-    }
+  template <class NearRegion, class FarRegion>
+  void meet_faces(const std::vector<BoxPair>& overlaps, const FaceMeeting<NearRegion, FarRegion>& meeting) {
+    std::vector<std::vector<FeaturePair>>& parts = search_.parts_;
+    const auto meet_share = [&](int share, std::size_t begin, std::size_t end) {
+      parts[at(share)].clear();
+      auto own_meeting = meeting;
+      for (std::size_t k = begin; k < end; ++k)
+        own_meeting.meet(overlaps[k].query, overlaps[k].index, parts[at(share)]);
+    };
+    const int shares = in_shares(search_.team_, overlaps.size(), least_share, meet_share);
+    for (int share = 0; share < shares; ++share)
+      pairs_.insert(pairs_.end(), parts[at(share)].begin(), parts[at(share)].end());
   }
 
   PairSearch& search_;
   const Surface& cloth_;
   const std::vector<Bounds>& particles_;
+  const Ways& ways_;
   double reach_;
   std::vector<FeaturePair>& pairs_;
   Bounds whole_;
@@ -226,47 +203,55 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       bodies_(bodies),
       with_itself_(with_itself),
       skin_(skin),
-      mesh_boxes_(bodies.size()),
+      mesh_faces_(bodies.size()),
       mesh_trees_(bodies.size()),
       mesh_overlaps_(bodies.size()) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies[k].shape != Shape::mesh) continue;
     needs_trees_ = true;
     const std::vector<Vec3>& vertices = bodies[k].vertices;
-    for (const auto& [a, b, c] : bodies[k].surface.triangles)
-      mesh_boxes_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
-    mesh_trees_[k] = BoxTree(mesh_boxes_[k]);
+    std::vector<Bounds> boxes;
+    for (const auto& [a, b, c] : bodies[k].surface.triangles) {
+      mesh_faces_[k].push_back(slab_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
+      boxes.push_back(mesh_faces_[k].back().box);
+    }
+    mesh_trees_[k] = BoxTree(boxes);
   }
   needs_trees_ = needs_trees_ || with_itself_;
+}
+
+void PairSearch::set_team(WorkerTeam* team) {
+  team_ = team;
+  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
 }
 
 /// What the trees have found is kept while every particle stays in its grown box and no mesh moves. It may
 /// say too much; what is in the boxes of this step is told apart afterwards, so that the pairs do not depend
 /// on it.
-void PairSearch::look_in_trees(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
-                               double reach) {
-  const auto stays = [&](std::size_t i) { return holds(kept_[i], particles[i]); };
-  bool kept = kept_.size() == particles.size() && kept_reach_ == reach;
+void PairSearch::look_in_trees(const Ways& ways, const std::vector<Passage>& passages) {
+  const auto stays = [&](std::size_t i) { return holds(kept_[i], particles_[i]); };
+  bool kept = kept_.size() == particles_.size() && kept_reach_ == ways.reach;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     kept = kept &&
            (bodies_[k].shape != Shape::mesh || (passages[k].rests() && passages[k].to() == kept_poses_[k]));
-  for (std::size_t i = 0; kept && i < particles.size(); ++i) kept = stays(i);
+  for (std::size_t i = 0; kept && i < particles_.size(); ++i) kept = stays(i);
   if (kept) return;
 
-  kept_reach_ = reach;
-  kept_.resize(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) kept_[i] = particles[i].grown(skin_);
+  kept_reach_ = ways.reach;
+  kept_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) kept_[i] = particles_[i].grown(skin_);
   kept_poses_.clear();
   for (const Passage& passage : passages) kept_poses_.push_back(passage.to());
-  find_faces(kept_);
   if (with_itself_) {
+    find_faces(kept_, 0.5 * ways.own_reach);
     refit_cloth();
     own_overlaps_.clear();
     cloth_tree_.collect_own(own_overlaps_);
   }
+  find_faces(kept_, 0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].shape != Shape::mesh) continue;
-    seen_from_body(bodies_[k], passages[k], faces_, reach, seen_);
+    seen_from_body(bodies_[k], passages[k], faces_, ways.reach, seen_);
     mesh_overlaps_[k].clear();
     mesh_trees_[k].collect(seen_, mesh_overlaps_[k]);
   }
@@ -279,22 +264,21 @@ void PairSearch::refit_cloth() {
     cloth_tree_.refit(faces_);
 }
 
-void PairSearch::find_faces(const std::vector<Bounds>& particles) {
+void PairSearch::find_faces(const std::vector<Bounds>& particles, double reach) {
   faces_.resize(cloth_.triangles.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const auto& [a, b, c] = cloth_.triangles[f];
-    faces_[f] = merged(merged(particles[at(a)], particles[at(b)]), particles[at(c)]);
+    faces_[f] = bounds_of(particles[at(a)], particles[at(b)], particles[at(c)]).grown(reach);
   }
 }
 
-void PairSearch::find(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
-                      double reach, std::vector<FeaturePair>& pairs) {
+void PairSearch::find(const Ways& ways, const std::vector<Passage>& passages,
+                      std::vector<FeaturePair>& pairs) {
   pairs.clear();
-  if (needs_trees_) {
-    look_in_trees(particles, passages, reach);
-    find_faces(particles);
-  }
-  Step step(*this, particles, reach, pairs);
+  particles_.clear();
+  for (const Capsule& way : ways.particles) particles_.push_back(box_of(way));
+  if (needs_trees_) look_in_trees(ways, passages);
+  Step step(*this, ways, pairs);
   if (with_itself_) step.meet_itself();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), passages[k]);
 }

@@ -1,12 +1,22 @@
-// Which features can meet within a step: those whose boxes overlap. A particle stays in its box until the
-// pairs are found anew, and the box of an obstacle's feature holds its whole way, so that no pair is missed
-// at any speed.
+// Which features can meet within a step: those that neither boxes nor the normals of their triangles part. A
+// particle stays in its capsule until the pairs are found anew, and the box of an obstacle's feature holds
+// its whole way, so that no pair is missed at any speed.
 #pragma once
 
 #include "contact/feature_pairs.h"
+#include "contact/slab.h"
 #include "geometry/box_tree.h"
 
 namespace cloth {
+
+class WorkerTeam;
+
+/// Where the cloth's particles may be, and how near things count.
+struct Ways {
+  std::vector<Capsule> particles{};
+  double reach = 0;      ///< m, between cloth and obstacles
+  double own_reach = 0;  ///< m, of the cloth from itself
+};
 
 /// Keeps hierarchies where a scene needs them: of meshes from the start, of the cloth from the first search
 /// on.
@@ -16,11 +26,12 @@ class PairSearch {
   /// leaves its box by more than `skin`, in m.
   PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin);
 
-  /// `reach` in m is added to obstacles on all sides; `particles`, a box for each, are taken as they are.
+  /// The pairs are the same for any team; none: one thread.
+  void set_team(WorkerTeam* team);
+
   /// Every pair comes once; pairs and their order follow from the arguments alone. Features of the cloth that
   /// share a particle are no pair.
-  void find(const std::vector<Bounds>& particles, const std::vector<Passage>& passages, double reach,
-            std::vector<FeaturePair>& pairs);
+  void find(const Ways& ways, const std::vector<Passage>& passages, std::vector<FeaturePair>& pairs);
 
   /// Levels of a body's hierarchy, or with `FeaturePair::cloth_itself` of the cloth's; 0 where there is none.
   int hierarchy_depth(int body) const;
@@ -31,19 +42,22 @@ class PairSearch {
  private:
   class Step;
 
-  void look_in_trees(const std::vector<Bounds>& particles, const std::vector<Passage>& passages,
-                     double reach);
+  void look_in_trees(const Ways& ways, const std::vector<Passage>& passages);
   void refit_cloth();
-  void find_faces(const std::vector<Bounds>& particles);
+  void find_faces(const std::vector<Bounds>& particles, double reach);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
   bool with_itself_, needs_trees_ = false;
   double skin_;
-  std::vector<std::vector<Bounds>> mesh_boxes_;  ///< of each body's triangles
-  std::vector<BoxTree> mesh_trees_;              ///< of each body; empty unless it is a mesh
+  WorkerTeam* team_ = nullptr;
+  std::vector<std::vector<Slab>> mesh_faces_;  ///< of each body's triangles
+  std::vector<BoxTree> mesh_trees_;            ///< of each body; empty unless it is a mesh
   BoxTree cloth_tree_;
-  std::vector<Bounds> faces_, seen_;
+  std::vector<Bounds> particles_, faces_, seen_;
+  std::vector<Capsule> seen_capsules_;
+  std::vector<Slab> own_faces_;
+  std::vector<std::vector<FeaturePair>> parts_{1};  ///< of each thread
 
   std::vector<Bounds> kept_;  ///< of the particles, for which the overlaps hold
   std::vector<Pose> kept_poses_;

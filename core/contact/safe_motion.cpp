@@ -29,6 +29,27 @@ bool meets_solid(const FeaturePair& pair) {
          pair.kind == PairKind::face_sphere;
 }
 
+/// How much of the straight way from `start`, which is inside, to `end` stays in a cylinder whose rims lie on
+/// the capsule: about its axis, as long as it is narrower.
+double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
+  const double room = capsule.radius / std::sqrt(2.0);
+  const Vec3 line = capsule.to - capsule.from;
+  const double length = line.norm();
+  const Vec3 axis = length > 0 ? Vec3(line / length) : Vec3::UnitX();
+  const auto across = [&](const Vec3& x) -> Vec3 { return x - axis.dot(x) * axis; };
+  const Vec3 here = start - capsule.from, way = end - start;
+  double part = 1;
+  const double along = axis.dot(way), from = axis.dot(here);
+  const double ahead = along > 0 ? length + room - from : room + from;
+  if (std::abs(along) > ahead) part = std::max(ahead, 0.0) / std::abs(along);
+  const Vec3 aside = across(here), drift = across(way);
+  if ((aside + drift).squaredNorm() <= room * room) return part;
+  // |aside + t drift| = room
+  const double a = drift.squaredNorm(), b = aside.dot(drift), c = aside.squaredNorm() - room * room;
+  const double root = std::sqrt(std::max(b * b - a * c, 0.0));
+  return std::min(part, std::clamp((root - b) / a, 0.0, 1.0));
+}
+
 }  // namespace
 
 /// How much of its way each particle can go without leaving its side of any plane.
@@ -64,16 +85,12 @@ void ContinuousContact::bound_by_pairs() {
   }
 }
 
-void ContinuousContact::bound_by_boxes() {
+void ContinuousContact::bound_by_ways() {
   for (std::size_t i = 0; i < safe_.size(); ++i) {
-    const Vec3 here = safe_[i], way = wish_[i] - here;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double room =
-          way[axis] > 0 ? boxes_[i].upper[axis] - here[axis] : here[axis] - boxes_[i].lower[axis];
-      if (std::abs(way[axis]) * share_[i] <= room) continue;
-      share_[i] = std::max(room, 0.0) / std::abs(way[axis]);
-      outgrown_ = true;
-    }
+    const double part = part_inside(ways_.particles[i], safe_[i], wish_[i]);
+    if (share_[i] <= part) continue;
+    share_[i] = part;
+    outgrown_ = true;
   }
 }
 
@@ -82,7 +99,7 @@ double ContinuousContact::move_cloth() {
   share_.assign(safe_.size(), 1.0);
   outgrown_ = false;
   bound_by_pairs();
-  bound_by_boxes();
+  bound_by_ways();
   double left = 0;
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     if (share_[i] == 1) {

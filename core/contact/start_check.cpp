@@ -88,17 +88,17 @@ class StartCheck {
   void check_own_distance() {
     const double thickness = scene_.self_contact->thickness;
     Vec3Field position(vertices_.size());
-    std::vector<Bounds> around;
+    Ways around{.own_reach = thickness};
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       position.set(i, vertices_[i]);
-      around.push_back(bounds_of(vertices_[i]).grown(0.5 * thickness));
+      around.particles.push_back({vertices_[i], vertices_[i], 0});
     }
     const Surface surface = make_surface(static_cast<int>(vertices_.size()), triangles_);
     std::vector<FeaturePair> pairs;
-    PairSearch(surface, {}, true, 0).find(around, {}, 0, pairs);
+    PairSearch(surface, {}, true, 0).find(around, {}, pairs);
     double least = thickness;
     for (const FeaturePair& pair : pairs)
-      least = std::min(least, separate(pair, surface, position, {}, {}).distance);
+      least = std::min(least, separate(pair, surface, position, {}, {}, 0).distance);
     if (least < thickness)
       problems_.push_back(
           {"self_contact.thickness", fmt::format("{} m", thickness),

@@ -70,6 +70,7 @@ void Simulation::assemble() {
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
   if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
+  if (continuous_contact_) continuous_contact_->set_team(team_.get());
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
@@ -293,8 +294,10 @@ void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
 void Simulation::set_threads(int threads, ThreadUse use) {
   thread_use_ = use;
   forces_->set_team(nullptr);
+  if (continuous_contact_) continuous_contact_->set_team(nullptr);
   team_ = threads > 1 ? std::make_unique<WorkerTeam>(threads) : nullptr;
   forces_->set_team(team_.get(), thread_use_);
+  if (continuous_contact_) continuous_contact_->set_team(team_.get());
 }
 
 int Simulation::threads() const {

@@ -1,0 +1,104 @@
+// Which features of a face of the cloth and of a face that it must not pass can meet: those that neither
+// their boxes nor the normals of the two faces part.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contact/feature_pairs.h"
+#include "contact/slab.h"
+
+namespace cloth {
+
+/// Regions of particles, and of the vertices of an obstacle's mesh or of the cloth, all as the obstacle sees
+/// them. Each feature is met by the triangle that answers for it, so that no pair comes twice.
+template <class NearRegion, class FarRegion>
+class FaceMeeting {
+ public:
+  FaceMeeting(int obstacle, const Surface& near, std::span<const NearRegion> near_vertices,
+              const Surface& far, std::span<const FarRegion> far_vertices, std::span<const Slab> far_faces)
+      : obstacle_(obstacle),
+        near_(near),
+        far_(far),
+        near_vertices_(near_vertices),
+        far_vertices_(far_vertices),
+        far_faces_(far_faces) {}
+
+  /// Appends the pairs of `face` and `foreign`; soonest where a face comes several times in a row.
+  void meet(int face, int foreign, std::vector<FeaturePair>& pairs) {
+    if (face != face_) take(face);
+    const Slab& far = far_faces_[at(foreign)];
+    if (!overlap(slab_.box, far.box)) return;
+    foreign_ = foreign, other_ = far_.triangles[at(foreign)];
+    for (std::size_t k = 0; k < 3; ++k)
+      near_sides_[k] = far.side_of(along(far.normal, near_vertices_[at(own_[k])]));
+    if (all_beyond(near_sides_)) return;
+    for (std::size_t k = 0; k < 3; ++k) far_sides_[k] = slab_.side_of(along(slab_.normal, other_vertex(k)));
+    if (all_beyond(far_sides_)) return;
+    meet_vertices(far, pairs);
+    meet_edges(far, pairs);
+  }
+
+ private:
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+  static bool has(const Triangle& triangle, int vertex) {
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+  }
+  bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
+  const FarRegion& other_vertex(std::size_t k) const { return far_vertices_[at(other_[k])]; }
+
+  void take(int face) {
+    face_ = face, own_ = near_.triangles[at(face)];
+    slab_ = slab_of(near_vertices_[at(own_[0])], near_vertices_[at(own_[1])], near_vertices_[at(own_[2])]);
+    for (std::size_t k = 0; k < 3; ++k) boxes_[k] = box_of(near_vertices_[at(own_[k])]);
+    for (std::size_t k = 0; k < 3; ++k) edge_boxes_[k] = bounds_of(boxes_[k], boxes_[(k + 1) % 3]);
+  }
+
+  void meet_vertices(const Slab& far, std::vector<FeaturePair>& pairs) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (near_sides_[k] == 0 && near_.answers_for_vertex(face_, static_cast<int>(k)) &&
+          !(is_own() && has(other_, own_[k])) && overlap(boxes_[k], far.box))
+        pairs.push_back({obstacle_, PairKind::vertex_face, own_[k], foreign_});
+      if (far_sides_[k] != 0 || !far_.answers_for_vertex(foreign_, static_cast<int>(k))) continue;
+      if ((is_own() && has(own_, other_[k])) || !overlap(slab_.box, box_of(other_vertex(k)))) continue;
+      if (is_own())
+        pairs.push_back({obstacle_, PairKind::vertex_face, other_[k], face_});
+      else
+        pairs.push_back({obstacle_, PairKind::face_vertex, face_, other_[k]});
+    }
+  }
+
+  void meet_edges(const Slab& far, std::vector<FeaturePair>& pairs) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (edge_beyond(near_sides_, k) || !near_.answers_for_edge(face_, static_cast<int>(k))) continue;
+      if (!overlap(edge_boxes_[k], far.box)) continue;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (edge_beyond(far_sides_, j) || !far_.answers_for_edge(foreign_, static_cast<int>(j))) continue;
+        if (is_own() && edges_share(k, j)) continue;
+        const Bounds box = bounds_of(box_of(other_vertex(j)), box_of(other_vertex((j + 1) % 3)));
+        if (overlap(edge_boxes_[k], box))
+          pairs.push_back(
+              {obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k], far_.edges_of[at(foreign_)][j]});
+      }
+    }
+  }
+
+  bool edges_share(std::size_t k, std::size_t j) const {
+    const int a = own_[k], b = own_[(k + 1) % 3], c = other_[j], d = other_[(j + 1) % 3];
+    return a == c || a == d || b == c || b == d;
+  }
+
+  int obstacle_;
+  const Surface &near_, &far_;
+  std::span<const NearRegion> near_vertices_;
+  std::span<const FarRegion> far_vertices_;
+  std::span<const Slab> far_faces_;
+
+  int face_ = -1, foreign_ = -1;
+  Triangle own_{}, other_{};
+  Slab slab_;
+  std::array<Bounds, 3> boxes_, edge_boxes_;  ///< of vertices and edges of `face_`
+  Sides near_sides_{}, far_sides_{};
+};
+
+}  // namespace cloth

@@ -1,0 +1,28 @@
+// A loop whose turns do not depend on each other, in even shares for a team of threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "kernels/worker_team.h"
+
+namespace cloth {
+
+/// job(share, begin, end) for shares of [0, count) in their order, of at least `least` items each; without a
+/// team for one. Returns the shares. Jobs must not throw.
+template <class Job>
+int in_shares(WorkerTeam* team, std::size_t count, std::size_t least, const Job& job) {
+  const std::size_t most = team ? static_cast<std::size_t>(team->size()) : 1;
+  const std::size_t shares = std::clamp<std::size_t>(count / std::max<std::size_t>(1, least), 1, most);
+  const auto share_of = [&](int share) {
+    const auto k = static_cast<std::size_t>(share);
+    job(share, count * k / shares, count * (k + 1) / shares);
+  };
+  if (shares == 1)
+    share_of(0);
+  else
+    team->run(static_cast<int>(shares), share_of);
+  return static_cast<int>(shares);
+}
+
+}  // namespace cloth

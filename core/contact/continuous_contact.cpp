@@ -16,9 +16,9 @@ std::size_t at(int index) {
 
 /// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
 constexpr double near_factor = 1.5;
-/// Of the thickness: how far a particle may leave the straight line to where it is wished without a new
-/// search.
-constexpr double margin_part = 0.1;
+/// Of the thickness, and of the way if that is more: how far a particle may leave the straight line to where
+/// it is wished without a new search.
+constexpr double margin_part = 0.1, aside_part = 0.1;
 constexpr std::size_t least_share = 500;  ///< pairs that are worth a thread of their own
 constexpr double skin_part = 0.25;        ///< of a mean edge: how far overlaps that were found serve again
 /// Of the thickness: what is left of a way that counts as none.
@@ -27,6 +27,9 @@ constexpr double solver_tolerance_part = 1e-5;
 constexpr int solver_sweeps = 20, velocity_sweeps = 50;
 constexpr double velocity_tolerance = 1e-9;  ///< m/s
 constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
+/// Rounds without a shorter way left, after which the few that are still on their way are held back.
+constexpr int most_rounds_idle = 6;
+constexpr double progress_part = 0.7;
 
 bool all_finite(const Vec3Field& field) {
   const auto values = field.flat();
@@ -102,23 +105,25 @@ void ContinuousContact::follow(const ContinuousContact& before) {
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {
-  passages_.clear();
+  passages_.clear(), obstacle_ways_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     poses_[k] = starts_[k];
     end_poses_[k] = carried_pose(obstacles_, carries_, k, times.end);
     passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
+    obstacle_ways_.push_back(obstacle_way(k));
     all_rest = all_rest && passages_[k].rests();
   }
   starts_ = end_poses_;
   part_ = all_rest ? 1 : 0;
   was_rebased_ = false;
+  room_.assign(safe_.size(), 1.0);
   touches_.clear();
 }
 
 /// Whether there are any. Forgets what was pushed in earlier rounds.
 bool ContinuousContact::find_pairs() {
-  const double margin = margin_part * std::max(thickness_, self_thickness_);
+  const double least = margin_part * std::max(thickness_, self_thickness_);
   ways_.reach = thickness_, ways_.own_reach = self_thickness_;
   ways_.particles.resize(safe_.size());
   for (std::size_t i = 0; i < safe_.size(); ++i) {
@@ -126,7 +131,7 @@ bool ContinuousContact::find_pairs() {
     const Vec3 way = wish_[i] - here;
     const double length = way.norm();
     const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
-    ways_.particles[i] = {here, end, margin};
+    ways_.particles[i] = {here, end, room_[i] * std::max(least, aside_part * length)};
   }
   search_.find(ways_, passages_, pairs_);
   memory_.assign(pairs_.size(), {});
@@ -149,31 +154,37 @@ void ContinuousContact::separate_all() {
 }
 
 /// m, at most, of any point of an obstacle in this step.
-double ContinuousContact::obstacle_way(int obstacle) const {
-  const Passage& passage = passages_[at(obstacle)];
+double ContinuousContact::obstacle_way(std::size_t obstacle) const {
+  const Passage& passage = passages_[obstacle];
   if (passage.rests()) return 0;
-  const ObstacleBody& body = bodies_[at(obstacle)];
+  const ObstacleBody& body = bodies_[obstacle];
   const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
   if (body.shape == Shape::sphere || passage.angle() == 0) return shift;
   return body.shape == Shape::plane ? infinity : shift + passage.angle() * body.reach;
 }
 
-/// Pairs that cannot come nearer than the thickness as long as all particles stay in their ways.
+/// Whether the pair cannot come nearer than the thickness as long as all particles stay in their ways.
+bool ContinuousContact::is_far(std::size_t k) const {
+  const Separation& s = separations_[k];
+  double near_way = 0, far_way = 0;
+  for (int j = 0; j < s.count; ++j) {
+    const Capsule& way = ways_.particles[at(s.particle[at(j)])];
+    double& longest = j < s.near_count ? near_way : far_way;
+    longest = std::max(longest, (way.to - way.from).norm() + way.radius);
+  }
+  if (pairs_[k].obstacle != FeaturePair::cloth_itself) far_way = obstacle_ways_[at(pairs_[k].obstacle)];
+  return s.distance > memory_[k].thickness + near_way + far_way;
+}
+
 void ContinuousContact::drop_far_pairs() {
-  std::vector<double> obstacle_ways;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) obstacle_ways.push_back(obstacle_way(static_cast<int>(k)));
+  far_.resize(pairs_.size());
+  in_shares(team_, pairs_.size(), least_share, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) far_[k] = is_far(k);
+  });
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const Separation& s = separations_[k];
-    double near_way = 0, far_way = 0;
-    for (int j = 0; j < s.count; ++j) {
-      const Capsule& way = ways_.particles[at(s.particle[at(j)])];
-      double& longest = j < s.near_count ? near_way : far_way;
-      longest = std::max(longest, (way.to - way.from).norm() + way.radius);
-    }
-    if (pairs_[k].obstacle != FeaturePair::cloth_itself) far_way = obstacle_ways[at(pairs_[k].obstacle)];
-    if (s.distance > memory_[k].thickness + near_way + far_way) continue;
-    pairs_[kept] = pairs_[k], memory_[kept] = memory_[k], separations_[kept] = s;
+    if (far_[k]) continue;
+    pairs_[kept] = pairs_[k], memory_[kept] = memory_[k], separations_[kept] = separations_[k];
     ++kept;
   }
   pairs_.resize(kept), memory_.resize(kept), separations_.resize(kept);
@@ -253,9 +264,9 @@ void ContinuousContact::keep_touches(double step) {
 /// What is not finite is left as it is: the run stops there.
 bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state) {
   if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
-  begin(times);
   base_ = wish_ = state.position;
   safe_ = from;
+  begin(times);
   return find_pairs();
 }
 
@@ -263,7 +274,8 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
                                        const ContactTimes& times, ClothState& state) {
   ContactReport report;
   bool moved = false;
-  int stuck = 0, rounds_at_rest = 0;
+  int stuck = 0, rounds_at_rest = 0, idle = 0;
+  double least_left = infinity;
   const double arrived = arrived_part * thickness_;
   while (true) {
     ++report.rounds;
@@ -283,7 +295,12 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
         break;
       }
     }
-    if (part_ == 1 && (left <= arrived || ++rounds_at_rest > most_rounds_at_rest)) break;
+    if (part_ == 1) {
+      if (left <= arrived || ++rounds_at_rest > most_rounds_at_rest) break;
+      idle = left < progress_part * least_left ? 0 : idle + 1;
+      least_left = std::min(least_left, left);
+      if (idle > most_rounds_idle) break;
+    }
     if (outgrown_) find_pairs();
   }
   if (!moved && touches_.empty()) return report;

@@ -89,8 +89,9 @@ class ContinuousContact {
 
   void begin(const ContactTimes& times);
   bool find_pairs();
+  bool is_far(std::size_t pair) const;
   void drop_far_pairs();
-  double obstacle_way(int obstacle) const;
+  double obstacle_way(std::size_t obstacle) const;
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
@@ -129,9 +130,12 @@ class ContinuousContact {
   Vec3Field wish_;   ///< m, wished with contact
   Vec3Field safe_;   ///< m, reached
   std::vector<double> share_;
-  Ways ways_;  ///< where the particles may go until pairs are found anew
+  std::vector<double> room_;  ///< of each particle's way, more each time that it was stopped by it
+  Ways ways_;                 ///< where the particles may go until pairs are found anew
   std::vector<FeaturePair> pairs_;
   std::vector<PairMemory> memory_;
+  std::vector<std::uint8_t> far_;      ///< of each pair
+  std::vector<double> obstacle_ways_;  ///< m, at most, of any point of each
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;

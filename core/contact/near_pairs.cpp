@@ -9,8 +9,8 @@
 namespace cloth {
 namespace {
 
-/// Overlaps that are worth a thread of their own.
-constexpr std::size_t least_share = 1000;
+/// Overlaps, and faces to be looked for in a hierarchy, that are worth a thread of their own.
+constexpr std::size_t least_share = 1000, least_queries = 200;
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
@@ -55,6 +55,18 @@ bool holds(const Bounds& outer, const Bounds& inner) {
 }
 
 }  // namespace
+
+/// fill(begin, end, part) for shares of [0, count); appends the parts in their order.
+template <class Part, class Fill>
+void PairSearch::in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
+                          std::vector<Part>& whole, const Fill& fill) {
+  const int shares = in_shares(team_, count, least, [&](int share, std::size_t begin, std::size_t end) {
+    parts[at(share)].clear();
+    fill(begin, end, parts[at(share)]);
+  });
+  for (int share = 0; share < shares; ++share)
+    whole.insert(whole.end(), parts[at(share)].begin(), parts[at(share)].end());
+}
 
 /// One search.
 class PairSearch::Step {
@@ -175,16 +187,12 @@ class PairSearch::Step {
 
   template <class NearRegion, class FarRegion>
   void meet_faces(const std::vector<BoxPair>& overlaps, const FaceMeeting<NearRegion, FarRegion>& meeting) {
-    std::vector<std::vector<FeaturePair>>& parts = search_.parts_;
-    const auto meet_share = [&](int share, std::size_t begin, std::size_t end) {
-      parts[at(share)].clear();
-      auto own_meeting = meeting;
-      for (std::size_t k = begin; k < end; ++k)
-        own_meeting.meet(overlaps[k].query, overlaps[k].index, parts[at(share)]);
-    };
-    const int shares = in_shares(search_.team_, overlaps.size(), least_share, meet_share);
-    for (int share = 0; share < shares; ++share)
-      pairs_.insert(pairs_.end(), parts[at(share)].begin(), parts[at(share)].end());
+    search_.in_parts(overlaps.size(), least_share, search_.pair_parts_, pairs_,
+                     [&](std::size_t begin, std::size_t end, std::vector<FeaturePair>& part) {
+                       auto own_meeting = meeting;
+                       for (std::size_t k = begin; k < end; ++k)
+                         own_meeting.meet(overlaps[k].query, overlaps[k].index, part);
+                     });
   }
 
   PairSearch& search_;
@@ -222,7 +230,8 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
 
 void PairSearch::set_team(WorkerTeam* team) {
   team_ = team;
-  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
+  const std::size_t threads = team ? static_cast<std::size_t>(team->size()) : 1;
+  pair_parts_.resize(threads), overlap_parts_.resize(threads);
 }
 
 /// What the trees have found is kept while every particle stays in its grown box and no mesh moves. It may
@@ -246,14 +255,20 @@ void PairSearch::look_in_trees(const Ways& ways, const std::vector<Passage>& pas
     find_faces(kept_, 0.5 * ways.own_reach);
     refit_cloth();
     own_overlaps_.clear();
-    cloth_tree_.collect_own(own_overlaps_);
+    in_parts(faces_.size(), least_queries, overlap_parts_, own_overlaps_,
+             [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+               cloth_tree_.collect_own(begin, end, part);
+             });
   }
   find_faces(kept_, 0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].shape != Shape::mesh) continue;
     seen_from_body(bodies_[k], passages[k], faces_, ways.reach, seen_);
     mesh_overlaps_[k].clear();
-    mesh_trees_[k].collect(seen_, mesh_overlaps_[k]);
+    in_parts(seen_.size(), least_queries, overlap_parts_, mesh_overlaps_[k],
+             [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+               mesh_trees_[k].collect(seen_, begin, end, part);
+             });
   }
 }
 

@@ -42,6 +42,9 @@ class PairSearch {
  private:
   class Step;
 
+  template <class Part, class Fill>
+  void in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
+                std::vector<Part>& whole, const Fill& fill);
   void look_in_trees(const Ways& ways, const std::vector<Passage>& passages);
   void refit_cloth();
   void find_faces(const std::vector<Bounds>& particles, double reach);
@@ -57,7 +60,8 @@ class PairSearch {
   std::vector<Bounds> particles_, faces_, seen_;
   std::vector<Capsule> seen_capsules_;
   std::vector<Slab> own_faces_;
-  std::vector<std::vector<FeaturePair>> parts_{1};  ///< of each thread
+  std::vector<std::vector<FeaturePair>> pair_parts_{1};  ///< of each thread
+  std::vector<std::vector<BoxPair>> overlap_parts_{1};
 
   std::vector<Bounds> kept_;  ///< of the particles, for which the overlaps hold
   std::vector<Pose> kept_poses_;

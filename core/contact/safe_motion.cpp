@@ -15,6 +15,8 @@ std::size_t at(int index) {
 constexpr double least_part = 1e-3;
 /// Of a gap a round may use up this part: enough that few rounds are needed, and something is always left.
 constexpr double used_part = 0.5;
+/// A way that stopped its particle is so much wider the next time, up to the most.
+constexpr double more_room = 2, most_room = 8;
 constexpr double least_advance = 1e-9;  ///< of a step; less is none
 /// What must be left of a gap after a round.
 double kept_gap(double gap, double thickness) {
@@ -90,6 +92,7 @@ void ContinuousContact::bound_by_ways() {
     const double part = part_inside(ways_.particles[i], safe_[i], wish_[i]);
     if (share_[i] <= part) continue;
     share_[i] = part;
+    room_[i] = std::min(most_room, more_room * room_[i]);
     outgrown_ = true;
   }
 }

@@ -208,18 +208,19 @@ void BoxTree::fit() {
   }
 }
 
-void BoxTree::collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
+void BoxTree::collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
+                      std::vector<BoxPair>& pairs) const {
   std::vector<int> found;
-  for (std::size_t q = 0; q < queries.size(); ++q) {
+  for (std::size_t q = begin; q < end; ++q) {
     found.clear();
     visit(queries[q], [&](int index) { found.push_back(index); });
     append_sorted(static_cast<int>(q), found, pairs);
   }
 }
 
-void BoxTree::collect_own(std::vector<BoxPair>& pairs) const {
+void BoxTree::collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const {
   std::vector<int> found;
-  for (int i = 0; i < size(); ++i) {
+  for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
     found.clear();
     const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
     visit(boxes_[place], [&](int index) {

@@ -45,11 +45,18 @@ class BoxTree {
   void visit(const Bounds& query, Callback&& callback) const;
 
   /// Appends a pair for every query and each box that it overlaps or touches, by query and then by index.
-  void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const;
+  void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
+    collect(queries, 0, queries.size(), pairs);
+  }
+  /// Of the queries [begin, end) only.
+  void collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
+               std::vector<BoxPair>& pairs) const;
 
   /// Appends every pair of boxes of the tree that overlap or touch each other, query < index, in the same
   /// order.
-  void collect_own(std::vector<BoxPair>& pairs) const;
+  void collect_own(std::vector<BoxPair>& pairs) const { collect_own(0, boxes_.size(), pairs); }
+  /// Of those with a query in [begin, end) only.
+  void collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const;
 
   /// Levels of nodes: 0 without boxes.
   int depth() const { return depth_; }

@@ -1,0 +1,57 @@
+// Contact is the same to the bit for any number of threads.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scene/builtin_scenes.h"
+#include "simulation/simulation.h"
+#include "simulation/time_step.h"
+
+namespace cloth::test {
+namespace {
+
+struct Outcome {
+  std::vector<double> values;
+  int touched = 0;
+};
+
+/// The end of a run that is long enough for the cloth to lie on what is under it.
+Outcome run_with(int threads, const std::string& name, double duration) {
+  Scene scene = builtin_scene(name);
+  scene.cloth.rows = std::min(scene.cloth.rows, 25);
+  scene.cloth.columns = std::min(scene.cloth.columns, 25);
+  scene.integrator.time_step = resolved_time_step(scene).value();
+  Simulation simulation(scene);
+  simulation.set_threads(threads, ThreadUse::always);
+  Outcome outcome;
+  while (simulation.state().time < duration) {
+    const auto stop = simulation.step();
+    EXPECT_FALSE(stop) << describe(*stop);
+    if (stop) break;
+    outcome.touched = std::max(outcome.touched, simulation.last_contact().contacts);
+  }
+  for (const Vec3Field* field : {&simulation.state().position, &simulation.state().velocity})
+    outcome.values.insert(outcome.values.end(), field->flat().begin(), field->flat().end());
+  return outcome;
+}
+
+void expect_same_for_any_threads(const std::string& name, double duration) {
+  const Outcome alone = run_with(1, name, duration);
+  EXPECT_GT(alone.touched, 0) << name << ": nothing was touched";
+  for (const int threads : {2, 3}) {
+    const Outcome together = run_with(threads, name, duration);
+    EXPECT_EQ(together.touched, alone.touched) << name << ", " << threads << " threads";
+    EXPECT_TRUE(together.values == alone.values) << name << ", " << threads << " threads";
+  }
+}
+
+TEST(ContactOfManyThreads, IsTheSameOnAMesh) {
+  expect_same_for_any_threads("bunny", 0.55);
+}
+
+TEST(ContactOfManyThreads, IsTheSameOfAClothOnItself) {
+  expect_same_for_any_threads("fold", 0.4);
+}
+
+}  // namespace
+}  // namespace cloth::test

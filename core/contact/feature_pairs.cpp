@@ -85,12 +85,6 @@ struct BodySide {
   Vec3 operator()(int vertex) const { return pose.at(vertices[at(vertex)]); }
 };
 
-template <class Far>
-void set_far_level(Separation& s, const Far& far, std::initializer_list<int> vertices) {
-  s.far_level = -std::numeric_limits<double>::infinity();
-  for (const int vertex : vertices) s.far_level = std::max(s.far_level, s.normal.dot(far(vertex)));
-}
-
 void set_near_level(Separation& s, const ClothSide& cloth) {
   s.near_level = std::numeric_limits<double>::infinity();
   for (int k = 0; k < s.near_count; ++k)
@@ -120,9 +114,10 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
   return s;
 }
 
-template <class Far>
-Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own, double slack,
-                     double within) {
+/// `far_bends_away(point, normal)` says it of the surface beside the far edge.
+template <class Far, class BendsAway>
+Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own, double within,
+                     const BendsAway& far_bends_away) {
   const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
   const auto& [c, d] = far.surface.edges[at(pair.foreign)];
   const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
@@ -140,8 +135,33 @@ Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far&
   if (!inside(closest.first) || !inside(closest.second)) return s;  // a vertex's pair holds these
   const Vec3 near_point = s.far_point + closest.separation;
   s.nearest = bends_away(cloth.surface, {-1, pair.feature}, near_point, -s.normal, slack_of_cloth, cloth) &&
-              bends_away(far.surface, {-1, pair.foreign}, s.far_point, s.normal, slack, far);
+              far_bends_away(s.far_point, s.normal);
   return s;
+}
+
+/// With an edge of a mesh or of the cloth.
+template <class Far>
+Separation edge_surface_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
+                             double slack, double within) {
+  return edge_edge(pair, cloth, far, own, within, [&](const Vec3& point, const Vec3& normal) {
+    return bends_away(far.surface, {-1, pair.foreign}, point, normal, slack, far);
+  });
+}
+
+/// With an edge of a box: nearest only where the normal lies between those of the box's two sides.
+Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
+                         const Pose& pose, double within) {
+  const auto& [c, d] = body.surface.edges[at(pair.foreign)];
+  const auto lies_between = [&, c = c, d = d](const Vec3&, const Vec3& normal) {
+    const Vec3 local = body.box.axes.transpose() * (pose.turn.transpose() * normal);
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((c ^ d) >> axis & 1) continue;  // along the edge
+      const double outward = (c >> axis & 1) ? local[axis] : -local[axis];
+      if (outward < -slack_of_obstacle) return false;
+    }
+    return true;
+  };
+  return edge_edge(pair, cloth, BodySide{body.surface, body.vertices, pose}, false, within, lies_between);
 }
 
 Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex, double within) {
@@ -212,43 +232,15 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
   return s;
 }
 
-/// An edge of a box and the cloth's: nearest only where the normal lies between those of the box's two sides.
-Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
-                         const Pose& pose, double within) {
-  const BodySide far{body.surface, body.vertices, pose};
-  const auto& [c, d] = body.surface.edges[at(pair.foreign)];
-  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
-  const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
-  const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
-  Separation s;
-  set_normal(s, closest.separation, closest.squared_distance);
-  add_particles<2>(s, {a, b}, {1 - closest.first, closest.first}, 1);
-  set_near_level(s, cloth);
-  set_far_level(s, far, {c, d});
-  s.far_point = pc + closest.second * (pd - pc);
-  if (s.distance >= within) return s;
-  const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
-  if (!inside(closest.first) || !inside(closest.second)) return s;
-
-  const Vec3 normal = body.box.axes.transpose() * (pose.turn.transpose() * s.normal);
-  s.nearest = bends_away(cloth.surface, {-1, pair.feature}, s.far_point + closest.separation, -s.normal,
-                         slack_of_cloth, cloth);
-  for (int axis = 0; axis < 3; ++axis) {
-    if ((c ^ d) >> axis & 1) continue;  // along the edge
-    const double outward = (c >> axis & 1) ? normal[axis] : -normal[axis];
-    if (outward < -slack_of_obstacle) s.nearest = false;
-  }
-  return s;
-}
-
 }  // namespace
 
 Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within) {
   const ClothSide cloth{surface, position};
   if (pair.obstacle == FeaturePair::cloth_itself)
-    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, true, slack_of_cloth, within)
-                                              : edge_edge(pair, cloth, cloth, true, slack_of_cloth, within);
+    return pair.kind == PairKind::vertex_face
+               ? vertex_face(pair, cloth, cloth, true, slack_of_cloth, within)
+               : edge_surface_edge(pair, cloth, cloth, true, slack_of_cloth, within);
   const ObstacleBody& body = bodies[at(pair.obstacle)];
   const Pose& pose = poses[at(pair.obstacle)];
   const BodySide far{body.surface, body.vertices, pose};
@@ -263,7 +255,7 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
       return vertex_face(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::edge_edge:
       return body.shape == Shape::box ? edge_box_edge(pair, cloth, body, pose, within)
-                                      : edge_edge(pair, cloth, far, false, slack_of_obstacle, within);
+                                      : edge_surface_edge(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::face_vertex:
       return face_vertex(pair, cloth, far(pair.foreign), within);
   }

@@ -14,8 +14,6 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Pairs nearer than this many thicknesses hold the thickness; others only bound the motion.
-constexpr double near_factor = 1.5;
 /// Of the thickness, and of the way if that is more: how far a particle may leave the straight line to where
 /// it is wished without a new search.
 constexpr double margin_part = 0.1, aside_part = 0.1;
@@ -68,8 +66,8 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
-      search_(surface_, bodies_, scene.self_contact.has_value(),
-              skin_part * mean_edge(surface_, system.start)),
+      close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
+                   skin_part * mean_edge(surface_, system.start)),
       thickness_(scene.contact.value_or(ContactSettings{}).thickness),
       gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
       poses_(bodies_.size()),
@@ -105,13 +103,12 @@ void ContinuousContact::follow(const ContinuousContact& before) {
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {
-  passages_.clear(), obstacle_ways_.clear();
+  passages_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     poses_[k] = starts_[k];
     end_poses_[k] = carried_pose(obstacles_, carries_, k, times.end);
     passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
-    obstacle_ways_.push_back(obstacle_way(k));
     all_rest = all_rest && passages_[k].rests();
   }
   starts_ = end_poses_;
@@ -133,12 +130,10 @@ bool ContinuousContact::find_pairs() {
     const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
     ways_.particles[i] = {here, end, room_[i] * std::max(least, aside_part * length)};
   }
-  search_.find(ways_, passages_, pairs_);
+  close_pairs_.find({safe_, ways_, passages_, poses_}, pairs_, separations_);
   memory_.assign(pairs_.size(), {});
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
-  separate_all();
-  drop_far_pairs();
   is_separated_ = true;
   return !pairs_.empty();
 }
@@ -151,43 +146,6 @@ void ContinuousContact::separate_all() {
           separate(pairs_[k], surface_, safe_, bodies_, poses_, near_factor * memory_[k].thickness);
   };
   in_shares(team_, pairs_.size(), least_share, separate_share);
-}
-
-/// m, at most, of any point of an obstacle in this step.
-double ContinuousContact::obstacle_way(std::size_t obstacle) const {
-  const Passage& passage = passages_[obstacle];
-  if (passage.rests()) return 0;
-  const ObstacleBody& body = bodies_[obstacle];
-  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
-  if (body.shape == Shape::sphere || passage.angle() == 0) return shift;
-  return body.shape == Shape::plane ? infinity : shift + passage.angle() * body.reach;
-}
-
-/// Whether the pair cannot come nearer than the thickness as long as all particles stay in their ways.
-bool ContinuousContact::is_far(std::size_t k) const {
-  const Separation& s = separations_[k];
-  double near_way = 0, far_way = 0;
-  for (int j = 0; j < s.count; ++j) {
-    const Capsule& way = ways_.particles[at(s.particle[at(j)])];
-    double& longest = j < s.near_count ? near_way : far_way;
-    longest = std::max(longest, (way.to - way.from).norm() + way.radius);
-  }
-  if (pairs_[k].obstacle != FeaturePair::cloth_itself) far_way = obstacle_ways_[at(pairs_[k].obstacle)];
-  return s.distance > memory_[k].thickness + near_way + far_way;
-}
-
-void ContinuousContact::drop_far_pairs() {
-  far_.resize(pairs_.size());
-  in_shares(team_, pairs_.size(), least_share, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) far_[k] = is_far(k);
-  });
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    if (far_[k]) continue;
-    pairs_[kept] = pairs_[k], memory_[kept] = memory_[k], separations_[kept] = separations_[k];
-    ++kept;
-  }
-  pairs_.resize(kept), memory_.resize(kept), separations_.resize(kept);
 }
 
 /// The pair at the end of the step: its plane is carried along by the obstacle.

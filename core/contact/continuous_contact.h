@@ -12,10 +12,10 @@
 #pragma once
 
 #include "cloth/cloth_system.h"
+#include "contact/close_pairs.h"
 #include "contact/contact_mark.h"
 #include "contact/contact_report.h"
 #include "contact/contact_solver.h"
-#include "contact/near_pairs.h"
 #include "contact/obstacle_carry.h"
 
 namespace cloth {
@@ -55,7 +55,7 @@ class ContinuousContact {
                       ClothState& state);
 
   /// The same to the bit for any team; none: one thread.
-  void set_team(WorkerTeam* team) { team_ = team, search_.set_team(team); }
+  void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
 
   /// From the next step on.
   void set_carries(ObstacleCarries carries) { carries_ = std::move(carries); }
@@ -66,9 +66,9 @@ class ContinuousContact {
   void forget_touches() { touches_.clear(); }
 
   /// See PairSearch.
-  int hierarchy_depth(int body) const { return search_.hierarchy_depth(body); }
+  int hierarchy_depth(int body) const { return close_pairs_.search().hierarchy_depth(body); }
   void append_boxes(int body, int level, const Vec3Field& position, std::vector<Bounds>& boxes) {
-    search_.append_boxes(body, level, position, 0.5 * self_thickness_, boxes);
+    close_pairs_.search().append_boxes(body, level, position, 0.5 * self_thickness_, boxes);
   }
 
  private:
@@ -89,9 +89,6 @@ class ContinuousContact {
 
   void begin(const ContactTimes& times);
   bool find_pairs();
-  bool is_far(std::size_t pair) const;
-  void drop_far_pairs();
-  double obstacle_way(std::size_t obstacle) const;
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
@@ -114,7 +111,7 @@ class ContinuousContact {
   std::vector<ObstacleBody> bodies_;
   std::vector<Obstacle> obstacles_;
   ObstacleCarries carries_;
-  PairSearch search_;
+  ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
   double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
   double gravity_ = 0;      ///< m/s^2
@@ -134,8 +131,6 @@ class ContinuousContact {
   Ways ways_;                 ///< where the particles may go until pairs are found anew
   std::vector<FeaturePair> pairs_;
   std::vector<PairMemory> memory_;
-  std::vector<std::uint8_t> far_;      ///< of each pair
-  std::vector<double> obstacle_ways_;  ///< m, at most, of any point of each
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;

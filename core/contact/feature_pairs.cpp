@@ -232,7 +232,37 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
   return s;
 }
 
+template <std::size_t N>
+void append(PairParticles& pair, const std::array<int, N>& particles) {
+  for (const int particle : particles) pair.particle[at(pair.count++)] = particle;
+}
+
 }  // namespace
+
+PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
+  PairParticles all;
+  switch (pair.kind) {
+    case PairKind::vertex_plane:
+    case PairKind::vertex_box:
+    case PairKind::vertex_face:
+      append<1>(all, {pair.feature});
+      break;
+    case PairKind::edge_edge:
+      append(all, cloth.edges[at(pair.feature)]);
+      break;
+    case PairKind::face_sphere:
+    case PairKind::face_vertex:
+      append(all, cloth.triangles[at(pair.feature)]);
+      break;
+  }
+  all.near_count = all.count;
+  if (pair.obstacle != FeaturePair::cloth_itself) return all;
+  if (pair.kind == PairKind::edge_edge)
+    append(all, cloth.edges[at(pair.foreign)]);
+  else
+    append(all, cloth.triangles[at(pair.foreign)]);
+  return all;
+}
 
 Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within) {

@@ -33,6 +33,14 @@ struct FeaturePair {
   auto operator<=>(const FeaturePair&) const = default;
 };
 
+/// Of the near feature, then of a far one of the cloth.
+struct PairParticles {
+  int near_count = 0, count = 0;
+  std::array<int, 4> particle{};
+};
+
+PairParticles particles_of(const FeaturePair& pair, const Surface& cloth);
+
 /// How two convex features lie to each other. Every point of the near feature is at least at `near_level`
 /// along the normal, every point of the far one at most at `far_level`: where near_level > far_level any
 /// plane between parts them, however exact the closest points are.

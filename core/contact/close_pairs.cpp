@@ -1,0 +1,177 @@
+#include "contact/close_pairs.h"
+
+#include <algorithm>
+
+#include "kernels/in_shares.h"
+
+namespace cloth {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+constexpr std::size_t least_share = 500;  ///< pairs that are worth a thread of their own
+/// Kept pairs are found for so many more ways like this one, at most for a reach more.
+constexpr double ways_ahead = 4;
+constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and for what hardly moves
+
+double furthest_reach(const Ways& ways) {
+  return std::max(ways.reach, ways.own_reach);
+}
+
+/// m, at most, of any point.
+double way_of(const ObstacleBody& body, const Passage& passage) {
+  if (passage.rests()) return 0;
+  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
+  if (body.shape == Shape::sphere || passage.angle() == 0) return shift;
+  return body.shape == Shape::plane ? Bounds::infinity : shift + passage.angle() * body.reach;
+}
+
+/// Where a body is, as far as a turn of a sphere does not matter.
+bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
+  return a == b || (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center));
+}
+
+double largest(const std::vector<double>& of, const PairParticles& pair, int begin, int end) {
+  double most = 0;
+  for (int j = begin; j < end; ++j) most = std::max(most, of[at(pair.particle[at(j)])]);
+  return most;
+}
+
+}  // namespace
+
+void ClosePairs::set_team(WorkerTeam* team) {
+  team_ = team;
+  search_.set_team(team);
+  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
+}
+
+void ClosePairs::measure(const Situation& now) {
+  longest_ = 0;
+  range_.resize(now.ways.particles.size());
+  for (std::size_t i = 0; i < range_.size(); ++i) {
+    const Capsule& way = now.ways.particles[i];
+    const double length = (way.to - way.from).norm();
+    longest_ = std::max(longest_, length);
+    range_[i] = length + way.radius;
+  }
+  obstacle_ways_.clear();
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    obstacle_ways_.push_back(way_of(bodies_[k], now.passages[k]));
+}
+
+bool ClosePairs::all_stand(const Situation& now) const {
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    if (!same_place(bodies_[k], now.passages[k].from(), now.passages[k].to())) return false;
+  return true;
+}
+
+/// Whether the kept pairs are all that matter: nothing has left what they were found for.
+bool ClosePairs::holds(const Situation& now) const {
+  if (kept_range_.size() != range_.size()) return false;
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    if (!same_place(bodies_[k], now.poses[k], kept_poses_[k])) return false;
+  for (std::size_t i = 0; i < range_.size(); ++i)
+    if (moved_[i] + range_[i] > kept_range_[i]) return false;
+  return true;
+}
+
+/// Finds what is to be kept, and its distances.
+void ClosePairs::look_around(const Situation& now) {
+  const double reach = furthest_reach(now.ways);
+  Ways around = now.ways;
+  kept_range_.resize(range_.size());
+  for (std::size_t i = 0; i < range_.size(); ++i) {
+    const Vec3 here = now.position[i];
+    const double length = (around.particles[i].to - around.particles[i].from).norm();
+    kept_range_[i] = range_[i] + std::min(ways_ahead * length, reach) + least_ahead * reach;
+    around.particles[i] = {here, here, kept_range_[i]};
+  }
+  search_.find(around, now.passages, kept_);
+  kept_distance_.resize(kept_.size());
+  in_shares(team_, kept_.size(), least_share, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      kept_distance_[k] = separate(kept_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
+  });
+  kept_position_ = now.position;
+  kept_poses_ = now.poses;
+  moved_.assign(range_.size(), 0);
+}
+
+double ClosePairs::reach_of(const FeaturePair& pair, const Ways& ways) const {
+  return pair.obstacle == FeaturePair::cloth_itself ? ways.own_reach : ways.reach;
+}
+
+/// What is_far() would say of a kept pair, known without looking at it.
+bool ClosePairs::is_still_far(std::size_t k, const Ways& ways) const {
+  const PairParticles pair = particles_of(kept_[k], cloth_);
+  const int near = pair.near_count;
+  const double moved = largest(moved_, pair, 0, near) + largest(moved_, pair, near, pair.count);
+  const double range = largest(range_, pair, 0, near) + largest(range_, pair, near, pair.count);
+  constexpr double rounding = 1e-9;
+  return (1 - rounding) * kept_distance_[k] > reach_of(kept_[k], ways) + range + moved;
+}
+
+/// Whether the pair cannot come within its reach: the ways are too short, or lead along or away.
+bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const Ways& ways) const {
+  const double reach = reach_of(pair, ways);
+  double near_range = 0, far_range = 0;
+  Interval near, far{s.far_level, s.far_level};
+  for (int j = 0; j < s.count; ++j) {
+    const std::size_t i = at(s.particle[at(j)]);
+    double& range = j < s.near_count ? near_range : far_range;
+    range = std::max(range, range_[i]);
+    (j < s.near_count ? near : far).add(along(s.normal, ways.particles[i]));
+  }
+  if (pair.obstacle != FeaturePair::cloth_itself) {
+    far_range = obstacle_ways_[at(pair.obstacle)];
+    far.high += far_range;
+  }
+  if (s.distance > reach + near_range + far_range) return true;
+  return !s.normal.isZero(0) && near.low > far.high + reach;
+}
+
+template <class Skip>
+void ClosePairs::separate_all(const Situation& now, const std::vector<FeaturePair>& candidates,
+                              const Skip& skip, std::vector<FeaturePair>& pairs,
+                              std::vector<Separation>& separations) {
+  const int shares =
+      in_shares(team_, candidates.size(), least_share, [&](int share, std::size_t begin, std::size_t end) {
+        Part& part = parts_[at(share)];
+        part.pairs.clear(), part.separations.clear();
+        for (std::size_t k = begin; k < end; ++k) {
+          if (skip(k)) continue;
+          const FeaturePair& pair = candidates[k];
+          const Separation s = separate(pair, cloth_, now.position, bodies_, now.poses,
+                                        near_factor * reach_of(pair, now.ways));
+          if (is_far(pair, s, now.ways)) continue;
+          part.pairs.push_back(pair);
+          part.separations.push_back(s);
+        }
+      });
+  pairs.clear(), separations.clear();
+  for (int share = 0; share < shares; ++share) {
+    const Part& part = parts_[at(share)];
+    pairs.insert(pairs.end(), part.pairs.begin(), part.pairs.end());
+    separations.insert(separations.end(), part.separations.begin(), part.separations.end());
+  }
+}
+
+/// Keeping serves where the next step will find all where it is now, or nearly so.
+void ClosePairs::find(const Situation& now, std::vector<FeaturePair>& pairs,
+                      std::vector<Separation>& separations) {
+  measure(now);
+  if (longest_ > furthest_reach(now.ways) || !all_stand(now)) {
+    search_.find(now.ways, now.passages, found_);
+    return separate_all(
+        now, found_, [](std::size_t) { return false; }, pairs, separations);
+  }
+  if (kept_position_.size() == now.position.size())
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = (now.position[i] - kept_position_[i]).norm();
+  if (!holds(now)) look_around(now);
+  separate_all(
+      now, kept_, [&](std::size_t k) { return is_still_far(k, now.ways); }, pairs, separations);
+}
+
+}  // namespace cloth

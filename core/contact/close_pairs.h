@@ -1,0 +1,73 @@
+// The pairs of features that can come within the thickness of each other in a round, and how they lie.
+//
+// Which they are follows from where everything is and may go, and from nothing else. What was found once is
+// kept for some rounds all the same: a pair whose distance was known cannot be nearer by more than its
+// particles have moved since (lists with a skin; Verlet, "Computer experiments on classical fluids", 1967).
+#pragma once
+
+#include "contact/near_pairs.h"
+
+namespace cloth {
+
+/// Pairs nearer than this many thicknesses may hold the thickness; others only bound the motion.
+inline constexpr double near_factor = 1.5;
+
+struct Situation {
+  const Vec3Field& position;  ///< m, of the particles
+  const Ways& ways;
+  const std::vector<Passage>& passages;  ///< of the obstacles in this step
+  const std::vector<Pose>& poses;        ///< where they are now
+};
+
+class ClosePairs {
+ public:
+  /// See PairSearch.
+  ClosePairs(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin)
+      : cloth_(cloth), bodies_(bodies), search_(cloth, bodies, with_itself, skin) {}
+
+  /// The same to the bit for any team; none: one thread.
+  void set_team(WorkerTeam* team);
+
+  /// All pairs that can come within the reach of each other while all stay in their ways.
+  void find(const Situation& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
+
+  PairSearch& search() { return search_; }
+  const PairSearch& search() const { return search_; }
+
+ private:
+  struct Part {
+    std::vector<FeaturePair> pairs;
+    std::vector<Separation> separations;
+  };
+
+  void measure(const Situation& now);
+  bool all_stand(const Situation& now) const;
+  bool holds(const Situation& now) const;
+  void look_around(const Situation& now);
+  double reach_of(const FeaturePair& pair, const Ways& ways) const;
+  bool is_still_far(std::size_t kept, const Ways& ways) const;
+  bool is_far(const FeaturePair& pair, const Separation& separation, const Ways& ways) const;
+  template <class Skip>
+  void separate_all(const Situation& now, const std::vector<FeaturePair>& candidates, const Skip& skip,
+                    std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
+
+  const Surface& cloth_;
+  const std::vector<ObstacleBody>& bodies_;
+  PairSearch search_;
+  WorkerTeam* team_ = nullptr;
+  std::vector<Part> parts_{1};  ///< of each thread
+
+  std::vector<double> range_;          ///< m, that each particle may go in this round
+  std::vector<double> obstacle_ways_;  ///< m, at most, of any point of each in this step
+  std::vector<double> moved_;          ///< m, of each particle since the kept pairs were found
+  double longest_ = 0;                 ///< m, of all ways
+  std::vector<FeaturePair> found_;
+
+  std::vector<FeaturePair> kept_;
+  std::vector<double> kept_distance_;  ///< m, of each
+  Vec3Field kept_position_;
+  std::vector<double> kept_range_;  ///< m, for which the kept pairs hold
+  std::vector<Pose> kept_poses_;
+};
+
+}  // namespace cloth

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
+#include <tuple>
 
 namespace cloth {
 namespace {
@@ -48,9 +49,11 @@ bool serves_as_it_is(const ClothSystem& system) {
 /// The springs of each lane, by the numbers of the other ends.
 std::vector<std::vector<End>> springs_of_lanes(const ClothSystem& system, const ParticleOrder& order,
                                                std::size_t lanes) {
+  constexpr std::size_t usual_springs = 16;
   const ParticleOrder number = inverse_of(order);
   const auto lane_of = [&](int i) { return number.empty() ? i : number[static_cast<std::size_t>(i)]; };
   std::vector<std::vector<End>> springs(lanes);
+  for (auto& of_lane : springs) of_lane.reserve(usual_springs);
   for_each_spring(system, [&](int i, int j, const SpringRun& run) {
     const int a = lane_of(i), b = lane_of(j);
     const double tension = run.stiffness * run.rest_length;
@@ -58,8 +61,9 @@ std::vector<std::vector<End>> springs_of_lanes(const ClothSystem& system, const 
     springs[static_cast<std::size_t>(b)].push_back({a, run.stiffness, tension});
   });
   for (auto& of_lane : springs)
-    std::stable_sort(of_lane.begin(), of_lane.end(),
-                     [](const End& a, const End& b) { return a.neighbour < b.neighbour; });
+    std::sort(of_lane.begin(), of_lane.end(), [](const End& a, const End& b) {
+      return std::tie(a.neighbour, a.stiffness, a.tension) < std::tie(b.neighbour, b.stiffness, b.tension);
+    });
   return springs;
 }
 

@@ -95,6 +95,18 @@ ParticleOrder small_bandwidth_order(const ClothSystem& system) {
   return order;
 }
 
+ParticleOrder order_for_sweeps(const ClothSystem& system) {
+  constexpr std::size_t window = 64;
+  std::vector<int> springs(system.mass.size());
+  for_each_spring(system, [&](int i, int j) { ++springs[at(i)], ++springs[at(j)]; });
+  ParticleOrder order = small_bandwidth_order(system);
+  for (std::size_t begin = 0; begin < order.size(); begin += window)
+    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                     order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, order.size())),
+                     [&](int a, int b) { return springs[at(a)] < springs[at(b)]; });
+  return order;
+}
+
 ParticleOrder inverse_of(const ParticleOrder& order) {
   ParticleOrder inverse(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) inverse[at(order[k])] = static_cast<int>(k);

@@ -15,6 +15,10 @@ using ParticleOrder = std::vector<int>;
 /// path through it (George and Liu 1979).
 ParticleOrder small_bandwidth_order(const ClothSystem& system);
 
+/// The same, and then, among every 64 in a row, those with few springs first: so that neighbours in the
+/// numbering have equally many (the sorting windows of Kreutzer et al. 2014).
+ParticleOrder order_for_sweeps(const ClothSystem& system);
+
 /// The order that undoes `order`.
 ParticleOrder inverse_of(const ParticleOrder& order);
 

@@ -9,6 +9,7 @@
 #include "forces/springs.h"
 #include "forces/viscous.h"
 #include "kernels/grid_sweep.h"
+#include "kernels/mesh_sweep.h"
 
 namespace cloth {
 namespace {
@@ -32,7 +33,7 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(
     gravity_ = *scene.gravity;
     gravity_force_ = keep(std::make_unique<Gravity>(gravity_));
   }
-  if (!system.springs.empty()) spring_force_ = keep(std::make_unique<SpringForce>(system));
+  if (!system.springs.empty()) spring_force_ = keep(std::make_unique<SpringForce>());
   if (!system.springs.empty() && scene.springs->damping > 0)
     keep(std::make_unique<SpringDamping>(scene.springs->damping));
   if (scene.damping && *scene.damping > 0) {
@@ -47,8 +48,11 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(
 void ForceModel::system_changed() {
   sweep_.reset();
   weight_ = Vec3::Zero();
-  if (const auto grid = recognise_grid(*system_)) {
+  if (const auto grid = recognise_grid(*system_))
     sweep_ = std::make_unique<GridSweep>(*system_, *grid, common_mass(*system_));
+  else if (suits_mesh_layout(*system_))
+    sweep_ = std::make_unique<MeshSweep>(*system_, common_mass(*system_));
+  if (sweep_) {
     sweep_->set_team(team_, thread_use_);
     if (sweep_->has_common_mass()) weight_ = sweep_->mass() * gravity_;
   }
@@ -125,10 +129,26 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
     for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
   }
   const SweepLoads loads{weight_, viscous_, has_load() ? &position_force_ : nullptr};
-  const GridSweep::Squares squares = sweep_->euler(step, drift_first, loads, state);
+  const SpringSweep::Squares squares = sweep_->euler(step, drift_first, loads, state);
   power.damping_loss += viscous_ * squares.before;
   if (has_power_) work += step * power;
   return squares.after;
+}
+
+bool ForceModel::gains_euler_steps() const {
+  return can_step() && !has_load() && sweep_->gains_euler_steps();
+}
+
+void ForceModel::euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state,
+                             Work& work) {
+  assert(gains_euler_steps());
+  evaluations_ += static_cast<std::int64_t>(squares.size());
+  std::vector<SpringSweep::Squares> of_steps(squares.size());
+  sweep_->euler_steps(step, drift_first, {weight_, viscous_, nullptr}, of_steps, state);
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    squares[k] = of_steps[k].after;
+    if (has_power_) work += step * Work{.damping_loss = viscous_ * of_steps[k].before};
+  }
 }
 
 std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {

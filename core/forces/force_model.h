@@ -15,7 +15,7 @@
 namespace cloth {
 
 class AirForce;
-class GridSweep;
+class SpringSweep;
 class WorkerTeam;
 
 class ForceModel {
@@ -66,13 +66,17 @@ class ForceModel {
   /// is closed.
   int centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity);
 
-  /// Whole steps, for a cloth whose springs are a grid's and whose particles have one mass: force and motion
+  /// Whole steps, for a cloth whose particles have one mass and whose springs a sweep knows: force and motion
   /// in one pass. Each returns nothing, and has done nothing, where the scene needs more than that; else the
   /// sum of |v|^2 after the step. Nothing else may be asked until the next update, except after Verlet's,
   /// which leaves the model at the new positions.
   ///
   /// v' = v + h a(x, v, t), x' = x + h v', or with `drift_first` x + h v. Adds the work.
   std::optional<double> euler_step(double time, double step, bool drift_first, ClothState& state, Work& work);
+  /// As many such steps as there are `squares`, to the bit; each of the squares becomes a step's sum of
+  /// |v|^2. Precondition: gains_euler_steps().
+  void euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state, Work& work);
+  bool gains_euler_steps() const;
   /// From the last update, at the state's position, to the end of the step. `power` becomes that at the end.
   std::optional<double> verlet_step(double step, ClothState& state, Work& power);
   /// As many such steps as there are `squares`, without the states in between: the same bits. Each of the
@@ -109,8 +113,8 @@ class ForceModel {
   std::vector<std::unique_ptr<Force>> forces_;
   AirForce* air_ = nullptr;  ///< the one of forces_ that feels the brush
   std::unique_ptr<Force> pull_;
-  std::unique_ptr<GridSweep> sweep_;  ///< computes springs and `weight_` where the cloth is a grid
-  std::vector<Force*> beside_sweep_;  ///< those of forces_ that the sweep does not compute
+  std::unique_ptr<SpringSweep> sweep_;  ///< computes springs and `weight_`, of a grid or a mesh
+  std::vector<Force*> beside_sweep_;    ///< those of forces_ that the sweep does not compute
   Force *gravity_force_ = nullptr, *spring_force_ = nullptr, *viscous_force_ = nullptr;  ///< of forces_
   Vec3 gravity_{0, 0, 0};                                                                ///< m/s^2
   Vec3 weight_{0, 0, 0};  ///< N, of every particle, where the sweep takes care of gravity

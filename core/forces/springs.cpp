@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "cloth/sums.h"
-#include "kernels/mesh_springs.h"
 
 namespace cloth {
 namespace {
@@ -59,13 +58,7 @@ double run_energy(const SpringRun& run, const Vec3Field& position) {
 
 }  // namespace
 
-SpringForce::SpringForce(const ClothSystem& system)
-    : mesh_(MeshSprings::suits(system) ? std::make_unique<MeshSprings>(system) : nullptr) {}
-
-SpringForce::~SpringForce() = default;
-
 void SpringForce::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) {
-  if (mesh_) return mesh_->add_forces(position, force);
   Chunk g;
   for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
     spring_chunk(run, first, count, position, g);

@@ -2,28 +2,17 @@
 #pragma once
 
 #include <array>
-#include <memory>
 
 #include "forces/force.h"
 
 namespace cloth {
 
-class MeshSprings;
-
 class SpringForce : public Force {
  public:
-  /// For the springs that `system` has now. Long runs are taken as they are; where most are short, as in a
-  /// general mesh, the springs are arranged anew.
-  explicit SpringForce(const ClothSystem& system);
-  ~SpringForce() override;
-
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
   bool is_internal() const override { return true; }
-
- private:
-  std::unique_ptr<MeshSprings> mesh_;  ///< none where the runs are long
 };
 
 /// sum 1/2 k (|d| - L)^2 per family, in J, indexed by SpringFamily.

@@ -11,6 +11,12 @@ void evaluate(ForceModel& forces, const StepTimes& times, const ClothState& stat
   if (forces.has_power()) work += times.step * forces.power(state.velocity);
 }
 
+IntegratorReport unseen(ForceModel& forces, double step, bool drift_first, std::span<double> speed_squares,
+                        ClothState& state, Work& work) {
+  forces.euler_steps(step, drift_first, speed_squares, state, work);
+  return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
+}
+
 }  // namespace
 
 IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
@@ -31,6 +37,17 @@ IntegratorReport SemiImplicitEuler::step(const ClothSystem& system, ForceModel& 
   add_acceleration(system, times.step, force_, state.velocity);
   add_scaled(times.step, state.velocity, state.position);
   return {.force_evaluations = 1};
+}
+
+IntegratorReport ExplicitEuler::unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
+                                             ClothState& state, Work& work) {
+  return unseen(forces, step, true, speed_squares, state, work);
+}
+
+IntegratorReport SemiImplicitEuler::unseen_steps(ForceModel& forces, double step,
+                                                 std::span<double> speed_squares, ClothState& state,
+                                                 Work& work) {
+  return unseen(forces, step, false, speed_squares, state, work);
 }
 
 }  // namespace cloth

@@ -10,6 +10,9 @@ class ExplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_euler_steps(); }
+  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
+                                ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;
@@ -21,6 +24,9 @@ class SemiImplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_euler_steps(); }
+  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
+                                ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;

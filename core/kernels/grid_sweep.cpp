@@ -74,18 +74,6 @@ std::optional<Grid> recognise_grid(const ClothSystem& system) {
   return grid;
 }
 
-std::optional<double> common_mass(const ClothSystem& system) {
-  const auto free = std::find_if(system.inverse_mass.begin(), system.inverse_mass.end(),
-                                 [](double inverse) { return inverse != 0; });
-  if (free == system.inverse_mass.end()) return std::nullopt;
-  for (const double inverse : system.inverse_mass)
-    if (inverse != 0 && inverse != *free) return std::nullopt;
-  const double mass = system.mass[static_cast<std::size_t>(free - system.inverse_mass.begin())];
-  for (const double other : system.mass)
-    if (other != mass) return std::nullopt;
-  return mass;
-}
-
 const kernels::GridKernels& grid_kernels(InstructionSet set) {
   switch (set) {
 #ifdef CLOTHLAB_X86_KERNELS
@@ -102,20 +90,17 @@ const kernels::GridKernels& grid_kernels(InstructionSet set) {
 }
 
 GridSweep::GridSweep(const ClothSystem& system, const Grid& grid, std::optional<double> mass)
-    : system_(&system), grid_(grid), mass_(mass), kernels_(&grid_kernels(active_instruction_set())) {}
+    : SpringSweep(mass), system_(&system), grid_(grid), kernels_(&grid_kernels(active_instruction_set())) {}
 
 int GridSweep::threads() const {
-  if (!team_) return 1;
   return std::clamp(std::min(grid_.rows * grid_.columns / fewest_particles, grid_.rows / fewest_rows), 1,
-                    team_->size());
+                    team_size());
 }
 
 /// Makes a pass for every band, without its fields.
 void GridSweep::share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads,
                            double step) {
-  ThreadChoice& choice = choices_[static_cast<std::size_t>(kind)];
-  const int count = use_ == ThreadUse::always ? threads() : choice.next(threads());
-  if (choice.wants_time()) begun_ = std::chrono::steady_clock::now();
+  const int count = begin_pass(kind);
   const auto rows = static_cast<std::size_t>(grid_.rows), pitch = static_cast<std::size_t>(grid_.columns);
   const std::size_t scratch =
       static_cast<std::size_t>(scratch_rows) * static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
@@ -139,7 +124,7 @@ void GridSweep::share_rows(PassKind kind, int halo_rows, int scratch_rows, const
       pass.load[0] = loads.load->x(), pass.load[1] = loads.load->y(), pass.load[2] = loads.load->z();
     for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = loads.weight[axis];
     pass.damping = loads.damping;
-    pass.mass_of_free = mass_.value_or(1);
+    pass.mass_of_free = has_common_mass() ? mass() : 1;
     pass.step = step;
     pass.scratch = band.scratch.data();
     pass.squares = squares_.data();
@@ -179,21 +164,17 @@ void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, in
 }
 
 void GridSweep::run(PassKind kind, Kernel kernel) {
-  ThreadChoice& choice = choices_[static_cast<std::size_t>(kind)];
   if (bands_.size() == 1) {
     kernel(bands_.front().pass);
   } else {
     const int count = static_cast<int>(bands_.size());
-    team_->run(count, [this](int b) {
+    team()->run(count, [this](int b) {
       for (const Copy& copy : bands_[static_cast<std::size_t>(b)].copies)
         std::copy_n(copy.from, copy.count, copy.to);
     });
-    team_->run(count, [this, kernel](int b) { kernel(bands_[static_cast<std::size_t>(b)].pass); });
+    team()->run(count, [this, kernel](int b) { kernel(bands_[static_cast<std::size_t>(b)].pass); });
   }
-  if (choice.wants_time())
-    choice.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count());
-  else
-    choice.took(0);
+  end_pass(kind);
 }
 
 double GridSweep::sum_of(int which) const {
@@ -203,9 +184,9 @@ double GridSweep::sum_of(int which) const {
   });
 }
 
-GridSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLoads& loads,
-                                    ClothState& state) {
-  assert(mass_);
+SpringSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLoads& loads,
+                                      ClothState& state) {
+  assert(has_common_mass());
   share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
   for (Band& band : bands_) band.pass.drift_first = drift_first;
   attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
@@ -214,9 +195,9 @@ GridSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLo
   return {sum_of(0), sum_of(1)};
 }
 
-GridSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
-                                     ClothState& state) {
-  assert(mass_ && !loads.load);
+SpringSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
+                                       ClothState& state) {
+  assert(has_common_mass() && !loads.load);
   share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
   attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
   attach_with_copies(&Pass::velocity, state.velocity, kernels::euler_halo, 1);
@@ -227,7 +208,7 @@ GridSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3F
 
 void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
-  assert(mass_ && !loads.load);
+  assert(has_common_mass() && !loads.load);
   const auto pass = [&](PassKind kind, Kernel kernel) {
     share_rows(kind, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
     attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
@@ -245,7 +226,7 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
 }
 
 std::array<double, 5> GridSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
-  assert(mass_ && !loads.load);
+  assert(has_common_mass() && !loads.load);
   share_rows(PassKind::step, kernels::runge_kutta_halo, kernels::runge_kutta_scratch_rows, loads, step);
   attach_with_copies(&Pass::position, state.position, kernels::runge_kutta_halo, 0);
   attach_with_copies(&Pass::velocity, state.velocity, kernels::runge_kutta_halo, 1);

@@ -66,6 +66,42 @@ struct Lanes {
     const V inverse = Divide ? divided_root(s) : inverse_root(s);
     return fnma(spring.rest_tension, inverse, spring.stiffness);
   }
+
+  // Of general meshes. A table is read number by number: there is no register for eight of them.
+
+  static V scale(V s, V stiffness, V tension) {
+    return fnma(tension, _mm256_div_pd(set(1), _mm256_sqrt_pd(s)), stiffness);
+  }
+  static V exact_scale(V s, V stiffness, V tension) { return spring_scale<true>(s, {stiffness, tension}); }
+  static bool is_in_doubt(V force) {
+    return _mm256_movemask_pd(_mm256_cmp_pd(force, force, _CMP_UNORD_Q)) != 0;
+  }
+  using Table = const double*;
+  using Kinds = const unsigned char*;
+  static Table table(const double* eight) { return eight; }
+  static Kinds kinds(const unsigned char* p) { return p; }
+  static V pick(Table table, Kinds k) {
+    return _mm256_setr_pd(table[k[0]], table[k[1]], table[k[2]], table[k[3]]);
+  }
+
+  /// The pairs [a | b] from two places in memory.
+  static V halves(const double* a, const double* b) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(a)), _mm_load_pd(b), 1);
+  }
+  static void gather(const double* vectors, const int* at, V& x, V& y, V& z) {
+    const double *a = vectors + at[0], *b = vectors + at[1], *c = vectors + at[2], *d = vectors + at[3];
+    const V xy02 = halves(a, c), xy13 = halves(b, d);
+    x = _mm256_unpacklo_pd(xy02, xy13), y = _mm256_unpackhi_pd(xy02, xy13);
+    z = _mm256_unpacklo_pd(halves(a + 2, c + 2), halves(b + 2, d + 2));
+  }
+  static void put(double* to, V x, V y, V z) {
+    const V xy02 = _mm256_unpacklo_pd(x, y), xy13 = _mm256_unpackhi_pd(x, y);
+    const V z02 = _mm256_unpacklo_pd(z, zero()), z13 = _mm256_unpackhi_pd(z, zero());
+    store(to, _mm256_permute2f128_pd(xy02, z02, 0x20));
+    store(to + 4, _mm256_permute2f128_pd(xy13, z13, 0x20));
+    store(to + 8, _mm256_permute2f128_pd(xy02, z02, 0x31));
+    store(to + 12, _mm256_permute2f128_pd(xy13, z13, 0x31));
+  }
 };
 
 }  // namespace

@@ -63,6 +63,56 @@ struct Lanes {
                          spring.rest_tension);
     return _mm512_mask3_fnmadd_pd(y, series, spring.stiffness, has_direction);
   }
+
+  // Of general meshes.
+
+  static V scale(V s, V stiffness, V tension) {
+    const V y = _mm512_rsqrt14_pd(s);
+    const V e = fnma(mul(s, y), y, set(1));
+    const V series = fma(fma(set(5.0 / 16), e, set(3.0 / 8)), e, set(0.5));
+    return fnma(tension, fma(series, mul(y, e), y), stiffness);
+  }
+  static V exact_scale(V s, V stiffness, V tension) {
+    return spring_scale<true>(s, {stiffness, tension, zero(), zero(), zero()});
+  }
+  static bool is_in_doubt(V force) { return _mm512_cmp_pd_mask(force, force, _CMP_UNORD_Q) != 0; }
+  using Table = V;
+  using Kinds = __m512i;
+  static Table table(const double* eight) { return load(eight); }
+  static Kinds kinds(const unsigned char* p) {
+    return _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)));
+  }
+  static V pick(Table table, Kinds kinds) { return _mm512_permutexvar_pd(kinds, table); }
+
+  /// The 4-vectors [a | b] from two places in memory.
+  static V halves(const double* a, const double* b) {
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(a)), _mm256_load_pd(b), 1);
+  }
+  // Of [a0 a1 a2 a3 | a4 a5 a6 a7] and b: the lower, or the upper, pair of a's half and then of b's.
+  static V lower_pairs(V a, V b) {
+    return _mm512_permutex2var_pd(a, _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), b);
+  }
+  static V upper_pairs(V a, V b) {
+    return _mm512_permutex2var_pd(a, _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15), b);
+  }
+  static void gather(const double* vectors, const int* at, V& x, V& y, V& z) {
+    const auto pair = [&](int lane) { return halves(vectors + at[lane], vectors + at[lane + 4]); };
+    const V a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+    const V xz01 = _mm512_unpacklo_pd(a, b), xz23 = _mm512_unpacklo_pd(c, d);
+    x = lower_pairs(xz01, xz23), z = upper_pairs(xz01, xz23);
+    y = lower_pairs(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+  }
+  static void put(double* to, V x, V y, V z) {
+    const V xy02 = _mm512_unpacklo_pd(x, y), xy13 = _mm512_unpackhi_pd(x, y);
+    const V z02 = _mm512_unpacklo_pd(z, zero()), z13 = _mm512_unpackhi_pd(z, zero());
+    const V v04 = lower_pairs(xy02, z02), v26 = upper_pairs(xy02, z02);
+    const V v15 = lower_pairs(xy13, z13), v37 = upper_pairs(xy13, z13);
+    const auto put_two = [to](int k, V a, V b) {
+      _mm512_storeu_pd(to + 4 * k, _mm512_insertf64x4(a, _mm512_castpd512_pd256(b), 1));
+      _mm512_storeu_pd(to + 4 * k + 16, _mm512_insertf64x4(b, _mm512_extractf64x4_pd(a, 1), 0));
+    };
+    put_two(0, v04, v15), put_two(2, v26, v37);
+  }
 };
 
 }  // namespace

@@ -3,6 +3,11 @@
 // load(p, count, otherwise): lanes from `count` on come from `otherwise`, and memory behind is not touched.
 // shift_one(before, now): every lane moves one column to the right, the last one of `before` comes in first.
 // spring_scale(s, k): k - k L / sqrt(s), and k where s is 0.
+//
+// Of general meshes: exact_scale(s, k, kL), the same for springs that all differ; scale(s, k, kL), the
+// same in haste, which need not be a number where s is 0 or not finite. is_in_doubt(f): some lane is no
+// number. pick(table, kinds): of a table of eight numbers those of the lanes' kinds. gather(vectors, at, x,
+// y, z), put(to, x, y, z): 4-vectors x y z 0 at vectors + at[lane], or one after the other.
 #pragma once
 
 namespace cloth::kernels {
@@ -44,6 +49,25 @@ struct Lanes {
   template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
     return V{scale_of(s[0], spring), scale_of(s[1], spring)};
+  }
+
+  static V exact_scale(V s, V stiffness, V tension) {
+    return V{scale_of(s[0], {stiffness[0], tension[0]}), scale_of(s[1], {stiffness[1], tension[1]})};
+  }
+  static V scale(V s, V stiffness, V tension) { return exact_scale(s, stiffness, tension); }
+  static bool is_in_doubt(V force) { return force[0] != force[0] || force[1] != force[1]; }
+  using Table = const double*;
+  using Kinds = const unsigned char*;
+  static Table table(const double* eight) { return eight; }
+  static Kinds kinds(const unsigned char* p) { return p; }
+  static V pick(Table table, Kinds k) { return V{table[k[0]], table[k[1]]}; }
+  static void gather(const double* vectors, const int* at, V& x, V& y, V& z) {
+    const double *a = vectors + at[0], *b = vectors + at[1];
+    x = V{a[0], b[0]}, y = V{a[1], b[1]}, z = V{a[2], b[2]};
+  }
+  static void put(double* to, V x, V y, V z) {
+    for (int lane = 0; lane < width; ++lane)
+      to[4 * lane] = x[lane], to[4 * lane + 1] = y[lane], to[4 * lane + 2] = z[lane], to[4 * lane + 3] = 0;
   }
 };
 

@@ -42,6 +42,29 @@ struct Lanes {
     const V part = _mm_div_pd(spring.rest_tension, _mm_sqrt_pd(s));
     return _mm_sub_pd(spring.stiffness, _mm_andnot_pd(_mm_cmpeq_pd(s, zero()), part));
   }
+
+  // Of general meshes.
+
+  static V scale(V s, V stiffness, V tension) {
+    return _mm_sub_pd(stiffness, _mm_div_pd(tension, _mm_sqrt_pd(s)));
+  }
+  static V exact_scale(V s, V stiffness, V tension) { return spring_scale<true>(s, {stiffness, tension}); }
+  static bool is_in_doubt(V force) { return _mm_movemask_pd(_mm_cmpunord_pd(force, force)) != 0; }
+  using Table = const double*;
+  using Kinds = const unsigned char*;
+  static Table table(const double* eight) { return eight; }
+  static Kinds kinds(const unsigned char* p) { return p; }
+  static V pick(Table table, Kinds k) { return _mm_setr_pd(table[k[0]], table[k[1]]); }
+  static void gather(const double* vectors, const int* at, V& x, V& y, V& z) {
+    const double *a = vectors + at[0], *b = vectors + at[1];
+    const V xy0 = _mm_load_pd(a), xy1 = _mm_load_pd(b);
+    x = _mm_unpacklo_pd(xy0, xy1), y = _mm_unpackhi_pd(xy0, xy1);
+    z = _mm_loadh_pd(_mm_load_sd(a + 2), b + 2);
+  }
+  static void put(double* to, V x, V y, V z) {
+    store(to, _mm_unpacklo_pd(x, y)), store(to + 2, _mm_unpacklo_pd(z, zero()));
+    store(to + 4, _mm_unpackhi_pd(x, y)), store(to + 6, _mm_unpackhi_pd(z, zero()));
+  }
 };
 
 }  // namespace

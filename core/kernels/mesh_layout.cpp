@@ -1,55 +1,114 @@
 #include "kernels/mesh_layout.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <tuple>
 
 namespace cloth {
 namespace {
 
-constexpr int shortest_block = 64, longest_block = 1024;  // slices
+using kernels::block_width;
+using kernels::slice_width;
 
+/// One end of a spring, seen from the other.
 struct End {
   int neighbour;
-  double stiffness, rest_length;
+  double stiffness, tension;
 };
 
-std::vector<SpringRun> single_springs(const ClothSystem& system) {
-  std::vector<SpringRun> springs;
+template <class Visit>  // visit(i, j, run)
+void for_each_spring(const ClothSystem& system, Visit visit) {
   for (const SpringRun& run : system.springs)
-    for (int s = 0; s < run.count; ++s) {
-      springs.push_back(run);
-      springs.back().first += s;
-      springs.back().count = 1;
-    }
+    for (int s = 0; s < run.count; ++s) visit(run.first + s, run.first + s + run.offset, run);
+}
+
+/// The numbering that the system has serves where few lanes stay empty and neighbours are in the first cache
+/// together: what an order of one's own gains is lost again by taking every state there and back.
+bool serves_as_it_is(const ClothSystem& system) {
+  constexpr int near_enough = 1000;
+  constexpr double slots_too_many = 1.2;
+  std::vector<int> springs_of(system.mass.size());
+  int bandwidth = 0;
+  for_each_spring(system, [&](int i, int j, const SpringRun& run) {
+    ++springs_of[static_cast<std::size_t>(i)], ++springs_of[static_cast<std::size_t>(j)];
+    bandwidth = std::max(bandwidth, std::abs(run.offset));
+  });
+  if (bandwidth > near_enough) return false;
+  double lanes = 0, used = 0;
+  for (std::size_t begin = 0; begin < springs_of.size(); begin += slice_width) {
+    const auto end = std::min(begin + slice_width, springs_of.size());
+    int slots = 0;
+    for (std::size_t i = begin; i < end; ++i) slots = std::max(slots, springs_of[i]), used += springs_of[i];
+    lanes += slots * static_cast<double>(end - begin);
+  }
+  return lanes <= slots_too_many * used;
+}
+
+/// The springs of each lane, by the numbers of the other ends.
+std::vector<std::vector<End>> springs_of_lanes(const ClothSystem& system, const ParticleOrder& order,
+                                               std::size_t lanes) {
+  constexpr std::size_t usual_springs = 16;
+  const ParticleOrder number = inverse_of(order);
+  const auto lane_of = [&](int i) { return number.empty() ? i : number[static_cast<std::size_t>(i)]; };
+  std::vector<std::vector<End>> springs(lanes);
+  for (auto& of_lane : springs) of_lane.reserve(usual_springs);
+  for_each_spring(system, [&](int i, int j, const SpringRun& run) {
+    const int a = lane_of(i), b = lane_of(j);
+    const double tension = run.stiffness * run.rest_length;
+    springs[static_cast<std::size_t>(a)].push_back({b, run.stiffness, tension});
+    springs[static_cast<std::size_t>(b)].push_back({a, run.stiffness, tension});
+  });
+  for (auto& of_lane : springs)
+    std::sort(of_lane.begin(), of_lane.end(), [](const End& a, const End& b) {
+      return std::tie(a.neighbour, a.stiffness, a.tension) < std::tie(b.neighbour, b.stiffness, b.tension);
+    });
   return springs;
 }
 
-/// Every spring goes to that of its ends that owns fewer so far.
-std::vector<std::vector<End>> springs_of_owners(std::vector<SpringRun> springs, std::size_t owners) {
-  const auto ends = [](const SpringRun& s) { return std::minmax({s.first, s.first + s.offset}); };
-  std::stable_sort(springs.begin(), springs.end(),
-                   [&](const SpringRun& a, const SpringRun& b) { return ends(a) < ends(b); });
-  std::vector<std::vector<End>> owned(owners);
-  for (const SpringRun& spring : springs) {
-    const auto [low, high] = ends(spring);
-    auto &of_low = owned[static_cast<std::size_t>(low)], &of_high = owned[static_cast<std::size_t>(high)];
-    const bool to_low = of_low.size() <= of_high.size();
-    (to_low ? of_low : of_high).push_back({to_low ? high : low, spring.stiffness, spring.rest_length});
+/// What kinds of springs there are, as long as they fit into a table.
+class KindTable {
+ public:
+  /// Springs of the same stiffness are of one kind, or only those of the same tension as well.
+  explicit KindTable(bool with_tension) : with_tension_(with_tension) {}
+
+  std::optional<unsigned char> kind_of(const End& end) {
+    for (std::size_t k = 0; k < size_; ++k)
+      if (stiffness[k] == end.stiffness && (!with_tension_ || tension[k] == end.tension))
+        return static_cast<unsigned char>(k);
+    if (size_ == stiffness.size()) return std::nullopt;
+    stiffness[size_] = end.stiffness, tension[size_] = end.tension;
+    return static_cast<unsigned char>(size_++);
   }
-  return owned;
+
+  std::array<double, kernels::most_kinds> stiffness{}, tension{};
+
+ private:
+  bool with_tension_;
+  std::size_t size_ = 0;
+};
+
+/// Whether all springs find a place in `table`.
+bool fill(KindTable& table, const std::vector<std::vector<End>>& springs) {
+  if (!table.kind_of({0, 0, 0})) return false;  // of empty lanes
+  for (const auto& of_lane : springs)
+    for (const End& end : of_lane)
+      if (!table.kind_of(end)) return false;
+  return true;
 }
 
-void append_slice(const std::vector<End>* owned, int first, MeshLayout& layout) {
+void append_slice(const std::vector<End>* springs, MeshLayout& layout) {
   std::size_t slots = 0;
-  for (int lane = 0; lane < slice_width; ++lane) slots = std::max(slots, owned[lane].size());
+  for (int lane = 0; lane < slice_width; ++lane) slots = std::max(slots, springs[lane].size());
   for (std::size_t slot = 0; slot < slots; ++slot) {
     MeshLayout::Indices neighbour;
     MeshLayout::Numbers stiffness, tension;
     for (int lane = 0; lane < slice_width; ++lane) {
-      const bool empty = slot >= owned[lane].size();
-      const End end = empty ? End{first + lane, 0, 0} : owned[lane][slot];
+      const End end =
+          slot < springs[lane].size() ? springs[lane][slot] : End{kernels::nobody(layout.slices), 0, 0};
       neighbour.lane[lane] = 4 * end.neighbour;
-      stiffness.lane[lane] = end.stiffness;
-      tension.lane[lane] = end.stiffness * end.rest_length;
+      stiffness.lane[lane] = end.stiffness, tension.lane[lane] = end.tension;
     }
     layout.neighbour.push_back(neighbour);
     layout.stiffness.push_back(stiffness);
@@ -58,131 +117,80 @@ void append_slice(const std::vector<End>* owned, int first, MeshLayout& layout) 
   layout.slot_begin.push_back(static_cast<int>(layout.neighbour.size()));
 }
 
-/// So long that a block meets only the next one before and behind it, where the bandwidth allows it.
-int block_length(const std::vector<SpringRun>& springs) {
-  int bandwidth = 0;
-  for (const SpringRun& spring : springs) bandwidth = std::max(bandwidth, std::abs(spring.offset));
-  return std::clamp((2 * bandwidth + slice_width - 1) / slice_width, shortest_block, longest_block);
-}
-
-std::vector<int> particles_touched(const MeshLayout& layout, MeshLayout::Block block) {
-  std::vector<int> touched;
-  for (int i = block.begin * slice_width; i < block.end * slice_width; ++i) touched.push_back(i);
-  const auto begin = static_cast<std::size_t>(layout.slot_begin[static_cast<std::size_t>(block.begin)]);
-  const auto end = static_cast<std::size_t>(layout.slot_begin[static_cast<std::size_t>(block.end)]);
-  for (std::size_t slot = begin; slot < end; ++slot)
-    for (const int offset : layout.neighbour[slot].lane) touched.push_back(offset / 4);
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  return touched;
-}
-
-/// Block by block, but those of a lower colour that meet a block before it: every particle is added to in the
-/// order of the colours.
-std::vector<int> sequence_of(const std::vector<std::vector<int>>& meeting, const std::vector<int>& colours) {
-  std::vector<int> sequence;
-  std::vector<bool> taken(colours.size(), false);
-  const auto take = [&](const auto& self, std::size_t block) -> void {
-    if (taken[block]) return;
-    taken[block] = true;
-    for (const int other : meeting[block])
-      if (colours[static_cast<std::size_t>(other)] < colours[block])
-        self(self, static_cast<std::size_t>(other));
-    sequence.push_back(static_cast<int>(block));
-  };
-  for (std::size_t block = 0; block < colours.size(); ++block) take(take, block);
-  return sequence;
-}
-
-/// The lowest and the highest particle that a slice touches.
-std::pair<int, int> reach_of(const MeshLayout& layout, int slice) {
-  int lowest = slice * slice_width, highest = lowest + slice_width - 1;
-  for (int slot = layout.slot_begin[static_cast<std::size_t>(slice)];
-       slot < layout.slot_begin[static_cast<std::size_t>(slice) + 1]; ++slot)
-    for (const int offset : layout.neighbour[static_cast<std::size_t>(slot)].lane)
-      lowest = std::min(lowest, offset / 4), highest = std::max(highest, offset / 4);
-  return {lowest, highest};
-}
-
-/// When to load and when to store, in whole slices.
-void note_progress(MeshLayout& layout) {
-  std::vector<int> slices;
-  for (const MeshLayout::Block block : layout.sequence)
-    for (int slice = block.begin; slice < block.end; ++slice) slices.push_back(slice);
-  layout.load_until.resize(slices.size());
-  layout.store_until.resize(slices.size());
-  int needed = 0, complete = layout.particles;
-  for (const int slice : slices) {
-    needed = std::max(needed, reach_of(layout, slice).second / slice_width * slice_width + slice_width);
-    layout.load_until[static_cast<std::size_t>(slice)] = std::min(needed, layout.particles);
+/// Numbers of which there are few are not read from memory again and again: that is most of what a slot
+/// takes.
+void use_tables(const std::vector<std::vector<End>>& springs, MeshLayout& layout) {
+  KindTable kinds(true);
+  const bool all = fill(kinds, springs);
+  if (!all) {
+    kinds = KindTable(false);
+    if (!fill(kinds, springs)) return;
   }
-  for (auto slice = slices.rbegin(); slice != slices.rend(); ++slice) {
-    layout.store_until[static_cast<std::size_t>(*slice)] = complete;
-    complete = std::min(complete, reach_of(layout, *slice).first / slice_width * slice_width);
-  }
+  layout.stiffness_of_kind = kinds.stiffness;
+  if (all) layout.tension_of_kind = kinds.tension;
+  const unsigned char none = *kinds.kind_of({0, 0, 0});
+  layout.kind.assign(layout.neighbour.size(), {{none, none, none, none, none, none, none, none}});
+  for (int slice = 0; slice < layout.slices; ++slice)
+    for (int lane = 0; lane < slice_width; ++lane) {
+      auto slot = static_cast<std::size_t>(layout.slot_begin[static_cast<std::size_t>(slice)]);
+      for (const End& end : springs[static_cast<std::size_t>(slice * slice_width + lane)])
+        layout.kind[slot++].lane[lane] = *kinds.kind_of(end);
+    }
+  layout.stiffness = {};
+  if (all) layout.tension = {};
 }
 
-void arrange_blocks(int length, MeshLayout& layout) {
-  std::vector<MeshLayout::Block> blocks;
-  std::vector<std::vector<int>> touched;
-  for (int begin = 0; begin < layout.slices; begin += length) {
-    blocks.push_back({begin, std::min(begin + length, layout.slices)});
-    touched.push_back(particles_touched(layout, blocks.back()));
+/// Before a block all that it looks at, and its own, has to be there.
+void note_loads(MeshLayout& layout) {
+  int until = 0;
+  for (int block = 0; block < layout.blocks; ++block) {
+    const int first = block * kernels::block_slices,
+              last = std::min(first + kernels::block_slices, layout.slices);
+    until = std::max(until, last * slice_width);
+    for (int slot = layout.slot_begin[static_cast<std::size_t>(first)];
+         slot < layout.slot_begin[static_cast<std::size_t>(last)]; ++slot)
+      for (const int offset : layout.neighbour[static_cast<std::size_t>(slot)].lane)
+        if (offset != 4 * kernels::nobody(layout.slices))
+          until = std::max(until, (offset / 4 / slice_width + 1) * slice_width);
+    layout.load_until.push_back(until);
   }
-  const auto meeting = blocks_that_meet(touched, layout.slices * slice_width);
-  const std::vector<int> colours = colours_of_blocks(meeting);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const auto c = static_cast<std::size_t>(colours[b]);
-    if (layout.colours.size() <= c) layout.colours.resize(c + 1);
-    layout.colours[c].push_back(blocks[b]);
-  }
-  for (const int b : sequence_of(meeting, colours))
-    layout.sequence.push_back(blocks[static_cast<std::size_t>(b)]);
-  note_progress(layout);
 }
 
 }  // namespace
 
-std::vector<std::vector<int>> blocks_that_meet(const std::vector<std::vector<int>>& touched, int particles) {
-  std::vector<std::vector<int>> blocks_at(static_cast<std::size_t>(particles)), meeting(touched.size());
-  for (std::size_t block = 0; block < touched.size(); ++block)
-    for (const int particle : touched[block])
-      blocks_at[static_cast<std::size_t>(particle)].push_back(static_cast<int>(block));
-  for (std::size_t block = 0; block < touched.size(); ++block) {
-    std::vector<bool> met(touched.size(), false);
-    for (const int particle : touched[block])
-      for (const int other : blocks_at[static_cast<std::size_t>(particle)])
-        met[static_cast<std::size_t>(other)] = true;
-    for (std::size_t other = 0; other < met.size(); ++other)
-      if (met[other] && other != block) meeting[block].push_back(static_cast<int>(other));
-  }
-  return meeting;
-}
-
-std::vector<int> colours_of_blocks(const std::vector<std::vector<int>>& meeting) {
-  std::vector<int> colours;
-  for (std::size_t block = 0; block < meeting.size(); ++block) {
-    std::vector<bool> taken(meeting.size(), false);
-    for (const int other : meeting[block])
-      if (static_cast<std::size_t>(other) < block)
-        taken[static_cast<std::size_t>(colours[static_cast<std::size_t>(other)])] = true;
-    colours.push_back(static_cast<int>(std::find(taken.begin(), taken.end(), false) - taken.begin()));
-  }
-  return colours;
+kernels::MeshSlots MeshLayout::slots() const {
+  kernels::MeshSlots slots;
+  slots.slot_begin = slot_begin.data();
+  slots.neighbour = reinterpret_cast<const int*>(neighbour.data());
+  if (!kind.empty()) slots.kind = reinterpret_cast<const unsigned char*>(kind.data());
+  if (!stiffness.empty()) slots.stiffness = reinterpret_cast<const double*>(stiffness.data());
+  if (!tension.empty()) slots.tension = reinterpret_cast<const double*>(tension.data());
+  std::copy(stiffness_of_kind.begin(), stiffness_of_kind.end(), slots.stiffness_of_kind);
+  std::copy(tension_of_kind.begin(), tension_of_kind.end(), slots.tension_of_kind);
+  return slots;
 }
 
 MeshLayout make_mesh_layout(const ClothSystem& system) {
   MeshLayout layout;
   layout.particles = static_cast<int>(system.mass.size());
   layout.slices = (layout.particles + slice_width - 1) / slice_width;
-  const std::vector<SpringRun> springs = single_springs(system);
-  const auto owned = springs_of_owners(
-      springs, static_cast<std::size_t>(layout.slices) * static_cast<std::size_t>(slice_width));
+  layout.blocks = (layout.particles + block_width - 1) / block_width;
+  if (!serves_as_it_is(system)) layout.order = order_for_sweeps(system);
+  const auto springs = springs_of_lanes(
+      system, layout.order, static_cast<std::size_t>(layout.slices) * static_cast<std::size_t>(slice_width));
   layout.slot_begin.push_back(0);
   for (int slice = 0; slice < layout.slices; ++slice)
-    append_slice(owned.data() + slice * slice_width, slice * slice_width, layout);
-  arrange_blocks(block_length(springs), layout);
+    append_slice(springs.data() + slice * slice_width, layout);
+  use_tables(springs, layout);
+  note_loads(layout);
   return layout;
+}
+
+bool suits_mesh_layout(const ClothSystem& system) {
+  constexpr std::int64_t shortest_run = 16;
+  std::int64_t springs = 0;
+  for (const SpringRun& run : system.springs) springs += run.count;
+  return springs < shortest_run * static_cast<std::int64_t>(system.springs.size());
 }
 
 }  // namespace cloth

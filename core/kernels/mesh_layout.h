@@ -1,54 +1,45 @@
-// The springs of a general mesh, arranged once so that they can be evaluated side by side and by several
-// threads.
+// The springs of a general mesh, arranged once so that the forces on eight particles are summed side by side.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "cloth/cloth_system.h"
-#include "kernels/mesh_kernel.h"
+#include "cloth/mesh_order.h"
+#include "kernels/mesh_pass.h"
 
 namespace cloth {
 
-/// Eight particles in a row make a slice, and each of its lanes is one particle. Every spring belongs to one
-/// of its ends, chosen so that the particles of a slice own about the same number; spring number t of each
-/// lane makes up the slice's slot t (sliced ELLPACK: Kreutzer et al. 2014). A lane without a spring left is
-/// its own neighbour, with stiffness 0.
-///
-/// Slices in a row make a block. Two blocks of one colour touch no particle in common, so the blocks of a
-/// colour can be evaluated by as many threads as there are, and colour after colour the sum on every particle
-/// is taken in one order. One thread alone takes the blocks in a sequence that leaves this order as it is,
-/// but stays in one neighbourhood. All this depends on the system alone.
+/// Eight particles in a row make a slice, and each of its lanes is one particle; spring number t of each lane
+/// makes up the slice's slot t (sliced ELLPACK: Kreutzer et al. 2014). Every spring stands at both of its
+/// ends, and those of a particle in the order of their other ends. All this depends on the system alone.
 struct MeshLayout {
   struct alignas(64) Numbers {
-    double lane[slice_width];
+    double lane[kernels::slice_width];
   };
   struct alignas(32) Indices {
-    int lane[slice_width];
+    int lane[kernels::slice_width];
   };
-  struct Block {
-    int begin = 0, end = 0;  ///< slices
+  struct alignas(8) Kinds {
+    unsigned char lane[kernels::slice_width];
   };
 
-  int particles = 0, slices = 0;
+  int particles = 0, slices = 0, blocks = 0;
+  ParticleOrder order;  ///< the particle of each lane, slice after slice; empty: as the system numbers them
   std::vector<int> slot_begin;
-  std::vector<Indices> neighbour;  ///< 4 times its number, as it stands in MeshArrays
+  std::vector<Indices> neighbour;           ///< as in kernels::MeshSlots, and so are all of these
+  std::vector<Kinds> kind;                  ///< empty where no table is used
+  std::vector<Numbers> stiffness, tension;  ///< empty where a table is used
+  std::array<double, kernels::most_kinds> stiffness_of_kind{}, tension_of_kind{};
+  std::vector<int> load_until;  ///< by block
 
-  std::vector<Numbers> stiffness, tension;
-  std::vector<std::vector<Block>> colours;
-  std::vector<Block> sequence;               ///< for one thread
-  std::vector<int> load_until, store_until;  ///< of MeshSweep, along the sequence
+  kernels::MeshSlots slots() const;
 };
 
-/// Particles should be numbered with a small bandwidth (cloth/mesh_order.h): the further springs reach, the
-/// more colours, and the less fits into the caches.
+/// Takes the particles as the system numbers them where that serves, else in an order of its own.
 MeshLayout make_mesh_layout(const ClothSystem& system);
 
-/// For each block the others that touch a particle that it touches; `touched` holds the particles of each
-/// block.
-std::vector<std::vector<int>> blocks_that_meet(const std::vector<std::vector<int>>& touched, int particles);
-
-/// A colour for each block such that no two blocks of one colour meet. Greedy: block by block the lowest that
-/// is free.
-std::vector<int> colours_of_blocks(const std::vector<std::vector<int>>& meeting);
+/// Whether the springs of a system are mostly runs too short for the kernels of a grid.
+bool suits_mesh_layout(const ClothSystem& system);
 
 }  // namespace cloth

@@ -1,0 +1,84 @@
+// Vectors of lanes: so many particles side by side, and how they come from fields and go back. Included once
+// for every instruction set, after its Lanes; everything here has internal linkage.
+#pragma once
+
+#define CLOTHLAB_INLINE [[gnu::always_inline]] inline
+
+namespace cloth::kernels {
+namespace {
+
+using V = Lanes::V;
+
+struct Vector {
+  V x, y, z;
+};
+
+/// Where a row's three components begin.
+struct Row {
+  double *x, *y, *z;
+};
+struct ConstRow {
+  const double *x = nullptr, *y = nullptr, *z = nullptr;
+  ConstRow() = default;
+  ConstRow(Row row) : x(row.x), y(row.y), z(row.z) {}
+  ConstRow(const double* px, const double* py, const double* pz) : x(px), y(py), z(pz) {}
+};
+
+CLOTHLAB_INLINE Vector load(const ConstRow& row, int j) {
+  return {Lanes::load(row.x + j), Lanes::load(row.y + j), Lanes::load(row.z + j)};
+}
+CLOTHLAB_INLINE Vector load(const ConstRow& row, int j, int count, const Vector& otherwise) {
+  return {Lanes::load(row.x + j, count, otherwise.x), Lanes::load(row.y + j, count, otherwise.y),
+          Lanes::load(row.z + j, count, otherwise.z)};
+}
+CLOTHLAB_INLINE void store(const Row& row, int j, const Vector& a) {
+  Lanes::store(row.x + j, a.x), Lanes::store(row.y + j, a.y), Lanes::store(row.z + j, a.z);
+}
+template <bool Edge>
+CLOTHLAB_INLINE void store(const Row& row, int j, int count, const Vector& a) {
+  if constexpr (Edge)
+    Lanes::store(row.x + j, a.x, count), Lanes::store(row.y + j, a.y, count),
+        Lanes::store(row.z + j, a.z, count);
+  else
+    store(row, j, a);
+}
+/// The first `count` lanes, zero in the others.
+template <bool Edge>
+CLOTHLAB_INLINE Vector load_part(const ConstRow& row, int j, int count) {
+  const V zero = Lanes::zero();
+  if constexpr (Edge) return load(row, j, count, {zero, zero, zero});
+  return load(row, j);
+}
+
+CLOTHLAB_INLINE Vector operator-(const Vector& a, const Vector& b) {
+  return {Lanes::sub(a.x, b.x), Lanes::sub(a.y, b.y), Lanes::sub(a.z, b.z)};
+}
+CLOTHLAB_INLINE Vector operator+(const Vector& a, const Vector& b) {
+  return {Lanes::add(a.x, b.x), Lanes::add(a.y, b.y), Lanes::add(a.z, b.z)};
+}
+CLOTHLAB_INLINE Vector scaled(V s, const Vector& a) {
+  return {Lanes::mul(s, a.x), Lanes::mul(s, a.y), Lanes::mul(s, a.z)};
+}
+/// c + s a, and c - s a
+CLOTHLAB_INLINE Vector plus(const Vector& c, V s, const Vector& a) {
+  return {Lanes::fma(s, a.x, c.x), Lanes::fma(s, a.y, c.y), Lanes::fma(s, a.z, c.z)};
+}
+CLOTHLAB_INLINE Vector minus(const Vector& c, V s, const Vector& a) {
+  return {Lanes::fnma(s, a.x, c.x), Lanes::fnma(s, a.y, c.y), Lanes::fnma(s, a.z, c.z)};
+}
+/// sum + |a|^2 lane by lane
+CLOTHLAB_INLINE V plus_square(V sum, const Vector& a) {
+  return Lanes::fma(a.z, a.z, Lanes::fma(a.y, a.y, Lanes::fma(a.x, a.x, sum)));
+}
+CLOTHLAB_INLINE Vector vector_of(const double* a) {
+  return {Lanes::set(a[0]), Lanes::set(a[1]), Lanes::set(a[2])};
+}
+
+/// A force before any spring: the weight and, where there is a load, that of the particles.
+template <bool Edge>
+CLOTHLAB_INLINE Vector initial(const ConstRow& load_row, const Vector& weight, int j, int count) {
+  return load_row.x ? weight + load_part<Edge>(load_row, j, count) : weight;
+}
+
+}  // namespace
+}  // namespace cloth::kernels

@@ -1,0 +1,222 @@
+// The passes of the explicit methods over the particles of a general mesh. Included once for every
+// instruction set, after its Lanes; everything here has internal linkage.
+//
+// A particle's force is summed in registers over all its springs, each of which is computed at both of its
+// ends: that is less work than to bring the force to the other end through memory, and the order of the sum
+// is that of the list, whoever computes what else at the same time.
+#pragma once
+
+#include "kernels/mesh_pass.h"
+#include "kernels/step_updates.h"
+
+namespace cloth::kernels {
+namespace {
+
+/// The three ways to come by the springs at a place in a slot: scale(k, kL).
+struct SpringsOfKinds {
+  Lanes::Table stiffness, tension;
+  const unsigned char* kind;
+  template <class Scale>
+  CLOTHLAB_INLINE V at(int place, const Scale& scale) const {
+    const Lanes::Kinds kinds = Lanes::kinds(kind + place);
+    return scale(Lanes::pick(stiffness, kinds), Lanes::pick(tension, kinds));
+  }
+};
+struct StiffnessOfKinds {
+  Lanes::Table stiffness;
+  const double* tension;
+  const unsigned char* kind;
+  template <class Scale>
+  CLOTHLAB_INLINE V at(int place, const Scale& scale) const {
+    return scale(Lanes::pick(stiffness, Lanes::kinds(kind + place)), Lanes::load(tension + place));
+  }
+};
+struct SpringsInFull {
+  const double *stiffness, *tension;
+  template <class Scale>
+  CLOTHLAB_INLINE V at(int place, const Scale& scale) const {
+    return scale(Lanes::load(stiffness + place), Lanes::load(tension + place));
+  }
+};
+
+template <class Visit>  // visit(springs)
+inline void with_springs(const MeshSlots& slots, const Visit& visit) {
+  if (slots.stiffness)
+    visit(SpringsInFull{slots.stiffness, slots.tension});
+  else if (slots.tension)
+    visit(StiffnessOfKinds{Lanes::table(slots.stiffness_of_kind), slots.tension, slots.kind});
+  else
+    visit(SpringsOfKinds{Lanes::table(slots.stiffness_of_kind), Lanes::table(slots.tension_of_kind),
+                         slots.kind});
+}
+
+inline Row row_of(const FieldPointers& field) {
+  return {field.x, field.y, field.z};
+}
+
+template <bool Edge>
+CLOTHLAB_INLINE void load_block(const MeshPass& pass, int j, int count) {
+  if (pass.kicks)
+    kick_drift_block<Edge>(row_of(pass.position), row_of(pass.velocity), row_of(pass.force),
+                           pass.inverse_mass, Lanes::set(0.5 * pass.step), Lanes::set(pass.step),
+                           Lanes::set(pass.damping), j, count);
+  const Vector x = load_part<Edge>(row_of(pass.position), j, count);
+  Lanes::put(pass.vectors + 4 * j, x.x, x.y, x.z);
+}
+
+void load_vectors(const MeshPass& pass, int begin, int end) {
+  int j = begin;
+  for (; j + Lanes::width <= end && j + Lanes::width <= pass.particles; j += Lanes::width)
+    load_block<false>(pass, j, Lanes::width);
+  for (; j < end; j += Lanes::width) load_block<true>(pass, j, pass.particles - j);
+}
+
+/// `initial` and the springs' forces on the particles of a slice from its lane `part` on.
+template <class Springs, class Scale>
+CLOTHLAB_INLINE Vector plus_springs(Vector force, const MeshPass& pass, const Springs& springs,
+                                    const Vector& here, int slice, int part, const Scale& scale) {
+  const int end = pass.slots.slot_begin[slice + 1] * slice_width + part;
+  for (int at = pass.slots.slot_begin[slice] * slice_width + part; at < end; at += slice_width) {
+    Vector other;
+    Lanes::gather(pass.vectors, pass.slots.neighbour + at, other.x, other.y, other.z);
+    const Vector d = other - here;
+    const V s = Lanes::fma(d.z, d.z, Lanes::fma(d.y, d.y, Lanes::mul(d.x, d.x)));
+    force = plus(force, springs.at(at, [&](V k, V kL) { return scale(s, k, kL); }), d);
+  }
+  return force;
+}
+
+/// The same once more, where a spring may have no length or one whose square is no number.
+template <class Springs>
+[[gnu::noinline]] Vector plus_springs_exactly(const Vector& force, const MeshPass& pass,
+                                              const Springs& springs, const Vector& here, int slice,
+                                              int part) {
+  return plus_springs(force, pass, springs, here, slice, part,
+                      [](V s, V k, V kL) { return Lanes::exact_scale(s, k, kL); });
+}
+
+template <bool Edge, class Springs>
+CLOTHLAB_INLINE Vector mesh_force(const MeshPass& pass, const Springs& springs, const Vector& here, int slice,
+                                  int part, int count) {
+  const Vector other =
+      initial<Edge>(row_of(pass.load), vector_of(pass.weight), slice * slice_width + part, count);
+  const Vector force = plus_springs(other, pass, springs, here, slice, part,
+                                    [](V s, V k, V kL) { return Lanes::scale(s, k, kL); });
+  if (Lanes::is_in_doubt(Lanes::add(force.x, Lanes::add(force.y, force.z)))) [[unlikely]]
+    return plus_springs_exactly(other, pass, springs, here, slice, part);
+  return force;
+}
+
+/// before(block), then for every slice of the block its force and `update`, then after(block).
+template <class Update, class Before, class After>
+void mesh_pass(const MeshPass& pass, Update& update, const Before& before, const After& after) {
+  with_springs(pass.slots, [&](const auto& springs) {
+    int loaded = pass.begin * block_width;
+    const ConstRow position = row_of(pass.position);
+    for (int block = pass.begin; block < pass.end; ++block) {
+      if (pass.load_until && loaded < pass.load_until[block]) {
+        load_vectors(pass, loaded, pass.load_until[block]);
+        loaded = pass.load_until[block];
+      }
+      before();
+      for (int slice = block * block_slices; slice < (block + 1) * block_slices; ++slice)
+        for (int part = 0; part < slice_width; part += Lanes::width) {
+          const int j = slice * slice_width + part, count = pass.particles - j;
+          if (count <= 0) break;
+          if (count >= Lanes::width) {
+            const Vector here = load_part<false>(position, j, Lanes::width);
+            const Vector force = mesh_force<false>(pass, springs, here, slice, part, Lanes::width);
+            update.template operator()<false>(j, Lanes::width, here, force);
+          } else {
+            const Vector here = load_part<true>(position, j, count);
+            const Vector force = mesh_force<true>(pass, springs, here, slice, part, count);
+            update.template operator()<true>(j, count, here, force);
+          }
+        }
+      after(block);
+    }
+  });
+}
+
+void mesh_euler(const MeshPass& pass) {
+  EulerUpdate update{};
+  update.step = Lanes::set(pass.step), update.damping = Lanes::set(pass.damping);
+  update.drift_first = pass.drift_first;
+  update.position = row_of(pass.position), update.velocity = row_of(pass.velocity);
+  update.inverse_mass = pass.inverse_mass;
+  mesh_pass(
+      pass, update, [&] { update.before = update.after = Lanes::zero(); },
+      [&](int block) {
+        pass.squares[0][block] = Lanes::sum(update.before);
+        pass.squares[1][block] = Lanes::sum(update.after);
+      });
+}
+
+void mesh_verlet(const MeshPass& pass) {
+  VerletUpdate update{};
+  update.half_step = Lanes::set(0.5 * pass.step);
+  update.centred = Lanes::set(centring(pass.step, pass.damping, pass.mass_of_free));
+  update.velocity = row_of(pass.velocity), update.force = row_of(pass.force);
+  update.inverse_mass = pass.inverse_mass;
+  mesh_pass(
+      pass, update, [&] { update.after = Lanes::zero(); },
+      [&](int block) { pass.squares[1][block] = Lanes::sum(update.after); });
+}
+
+void mesh_verlet_between(const MeshPass& pass) {
+  VerletBetweenUpdate update{};
+  update.half_step = Lanes::set(0.5 * pass.step), update.step = Lanes::set(pass.step);
+  update.centred = Lanes::set(centring(pass.step, pass.damping, pass.mass_of_free));
+  update.damping = Lanes::set(pass.damping);
+  update.position = row_of(pass.position), update.velocity = row_of(pass.velocity);
+  update.inverse_mass = pass.inverse_mass;
+  mesh_pass(
+      pass, update, [&] { update.after = Lanes::zero(); },
+      [&](int block) { pass.squares[1][block] = Lanes::sum(update.after); });
+}
+
+void mesh_runge_kutta(const MeshPass& pass) {
+  const MeshStage& stage = pass.stage;
+  StageUpdate update{};
+  update.weight = Lanes::set(stage.weight), update.ahead = Lanes::set(stage.ahead);
+  update.damping = Lanes::set(pass.damping);
+  update.is_last = stage.is_last;
+  update.stage_velocity = row_of(pass.velocity);
+  update.inverse_mass = pass.inverse_mass;
+  update.sum_position = row_of(stage.sum_position), update.sum_velocity = row_of(stage.sum_velocity);
+  update.next_sum_position = row_of(stage.next_sum_position);
+  update.next_sum_velocity = row_of(stage.next_sum_velocity);
+  update.state_position = row_of(stage.state_position), update.state_velocity = row_of(stage.state_velocity);
+  update.next_position = row_of(stage.next_position), update.next_velocity = row_of(stage.next_velocity);
+  mesh_pass(
+      pass, update, [&] { update.squares = update.after = Lanes::zero(); },
+      [&](int block) {
+        pass.squares[0][block] = Lanes::sum(update.squares);
+        pass.squares[1][block] = Lanes::sum(update.after);
+      });
+}
+
+void mesh_evaluate(const MeshPass& pass) {
+  EvaluateUpdate update{row_of(pass.force)};
+  mesh_pass(
+      pass, update, [] {}, [](int) {});
+}
+
+void mesh_sum_squares(const MeshPass& pass) {
+  const ConstRow velocity = row_of(pass.velocity);
+  for (int block = pass.begin; block < pass.end; ++block) {
+    V sum = Lanes::zero();
+    int j = block * block_width;
+    const int end = j + block_width < pass.particles ? j + block_width : pass.particles;
+    for (; j + Lanes::width <= end; j += Lanes::width)
+      sum = plus_square(sum, load_part<false>(velocity, j, Lanes::width));
+    if (j < end) sum = plus_square(sum, load_part<true>(velocity, j, end - j));
+    pass.squares[1][block] = Lanes::sum(sum);
+  }
+}
+
+constexpr MeshKernels mesh_kernels{load_vectors,     mesh_euler,    mesh_verlet,     mesh_verlet_between,
+                                   mesh_runge_kutta, mesh_evaluate, mesh_sum_squares};
+
+}  // namespace
+}  // namespace cloth::kernels

@@ -1,0 +1,257 @@
+#include "kernels/mesh_sweep.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "cloth/sums.h"
+
+namespace cloth {
+namespace {
+
+using kernels::block_width;
+using kernels::FieldPointers;
+using kernels::MeshPass;
+
+/// With fewer particles for each thread the others need not be tried.
+constexpr int fewest_particles = 1000;
+constexpr int sums = 5;
+
+FieldPointers pointers(Vec3Field& field) {
+  return {field.x(), field.y(), field.z()};
+}
+
+}  // namespace
+
+const kernels::MeshKernels& mesh_kernels(InstructionSet set) {
+  switch (set) {
+#ifdef CLOTHLAB_X86_KERNELS
+    case InstructionSet::sse2:
+      return kernels::sse2_mesh_kernels();
+    case InstructionSet::avx2:
+      return kernels::avx2_mesh_kernels();
+    case InstructionSet::avx512:
+      return kernels::avx512_mesh_kernels();
+#endif
+    default:
+      return kernels::portable_mesh_kernels();
+  }
+}
+
+MeshSweep::MeshSweep(const ClothSystem& system, std::optional<double> mass)
+    : SpringSweep(mass),
+      layout_(make_mesh_layout(system)),
+      kernels_(&mesh_kernels(active_instruction_set())),
+      inverse_mass_(system.inverse_mass),
+      vectors_((static_cast<std::size_t>(kernels::nobody(layout_.slices)) + 1) * 4),
+      squares_(static_cast<std::size_t>(layout_.blocks) * sums) {
+  std::copy(std::begin(kernels::nowhere), std::end(kernels::nowhere), vectors_.end() - 4);
+  number_ = inverse_of(layout_.order);
+  for (std::size_t k = 0; k < layout_.order.size(); ++k)
+    inverse_mass_[k] = system.inverse_mass[static_cast<std::size_t>(layout_.order[k])];
+}
+
+int MeshSweep::threads() const {
+  return std::clamp(layout_.particles / fewest_particles, 1, team_size());
+}
+
+/// visit(begin, end) for the shares of `of` blocks, each on a thread.
+template <class Visit>
+void MeshSweep::for_each_share(int of, Visit visit) {
+  if (sharing_ == 1) return visit(0, of);
+  const auto begin = [&](int share) { return static_cast<int>(static_cast<long>(of) * share / sharing_); };
+  team()->run(sharing_, [&](int share) { visit(begin(share), begin(share + 1)); });
+}
+
+/// The field itself, or a copy in the layout's order.
+Vec3Field& MeshSweep::take(Vec3Field& field, Vec3Field& copy) {
+  if (layout_.order.empty()) return field;
+  if (copy.size() != field.size()) copy = Vec3Field(field.size());
+  for_each_share(layout_.particles, [&](int begin, int end) {
+    const int* order = layout_.order.data();
+    const double *x = field.x(), *y = field.y(), *z = field.z();
+    double *to_x = copy.x(), *to_y = copy.y(), *to_z = copy.z();
+    for (int k = begin; k < end; ++k) to_x[k] = x[order[k]], to_y[k] = y[order[k]], to_z[k] = z[order[k]];
+  });
+  return copy;
+}
+
+void MeshSweep::give_back(const Vec3Field& copy, Vec3Field& field) {
+  if (layout_.order.empty()) return;
+  for_each_share(layout_.particles, [&](int begin, int end) {
+    const int* number = number_.data();
+    const double *x = copy.x(), *y = copy.y(), *z = copy.z();
+    double *to_x = field.x(), *to_y = field.y(), *to_z = field.z();
+    for (int i = begin; i < end; ++i) to_x[i] = x[number[i]], to_y[i] = y[number[i]], to_z[i] = z[number[i]];
+  });
+}
+
+MeshPass MeshSweep::pass_with(const SweepLoads& loads, double step) {
+  MeshPass pass;
+  pass.slots = layout_.slots();
+  pass.particles = layout_.particles;
+  pass.vectors = vectors_.data();
+  pass.inverse_mass = inverse_mass_.data();
+  if (loads.load) pass.load = pointers(take(const_cast<Vec3Field&>(*loads.load), inner_.load));  // only read
+  for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = loads.weight[axis];
+  pass.damping = loads.damping;
+  pass.mass_of_free = has_common_mass() ? mass() : 1;
+  pass.step = step;
+  pass.squares[0] = squares_.data();
+  pass.squares[1] = squares_.data() + layout_.blocks;
+  return pass;
+}
+
+void MeshSweep::load_all(const MeshPass& pass) {
+  for_each_share(layout_.blocks, [&](int begin, int end) {
+    kernels_->load(pass, begin * block_width,
+                   std::min(end * block_width, layout_.slices * kernels::slice_width));
+  });
+}
+
+/// One thread loads just ahead of what it needs, several load all beforehand.
+void MeshSweep::run(MeshPass& pass, Kernel kernel) {
+  if (sharing_ == 1) {
+    pass.load_until = layout_.load_until.data();
+  } else {
+    load_all(pass);
+  }
+  for_each_share(layout_.blocks, [&](int begin, int end) {
+    MeshPass share = pass;
+    share.begin = begin, share.end = end;
+    kernel(share);
+  });
+}
+
+double MeshSweep::sum_of(int which) const {
+  const auto blocks = static_cast<std::size_t>(layout_.blocks);
+  return ordered_sum(blocks, [p = squares_.data() + static_cast<std::size_t>(which) * blocks](std::size_t k) {
+    return p[k];
+  });
+}
+
+SpringSweep::Squares MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads,
+                                      ClothState& state) {
+  Squares squares;
+  euler_steps(step, drift_first, loads, {&squares, 1}, state);
+  return squares;
+}
+
+void MeshSweep::euler_steps(double step, bool drift_first, const SweepLoads& loads,
+                            std::span<Squares> squares, ClothState& state) {
+  assert(has_common_mass());
+  const PassKind kind = squares.size() == 1 ? PassKind::step : PassKind::several_steps;
+  sharing_ = begin_pass(kind);
+  Vec3Field &position = take(state.position, inner_.position),
+            &velocity = take(state.velocity, inner_.velocity);
+  MeshPass pass = pass_with(loads, step);
+  pass.position = pointers(position), pass.velocity = pointers(velocity);
+  pass.drift_first = drift_first;
+  for (Squares& of_step : squares) {
+    run(pass, kernels_->euler);
+    of_step = {sum_of(0), sum_of(1)};
+  }
+  give_back(position, state.position);
+  give_back(velocity, state.velocity);
+  end_pass(kind);
+}
+
+SpringSweep::Squares MeshSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
+                                       ClothState& state) {
+  assert(has_common_mass() && !loads.load);
+  sharing_ = begin_pass(PassKind::step);
+  Vec3Field &position = take(state.position, inner_.position),
+            &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
+  MeshPass pass = pass_with(loads, step);
+  pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
+  pass.kicks = true;
+  run(pass, kernels_->verlet);
+  give_back(position, state.position);
+  give_back(velocity, state.velocity);
+  give_back(p, force);
+  end_pass(PassKind::step);
+  return {0, sum_of(1)};
+}
+
+void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
+                             Vec3Field& force, ClothState& state) {
+  assert(has_common_mass() && !loads.load);
+  sharing_ = begin_pass(PassKind::several_steps);
+  Vec3Field &position = take(state.position, inner_.position),
+            &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
+  MeshPass pass = pass_with(loads, step);
+  pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
+  pass.kicks = true;
+  load_all(pass);
+  pass.kicks = false;
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    run(pass, k + 1 < squares.size() ? kernels_->verlet_between : kernels_->verlet);
+    squares[k] = sum_of(1);
+  }
+  give_back(position, state.position);
+  give_back(velocity, state.velocity);
+  give_back(p, force);
+  end_pass(PassKind::several_steps);
+}
+
+std::array<double, 5> MeshSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
+  assert(has_common_mass() && !loads.load);
+  constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}, ahead{0.5, 0.5, 1.0, 0.0};
+  sharing_ = begin_pass(PassKind::step);
+  Vec3Field &position = take(state.position, inner_.position),
+            &velocity = take(state.velocity, inner_.velocity);
+  for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
+    if (field->size() != position.size()) *field = Vec3Field(position.size());
+  const FieldPointers x = pointers(position), v = pointers(velocity), sum_x = pointers(sum_.position),
+                      sum_v = pointers(sum_.velocity), next_x = pointers(stage_.position),
+                      next_v = pointers(stage_.velocity);
+  MeshPass pass = pass_with(loads, step);
+  for (int s = 0; s < 4; ++s) {
+    const bool first = s == 0, last = s == 3;
+    pass.position = first ? x : next_x, pass.velocity = first ? v : next_v;
+    pass.stage = {.weight = step * weights[static_cast<std::size_t>(s)],
+                  .ahead = step * ahead[static_cast<std::size_t>(s)],
+                  .is_last = last,
+                  .sum_position = first ? x : sum_x,
+                  .sum_velocity = first ? v : sum_v,
+                  .next_sum_position = last ? x : sum_x,
+                  .next_sum_velocity = last ? v : sum_v,
+                  .state_position = x,
+                  .state_velocity = v,
+                  .next_position = next_x,
+                  .next_velocity = next_v};
+    pass.squares[0] = squares_.data() + s * layout_.blocks;
+    pass.squares[1] = squares_.data() + 4 * layout_.blocks;
+    run(pass, kernels_->runge_kutta);
+  }
+  give_back(position, state.position);
+  give_back(velocity, state.velocity);
+  end_pass(PassKind::step);
+  return {sum_of(0), sum_of(1), sum_of(2), sum_of(3), sum_of(4)};
+}
+
+void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
+  sharing_ = begin_pass(PassKind::evaluation);
+  MeshPass pass = pass_with(loads, 0);
+  pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
+  if (!layout_.order.empty() && inner_.force.size() != force.size()) inner_.force = Vec3Field(force.size());
+  Vec3Field& result = layout_.order.empty() ? force : inner_.force;
+  pass.force = pointers(result);
+  run(pass, kernels_->evaluate);
+  give_back(result, force);
+  end_pass(PassKind::evaluation);
+}
+
+double MeshSweep::squares(const Vec3Field& velocity) {
+  sharing_ = begin_pass(PassKind::sums);
+  MeshPass pass = pass_with({}, 0);
+  pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
+  for_each_share(layout_.blocks, [&](int begin, int end) {
+    MeshPass share = pass;
+    share.begin = begin, share.end = end;
+    kernels_->sum_squares(share);
+  });
+  end_pass(PassKind::sums);
+  return sum_of(1);
+}
+
+}  // namespace cloth

@@ -1,0 +1,61 @@
+// The springs of a general mesh in one pass over its particles; see spring_sweep.h and mesh_layout.h.
+#pragma once
+
+#include <vector>
+
+#include "kernels/instruction_set.h"
+#include "kernels/mesh_layout.h"
+#include "kernels/spring_sweep.h"
+
+namespace cloth {
+
+const kernels::MeshKernels& mesh_kernels(InstructionSet set);
+
+class MeshSweep : public SpringSweep {
+ public:
+  /// `system` is not referred to afterwards. For springs without constant offset, F_i = k (|d| - L) d/|d|
+  /// with d = x_j - x_i; 0 where |d| = 0.
+  MeshSweep(const ClothSystem& system, std::optional<double> mass);
+
+  int threads() const override;
+  Squares euler(double step, bool drift_first, const SweepLoads& loads, ClothState& state) override;
+  void euler_steps(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+                   ClothState& state) override;
+  bool gains_euler_steps() const override { return !layout_.order.empty(); }
+  Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
+  void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
+                    ClothState& state) override;
+  std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state) override;
+  void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
+  double squares(const Vec3Field& velocity) override;
+
+  const MeshLayout& layout() const { return layout_; }
+
+ private:
+  using Kernel = void (*)(const kernels::MeshPass&);
+  /// The fields that a pass works on: the caller's own, or copies in the layout's order.
+  struct Fields {
+    Vec3Field position, velocity, force, load;
+  };
+
+  Vec3Field& take(Vec3Field& field, Vec3Field& copy);
+  void give_back(const Vec3Field& copy, Vec3Field& field);
+  kernels::MeshPass pass_with(const SweepLoads& loads, double step);
+  void load_all(const kernels::MeshPass& pass);
+  void run(kernels::MeshPass& pass, Kernel kernel);
+  template <class Visit>
+  void for_each_share(int of, Visit visit);
+  double sum_of(int which) const;
+
+  MeshLayout layout_;
+  ParticleOrder number_;  ///< that undoes the layout's order
+  const kernels::MeshKernels* kernels_;
+  std::vector<double> inverse_mass_;
+  AlignedDoubles vectors_;
+  std::vector<double> squares_;  ///< see kernels::MeshPass; five sums
+  Fields inner_;
+  ClothState stage_, sum_;  ///< of Runge-Kutta
+  int sharing_ = 1;         ///< threads of the pass that is being made
+};
+
+}  // namespace cloth

@@ -1,0 +1,87 @@
+// The springs of a cloth in one pass over its particles, together with what an explicit method does with the
+// force: a whole step reads and writes every particle once. A grid has one way to do that (grid_sweep.h), a
+// general mesh another (mesh_sweep.h). The same bits for any number of threads.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <span>
+
+#include "cloth/cloth_system.h"
+#include "kernels/thread_choice.h"
+#include "kernels/worker_team.h"
+
+namespace cloth {
+
+/// The mass of every free particle, if all particles have the same.
+std::optional<double> common_mass(const ClothSystem& system);
+
+/// What acts beside the springs: f = springs + weight + load - damping v.
+struct SweepLoads {
+  Vec3 weight{0, 0, 0};             ///< N, on every particle
+  double damping = 0;               ///< N s/m
+  const Vec3Field* load = nullptr;  ///< N, or none
+};
+
+class SpringSweep {
+ public:
+  /// `mass` is that of the free particles; the steps below need it.
+  explicit SpringSweep(std::optional<double> mass) : mass_(mass) {}
+  virtual ~SpringSweep() = default;
+
+  bool has_common_mass() const { return mass_.has_value(); }
+  double mass() const { return mass_.value(); }
+
+  /// The team whose threads share the particles; null: one thread.
+  void set_team(WorkerTeam* team, ThreadUse use = ThreadUse::where_they_gain) { team_ = team, use_ = use; }
+  /// How many of the team's threads a pass may use: only one where the shares would be too small.
+  virtual int threads() const = 0;
+
+  /// Sums over all particles of |v|^2, in (m/s)^2: before and after the step.
+  struct Squares {
+    double before = 0, after = 0;
+  };
+  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v).
+  virtual Squares euler(double step, bool drift_first, const SweepLoads& loads, ClothState& state) = 0;
+  /// As many steps of euler() as there are `squares`, to the bit. No load.
+  virtual void euler_steps(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+                           ClothState& state);
+  /// Whether euler_steps() costs less than so many calls of euler().
+  virtual bool gains_euler_steps() const { return false; }
+  /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
+  /// after. No load. Only `after` is given.
+  virtual Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) = 0;
+  /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between; each
+  /// of the squares is a step's `after`.
+  virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
+                            ClothState& state) = 0;
+  /// Kutta's method of order four. No load. The sums at the four stages, and after the step.
+  virtual std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state) = 0;
+
+  /// force = springs + weight + load; `load` may be `force`.
+  virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
+  /// The sum of |v|^2 to the bits in which the steps report it.
+  virtual double squares(const Vec3Field& velocity) = 0;
+
+ protected:
+  /// Each takes its own time, and so makes its own choice of threads.
+  enum class PassKind { step, several_steps, opening, between, closing, evaluation, sums };
+  static constexpr std::size_t pass_kinds = 7;
+
+  /// How many threads the pass gets that begins now.
+  int begin_pass(PassKind kind);
+  void end_pass(PassKind kind);
+
+  WorkerTeam* team() const { return team_; }
+  int team_size() const { return team_ ? team_->size() : 1; }
+
+ private:
+  std::optional<double> mass_;
+  WorkerTeam* team_ = nullptr;
+  ThreadUse use_ = ThreadUse::where_they_gain;
+  std::array<ThreadChoice, pass_kinds> choices_;
+  std::chrono::steady_clock::time_point begun_;  ///< the pass, where its time is wanted
+};
+
+}  // namespace cloth

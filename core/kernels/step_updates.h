@@ -1,0 +1,136 @@
+// What the explicit methods do with a force as soon as it is complete: update(j, count, here, force) for the
+// particles from j on, of which there are `count` at an Edge and a whole Lanes elsewhere. Included once for
+// every instruction set, after its Lanes.
+#pragma once
+
+#include "kernels/lane_vectors.h"
+
+namespace cloth::kernels {
+namespace {
+
+/// v' = v + h a(x, v); x' = x + h v', or x + h v.
+struct EulerUpdate {
+  V step, damping;
+  bool drift_first;
+  Row position, velocity;
+  const double* inverse_mass;
+  V before, after;
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector& x, const Vector& spring_force) {
+    const Vector v = load_part<Edge>(velocity, j, count);
+    const V h_over_m = Lanes::mul(
+        step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
+    const Vector next = plus(v, h_over_m, minus(spring_force, damping, v));
+    before = plus_square(before, v);
+    after = plus_square(after, next);
+    store<Edge>(velocity, j, count, next);
+    store<Edge>(position, j, count, plus(x, step, drift_first ? v : next));
+  }
+};
+
+/// v' solves m v' = m v_half + h/2 (p(x') - c v').
+struct VerletUpdate {
+  V half_step, centred;  ///< h/2, and 1 / (1 + h c / 2 m)
+  Row velocity, force;
+  const double* inverse_mass;
+  V after;
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& p) {
+    const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
+                                               : Lanes::load(inverse_mass + j));
+    const Vector next = scaled(centred, plus(load_part<Edge>(velocity, j, count), scale, p));
+    after = plus_square(after, next);
+    store<Edge>(velocity, j, count, next);
+    store<Edge>(force, j, count, p);
+  }
+};
+
+inline double centring(double step, double damping, double mass) {
+  return 1 / (1 + 0.5 * step * damping / mass);
+}
+
+/// v_half = v + h/2 (p - c v) / m, x' = x + h v_half for a row.
+template <bool Edge>
+CLOTHLAB_INLINE void kick_drift_block(const Row& x, const Row& v, const ConstRow& p,
+                                      const double* inverse_mass, V half_step, V step, V damping, int j,
+                                      int count) {
+  const V scale = Lanes::mul(
+      half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
+  const Vector velocity = load_part<Edge>(v, j, count);
+  const Vector half = plus(velocity, scale, minus(load_part<Edge>(p, j, count), damping, velocity));
+  store<Edge>(v, j, count, half);
+  store<Edge>(x, j, count, plus(load_part<Edge>(x, j, count), step, half));
+}
+
+/// The end of one step of Verlet and the beginning of the next, by the same operations as in two passes.
+struct VerletBetweenUpdate {
+  V half_step, step, centred, damping;
+  Row position, velocity;
+  const double* inverse_mass;
+  V after;  ///< the sum of squares of the velocity between the steps
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector& x, const Vector& p) {
+    const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
+                                               : Lanes::load(inverse_mass + j));
+    const Vector v = scaled(centred, plus(load_part<Edge>(velocity, j, count), scale, p));
+    after = plus_square(after, v);
+    const Vector half = plus(v, scale, minus(p, damping, v));
+    store<Edge>(velocity, j, count, half);
+    store<Edge>(position, j, count, plus(x, step, half));
+  }
+};
+
+/// force = springs + weight + load
+struct EvaluateUpdate {
+  Row force;
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& p) {
+    store<Edge>(force, j, count, p);
+  }
+};
+
+/// One stage of Runge-Kutta: the sums so far move on by `weight` h, the next stage stands `ahead` h from the
+/// state along this one's slope.
+struct StageUpdate {
+  V weight, ahead, damping;
+  bool is_last;
+  ConstRow stage_velocity;
+  const double* inverse_mass;
+  ConstRow sum_position, sum_velocity;  ///< the state plus the weighted stages so far
+  Row next_sum_position, next_sum_velocity;
+  ConstRow state_position, state_velocity;
+  Row next_position, next_velocity;  ///< the next stage's, unless this is the last
+  V squares, after;
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& spring_force) {
+    const Vector v = load_part<Edge>(stage_velocity, j, count);
+    const V inverse =
+        Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j);
+    const Vector a = scaled(inverse, minus(spring_force, damping, v));
+    const Vector sum_x = plus(load_part<Edge>(sum_position, j, count), weight, v);
+    const Vector sum_v = plus(load_part<Edge>(sum_velocity, j, count), weight, a);
+    squares = plus_square(squares, v);
+    if (is_last) {
+      after = plus_square(after, sum_v);
+    } else {
+      const Vector x0 = load_part<Edge>(state_position, j, count),
+                   v0 = load_part<Edge>(state_velocity, j, count);
+      store<Edge>(next_position, j, count, plus(x0, ahead, v));
+      store<Edge>(next_velocity, j, count, plus(v0, ahead, a));
+    }
+    store<Edge>(next_sum_position, j, count, sum_x);
+    store<Edge>(next_sum_velocity, j, count, sum_v);
+  }
+};
+
+inline constexpr int stage_count = 4;
+inline constexpr double stage_weight[stage_count] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6},
+                        stage_ahead[stage_count] = {0.5, 0.5, 1, 0};
+
+}  // namespace
+}  // namespace cloth::kernels

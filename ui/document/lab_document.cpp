@@ -246,6 +246,16 @@ bool LabDocument::removeBlock(const std::string& block_path) {
   return true;
 }
 
+void LabDocument::moveObstacle(int number, const cloth::Obstacle& moved) {
+  const auto k = static_cast<std::size_t>(number);
+  if (k >= scene_.obstacles.size()) return;
+  const std::string path = "obstacles." + std::to_string(k);
+  Scene after = scene_;
+  after.obstacles[k] = moved;
+  push(tr("Move %1").arg(in_sentence(find_block(scene_, path)->title)), std::move(after),
+       {Effect::live, path}, drag_);
+}
+
 void LabDocument::setPins(std::vector<cloth::Pin> pins) {
   Scene after = scene_;
   after.cloth.pins = std::move(pins);

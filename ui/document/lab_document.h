@@ -60,6 +60,10 @@ class LabDocument : public QObject {
   /// By the path of a removable cloth::Block; false if there is none.
   bool removeBlock(const std::string& block_path);
 
+  /// The obstacle of this number is now where, and what, `moved` says: a live edit, which a drag makes one
+  /// undo step of. Of its block's parameters it must keep the rules.
+  void moveObstacle(int number, const cloth::Obstacle& moved);
+
   void setPins(std::vector<cloth::Pin> pins);
   /// Pins a free particle and frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);

@@ -28,17 +28,23 @@ MeshButton::MeshButton(const LabDocument& document, QWidget* parent)
   setAccessibleName(tr("Choose a mesh"));
   auto* menu = new QMenu(this);
   menu->setObjectName("meshMenu");
-  grid_ = menu->addAction(tr("Grid"), this, &MeshButton::gridChosen);
+  // Queued: until the menu is gone. A choice may take the button away, or open a dialog with a loop of its
+  // own.
+  grid_ = menu->addAction(tr("Grid"));
   grid_->setObjectName("mesh:grid");
   grid_->setVisible(false);
+  connect(grid_, &QAction::triggered, this, &MeshButton::gridChosen, Qt::QueuedConnection);
   for (const cloth::BuiltinMesh& mesh : cloth::builtin_meshes()) {
-    QAction* action = menu->addAction(QString::fromStdString(mesh.title), this,
-                                      [this, name = mesh.name] { Q_EMIT meshChosen(name); });
+    QAction* action = menu->addAction(QString::fromStdString(mesh.title));
     action->setObjectName("mesh:" + QString::fromStdString(mesh.name));
+    connect(
+        action, &QAction::triggered, this, [this, name = mesh.name] { Q_EMIT meshChosen(name); },
+        Qt::QueuedConnection);
   }
   menu->addSeparator();
-  menu->addAction(clothlab::icon("open"), tr("From an OBJ file…"), this, &MeshButton::chooseFile)
-      ->setObjectName("mesh:file");
+  QAction* file = menu->addAction(clothlab::icon("open"), tr("From an OBJ file…"));
+  file->setObjectName("mesh:file");
+  connect(file, &QAction::triggered, this, &MeshButton::chooseFile, Qt::QueuedConnection);
   setMenu(menu);
 }
 

@@ -35,7 +35,7 @@ class Bench {
              "origin": [-0.25, 0.8, -0.25], "across": [1, 0, 0], "down": [0, 0, 1], "pins": ["top-left"] },
   "springs": { "structural": 60, "flexion": 3, "damping": 0.01 }, "gravity": [0, -9.81, 0],
   "obstacles": [ { "shape": "mesh", "file": "closed.obj", "scale": 0.3 } ],
-  "integrator": { "method": "semi-implicit-euler", "time_step": 0.001 }, "duration": 1 })");
+  "integrator": { "method": "semi-implicit-euler", "time_step": "auto" }, "duration": 1 })");
     bench_ = std::make_unique<WindowBench>(path("two.scene.json"));
   }
 

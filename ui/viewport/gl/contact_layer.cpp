@@ -159,7 +159,9 @@ void ContactLayer::draw_dots(QOpenGLShaderProgram& program, const View& view, co
   const double diameter = std::clamp(0.5 * view.cell / view.pixel_ratio, 3.0, 6.0);  // px
   program.setUniformValue("diameter", static_cast<float>(diameter * view.pixel_ratio));
   program.setUniformValue("disc_colour", as_srgb(touch_colour(theme)));
-  program.setUniformValue("rim_colour", as_srgb(theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white)));
+  const QColor rim = theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white);
+  program.setUniformValue("rim_colour",
+                          as_srgb(diameter < 5 ? touch_colour(theme) : rim));  // or little is left
   gl_.glEnable(GL_PROGRAM_POINT_SIZE);
   gl_.glBindVertexArray(dot_array_);
   gl_.glDrawArrays(GL_POINTS, 0, mark_count_);

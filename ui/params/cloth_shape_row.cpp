@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 
 #include "params/mesh_button.h"
+#include "params/panel_parts.h"
 #include "params/wording.h"
 #include "theme/theme.h"
 
@@ -18,8 +19,8 @@ ClothShapeRow::ClothShapeRow(LabDocument& document, QWidget* parent)
   column->setSpacing(spacing / 4);
   auto* row = new QHBoxLayout;
   row->setContentsMargins(0, 0, 24 + spacing / 2, 0);  // ends where the controls below end
-  row->addWidget(new QLabel(tr("Grid of particles"), this), 1);
-  button_->setText(tr("Mesh instead"));
+  row->addWidget(new ElidedLabel(tr("Grid of particles"), this), 1);
+  button_->setText(tr("Mesh"));
   button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   button_->setToolTip(tr("Make the cloth of a triangle mesh; restarts the simulation"));
   row->addWidget(button_);

@@ -130,6 +130,7 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the view itself stays opaque
   glDepthMask(GL_FALSE);
+  find_floors(shot);
   draw_floors(shot, theme);
   draw_shadows(shot, theme);
   if (has_cloth_ && surface_->has_pinned_points()) draw_pins(shot, theme);
@@ -272,20 +273,21 @@ double ClothRenderer::cell_on_screen(const Shot& shot) const {
 }
 
 /// Back to front as far as it matters: level ground lies below what is tilted.
-std::vector<ClothRenderer::Floor> ClothRenderer::floors(const Shot& shot) const {
-  std::vector<Floor> level, tilted;
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const cloth::Obstacle& o = obstacles_[k];
-    if (o.shape != cloth::Shape::plane) continue;
-    const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
-    const Eigen::Vector3d normal = pose.turn * o.normal.normalized();
-    if (!normal.allFinite()) continue;
-    const bool is_level = std::abs(normal.y()) > 0.999;
-    (is_level ? level : tilted).push_back({pose.at(o.point), normal, is_level});
+void ClothRenderer::find_floors(const Shot& shot) {
+  floors_.clear();
+  if (!shot.ground.is_obstacle)
+    floors_.push_back({{0, shot.ground.height, 0}, Eigen::Vector3d::UnitY(), true});
+  for (const bool level_ones : {true, false}) {
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      const cloth::Obstacle& o = obstacles_[k];
+      if (o.shape != cloth::Shape::plane) continue;
+      const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
+      const Eigen::Vector3d normal = pose.turn * o.normal.normalized();
+      const bool is_level = std::abs(normal.y()) > 0.999;
+      if (normal.allFinite() && is_level == level_ones)
+        floors_.push_back({pose.at(o.point), normal, is_level});
+    }
   }
-  if (!shot.ground.is_obstacle) level.push_back({{0, shot.ground.height, 0}, Eigen::Vector3d::UnitY(), true});
-  level.insert(level.end(), tilted.begin(), tilted.end());
-  return level;
 }
 
 void ClothRenderer::draw_floors(const Shot& shot, const Theme& theme) {
@@ -295,7 +297,7 @@ void ClothRenderer::draw_floors(const Shot& shot, const Theme& theme) {
   kit_->plane.setUniformValue("line_colour",
                               as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
   kit_->plane.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
-  for (const Floor& floor : floors(shot)) draw_floor(shot, theme, floor);
+  for (const Floor& floor : floors_) draw_floor(shot, theme, floor);
   kit_->plane.release();
 }
 
@@ -337,9 +339,8 @@ void ClothRenderer::draw_shadows(const Shot& shot, const Theme& theme) {
   glStencilMask(0xFF);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   GLint number_of_floor = 0;
-  const std::vector<Floor> all = floors(shot);
-  const bool sloped = std::any_of(all.begin(), all.end(), [](const Floor& f) { return !f.is_level; });
-  for (const Floor& floor : all) {
+  const bool sloped = std::any_of(floors_.begin(), floors_.end(), [](const Floor& f) { return !f.is_level; });
+  for (const Floor& floor : floors_) {
     const bool made_up = floor.is_level && !shot.ground.is_obstacle;
     if (sloped && made_up) continue;  // what falls comes to lie on the slope
     const double steepness = -light.dot(floor.normal);

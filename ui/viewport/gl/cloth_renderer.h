@@ -68,7 +68,7 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
     Eigen::Vector3d point, normal;  // m; unit vector
     bool is_level;
   };
-  std::vector<Floor> floors(const Shot& shot) const;
+  void find_floors(const Shot& shot);
   void draw_floors(const Shot& shot, const Theme& theme);
   void draw_floor(const Shot& shot, const Theme& theme, const Floor& floor);
   void draw_shadows(const Shot& shot, const Theme& theme);
@@ -87,6 +87,7 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   QVector2D tiles_per_cell_;  // of the weave; of a mesh a metre takes the cell's place
   std::vector<cloth::Obstacle> obstacles_;
   std::vector<cloth::Pose> poses_, targets_;
+  std::vector<Floor> floors_;  // of the picture that is being drawn
 };
 
 }  // namespace clothlab

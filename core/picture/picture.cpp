@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/rigid_motion.h"
 #include "geometry/mesh_look.h"
 #include "picture/floor.h"
 #include "picture/shapes.h"
@@ -21,6 +22,15 @@ const Colour back_tint(0.56F, 0.70F, 0.86F);  // the back of the cloth is duller
 
 bool is_level(const Vec3& unit_normal) {
   return std::abs(unit_normal.y()) > 0.999;
+}
+
+void move(PictureMesh& mesh, const Pose& pose) {
+  if (pose == Pose{}) return;
+  const Eigen::Matrix3f turn = pose.turn.cast<float>();
+  for (PictureVertex& vertex : mesh.vertices) {
+    vertex.position = pose.at(vertex.position);
+    vertex.normal = turn * vertex.normal;
+  }
 }
 
 /// One picture in the making.
@@ -87,24 +97,22 @@ void Painter::add_obstacles() {
   const int matte = canvas_.add_surface(surface);
   const double cell = system_.springs.empty() ? 0 : system_.springs.front().rest_length;
   for (const Obstacle& o : scene_.obstacles) {
-    if (o.shape == Shape::plane) continue;
+    const Eigen::AlignedBox3d bounds = bounds_of(o, options_.time);
+    if (bounds.isEmpty() || !bounds.min().allFinite() || !bounds.max().allFinite()) continue;
+    PictureMesh mesh;
     if (o.shape == Shape::mesh) {
-      if (!o.mesh.is_loaded() || !placed_bounds(o).min().allFinite()) continue;
-      meshes_.push_back(body_mesh(placed_mesh(o)));
-      canvas_.add_mesh(meshes_.back().vertices, meshes_.back().triangles, matte);
-      extent_.extend(placed_bounds(o));
-      continue;
+      mesh = body_mesh(placed_mesh(o));
+    } else if (o.shape == Shape::sphere) {
+      const double arc = o.radius > 0 ? std::min(cell * cell / (4 * o.radius), 0.05 * o.radius) : 0;
+      mesh = sphere_mesh(o.center, o.radius - arc);
+    } else {
+      const Vec3 cut = (0.2 * o.size).cwiseMin(edge_cut * cell);
+      mesh = box_mesh(o.center, o.size - cut, cut.minCoeff());
     }
-    const bool ball = o.shape == Shape::sphere;
-    const Vec3 size = ball ? Vec3(Vec3::Constant(2 * o.radius)) : o.size;
-    if (!o.center.allFinite() || !size.allFinite()) continue;
-    const double arc = ball && o.radius > 0 ? std::min(cell * cell / (4 * o.radius), 0.05 * o.radius) : 0;
-    const Vec3 cut = (0.2 * size).cwiseMin(edge_cut * cell);
-    meshes_.push_back(ball ? sphere_mesh(o.center, o.radius - arc)
-                           : box_mesh(o.center, size - cut, cut.minCoeff()));
-    canvas_.add_mesh(meshes_.back().vertices, meshes_.back().triangles, matte);
-    extent_.extend(Vec3(o.center - size / 2));
-    extent_.extend(Vec3(o.center + size / 2));
+    move(mesh, pose_of(o, options_.time));
+    canvas_.add_mesh(mesh.vertices, mesh.triangles, matte);
+    meshes_.push_back(std::move(mesh));
+    extent_.extend(bounds);
   }
 }
 
@@ -216,8 +224,10 @@ void Painter::add_floors() {
   for (const Obstacle& o : scene_.obstacles) {
     const double length = o.normal.norm();
     if (o.shape != Shape::plane || !o.point.allFinite() || !std::isfinite(length) || !(length > 0)) continue;
-    floors_.emplace_back(o.point, o.normal / length, extent_);
-    if (is_level(o.normal / length)) level = std::max(level.value_or(o.point.y()), o.point.y());
+    const Pose pose = pose_of(o, options_.time);
+    const Vec3 point = pose.at(o.point), normal = pose.turn * (o.normal / length);
+    floors_.emplace_back(point, normal, extent_);
+    if (is_level(normal)) level = std::max(level.value_or(point.y()), point.y());
   }
   if (!level && options_.ground && !extent_.isEmpty()) {
     level = extent_.min().y() - 0.06 * extent_.diagonal().norm();

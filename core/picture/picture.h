@@ -22,6 +22,7 @@ struct PictureOptions {
   double strain_scale = 0.1;                            ///< the strain of the last colour
   bool wireframe = false;                               ///< springs as lines on a pale sheet
   std::array<bool, 3> springs_shown{true, true, true};  ///< by SpringFamily; fewer read better on a fine grid
+  double time = 0;                                      ///< s: obstacles that move are where they are then
   bool ground = true;  ///< a floor below everything where the scene has no level plane
   bool shadow = true;  ///< on the floor, and of cloth and bodies on each other
   Rgb background_top{0xd9, 0xe0, 0xea}, background_bottom{0xf6, 0xf8, 0xfa};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/rigid_motion.h"
+
 namespace cloth {
 namespace {
 
@@ -23,15 +25,24 @@ double slope_of(const PictureCamera& camera) {
   return std::tan(degrees * std::numbers::pi / 360);
 }
 
-Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle) {
-  if (obstacle.shape == Shape::plane) return {};
-  if (obstacle.shape == Shape::mesh) return placed_bounds(obstacle);
-  const Vec3 half =
-      obstacle.shape == Shape::sphere ? Vec3(Vec3::Constant(obstacle.radius)) : Vec3(obstacle.size / 2);
-  return {obstacle.center - half, obstacle.center + half};
-}
-
 }  // namespace
+
+Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle, double time) {
+  if (obstacle.shape == Shape::plane) return {};
+  const Pose pose = pose_of(obstacle, time);
+  Eigen::AlignedBox3d home, bounds;
+  if (obstacle.shape == Shape::mesh) {
+    home = placed_bounds(obstacle);
+  } else if (obstacle.shape == Shape::sphere) {
+    const Vec3 half = Vec3::Constant(obstacle.radius), center = pose.at(obstacle.center);
+    return {center - half, center + half};
+  } else {
+    home = {obstacle.center - obstacle.size / 2, obstacle.center + obstacle.size / 2};
+  }
+  for (int k = 0; k < 8 && !home.isEmpty(); ++k)
+    bounds.extend(pose.at(home.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
+  return bounds;
+}
 
 EyeFrame::EyeFrame(const PictureCamera& camera, int width, int height) {
   eye = camera.eye.allFinite() ? camera.eye : Vec3(0, 0, 0);
@@ -72,7 +83,7 @@ std::optional<Eigen::Vector2d> pixel_of(const PictureCamera& camera, int width, 
 }
 
 PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, const Vec3& direction,
-                             double aspect, std::span<const PictureArrow> arrows) {
+                             double aspect, std::span<const PictureArrow> arrows, double time) {
   PictureCamera camera;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < position.size(); ++i)
@@ -81,7 +92,7 @@ PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, cons
     for (const Vec3& end : {arrow.from, arrow.to})
       if (end.allFinite() && end.norm() < most_distance) points.push_back(end);
   for (const Obstacle& obstacle : scene.obstacles) {
-    const Eigen::AlignedBox3d box = bounds_of(obstacle);
+    const Eigen::AlignedBox3d box = bounds_of(obstacle, time);
     if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) continue;
     for (int corner = 0; corner < 8; ++corner)
       points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));

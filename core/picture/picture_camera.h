@@ -28,10 +28,14 @@ inline const Vec3 usual_direction{0.46, 0.40, 0.80};
 
 /// A camera that looks along -`direction` (from what is seen towards the eye; any length) at the cloth and
 /// the obstacles (planes apart), near enough to fill a picture of `aspect` (width / height) with a little air
-/// around. Particles that are not finite are left out; the usual camera where nothing is left.
+/// around. Obstacles that move are where they are at `time` (s). Particles that are not finite are left out;
+/// the usual camera where nothing is left.
 PictureCamera camera_showing(const Scene& scene, const Vec3Field& position,
                              const Vec3& direction = usual_direction, double aspect = 4.0 / 3.0,
-                             std::span<const PictureArrow> arrows = {});
+                             std::span<const PictureArrow> arrows = {}, double time = 0);
+
+/// m, of an obstacle where it is at `time` (s); empty for a plane.
+Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle, double time);
 
 /// What moves the eye to the origin: x right, y up, z into the picture. Finite whatever the camera is.
 struct EyeFrame {

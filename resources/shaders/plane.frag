@@ -3,6 +3,7 @@ in vec2 on_plane;
 in vec3 world;
 
 uniform float reach;          // m
+uniform float fade_from;      // share of the reach
 uniform vec2 grid_offset;     // m: lines run through multiples of grid_step of the world
 uniform float grid_step;      // m
 uniform vec3 floor_colour;    // sRGB
@@ -24,7 +25,7 @@ float lines(vec2 p, float step_size) {
 
 void main() {
   float away = length(on_plane) / reach;
-  float fade = 1.0 - smoothstep(0.25, 1.0, away);
+  float fade = 1.0 - smoothstep(fade_from, 1.0, away);
   vec2 p = on_plane + grid_offset;
   float line = line_opacity * max(0.55 * lines(p, grid_step), lines(p, 5.0 * grid_step));
   float opacity = fade * (floor_opacity + line * (1.0 - floor_opacity));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "cloth/grid.h"
 #include "picture/shapes.h"
@@ -194,6 +195,46 @@ TEST(Picture, OfABodyBehindAClothIsDarkerInItsShadow) {
   EXPECT_EQ(lighter, 0);
   // No part of the cloth lies in its own shadow.
   EXPECT_EQ(shaded.at(width / 2, height / 2), lit.at(width / 2, height / 2));
+}
+
+TEST(Picture, HasObstaclesThatMoveWhereTheyAreAtItsTime) {
+  Sheet sheet;
+  Obstacle ball = sheet.ball_at(0.5);
+  ball.radius = 0.05;
+  ball.velocity = {0.2, 0, 0};
+  sheet.scene.obstacles = {ball};
+  Obstacle there = sheet.ball_at(0.5);
+  there.radius = ball.radius;
+  there.center += 2 * ball.velocity;
+  Sheet resting;
+  resting.scene.obstacles = {there};
+  PictureOptions later = bare_options();
+  later.time = 2;
+  EXPECT_EQ(sheet.image(later).pixels, resting.image().pixels);
+  EXPECT_NE(sheet.image().pixels, resting.image().pixels);
+  EXPECT_EQ(camera_showing(sheet.scene, sheet.position, usual_direction, 1, {}, 2),
+            camera_showing(resting.scene, resting.position, usual_direction, 1));
+}
+
+TEST(Picture, HasTurnedObstaclesTurned) {
+  Sheet sheet;
+  Obstacle box;
+  box.shape = Shape::box;
+  box.center = sheet.middle + Vec3(0, 0, 0.5);
+  box.size = {0.3, 0.06, 0.06};
+  sheet.scene.obstacles = {box};
+  const Image lying = sheet.image();
+  const double quarter = std::numbers::pi / 2;
+  sheet.scene.obstacles[0].keyframes = {{.time = 0, .position = box.center, .rotation = {0, 0, quarter}}};
+  const Image turned = sheet.image();
+  std::swap(box.size.x(), box.size.y());
+  sheet.scene.obstacles = {box};
+  const Image upright = sheet.image();
+  EXPECT_NE(lying.pixels, upright.pixels);
+  int different = 0;  // its edges are cut by other triangles
+  for (std::size_t k = 0; k < upright.pixels.size(); ++k)
+    different += std::abs(int(upright.pixels[k].red) - int(turned.pixels[k].red)) > 8 ? 1 : 0;
+  EXPECT_LT(different, width * height / 200);
 }
 
 TEST(Picture, HasTheSameBytesForTheSameInput) {

@@ -1,7 +1,10 @@
 // Contact shown in the view and obstacles moved in it, by real keys and drags.
 #include <QFile>
+#include <QLabel>
+#include <QPushButton>
 #include <QSpinBox>
 
+#include "scene/scene_edits.h"
 #include "viewport/obstacle_handle.h"
 #include "window_bench.h"
 
@@ -9,15 +12,15 @@ namespace clothlab::test {
 namespace {
 
 /// A small cloth hung by two corners; a ball beside it.
-QByteArray hung_cloth(bool continuous) {
+QByteArray hung_cloth(bool continuous, const QByteArray& motion = {}) {
   return QByteArray(R"({
   "format": "clothlab/scene/1", "title": "A ball beside a hung cloth",
   "cloth": { "columns": 9, "rows": 9, "width": 0.5, "height": 0.5, "mass": 0.05,
              "origin": [-0.25, 0.8, 0], "across": [1, 0, 0], "down": [0, -1, 0], "pins": ["top-left", "top-right"] },
   "springs": { "structural": 60, "shear": 30, "flexion": 3, "damping": 0.01 },
   "damping": 0.0005, "gravity": [0, -9.81, 0],
-  "obstacles": [ { "shape": "sphere", "center": [0.45, 0.4, 0.05], "radius": 0.12 } ],)") +
-         (continuous ? R"("contact": { "thickness": 0.005 },)" : "") +
+  "obstacles": [ { "shape": "sphere", "center": [0.45, 0.4, 0.05], "radius": 0.12)") +
+         motion + " } ]," + (continuous ? R"("contact": { "thickness": 0.005 },)" : "") +
          R"("integrator": { "method": "semi-implicit-euler", "time_step": 0.002 }, "duration": 5,
   "record": { "interval": 0.01 } })";
 }
@@ -29,7 +32,8 @@ void move(QWidget* on, QPointF at, Qt::MouseButtons buttons = Qt::LeftButton) {
 
 class Bench : public WindowBench {
  public:
-  explicit Bench(bool continuous) : WindowBench(write(hung_cloth(continuous))) {
+  explicit Bench(bool continuous, const QByteArray& motion = {})
+      : WindowBench(write(hung_cloth(continuous, motion))) {
     view().setPreset(CameraPreset::front);
     QTest::qWait(50);
   }
@@ -196,6 +200,96 @@ class ContactViewTest : public QObject {
     const ClothFrame& frame = *bench.view().frame();
     QVERIFY((frame.target(0).at(frame.obstacles[0].center) - bench.document_center()).norm() < 1e-9);
     QVERIFY(bench.view().grabPicture() != picture);
+  }
+
+  void dragging_an_obstacle_with_keyframes_shifts_all_of_them_as_one_undo_step() {
+    Bench bench(true, R"(, "keyframes": [ { "time": 0, "position": [0.45, 0.4, 0.05] },
+                                          { "time": 0.4, "position": [0.3, 0.6, 0.05], "rotation": [0, 1, 0] } ])");
+    const auto scene = [&] { return bench.window.document().scene(); };
+    const cloth::Scene before = scene();
+    const QImage picture = bench.view().grabPicture();
+    bench.drag({40, 20});
+    QVERIFY(bench.view().grabPicture() != picture);
+    QCOMPARE(bench.undo_steps(), 1);
+    const cloth::Scene after = scene();
+    const auto &old_keys = before.obstacles[0].keyframes, &keys = after.obstacles[0].keyframes;
+    const cloth::Vec3 by = keys[0].position - old_keys[0].position;
+    QVERIFY(by.x() > 0.02 && by.y() < -0.01);
+    QVERIFY((keys[1].position - old_keys[1].position - by).norm() < 1e-12);
+    QCOMPARE(keys[1].time, old_keys[1].time);
+    QVERIFY(keys[1].rotation == old_keys[1].rotation);
+    QVERIFY2(*cloth::edited_scene(before, cloth::edits_between(before, after)).scene == after,
+             "in a session");
+    bench.play_until(0.2);
+    bench.pause();
+    const double time = bench.view().frame()->time;
+    QVERIFY((bench.drawn_center() - cloth::pose_of(after.obstacles[0], time).at(after.obstacles[0].center))
+                .norm() < 1e-9);
+    bench.window.document().undoStack().undo();
+    QVERIFY(scene() == before);
+  }
+
+  void dragging_an_obstacle_with_a_velocity_shifts_where_it_starts() {
+    Bench bench(true, R"(, "velocity": [0.1, 0, 0])");
+    bench.play_until(0.2);
+    bench.pause();
+    const cloth::Vec3 start = bench.document_center(), place = bench.drawn_center();
+    bench.drag({0, -40});
+    QCOMPARE(bench.undo_steps(), 1);
+    const cloth::Vec3 by = bench.document_center() - start;
+    QVERIFY(by.y() > 0.02);
+    const ClothFrame& frame = *bench.view().frame();
+    QVERIFY((frame.target(0).at(frame.obstacles[0].center) - place - by).norm() < 1e-9);
+  }
+
+  void fields_that_keyframes_overrule_say_so() {
+    Bench bench(true, R"(, "keyframes": [ { "time": 0, "position": [0.45, 0.4, 0.05] } ])");
+    const auto note = [&] { return qobject_cast<QLabel*>(bench.editor("obstacles.0.center", "note")); };
+    QVERIFY(note() && note()->isVisibleTo(&bench.window));
+    QVERIFY(note()->text().contains("keyframes"));
+    bench.window.openScene("ball");
+    bench.settle();
+    QVERIFY(!note()->isVisibleTo(&bench.window));
+  }
+
+  void a_drag_into_pinned_cloth_stops_pinched_and_one_click_undoes_it() {
+    Bench bench(true);
+    bench.play_until(0.1);
+    const cloth::Vec3 before = bench.document_center();
+    bench.drag(QPointF(bench.pixel_of(0)) - bench.center());
+    QTRY_VERIFY_WITH_TIMEOUT(bench.status().divergence.has_value(), 20000);
+    bench.settle();
+    QVERIFY(bench.status().divergence->pinched);
+    const QString text = bench.window.notice().text();
+    QVERIFY2(text.contains("pinched") && text.contains("t = ") && text.contains("particle"),
+             qPrintable(text));
+    auto* button = bench.window.findChild<QPushButton*>("noticeButton");
+    QVERIFY2(button->isVisible() && button->text().contains("Move sphere 1"), qPrintable(button->text()));
+    const double stopped = bench.status().time;
+    QTest::mouseClick(button, Qt::LeftButton);
+    bench.settle();
+    QVERIFY((bench.document_center() - before).norm() == 0);
+    QVERIFY(bench.window.notice().text().isEmpty());
+    bench.play_until(stopped + 0.3);
+    bench.pause();
+    QVERIFY(!bench.status().divergence);
+    QVERIFY2((bench.drawn_center() - before).norm() < 1e-9, "back where it was");
+  }
+
+  void a_pinched_drag_can_be_dragged_elsewhere_instead() {
+    Bench bench(true);
+    bench.play_until(0.1);
+    bench.drag(QPointF(bench.pixel_of(0)) - bench.center());
+    QTRY_VERIFY_WITH_TIMEOUT(bench.status().divergence.has_value(), 20000);
+    bench.settle();
+    const double stopped = bench.status().time;
+    QVERIFY(!bench.window.notice().text().isEmpty());
+    bench.drag({140, 60});
+    QVERIFY2(bench.window.notice().text().isEmpty(), "what it offers to undo is no longer the last edit");
+    bench.play_until(stopped + 0.3);
+    bench.pause();
+    QVERIFY(!bench.status().divergence);
+    QVERIFY((bench.drawn_center() - bench.document_center()).norm() < 1e-9);
   }
 
   void escape_takes_a_drag_back() {

@@ -101,13 +101,30 @@ class WindowTest : public QObject {
   void a_slower_speed_slows_simulated_time() {
     WindowBench bench;
     auto* speed = bench.window.findChild<QComboBox*>("speed");
-    QTest::keyClick(speed, Qt::Key_Home);  // 0.1x
+    QTest::keyClick(speed, Qt::Key_Home);  // 0.01x
+    QTest::keyClick(speed, Qt::Key_Down);
     bench.settle();
     QCOMPARE(bench.status().speed, 0.1);
     QElapsedTimer clock;
     clock.start();
     bench.play_until(0.02);
     QVERIFY(bench.status().time <= 0.1 * static_cast<double>(clock.elapsed() + 1) / 1000);
+  }
+
+  void a_scene_that_is_over_in_a_blink_opens_slowed_down_and_the_next_one_as_before() {
+    WindowBench bench;
+    auto* speed = bench.window.findChild<QComboBox*>("speed");
+    QTest::keyClick(speed, Qt::Key_Down);
+    bench.settle();
+    QCOMPARE(bench.status().speed, 2.0);
+    for (const char* name : {"fast-ball", "fast-ball"}) {
+      bench.window.openScene(name);
+      bench.settle();
+      QCOMPARE(bench.status().speed, 0.01);
+    }
+    bench.window.openScene("ball");
+    bench.settle();
+    QCOMPARE(bench.status().speed, 2.0);
   }
 
   void dragging_a_slider_acts_on_the_running_simulation_and_is_one_undo_step() {

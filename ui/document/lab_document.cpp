@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "document/cloth_edits.h"
 #include "document/pin_edits.h"
 #include "scene/scene_edits.h"
 
@@ -244,6 +245,32 @@ bool LabDocument::removeBlock(const std::string& block_path) {
   remove_block(after, block_path);
   push(tr("Remove %1").arg(in_sentence(block->title)), std::move(after), {effect_of(*block), block_path});
   return true;
+}
+
+QString LabDocument::setClothMesh(const std::string& file) {
+  Scene after = scene_;
+  if (file.empty()) {
+    after.cloth = grid_in_place_of(scene_.cloth);
+  } else {
+    after.cloth.mesh.file = file;
+    if (const auto problems = load_meshes(after, &scene_); !problems.empty())
+      return QString::fromStdString(problems.front().rule);
+    after.cloth.pins.clear();
+    after.cloth.origin = middle_of(scene_.cloth) - after.cloth.mesh.loaded->bounds.center();
+  }
+  push(file.empty() ? tr("Make the cloth a grid") : tr("Make the cloth a mesh"), std::move(after),
+       {Effect::restart, "cloth.mesh"});
+  return {};
+}
+
+void LabDocument::moveObstacle(int number, const cloth::Obstacle& moved) {
+  const auto k = static_cast<std::size_t>(number);
+  if (k >= scene_.obstacles.size()) return;
+  const std::string path = "obstacles." + std::to_string(k);
+  Scene after = scene_;
+  after.obstacles[k] = moved;
+  push(tr("Move %1").arg(in_sentence(find_block(scene_, path)->title)), std::move(after),
+       {Effect::live, path}, drag_);
 }
 
 void LabDocument::setPins(std::vector<cloth::Pin> pins) {

@@ -60,6 +60,14 @@ class LabDocument : public QObject {
   /// By the path of a removable cloth::Block; false if there is none.
   bool removeBlock(const std::string& block_path);
 
+  /// Makes the cloth a mesh, or with no file a grid, about where the cloth was and without pins. Returns why
+  /// a file cannot be used, and then changes nothing.
+  QString setClothMesh(const std::string& file);
+
+  /// The obstacle of this number is now where, and what, `moved` says: a live edit, which a drag makes one
+  /// undo step of. Of its block's parameters it must keep the rules.
+  void moveObstacle(int number, const cloth::Obstacle& moved);
+
   void setPins(std::vector<cloth::Pin> pins);
   /// Pins a free particle and frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);

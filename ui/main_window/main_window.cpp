@@ -27,13 +27,6 @@ constexpr int parameters_width = 330, charts_width = 400;  // px
 constexpr int studies_height = 400;                        // px
 constexpr int title_bar_height = 32;                       // px, at least what a desktop puts above a window
 
-/// Of the parameter that says where an obstacle is; empty: there is no such obstacle.
-std::string place_path(const cloth::Scene& scene, int obstacle) {
-  const auto k = static_cast<std::size_t>(obstacle);
-  if (k >= scene.obstacles.size()) return {};
-  return "obstacles." + std::to_string(k) + "." + place_key(scene.obstacles[k].shape);
-}
-
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
@@ -123,7 +116,9 @@ void MainWindow::openRun(const cloth::Scene& scene, const QString& note) {
 
 void MainWindow::connectDocument() {
   connect(&document_, &LabDocument::sceneChanged, this, &MainWindow::followChange);
+  connect(&document_, &LabDocument::blocksChanged, this, &MainWindow::noteKeyframes);
   connect(&document_, &LabDocument::loaded, this, [this] {
+    noteKeyframes();
     view_->resetCamera();
     startSimulation();
   });
@@ -189,6 +184,7 @@ void MainWindow::takeScene(const OpenedScene& opened) {
   notice_->withdraw("open");
   if (!opened.path.isEmpty()) remember_scene(opened.path);
   session_ = opened.session;
+  transport_->suitDuration(opened.scene->duration);
   document_.load(*opened.scene, opened.session ? QString() : opened.path);
 }
 
@@ -225,6 +221,7 @@ void MainWindow::play(bool on) {
 
 void MainWindow::followChange(const SceneChange& change) {
   if (change.effect == SceneChange::Effect::none) return readStability();
+  if (document_.presentDrag() == 0) forgetPinch();
   paused_again_ = false;
   if (change.effect == SceneChange::Effect::live) {
     link_.send(command::Edit{document_.scene()});
@@ -278,21 +275,35 @@ void MainWindow::brush(const cloth::BrushGust& gust) {
 }
 
 void MainWindow::startObstacleMove(int obstacle) {
-  const auto start = document_.value(place_path(document_.scene(), obstacle));
-  if (!start) return;
-  obstacle_start_ = std::get<cloth::Vec3>(*start);
+  const auto& obstacles = document_.scene().obstacles;
+  if (static_cast<std::size_t>(obstacle) >= obstacles.size()) return;
+  forgetPinch();
+  dragged_ = obstacles[static_cast<std::size_t>(obstacle)];
   document_.beginDrag();
 }
 
 /// Only while the drag lasts that began: a scene that was opened meanwhile keeps its obstacles.
 void MainWindow::moveObstacle(int obstacle, const cloth::Vec3& by) {
-  if (document_.presentDrag() == 0) return;
-  document_.setParameter(place_path(document_.scene(), obstacle), cloth::Vec3(obstacle_start_ + by));
+  if (document_.presentDrag() == 0 || !dragged_ || !by.allFinite()) return;
+  document_.moveObstacle(obstacle, moved_by(*dragged_, by));
 }
 
 void MainWindow::endObstacleMove(int obstacle, bool kept) {
   if (!kept) moveObstacle(obstacle, cloth::Vec3::Zero());
   document_.endDrag();
+  dragged_.reset();
+}
+
+/// Under the fields that keyframes leave without effect.
+void MainWindow::noteKeyframes() {
+  const auto& obstacles = document_.scene().obstacles;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const QString note = obstacles[k].keyframes.empty()
+                             ? QString()
+                             : tr("Has no effect: keyframes say where it is. Drag it in the view.");
+    for (const char* key : {"center", "point", "translate", "velocity", "spin"})
+      parameters_->setNote("obstacles." + std::to_string(k) + "." + key, note);
+  }
 }
 
 void MainWindow::addStillAir() {

@@ -75,6 +75,7 @@ class MainWindow : public QMainWindow {
   void startObstacleMove(int obstacle);
   void moveObstacle(int obstacle, const cloth::Vec3& by);
   void endObstacleMove(int obstacle, bool kept);
+  void noteKeyframes();
   void addStillAir();
   bool hasAir() const;
   void updateTitle();
@@ -87,6 +88,8 @@ class MainWindow : public QMainWindow {
   void followScene(const WorkerStatus& status);
   void followSession(const WorkerStatus& status);
   void followDivergence(const WorkerStatus& status);
+  void sayPinched(const cloth::Divergence& stop);
+  void forgetPinch();
 
   // main_window_menus.cpp
   void makeActions();
@@ -128,7 +131,7 @@ class MainWindow : public QMainWindow {
   std::optional<cloth::Session> session_;         ///< to be opened in the place of the document's scene
   QString saving_session_;                        ///< the file, until it is written
   bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
-  cloth::Vec3 obstacle_start_{0, 0, 0};           ///< m, of one that is being dragged
+  std::optional<cloth::Obstacle> dragged_;        ///< an obstacle, as it was before the hand took it
   bool asks_to_save_ = true;
 };
 

@@ -71,6 +71,7 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
     return;
   }
   if (shown_status_.divergence) return;
+  if (status.divergence->pinched) return sayPinched(*status.divergence);
   const QString text = tr("The run %1. The view shows the last good state.")
                            .arg(QString::fromStdString(cloth::describe(*status.divergence)));
   if (status.divergence->stable_step > 0 && std::isfinite(status.divergence->stable_step))
@@ -80,6 +81,23 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
     });
   else
     notice_->show("divergence", NoticeBar::Level::error, text);
+}
+
+/// Nothing has run away: whatever is undone or moved, the run goes on from where it stands.
+void MainWindow::sayPinched(const cloth::Divergence& stop) {
+  const QString text = tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.")
+                           .arg(QString::fromStdString(cloth::describe(stop)));
+  QUndoStack& edits = document_.undoStack();
+  if (edits.canUndo())
+    notice_->show("divergence", NoticeBar::Level::error, text, tr("Undo: %1").arg(edits.undoText()),
+                  [this] { document_.undoStack().undo(); });
+  else
+    notice_->show("divergence", NoticeBar::Level::error, text);
+}
+
+/// Its message offers to undo the edit that led there; after another edit that would be the wrong one.
+void MainWindow::forgetPinch() {
+  if (shown_status_.divergence && shown_status_.divergence->pinched) notice_->withdraw("divergence");
 }
 
 }  // namespace clothlab

@@ -5,6 +5,7 @@
 #include <QHBoxLayout>
 #include <QToolButton>
 #include <limits>
+#include <utility>
 
 #include "theme/theme.h"
 #include "widgets/action_button.h"
@@ -62,18 +63,29 @@ void TransportBar::fillSpeeds() {
   speed_->setObjectName("speed");
   speed_->setToolTip(tr("Speed: simulated seconds per second"));
   speed_->setAccessibleName(tr("Speed"));
-  for (const double factor : {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0})
+  for (const double factor : {0.01, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0})
     speed_->addItem(tr("%1x").arg(factor), factor);
   speed_->addItem(tr("Fastest"), as_fast_as_possible);
-  speed_->setCurrentIndex(3);
+  speed_->setCurrentIndex(4);
   connect(speed_, &QComboBox::currentIndexChanged, this,
           [this](int index) { Q_EMIT speedChosen(speed_->itemData(index).toDouble()); });
+}
+
+void TransportBar::suitDuration(double seconds) {
+  constexpr double blink = 0.2;  // s
+  constexpr int slowest = 0;
+  if (seconds < blink) {
+    if (!speed_before_) speed_before_ = speed_->currentIndex();
+    speed_->setCurrentIndex(slowest);
+  } else if (speed_before_) {
+    speed_->setCurrentIndex(*std::exchange(speed_before_, std::nullopt));
+  }
 }
 
 void TransportBar::showStatus(const WorkerStatus& status) {
   time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
   if (status.divergence)
-    rate_->setText(tr("Stopped: diverged"));
+    rate_->setText(status.divergence->pinched ? tr("Stopped: pinched") : tr("Stopped: diverged"));
   else if (!status.playing)
     rate_->setText(status.step > 0
                        ? tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step)))

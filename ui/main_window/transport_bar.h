@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QFrame>
+#include <optional>
 
 #include "bridge/worker_status.h"
 #include "widgets/reading.h"
@@ -27,6 +28,9 @@ class TransportBar : public QFrame {
   TransportBar(const TransportActions& actions, QWidget* parent = nullptr);
 
   void showStatus(const WorkerStatus& status);
+  /// For a newly opened scene: one that is over in the blink of an eye begins slowed down, and the next one of
+  /// usual length goes back to the speed of before.
+  void suitDuration(double seconds);
   StabilityGauge& gauge() { return *gauge_; }
 
  Q_SIGNALS:
@@ -36,6 +40,7 @@ class TransportBar : public QFrame {
   void fillSpeeds();
 
   QComboBox* speed_;
+  std::optional<int> speed_before_;  ///< the row that was chosen before a short scene
   Reading* time_;
   Reading* rate_;
   Reading* recording_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "params/choice_editor.h"
+#include "params/mesh_editor.h"
 #include "params/number_editor.h"
 #include "params/panel_parts.h"
 #include "params/text_editor.h"
@@ -185,6 +186,7 @@ ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& para
     case cloth::Kind::words:
       return new ChoiceEditor(document, parameter, parent);
     case cloth::Kind::text:
+      if (names_mesh(parameter)) return new MeshEditor(document, parameter, parent);
       return new TextEditor(document, parameter, parent);
   }
   return nullptr;

@@ -6,6 +6,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "params/cloth_shape_row.h"
+#include "params/mesh_editor.h"
 #include "params/panel_parts.h"
 #include "params/parameter_editor.h"
 #include "params/wording.h"
@@ -58,6 +60,8 @@ void ParameterSection::makeBody(LabDocument& document, const cloth::Block& block
   auto* rows = new QVBoxLayout(body_);
   rows->setContentsMargins(2 * spacing, 0, spacing, 2 * spacing);
   rows->setSpacing(spacing);
+  if (block.path == "cloth" && !document.scene().cloth.is_mesh())
+    rows->addWidget(shape_ = new ClothShapeRow(document, body_));
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* editor = make_editor(document, parameter, body_);
     const bool said_above = block.parameters.size() == 1 && parameter.info.label == block.title &&
@@ -88,6 +92,9 @@ bool ParameterSection::isCollapsed() const {
 
 void ParameterSection::setRemovable(bool removable) {
   if (cross_) cross_->setVisible(removable);
+  if (shape_) shape_->setVisible(removable);
+  for (ParameterEditor* editor : editors_)
+    if (auto* mesh = qobject_cast<MeshEditor*>(editor)) mesh->offerGrid(removable);
 }
 
 void ParameterSection::refresh() {
@@ -103,6 +110,7 @@ ParameterEditor* ParameterSection::editor(const std::string& path) const {
 QList<QWidget*> ParameterSection::tabStops() const {
   QList<QWidget*> stops{head_};
   if (cross_) stops << cross_;
+  if (shape_) stops << shape_->tabStop();
   for (const ParameterEditor* editor : editors_) stops << editor->tabStops();
   return stops;
 }

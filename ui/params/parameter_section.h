@@ -13,6 +13,7 @@ class QVBoxLayout;
 
 namespace clothlab {
 
+class ClothShapeRow;
 class ParameterEditor;
 class SectionHeader;
 
@@ -28,7 +29,7 @@ class ParameterSection : public QWidget {
 
   void setCollapsed(bool collapsed);
   bool isCollapsed() const;
-  /// Shows the cross of a block that may go, or hides it.
+  /// Shows the cross of a block that may go, or hides it; likewise what makes another block of it.
   void setRemovable(bool removable);
 
   void refresh();
@@ -52,6 +53,7 @@ class ParameterSection : public QWidget {
   SectionHeader* head_ = nullptr;
   QToolButton* cross_ = nullptr;
   QWidget* body_ = nullptr;
+  ClothShapeRow* shape_ = nullptr;  ///< of a grid cloth
   std::vector<ParameterEditor*> editors_;
 };
 

@@ -136,7 +136,7 @@ void ClothView::learnExtent(bool new_topology) {
   if (!new_topology && frame_->obstacles == known_obstacles_) return;
   known_obstacles_ = frame_->obstacles;
   extent_ = cloth_reach_;
-  extent_.extend(bounds_of_obstacles(known_obstacles_));
+  extent_.extend(reach_of_obstacles(known_obstacles_));
   ground_ = ground_below(cloth_reach_, known_obstacles_);
 }
 
@@ -189,7 +189,7 @@ void ClothView::flyTo(const CameraPose& pose) {
 void ClothView::frameAll() {
   if (!frame_) return;
   Eigen::AlignedBox3d box = bounds_of_cloth(*frame_);
-  box.extend(bounds_of_obstacles(frame_->obstacles));
+  box.extend(bounds_of_obstacles(*frame_));
   flyTo(camera_.framed(box, camera_.pose()));
 }
 

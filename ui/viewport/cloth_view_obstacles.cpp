@@ -77,6 +77,12 @@ void ClothView::paintHandle(QPainter& painter) {
   if (!handle_ || (!moving && (gesture_ != Gesture::none || brushShown()))) return;
   ObstacleHandle shown = *handle_;
   if (moving) shown.place += dragged_by(*handle_, handle_part_, camera_, handle_start_, as_vector(cursor_));
+  const cloth::Obstacle& obstacle = frame_->obstacles[static_cast<std::size_t>(shown.obstacle)];
+  if (has_motion(obstacle)) {
+    QPolygonF keys;
+    for (const cloth::Keyframe& key : obstacle.keyframes) keys << as_point(camera_.project(key.position));
+    overlay_.motion(painter, theme(), keys, as_point(camera_.project(shown.place)));
+  }
   const auto tips = shown.tips(camera_);
   overlay_.handle(painter, theme(), as_point(camera_.project(shown.place)),
                   {as_point(camera_.project(tips[0])), as_point(camera_.project(tips[1])),

@@ -72,13 +72,33 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, c
 
 }  // namespace
 
-bool can_be_moved(const cloth::Obstacle& obstacle) {
-  return obstacle.keyframes.empty();
+cloth::Obstacle moved_by(const cloth::Obstacle& obstacle, const Eigen::Vector3d& by) {
+  cloth::Obstacle moved = obstacle;
+  if (!moved.keyframes.empty()) {
+    for (cloth::Keyframe& key : moved.keyframes) key.position += by;
+    return moved;
+  }
+  switch (moved.shape) {
+    case cloth::Shape::sphere:
+    case cloth::Shape::box:
+      moved.center += by;
+      break;
+    case cloth::Shape::plane:
+      moved.point += by;
+      break;
+    case cloth::Shape::mesh:
+      moved.translate += by;
+      break;
+  }
+  return moved;
 }
 
-const char* place_key(cloth::Shape shape) {
-  if (shape == cloth::Shape::plane) return "point";
-  return shape == cloth::Shape::mesh ? "translate" : "center";
+bool has_motion(const cloth::Obstacle& obstacle) {
+  if (obstacle.keyframes.empty()) return cloth::moves(obstacle);
+  const cloth::Keyframe& first = obstacle.keyframes.front();
+  return std::any_of(obstacle.keyframes.begin(), obstacle.keyframes.end(), [&](const cloth::Keyframe& key) {
+    return key.position != first.position || key.rotation != first.rotation;
+  });
 }
 
 std::array<Eigen::Vector3d, 3> ObstacleHandle::tips(const Camera& camera) const {
@@ -112,7 +132,6 @@ std::optional<ObstacleHandle> handle_at(const ClothFrame& frame, const Camera& c
   double least = ObstacleHandle::nearness, first = infinity;
   for (std::size_t k = 0; k < frame.obstacles.size(); ++k) {
     const cloth::Obstacle& o = frame.obstacles[k];
-    if (!can_be_moved(o)) continue;
     const Eigen::Vector3d place = frame.target(k).at(cloth::pivot_of(o));
     if ((place - ray.origin).dot(camera.forward()) <= 0) continue;  // behind the eye
     const ObstacleHandle handle{static_cast<int>(k), place};

@@ -24,11 +24,12 @@ struct ObstacleHandle {
   Part part_at(const Camera& camera, const Eigen::Vector2d& cursor) const;
 };
 
-/// Whether an edit of its centre or point moves an obstacle: keyframes say themselves where it is.
-bool can_be_moved(const cloth::Obstacle& obstacle);
+/// The obstacle, moved by so many metres: its keyframes where it has some, for they say where it is; else its
+/// centre, point or position, from which it may move on.
+cloth::Obstacle moved_by(const cloth::Obstacle& obstacle, const Eigen::Vector3d& by);
 
-/// "center", "point" or "translate".
-const char* place_key(cloth::Shape shape);
+/// Whether its place is another at another time, so that a drag moves a whole motion.
+bool has_motion(const cloth::Obstacle& obstacle);
 
 /// The handle to be shown for a cursor, in px: of the obstacle whose handle is nearest, or which is under it.
 std::optional<ObstacleHandle> handle_at(const ClothFrame& frame, const Camera& camera,

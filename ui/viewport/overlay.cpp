@@ -195,6 +195,31 @@ void Overlay::handle(QPainter& view, const Theme& theme, QPointF at, const std::
   view.restore();
 }
 
+void Overlay::motion(QPainter& view, const Theme& theme, const QPolygonF& keys, QPointF at) {
+  view.save();
+  view.setRenderHint(QPainter::Antialiasing);
+  view.setBrush(Qt::NoBrush);
+  view.setPen(QPen(halo_of(theme), 4, Qt::SolidLine, Qt::RoundCap));
+  view.drawPolyline(keys);
+  view.setPen(QPen(theme.accent, 1.5, Qt::DashLine, Qt::FlatCap));
+  view.drawPolyline(keys);
+  view.setBrush(theme.accent);
+  for (const QPointF& key : keys) {
+    view.setPen(QPen(halo_of(theme), 1.5));
+    view.drawEllipse(key, 3.5, 3.5);
+  }
+  const QString note = tr("Moves the whole motion");
+  view.setFont(font_of(view, 0.9, QFont::Normal));
+  const QFontMetricsF metrics(view.font(), view.device());
+  const QRectF label(at.x() - 0.5 * metrics.horizontalAdvance(note) - 10,
+                     at.y() + ObstacleHandle::ring_radius + 10, metrics.horizontalAdvance(note) + 20,
+                     metrics.height() + 6);
+  card(view, label, theme);
+  view.setPen(theme.text);
+  view.drawText(label, Qt::AlignCenter, note);
+  view.restore();
+}
+
 void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
   const QLineF drag(brush.start, brush.cursor);
   const bool has_arrow = brush.blowing && drag.length() > 4;

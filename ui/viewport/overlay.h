@@ -6,6 +6,7 @@
 #include <QCoreApplication>
 #include <QImage>
 #include <QPainter>
+#include <QPolygonF>
 #include <QString>
 #include <array>
 #include <functional>
@@ -59,6 +60,8 @@ class Overlay {
   void contact_note(QPainter& view, const Theme& theme, int touches);
   /// A ring with arrows along x, y and z; `active`: 0 the ring, 1 to 3 an arrow, else none.
   void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
+  /// The way that keyframes lead, from key to key, and beside the handle at `at` what a drag of it moves.
+  void motion(QPainter& view, const Theme& theme, const QPolygonF& keys, QPointF at);
   void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);
 
  private:

@@ -12,6 +12,24 @@ Eigen::Vector3d particle(const ClothFrame& frame, std::size_t i) {
   return {p[0], p[1], p[2]};
 }
 
+/// As the scene describes it.
+Eigen::AlignedBox3d bounds_at_home(const cloth::Obstacle& o) {
+  if (o.shape == cloth::Shape::mesh) return cloth::placed_bounds(o);
+  return {o.center - o.size / 2, o.center + o.size / 2};
+}
+
+void extend_by(const cloth::Obstacle& o, const cloth::Pose& pose, Eigen::AlignedBox3d& box) {
+  if (o.shape == cloth::Shape::plane) return;
+  if (o.shape == cloth::Shape::sphere) {
+    const Eigen::Vector3d center = pose.at(o.center), half = Eigen::Vector3d::Constant(o.radius);
+    box.extend(Eigen::AlignedBox3d(center - half, center + half));
+    return;
+  }
+  const Eigen::AlignedBox3d home = bounds_at_home(o);
+  for (int k = 0; k < 8 && !home.isEmpty(); ++k)
+    box.extend(pose.at(home.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
+}
+
 }  // namespace
 
 Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame) {
@@ -23,18 +41,17 @@ Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame) {
   return box;
 }
 
-Eigen::AlignedBox3d bounds_of_obstacles(const std::vector<cloth::Obstacle>& obstacles) {
+Eigen::AlignedBox3d bounds_of_obstacles(const ClothFrame& frame) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t k = 0; k < frame.obstacles.size(); ++k) extend_by(frame.obstacles[k], frame.pose(k), box);
+  return box;
+}
+
+Eigen::AlignedBox3d reach_of_obstacles(const std::vector<cloth::Obstacle>& obstacles) {
   Eigen::AlignedBox3d box;
   for (const cloth::Obstacle& o : obstacles) {
-    if (o.shape == cloth::Shape::plane) continue;
-    if (o.shape == cloth::Shape::mesh) {
-      box.extend(placed_bounds(o));
-      continue;
-    }
-    const Eigen::Vector3d half =
-        o.shape == cloth::Shape::sphere ? Eigen::Vector3d::Constant(o.radius) : Eigen::Vector3d(o.size / 2);
-    box.extend(o.center - half);
-    box.extend(o.center + half);
+    extend_by(o, cloth::pose_of(o, 0), box);
+    for (const cloth::Keyframe& key : o.keyframes) extend_by(o, cloth::pose_of(o, key.time), box);
   }
   return box;
 }
@@ -77,7 +94,7 @@ Ground ground_below(const Eigen::AlignedBox3d& reach, const std::vector<cloth::O
   }
   if (ground.is_obstacle) return ground;
   Eigen::AlignedBox3d all = reach;
-  all.extend(bounds_of_obstacles(obstacles));
+  all.extend(reach_of_obstacles(obstacles));
   if (all.isEmpty()) return ground;
   ground.height = all.min().y() - 0.06 * all.diagonal().norm();
   return ground;

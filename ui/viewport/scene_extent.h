@@ -9,7 +9,10 @@ namespace clothlab {
 
 /// m. Planes are endless and do not count.
 Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame);
-Eigen::AlignedBox3d bounds_of_obstacles(const std::vector<cloth::Obstacle>& obstacles);
+Eigen::AlignedBox3d bounds_of_obstacles(const ClothFrame& frame);
+
+/// Where obstacles start and wherever their keyframes lead them.
+Eigen::AlignedBox3d reach_of_obstacles(const std::vector<cloth::Obstacle>& obstacles);
 
 /// The cloth's bounds and, where it is pinned, how far down it can hang from its pins: every particle stays
 /// within its distance in `frame` of the nearest pin. Meant for the first frame of a run, when the cloth is

@@ -17,8 +17,8 @@ Image panel(const Simulation& simulation, const Vec3& direction) {
   const Scene& scene = simulation.scene();
   const Vec3Field& position = simulation.state().position;
   return cloth_image(scene, simulation.system(), position,
-                     camera_showing(scene, position, direction, panel_aspect),
-                     {.width = panel_width, .height = panel_height});
+                     camera_showing(scene, position, direction, panel_aspect, {}, simulation.time()),
+                     {.width = panel_width, .height = panel_height, .time = simulation.time()});
 }
 
 /// Root mean square speed of the particles, m/s.

@@ -2,6 +2,8 @@
 
 #include <QOpenGLContext>
 #include <QVector2D>
+#include <QVector3D>
+#include <QVector4D>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,6 +48,11 @@ QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
   const float s = 1 - share_of_b;
   return QColor::fromRgbF(s * a.redF() + share_of_b * b.redF(), s * a.greenF() + share_of_b * b.greenF(),
                           s * a.blueF() + share_of_b * b.blueF());
+}
+
+/// So that a processor takes long to draw it once more for its shadow.
+bool is_large(const cloth::Obstacle& o) {
+  return o.shape == cloth::Shape::mesh && o.mesh.loaded && o.mesh.loaded->surface.triangles.size() > 20000;
 }
 
 }  // namespace
@@ -123,11 +130,14 @@ void ClothRenderer::draw(const Shot& shot, const Theme& theme) {
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the view itself stays opaque
   glDepthMask(GL_FALSE);
-  draw_planes(shot, theme);
+  find_floors(shot);
+  draw_floors(shot, theme);
+  draw_shadows(shot, theme);
   if (has_cloth_ && surface_->has_pinned_points()) draw_pins(shot, theme);
   draw_targets(shot, theme);
   if (shot.contact)
-    contact_->draw(*kit_, {shot.world_to_clip, shot.metres_per_pixel, shot.pixel_ratio}, theme);
+    contact_->draw(*kit_, {shot.world_to_clip, shot.metres_per_pixel, shot.pixel_ratio, cell_on_screen(shot)},
+                   theme);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
@@ -175,7 +185,7 @@ void ClothRenderer::end_obstacles() {
 void ClothRenderer::draw_obstacles(const Shot& shot, const Theme& theme) {
   begin_obstacles(shot, theme, 1);
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
-    draw_obstacle(obstacles_[k], k < poses_.size() ? poses_[k] : cloth::Pose{});
+    draw_obstacle(kit_->solid, obstacles_[k], k < poses_.size() ? poses_[k] : cloth::Pose{});
   end_obstacles();
 }
 
@@ -184,26 +194,27 @@ void ClothRenderer::draw_targets(const Shot& shot, const Theme& theme) {
   if (targets_ == poses_) return;
   begin_obstacles(shot, theme, 0.28F);
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
-    if (targets_[k] != poses_[k]) draw_obstacle(obstacles_[k], targets_[k]);
+    if (targets_[k] != poses_[k]) draw_obstacle(kit_->solid, obstacles_[k], targets_[k]);
   end_obstacles();
 }
 
-void ClothRenderer::draw_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose) {
+void ClothRenderer::draw_obstacle(QOpenGLShaderProgram& program, const cloth::Obstacle& o,
+                                  const cloth::Pose& pose) {
   if (o.shape == cloth::Shape::plane || (o.shape == cloth::Shape::mesh && !o.mesh.loaded)) return;
   const bool is_mesh = o.shape == cloth::Shape::mesh;
   const Eigen::Matrix3d turn = is_mesh ? Eigen::Matrix3d(pose.turn * cloth::turn_of(o)) : pose.turn;
-  kit_->solid.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
-  kit_->solid.setUniformValue("turn", uniform_matrix(turn));
+  program.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
+  program.setUniformValue("turn", uniform_matrix(turn));
   if (is_mesh) {
-    kit_->solid.setUniformValue("scale", uniform_vector(Eigen::Vector3d::Constant(o.scale)));
+    program.setUniformValue("scale", uniform_vector(Eigen::Vector3d::Constant(o.scale)));
     bodies_->draw(*o.mesh.loaded);
   } else if (o.shape == cloth::Shape::sphere) {
     const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
-    kit_->solid.setUniformValue(
+    program.setUniformValue(
         "scale", uniform_vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
     solids_->draw_sphere();
   } else {
-    kit_->solid.setUniformValue("scale", uniform_vector(0.995 * o.size));
+    program.setUniformValue("scale", uniform_vector(0.995 * o.size));
     solids_->draw_box();
   }
 }
@@ -261,28 +272,38 @@ double ClothRenderer::cell_on_screen(const Shot& shot) const {
   return cell_length_ / std::max(shot.metres_per_pixel, 1e-12);
 }
 
-void ClothRenderer::draw_planes(const Shot& shot, const Theme& theme) {
+/// Back to front as far as it matters: level ground lies below what is tilted.
+void ClothRenderer::find_floors(const Shot& shot) {
+  floors_.clear();
+  if (!shot.ground.is_obstacle)
+    floors_.push_back({{0, shot.ground.height, 0}, Eigen::Vector3d::UnitY(), true});
+  for (const bool level_ones : {true, false}) {
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      const cloth::Obstacle& o = obstacles_[k];
+      if (o.shape != cloth::Shape::plane) continue;
+      const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
+      const Eigen::Vector3d normal = pose.turn * o.normal.normalized();
+      const bool is_level = std::abs(normal.y()) > 0.999;
+      if (normal.allFinite() && is_level == level_ones)
+        floors_.push_back({pose.at(o.point), normal, is_level});
+    }
+  }
+}
+
+void ClothRenderer::draw_floors(const Shot& shot, const Theme& theme) {
   kit_->plane.bind();
   kit_->plane.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
   kit_->plane.setUniformValue("line_width", number(shot.pixel_ratio));
   kit_->plane.setUniformValue("line_colour",
                               as_srgb(theme.dark ? QColor(0xC8, 0xD2, 0xDE) : QColor(0x30, 0x3C, 0x4A)));
-  kit_->plane.setUniformValue("floor_colour",
-                              as_srgb(theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(0xFF, 0xFF, 0xFF)));
   kit_->plane.setUniformValue("line_opacity", theme.dark ? 0.20F : 0.22F);
-  kit_->plane.setUniformValue("floor_opacity", theme.dark ? 0.22F : 0.35F);
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const cloth::Obstacle& o = obstacles_[k];
-    const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
-    if (o.shape == cloth::Shape::plane) draw_plane(shot, pose.at(o.point), pose.turn * o.normal.normalized());
-  }
-  if (!shot.ground.is_obstacle) draw_plane(shot, {0, shot.ground.height, 0}, Eigen::Vector3d::UnitY());
+  for (const Floor& floor : floors_) draw_floor(shot, theme, floor);
   kit_->plane.release();
 }
 
-void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
-                               const Eigen::Vector3d& normal) {
-  if (!normal.allFinite()) return;
+/// A tilted one is a sheet of the colour of bodies, or its slope would look like ground seen askew.
+void ClothRenderer::draw_floor(const Shot& shot, const Theme& theme, const Floor& floor) {
+  const auto& [point, normal, is_level] = floor;
   const Eigen::Vector3d about = shot.extent.isEmpty() ? point : shot.extent.center();
   const double size = shot.extent.isEmpty() ? 1 : shot.extent.diagonal().norm();
   // Along x and z on level ground; the other planes take the nearest such pair.
@@ -290,13 +311,55 @@ void ClothRenderer::draw_plane(const Shot& shot, const Eigen::Vector3d& point,
       std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d u = (hint - hint.dot(normal) * normal).normalized(), v = normal.cross(u);
   const Eigen::Vector3d middle = about - (about - point).dot(normal) * normal;
+  const QColor ground = theme.dark ? QColor(0x0A, 0x0D, 0x11) : QColor(Qt::white);
+  const QColor sheet = theme.dark ? QColor(0x5A, 0x63, 0x6E) : QColor(0xA9, 0xB2, 0xBE);
+  kit_->plane.setUniformValue("floor_colour", as_srgb(is_level ? ground : sheet));
+  kit_->plane.setUniformValue("floor_opacity", !is_level ? 0.92F : theme.dark ? 0.22F : 0.35F);
+  kit_->plane.setUniformValue("fade_from", is_level ? 0.25F : 0.55F);
   kit_->plane.setUniformValue("middle", uniform_vector(middle));
   kit_->plane.setUniformValue("axis_u", uniform_vector(u));
   kit_->plane.setUniformValue("axis_v", uniform_vector(v));
-  kit_->plane.setUniformValue("reach", number(2.2 * size));
+  kit_->plane.setUniformValue("reach", number((is_level ? 2.2 : 1.3) * size));
   kit_->plane.setUniformValue("grid_step", number(grid_step_for(size)));
   kit_->plane.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
   solids_->draw_strip();
+}
+
+/// Of cloth and bodies on what lies below them, so that their height is seen. The stencil lets every pixel
+/// darken once.
+void ClothRenderer::draw_shadows(const Shot& shot, const Theme& theme) {
+  const Eigen::Vector3d light(-0.12, -1, -0.22);  // the same wherever the eye is
+  const bool quick = shot.quick && kit_->frugal();
+  QOpenGLShaderProgram& shadow = kit_->shadow;
+  shadow.bind();
+  shadow.setUniformValue("world_to_clip", uniform_matrix(shot.world_to_clip));
+  shadow.setUniformValue("shade",
+                         theme.dark ? QVector4D(0, 0, 0, 0.30F) : QVector4D(0.12F, 0.16F, 0.22F, 0.12F));
+  glEnable(GL_STENCIL_TEST);
+  glStencilMask(0xFF);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  GLint number_of_floor = 0;
+  const bool sloped = std::any_of(floors_.begin(), floors_.end(), [](const Floor& f) { return !f.is_level; });
+  for (const Floor& floor : floors_) {
+    const bool made_up = floor.is_level && !shot.ground.is_obstacle;
+    if (sloped && made_up) continue;  // what falls comes to lie on the slope
+    const double steepness = -light.dot(floor.normal);
+    if (steepness < 0.2 || floor.normal.dot(shot.eye - floor.point) <= 0) continue;
+    glStencilFunc(GL_NOTEQUAL, ++number_of_floor, 0xFF);
+    shadow.setUniformValue("on_plane", uniform_vector(floor.point));
+    shadow.setUniformValue("normal", uniform_vector(floor.normal));
+    shadow.setUniformValue("fall", uniform_vector(Eigen::Vector3d(light / steepness)));
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      if (!quick || !is_large(obstacles_[k]))
+        draw_obstacle(shadow, obstacles_[k], k < poses_.size() ? poses_[k] : cloth::Pose{});
+    if (!has_cloth_) continue;
+    shadow.setUniformValue("center", QVector3D());
+    shadow.setUniformValue("turn", uniform_matrix(Eigen::Matrix3d(Eigen::Matrix3d::Identity())));
+    shadow.setUniformValue("scale", QVector3D(1, 1, 1));
+    surface_->draw_triangles();
+  }
+  glDisable(GL_STENCIL_TEST);
+  shadow.release();
 }
 
 void ClothRenderer::draw_pins(const Shot& shot, const Theme& theme) {

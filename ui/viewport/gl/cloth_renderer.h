@@ -59,13 +59,19 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   void end_obstacles();
   void draw_obstacles(const Shot& shot, const Theme& theme);
   void draw_targets(const Shot& shot, const Theme& theme);
-  void draw_obstacle(const cloth::Obstacle& obstacle, const cloth::Pose& pose);
+  void draw_obstacle(QOpenGLShaderProgram& program, const cloth::Obstacle& obstacle, const cloth::Pose& pose);
   void measure_cloth(const ClothFrame& frame);
   void draw_cloth(const Shot& shot, const Theme& theme);
   void draw_threads(const Shot& shot, const Theme& theme);
   double cell_on_screen(const Shot& shot) const;  // px
-  void draw_planes(const Shot& shot, const Theme& theme);
-  void draw_plane(const Shot& shot, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
+  struct Floor {
+    Eigen::Vector3d point, normal;  // m; unit vector
+    bool is_level;
+  };
+  void find_floors(const Shot& shot);
+  void draw_floors(const Shot& shot, const Theme& theme);
+  void draw_floor(const Shot& shot, const Theme& theme, const Floor& floor);
+  void draw_shadows(const Shot& shot, const Theme& theme);
   void draw_pins(const Shot& shot, const Theme& theme);
 
   std::shared_ptr<RendererKit> kit_;
@@ -81,6 +87,7 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   QVector2D tiles_per_cell_;  // of the weave; of a mesh a metre takes the cell's place
   std::vector<cloth::Obstacle> obstacles_;
   std::vector<cloth::Pose> poses_, targets_;
+  std::vector<Floor> floors_;  // of the picture that is being drawn
 };
 
 }  // namespace clothlab

@@ -3,6 +3,7 @@
 #include <QMatrix4x4>
 #include <QOpenGLShaderProgram>
 #include <QVector2D>
+#include <algorithm>
 #include <array>
 
 #include "theme/theme.h"
@@ -136,12 +137,12 @@ void ContactLayer::draw_boxes(QOpenGLShaderProgram& program, const View& view, c
 
 void ContactLayer::draw_normals(QOpenGLShaderProgram& program, const View& view, const Theme& theme,
                                 const Pass& pass) {
-  constexpr double longest = 30;  // px
+  const double longest = std::clamp(1.8 * view.cell / view.pixel_ratio, 12.0, 30.0);  // px
   if (mark_count_ == 0) return;
   program.bind();
   program.setUniformValue("world_to_clip", uniform_matrix(view.world_to_clip));
   program.setUniformValue("viewport", viewport(gl_));
-  program.setUniformValue("width", static_cast<float>(1.8 * view.pixel_ratio));
+  program.setUniformValue("width", static_cast<float>((longest < 20 ? 1.3 : 1.8) * view.pixel_ratio));
   program.setUniformValue("reach", static_cast<float>(longest * view.pixel_ratio * view.metres_per_pixel));
   program.setUniformValue("opacity", pass.opacity);
   program.setUniformValue("line_colour", as_srgb(touch_colour(theme)));
@@ -155,9 +156,12 @@ void ContactLayer::draw_dots(QOpenGLShaderProgram& program, const View& view, co
   if (mark_count_ == 0) return;
   program.bind();
   program.setUniformValue("world_to_clip", uniform_matrix(view.world_to_clip));
-  program.setUniformValue("diameter", static_cast<float>(6 * view.pixel_ratio));
+  const double diameter = std::clamp(0.5 * view.cell / view.pixel_ratio, 3.0, 6.0);  // px
+  program.setUniformValue("diameter", static_cast<float>(diameter * view.pixel_ratio));
   program.setUniformValue("disc_colour", as_srgb(touch_colour(theme)));
-  program.setUniformValue("rim_colour", as_srgb(theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white)));
+  const QColor rim = theme.dark ? QColor(0x12, 0x16, 0x1B) : QColor(Qt::white);
+  program.setUniformValue("rim_colour",
+                          as_srgb(diameter < 5 ? touch_colour(theme) : rim));  // or little is left
   gl_.glEnable(GL_PROGRAM_POINT_SIZE);
   gl_.glBindVertexArray(dot_array_);
   gl_.glDrawArrays(GL_POINTS, 0, mark_count_);

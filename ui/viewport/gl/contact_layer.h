@@ -26,6 +26,7 @@ class ContactLayer {
   struct View {
     Eigen::Matrix4d world_to_clip;
     double metres_per_pixel, pixel_ratio;
+    double cell;  ///< px, of the cloth, where the eye looks: marks of neighbours stay apart
   };
   /// What lies behind something is drawn faintly. Depth is tested and not written, and colours are blended.
   void draw(RendererKit& kit, const View& view, const Theme& theme);

@@ -46,6 +46,7 @@ bool RendererKit::build_programs(QString* problem) {
   }
   return build_program(background, "background.vert", "background.frag", {}, problem) &&
          build_program(plane, "plane.vert", "plane.frag", {}, problem) &&
+         build_program(shadow, "shadow.vert", "shadow.frag", {}, problem) &&
          build_program(solid, "solid.vert", "solid.frag", {Light::fragment}, problem) &&
          build_program(marker, "marker.vert", "marker.frag", {}, problem) &&
          build_program(thread, "thread.vert", "thread.frag", {}, problem) &&

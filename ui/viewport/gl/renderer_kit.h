@@ -24,7 +24,7 @@ class RendererKit : protected QOpenGLFunctions_3_3_Core {
 
   bool frugal() const { return frugal_; }
 
-  QOpenGLShaderProgram background, plane, solid, marker, thread, contact_box, contact_line;
+  QOpenGLShaderProgram background, plane, shadow, solid, marker, thread, contact_box, contact_line;
   std::array<QOpenGLShaderProgram, 3> cloth, quick_cloth;  ///< by ViewMode; quick_cloth only if frugal
   GLuint textures[texture_count] = {};                     ///< the stored ones give sRGB; only if frugal
 

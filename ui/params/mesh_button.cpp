@@ -1,0 +1,62 @@
+#include "params/mesh_button.h"
+
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+
+#include "geometry/builtin_meshes.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+
+std::string file_as_seen_from(const cloth::SceneFolder& folder, const QString& file) {
+  const QString whole = QFileInfo(file).absoluteFilePath();
+  if (folder.path.empty()) return whole.toStdString();
+  const QString seen = QDir(QString::fromStdString(folder.path)).relativeFilePath(whole);
+  return (seen.startsWith("..") ? whole : seen).toStdString();
+}
+
+MeshButton::MeshButton(const LabDocument& document, QWidget* parent)
+    : QToolButton(parent), document_(document) {
+  setObjectName("meshButton");
+  setIcon(clothlab::icon("mesh"));
+  setIconSize({16, 16});
+  setPopupMode(QToolButton::InstantPopup);
+  setFocusPolicy(Qt::TabFocus);
+  setToolTip(tr("Choose a mesh"));
+  setAccessibleName(tr("Choose a mesh"));
+  auto* menu = new QMenu(this);
+  menu->setObjectName("meshMenu");
+  // Queued: until the menu is gone. A choice may take the button away, or open a dialog with a loop of its
+  // own.
+  grid_ = menu->addAction(tr("Grid"));
+  grid_->setObjectName("mesh:grid");
+  grid_->setVisible(false);
+  connect(grid_, &QAction::triggered, this, &MeshButton::gridChosen, Qt::QueuedConnection);
+  for (const cloth::BuiltinMesh& mesh : cloth::builtin_meshes()) {
+    QAction* action = menu->addAction(QString::fromStdString(mesh.title));
+    action->setObjectName("mesh:" + QString::fromStdString(mesh.name));
+    connect(
+        action, &QAction::triggered, this, [this, name = mesh.name] { Q_EMIT meshChosen(name); },
+        Qt::QueuedConnection);
+  }
+  menu->addSeparator();
+  QAction* file = menu->addAction(clothlab::icon("open"), tr("From an OBJ file…"));
+  file->setObjectName("mesh:file");
+  connect(file, &QAction::triggered, this, &MeshButton::chooseFile, Qt::QueuedConnection);
+  setMenu(menu);
+}
+
+void MeshButton::offerGrid(bool offered) {
+  grid_->setVisible(offered);
+}
+
+void MeshButton::chooseFile() {
+  const QString folder = QString::fromStdString(document_.scene().folder.path);
+  const QString file = QFileDialog::getOpenFileName(window(), tr("Choose a mesh"), folder,
+                                                    tr("Meshes (*.obj);;All files (*)"));
+  if (!file.isEmpty()) Q_EMIT meshChosen(file_as_seen_from(document_.scene().folder, file));
+}
+
+}  // namespace clothlab

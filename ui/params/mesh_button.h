@@ -1,0 +1,37 @@
+// A button with the meshes that a scene can name: those of our own making, and any OBJ file.
+#pragma once
+
+#include <QToolButton>
+#include <string>
+
+#include "document/lab_document.h"
+
+class QAction;
+
+namespace clothlab {
+
+class MeshButton : public QToolButton {
+  Q_OBJECT
+
+ public:
+  /// The folder that files are named from is that of the document's scene.
+  explicit MeshButton(const LabDocument& document, QWidget* parent = nullptr);
+
+  /// For a cloth: whether its menu has the grid, too.
+  void offerGrid(bool offered);
+
+ Q_SIGNALS:
+  void meshChosen(const std::string& file);  ///< a built-in mesh or a file, as the scene should name it
+  void gridChosen();
+
+ private:
+  void chooseFile();
+
+  const LabDocument& document_;
+  QAction* grid_ = nullptr;
+};
+
+/// How a scene names a file: from its own folder where the file is in there, else by the whole path.
+std::string file_as_seen_from(const cloth::SceneFolder& folder, const QString& file);
+
+}  // namespace clothlab

@@ -1,0 +1,93 @@
+#include "support/contact_check.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <stdexcept>
+
+#include "simulation/time_step.h"
+
+namespace cloth::test {
+namespace {
+
+constexpr double sixtieth = 1.0 / 60;  // s
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void check_frame(const Simulation& simulation, CheckedRun& run) {
+  ++run.frames;
+  const Count count = all_crossings(simulation);
+  if (count.number == 0) return;
+  if (run.crossings.number == 0) run.crossings.first = count.first, run.crossed_at = simulation.time();
+  run.crossings.number += count.number;
+}
+
+Scene with_verlet(Scene scene) {
+  scene.integrator.method = "verlet";
+  scene.integrator.time_step.reset();
+  scene.integrator.time_step = resolved_time_step(scene).value();
+  return scene;
+}
+
+void step_on(Simulation& simulation) {
+  if (const auto stop = simulation.step()) throw std::runtime_error(describe(*stop));
+}
+
+}  // namespace
+
+double frame_interval(const Scene& scene) {
+  return scene.record.interval > 0 ? std::min(scene.record.interval, sixtieth) : sixtieth;
+}
+
+CheckedRun check_run(const Scene& scene, double duration, const Checkpoint* start,
+                     const Preparation& prepare) {
+  Simulation simulation(scene, prepare);
+  if (start) simulation.restore(*start);
+  CheckedRun run;
+  run.begin = run.end = simulation.time();
+  const double step = simulation.time_step();
+  const std::int64_t steps = steps_to_cover(duration, step);
+  const auto stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(frame_interval(scene) / step));
+  for (std::int64_t n = 1; n <= steps; ++n) {
+    const auto begin = std::chrono::steady_clock::now();
+    run.stop = simulation.step();
+    run.wall += seconds_since(begin);
+    if (run.stop) break;
+    run.touched = std::max(run.touched, simulation.last_contact().contacts);
+    run.held_back = std::max(run.held_back, simulation.last_contact().held_back);
+    run.end = simulation.time();
+    if (n % stride == 0 || n == steps) check_frame(simulation, run);
+  }
+  return run;
+}
+
+Checkpoint state_at(const Scene& scene, double time) {
+  Simulation simulation(with_verlet(scene));
+  while (simulation.time() + 0.5 * simulation.time_step() < time) step_on(simulation);
+  return simulation.checkpoint();
+}
+
+Checkpoint state_before_touch(const Scene& scene, double lead) {
+  Simulation simulation(with_verlet(scene));
+  std::deque<Checkpoint> last{simulation.checkpoint()};
+  while (simulation.last_contact().contacts == 0 && simulation.time() < scene.duration) {
+    if (simulation.time() - last.back().state.time >= lead) last.push_back(simulation.checkpoint());
+    if (last.size() > 2) last.pop_front();
+    step_on(simulation);
+  }
+  return last.front();
+}
+
+Scene coarser(Scene scene, double part) {
+  const auto fewer = [part](int count) {
+    return std::max(3, static_cast<int>(std::lround((count - 1) * part)) + 1);
+  };
+  scene.cloth.rows = fewer(scene.cloth.rows);
+  scene.cloth.columns = fewer(scene.cloth.columns);
+  return scene;
+}
+
+}  // namespace cloth::test

@@ -1,0 +1,39 @@
+// A run of a scene of contact with any method and step, whose frames the checker of crossings looks at; from
+// the scene's start or from somewhere on its way.
+#pragma once
+
+#include <optional>
+
+#include "support/contact_scenes.h"
+
+namespace cloth::test {
+
+/// A frame is checked every 1/60 s, or as often as the scene records where that is more; at longer steps
+/// every step.
+double frame_interval(const Scene& scene);
+
+struct CheckedRun {
+  int frames = 0;  ///< that were checked
+  Count crossings;
+  double crossed_at = 0;           ///< s, the first
+  double begin = 0, end = 0;       ///< s, of what was run
+  int touched = 0, held_back = 0;  ///< particles, the most in a step
+  double wall = 0;                 ///< s, without the checker
+  std::optional<Divergence> stop;  ///< before its end
+};
+
+/// From `start` or, without one, from the scene's beginning for `duration` s, or until the method runs away.
+/// Crossings do not end it. The checkpoint may be of another method and step.
+CheckedRun check_run(const Scene& scene, double duration, const Checkpoint* start = nullptr,
+                     const Preparation& prepare = {});
+
+/// A state of a run with Verlet at the step `auto`, at `time` s.
+Checkpoint state_at(const Scene& scene, double time);
+
+/// The last one at least `lead` s before something is touched, or that of the start.
+Checkpoint state_before_touch(const Scene& scene, double lead);
+
+/// With a part of the particles along every edge, at least 3.
+Scene coarser(Scene scene, double part);
+
+}  // namespace cloth::test

@@ -31,8 +31,9 @@ struct Options {
   std::vector<std::string> scenes, methods;
   std::vector<double> steps{1.0 / 60, 1e-3, 1e-4};
   std::string from = "start";
-  double duration = 0;  ///< s; 0: the scene's
-  double part = 1;      ///< of the particles along an edge
+  double duration = 0;         ///< s; 0: the scene's
+  double part = 1;             ///< of the particles along an edge
+  double patience = infinity;  ///< s
 };
 
 std::vector<std::string> scene_names() {
@@ -69,6 +70,7 @@ void print_header() {
 
 void print_row(const std::string& name, const Scene& scene, const CheckedRun& run) {
   std::string end = "as asked";
+  if (run.gave_up) end = "out of patience";
   if (run.stop) end = run.stop->pinched ? "pinched" : run.stop->solver_failed ? "solver failed" : "ran away";
   if (run.stop) end += fmt::format(" at {:.4g} s: {}", run.stop->time, run.stop->cause);
   if (run.crossings.number > 0)
@@ -92,8 +94,10 @@ int check_all(const Options& options) {
       for (const std::string& method : options.methods) {
         scene.integrator.method = method;
         scene.integrator.time_step = step;
-        const Preparation prepare = is_small(name) ? thrown({0, -2, 0}) : Preparation{};
-        const CheckedRun run = check_run(scene, duration, start ? &*start : nullptr, prepare);
+        CheckedWay way{
+            .duration = duration, .start = start ? &*start : nullptr, .patience = options.patience};
+        if (is_small(name)) way.prepare = thrown({0, -2, 0});
+        const CheckedRun run = check_run(scene, way);
         print_row(name, scene, run);
         crossings += run.crossings.number;
         frames += run.frames;
@@ -120,6 +124,9 @@ int main(int argument_count, char** arguments) {
       ->check(CLI::IsMember({"start", "touch"}) | CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--duration", options.duration, "In s; without it the scene's, 0.5 of small ones")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--patience", options.patience,
+                 "In s of wall time, after which a run begins no further step")
       ->check(CLI::PositiveNumber);
   app.add_option("--part", options.part, "Of the particles along an edge of a built-in scene")
       ->check(CLI::Range(0.05, 1.0))

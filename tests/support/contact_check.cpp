@@ -42,15 +42,16 @@ double frame_interval(const Scene& scene) {
   return scene.record.interval > 0 ? std::min(scene.record.interval, sixtieth) : sixtieth;
 }
 
-CheckedRun check_run(const Scene& scene, double duration, const Checkpoint* start,
-                     const Preparation& prepare) {
-  Simulation simulation(scene, prepare);
-  if (start) simulation.restore(*start);
+CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
+  Simulation simulation(scene, way.prepare);
+  if (way.start) simulation.restore(*way.start);
   CheckedRun run;
   run.begin = run.end = simulation.time();
   const double step = simulation.time_step();
-  const std::int64_t steps = steps_to_cover(duration, step);
-  const auto stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(frame_interval(scene) / step));
+  const std::int64_t steps = steps_to_cover(way.duration, step);
+  const double interval = way.interval > 0 ? way.interval : frame_interval(scene);
+  constexpr double rounding = 1e-6;
+  const auto stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(interval / step + rounding));
   for (std::int64_t n = 1; n <= steps; ++n) {
     const auto begin = std::chrono::steady_clock::now();
     run.stop = simulation.step();
@@ -59,7 +60,9 @@ CheckedRun check_run(const Scene& scene, double duration, const Checkpoint* star
     run.touched = std::max(run.touched, simulation.last_contact().contacts);
     run.held_back = std::max(run.held_back, simulation.last_contact().held_back);
     run.end = simulation.time();
-    if (n % stride == 0 || n == steps) check_frame(simulation, run);
+    run.gave_up = run.wall > way.patience && n < steps;
+    if (n % stride == 0 || n == steps || run.gave_up) check_frame(simulation, run);
+    if (run.gave_up) break;
   }
   return run;
 }

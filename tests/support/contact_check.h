@@ -20,12 +20,19 @@ struct CheckedRun {
   int touched = 0, held_back = 0;  ///< particles, the most in a step
   double wall = 0;                 ///< s, without the checker
   std::optional<Divergence> stop;  ///< before its end
+  bool gave_up = false;            ///< out of patience
 };
 
-/// From `start` or, without one, from the scene's beginning for `duration` s, or until the method runs away.
-/// Crossings do not end it. The checkpoint may be of another method and step.
-CheckedRun check_run(const Scene& scene, double duration, const Checkpoint* start = nullptr,
-                     const Preparation& prepare = {});
+struct CheckedWay {
+  double duration = 0;                ///< s
+  double interval = 0;                ///< s between checked states; 0: a frame's
+  const Checkpoint* start = nullptr;  ///< maybe of another method and step; without it the scene's start
+  Preparation prepare = {};
+  double patience = infinity;  ///< s of wall time, after which no further step is begun
+};
+
+/// Runs the scene to the way's end, or until its method runs away. Crossings do not end it.
+CheckedRun check_run(const Scene& scene, const CheckedWay& way);
 
 /// A state of a run with Verlet at the step `auto`, at `time` s.
 Checkpoint state_at(const Scene& scene, double time);

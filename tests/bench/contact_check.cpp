@@ -65,7 +65,7 @@ std::optional<Checkpoint> start_of(const std::string& name, const Scene& scene, 
 
 void print_header() {
   fmt::print("{:<28} {:<21} {:>9} {:>15} {:>7} {:>8} {:>9} {:>10} {:>8}  {}\n", "Scene", "Method", "Step (s)",
-             "From, to (s)", "Frames", "Touched", "Held back", "Crossings", "Wall (s)", "Ended");
+             "From, to (s)", "Frames", "Touched", "Held back", "Crossings", "CPU (s)", "Ended");
 }
 
 void print_row(const std::string& name, const Scene& scene, const CheckedRun& run) {
@@ -78,7 +78,7 @@ void print_row(const std::string& name, const Scene& scene, const CheckedRun& ru
   fmt::print("{:<28} {:<21} {:>9.3g} {:>15} {:>7} {:>8} {:>9} {:>10} {:>8.2f}  {}\n",
              fmt::format("{} {}x{}", name, scene.cloth.columns, scene.cloth.rows), scene.integrator.method,
              *scene.integrator.time_step, fmt::format("{:.3f}, {:.3f}", run.begin, run.end), run.frames,
-             run.touched, run.held_back, run.crossings.number, run.wall, end);
+             run.touched, run.held_back, run.crossings.number, run.cost, end);
   std::fflush(stdout);
 }
 
@@ -126,7 +126,7 @@ int main(int argument_count, char** arguments) {
   app.add_option("--duration", options.duration, "In s; without it the scene's, 0.5 of small ones")
       ->check(CLI::PositiveNumber);
   app.add_option("--patience", options.patience,
-                 "In s of wall time, after which a run begins no further step")
+                 "In s of processor time, after which a run begins no further step")
       ->check(CLI::PositiveNumber);
   app.add_option("--part", options.part, "Of the particles along an edge of a built-in scene")
       ->check(CLI::Range(0.05, 1.0))

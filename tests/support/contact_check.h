@@ -18,7 +18,7 @@ struct CheckedRun {
   double crossed_at = 0;           ///< s, the first
   double begin = 0, end = 0;       ///< s, of what was run
   int touched = 0, held_back = 0;  ///< particles, the most in a step
-  double wall = 0;                 ///< s, without the checker
+  double cost = 0;                 ///< s of processor time, without the checker
   std::optional<Divergence> stop;  ///< before its end
   bool gave_up = false;            ///< out of patience
 };
@@ -28,7 +28,7 @@ struct CheckedWay {
   double interval = 0;                ///< s between checked states; 0: a frame's
   const Checkpoint* start = nullptr;  ///< maybe of another method and step; without it the scene's start
   Preparation prepare = {};
-  double patience = infinity;  ///< s of wall time, after which no further step is begun
+  double patience = infinity;  ///< s of processor time, after which no further step is begun
 };
 
 /// Runs the scene to the way's end, or until its method runs away. Crossings do not end it.

@@ -135,7 +135,8 @@ std::vector<Separation> nearest_of(const std::vector<FeaturePair>& pairs, const 
   return nearest;
 }
 
-TEST(TheNearestPair, OfAParticleOutsideAConvexMeshIsOne) {
+/// From behind, the inside of a face is nearest too: nothing next to it is closer.
+TEST(TheNearestPair, AmongTheFacesThatAParticleSeesOfAConvexMeshIsOne) {
   Random random;
   int several = 0;
   constexpr int trials = 2000;
@@ -152,8 +153,11 @@ TEST(TheNearestPair, OfAParticleOutsideAConvexMeshIsOne) {
     if (out.cwiseAbs().cwiseQuotient(Vec3(0.1, 0.2, 0.15)).maxCoeff() < 1.01) continue;
     setting.sheet.position.set(0, setting.poses[0].at(out));
     std::vector<FeaturePair> pairs;
-    for (int t = 0; t < static_cast<int>(box.triangles.size()); ++t)
-      pairs.push_back({0, PairKind::vertex_face, 0, t});
+    for (int t = 0; t < static_cast<int>(box.triangles.size()); ++t) {
+      const auto& [a, b, c] = box.triangles[at(t)];
+      const Vec3 &pa = box.vertices[at(a)], &pb = box.vertices[at(b)], &pc = box.vertices[at(c)];
+      if ((pb - pa).cross(pc - pa).dot(out - pa) > 0) pairs.push_back({0, PairKind::vertex_face, 0, t});
+    }
     double least = HUGE_VAL;
     for (const FeaturePair& pair : pairs)
       least = std::min(

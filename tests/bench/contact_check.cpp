@@ -4,6 +4,7 @@
 //
 //     clothlab-contact-check --scenes corner fold --methods verlet xpbd --steps 0.001 0.0001
 //     clothlab-contact-check --scenes bunny --steps 1e-4 --from touch --duration 0.2
+//     clothlab-contact-check --rest --methods verlet --scenes slope corner --damping 0.004
 //
 // Scenes: the built-in ones with continuous contact, and the small ones of the tests, as small/NAME.
 #include "support/contact_check.h"
@@ -33,6 +34,8 @@ struct Options {
   std::string from = "start";
   double duration = 0;         ///< s; 0: the scene's
   double part = 1;             ///< of the particles along an edge
+  double damping = 0;          ///< N s/m; 0: the scene's
+  bool rest = false;           ///< look for rest instead of crossings
   double patience = infinity;  ///< s
 };
 
@@ -80,6 +83,26 @@ void print_row(const std::string& name, const Scene& scene, const CheckedRun& ru
              *scene.integrator.time_step, fmt::format("{:.3f}, {:.3f}", run.begin, run.end), run.frames,
              run.touched, run.held_back, run.crossings.number, run.cost, end);
   std::fflush(stdout);
+}
+
+/// Whether the scenes come to rest by 5 s, with the first of the methods at its step `auto`.
+void check_rest(const Options& options) {
+  fmt::print("{:<28} {:>10} {:>12} {:>14} {:>16} {:>20} {:>8}  {}\n", "Scene", "Peak (J)", "At 5 s / peak",
+             "At rest (s)", "Then / peak", "Moved in 1 s (m)", "Touched", "Ended");
+  for (const std::string& name : options.scenes) {
+    Scene scene = scene_named(name, options.part);
+    scene.integrator.method = options.methods.front();
+    scene.integrator.time_step.reset();
+    scene.integrator.time_step = resolved_time_step(scene);
+    if (options.damping > 0) scene.damping = options.damping;
+    const Preparation prepare = is_small(name) ? thrown({0, -2, 0}) : Preparation{};
+    const RestingRun run = rest_run(scene, {.prepare = prepare});
+    fmt::print("{:<28} {:>10.4g} {:>12.2e} {:>14.4g} {:>16.2e} {:>20.2e} {:>8}  {}\n",
+               fmt::format("{} {}x{}", name, scene.cloth.columns, scene.cloth.rows), run.peak,
+               run.kinetic / run.peak, run.resting_since, run.highest_after / run.peak, run.furthest_after,
+               run.touched, run.stop ? describe(*run.stop) : "as asked");
+    std::fflush(stdout);
+  }
 }
 
 /// Crossings.
@@ -131,6 +154,12 @@ int main(int argument_count, char** arguments) {
   app.add_option("--part", options.part, "Of the particles along an edge of a built-in scene")
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
+  app.add_flag(
+      "--rest", options.rest,
+      "Instead: how still each scene lies after 5 s, with the first of the methods at the step auto");
+  app.add_option("--damping", options.damping,
+                 "With --rest: viscous damping in N s/m instead of the scene's");
   CLI11_PARSE(app, argument_count, arguments);
+  if (options.rest) return check_rest(options), 0;
   return check_all(options) > 0 ? 1 : 0;
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <stdexcept>
 
+#include "measure/energy.h"
 #include "simulation/time_step.h"
 
 namespace cloth::test {
@@ -64,6 +65,29 @@ CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
     if (n % stride == 0 || n == steps || run.gave_up) check_frame(simulation, run);
     if (run.gave_up) break;
   }
+  return run;
+}
+
+RestingRun rest_run(const Scene& scene, const RestingWay& way) {
+  constexpr double resting_part = 1e-6;
+  Simulation simulation(scene, way.prepare);
+  RestingRun run;
+  run.resting_since = infinity;
+  std::optional<Vec3Field> there;
+  while (simulation.time() + 0.5 * simulation.time_step() < way.time + way.watched) {
+    if ((run.stop = simulation.step())) return run;
+    const double kinetic = kinetic_energy(simulation.system(), simulation.state().velocity);
+    run.peak = std::max(run.peak, kinetic);
+    const bool rests = kinetic < resting_part * run.peak;
+    run.resting_since = rests ? std::min(run.resting_since, simulation.time()) : infinity;
+    if (simulation.time() + 0.5 * simulation.time_step() < way.time) continue;
+    const Vec3Field& position = simulation.state().position;
+    if (!there) there = position, run.kinetic = kinetic;
+    run.highest_after = std::max(run.highest_after, kinetic);
+    for (std::size_t i = 0; i < position.size(); ++i)
+      run.furthest_after = std::max(run.furthest_after, (position[i] - (*there)[i]).norm());
+  }
+  run.touched = simulation.last_contact().contacts;
   return run;
 }
 

@@ -34,6 +34,24 @@ struct CheckedWay {
 /// Runs the scene to the way's end, or until its method runs away. Crossings do not end it.
 CheckedRun check_run(const Scene& scene, const CheckedWay& way);
 
+struct RestingWay {
+  double time = 5;     ///< s, by which it should rest
+  double watched = 1;  ///< s, that it is looked at from then on
+  Preparation prepare = {};
+};
+
+struct RestingRun {
+  double peak = 0;            ///< J, the highest kinetic energy
+  double kinetic = 0;         ///< J, at the time by which it should rest
+  double resting_since = 0;   ///< s, from when on it stayed below 1e-6 of the peak; infinity: never
+  double highest_after = 0;   ///< J, while it was watched
+  double furthest_after = 0;  ///< m, that a particle was away from where it was at that time
+  int touched = 0;            ///< particles, in the last step
+  std::optional<Divergence> stop;
+};
+
+RestingRun rest_run(const Scene& scene, const RestingWay& way);
+
 /// A state of a run with Verlet at the step `auto`, at `time` s.
 Checkpoint state_at(const Scene& scene, double time);
 

@@ -11,7 +11,7 @@ namespace {
 Scene damped(Scene scene) {
   scene.damping = 0.004;
   for (Obstacle& obstacle : scene.obstacles) obstacle.friction = 0.6;
-  scene.integrator = {.method = "verlet", .time_step = 0.002};
+  scene.integrator = {.method = "verlet", .time_step = 0.001};
   return scene;
 }
 

@@ -19,7 +19,8 @@ class ADampedScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ADampedScene, ComesToRestWithinFiveSecondsAndLiesStill) {
   const Scene scene = damped(contact_scene(GetParam()));
-  const RestingRun run = rest_run(scene, {.time = 5, .watched = 1, .prepare = thrown({0, -1, 0})});
+  const double time = GetParam() == "cones" ? 2 : 5;  // s; the cones take long, and hold the cloth soon
+  const RestingRun run = rest_run(scene, {.time = time, .watched = 1, .prepare = thrown({0, -1, 0})});
   ASSERT_FALSE(run.stop) << describe(*run.stop);
   EXPECT_GT(run.peak, 1e-3);
   EXPECT_LT(run.kinetic, 1e-6 * run.peak);

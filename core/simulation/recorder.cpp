@@ -62,6 +62,12 @@ const std::vector<Column>& columns() {
       {"contacts", [](Q q) { return q.contact; }, [](M m) { return std::to_string(m.contacts); }},
       {"held_back", [](Q q) { return q.continuous_contact; },
        [](M m) { return std::to_string(m.held_back); }},
+      {"contact_impulse_x_Ns", [](Q q) { return q.continuous_contact; },
+       [](M m) { return csv_number(m.contact_impulse.x()); }},
+      {"contact_impulse_y_Ns", [](Q q) { return q.continuous_contact; },
+       [](M m) { return csv_number(m.contact_impulse.y()); }},
+      {"contact_impulse_z_Ns", [](Q q) { return q.continuous_contact; },
+       [](M m) { return csv_number(m.contact_impulse.z()); }},
   };
   return all;
 }

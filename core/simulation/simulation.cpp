@@ -197,6 +197,7 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_);
   if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
+  contact_impulse_ += last_contact_.impulse;
   integrator_->forget(Change::state);
 }
 
@@ -232,7 +233,8 @@ void Simulation::edit(const Scene& scene) {
 std::size_t Checkpoint::bytes() const {
   std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
-  return sizeof(Checkpoint) + sizeof(double) * numbers + sizeof(ObstacleCarry) * carries.size();
+  return sizeof(Checkpoint) + sizeof(double) * numbers + sizeof(Pose) * obstacle_poses.size() +
+         sizeof(ObstacleCarry) * carries.size();
 }
 
 Checkpoint Simulation::checkpoint() const {
@@ -251,7 +253,8 @@ Checkpoint Simulation::checkpoint() const {
           .last_contact = last_contact_,
           .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
           .carries = carries_,
-          .obstacle_speed = obstacle_speed_};
+          .obstacle_speed = obstacle_speed_,
+          .contact_impulse = contact_impulse_};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -271,6 +274,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
   carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
   obstacle_speed_ = checkpoint.obstacle_speed;
+  contact_impulse_ = checkpoint.contact_impulse;
   if (continuous_contact_) {
     continuous_contact_->set_carries(carries_);
     restore_obstacles(checkpoint.obstacle_poses);
@@ -349,7 +353,8 @@ Measurement Simulation::measure() const {
           .limiter_sweeps = last_limit_.sweeps,
           .limiter_excess = last_limit_.excess,
           .contacts = last_contact_.contacts,
-          .held_back = last_contact_.held_back};
+          .held_back = last_contact_.held_back,
+          .contact_impulse = contact_impulse_};
 }
 
 }  // namespace cloth

@@ -46,7 +46,8 @@ struct Measurement {
   std::int64_t limiter_sweeps = 0;  ///< of the last step
   double limiter_excess = 0;
   int contacts = 0;
-  int held_back = 0;  ///< particles that contact kept from getting where they should
+  int held_back = 0;              ///< particles that contact kept from getting where they should
+  Vec3 contact_impulse{0, 0, 0};  ///< N s, given to the cloth since t = 0; only continuous contact says it
   /// total - total(0) - works + losses: what the method itself added or lost, J
   double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
 };
@@ -84,7 +85,8 @@ struct Checkpoint {
   ContactReport last_contact;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
   ObstacleCarries carries;
-  double obstacle_speed = 0;  ///< m/s, the highest so far
+  double obstacle_speed = 0;      ///< m/s, the highest so far
+  Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
 
   std::size_t bytes() const;
 };
@@ -208,6 +210,7 @@ class Simulation {
   StepCount count_;
   LimiterReport last_limit_;
   ContactReport last_contact_;
+  Vec3 contact_impulse_{0, 0, 0};  ///< N s, of continuous contact since t = 0
   std::optional<UnreachableRate> unreachable_;
   std::optional<BrushGust> brush_;
   std::optional<Pull> pull_;

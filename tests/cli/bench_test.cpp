@@ -51,6 +51,30 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
   for (const auto& start : json["start"]) EXPECT_GT(start["ms"]["median"], 0) << start.dump();
 }
 
+TEST(Bench, SaysWhatContactAddsToAStep) {
+  const CommandResult result = cli("bench --quick --only contact --repeats 3 --json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_TRUE(json["rows"].empty());
+  ASSERT_EQ(json["contact"].size(), 6u);
+  for (const auto& row : json["contact"]) {
+    const std::string name = row.dump();
+    EXPECT_TRUE(row["remark"].is_null()) << name;
+    EXPECT_GT(row["ns_per_particle_step"]["median"], 0) << name;
+    EXPECT_GT(row["ns_per_particle_step_without"]["median"], 0) << name;
+    EXPECT_GT(row["ratio_to_without"]["median"], 0) << name;
+    if (row["scene"] == "fold") continue;  // of so few particles it may have bounced off
+    EXPECT_GT(row["touched_particles"], 0) << name << ": nothing was touched while it was timed";
+    EXPECT_GT(row["pairs"], 0) << name;
+  }
+  EXPECT_EQ(json["contact"][5]["scene"], "bunny");
+  EXPECT_GE(json["contact"][5]["obstacle_triangles"], 50000);
+  const std::string text = cli("bench --quick --only contact --repeats 3").output;
+  for (const char* part : {"\nContact\n", "With / without", "fold", " triangles", "itself"})
+    EXPECT_TRUE(has(text, part)) << part << "\n" << text;
+}
+
 TEST(Bench, PrintsTablesAndLeavesTheFile) {
   const TemporaryFolder folder;
   const CommandResult result = cli(few + "--only steps --out '" + (folder / "result").string() + "'");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "support/box_sweep.h"
 #include "support/exact_sign.h"
 #include "support/random.h"
 
@@ -159,6 +160,66 @@ TEST(Crossings, LoseNoneFarFromTheOrigin) {
     EXPECT_GT(crossings(flat(0), upright).number, 0);
     EXPECT_EQ(crossings(flat(-ulp), upright).number, 0);
   }
+}
+
+/// Triangles of all sizes, some of them flat along an axis, on a coarse raster so that many touch.
+TriangleMesh random_soup(Random& random, int triangles) {
+  TriangleMesh mesh;
+  const Vec3 middle = random.vector(1);
+  for (int t = 0; t < triangles; ++t) {
+    const Vec3 place = middle + random.vector(2);
+    const double size = std::pow(2.0, random.integer(-4, 1));
+    for (int k = 0; k < 3; ++k) {
+      Vec3 vertex = place + random.vector(size);
+      if (random.coin()) vertex = (8 * vertex).array().round() / 8;
+      mesh.vertices.push_back(vertex);
+    }
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    if (t > 0 && random.coin()) mesh.triangles.back()[0] = 3 * random.integer(0, t - 1);
+  }
+  return mesh;
+}
+
+TEST(Crossings, AreTheSameBySweepAsOfAllPairs) {
+  Random random;
+  int found = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const TriangleMesh a = random_soup(random, random.integer(1, 60)),
+                       b = random_soup(random, random.integer(1, 60));
+    const Count swept = crossings(a, b, Search::sweep), all = crossings(a, b, Search::all_pairs);
+    ASSERT_EQ(swept.number, all.number);
+    ASSERT_EQ(swept.first, all.first);
+    const Count own = self_crossings(a, Search::sweep), own_all = self_crossings(a, Search::all_pairs);
+    ASSERT_EQ(own.number, own_all.number);
+    ASSERT_EQ(own.first, own_all.first);
+    found += all.number + own_all.number;
+  }
+  EXPECT_GT(found, 1000);
+}
+
+TEST(BoxSweep, FindsEveryPairOnceTouchesAndTiesIncluded) {
+  Random random;
+  std::size_t found = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const auto boxes = [&](int count) {  // whole numbers: many begin, end or touch at the same
+      std::vector<Extent> list;
+      for (int n = 0; n < count; ++n) {
+        Extent box;
+        for (std::size_t k = 0; k < 3; ++k) {
+          box.least[k] = random.integer(-5, 5);
+          box.most[k] = box.least[k] + random.integer(0, 3);
+        }
+        list.push_back(box);
+      }
+      return list;
+    };
+    const std::vector<Extent> a = boxes(random.integer(0, 40)), b = boxes(random.integer(0, 40));
+    const std::vector<IndexPair> all = overlaps_of_all_pairs(a, b);
+    ASSERT_EQ(overlaps_by_sweep(a, b), all);
+    ASSERT_EQ(overlaps_by_sweep(a, a), overlaps_of_all_pairs(a, a));
+    found += all.size();
+  }
+  EXPECT_GT(found, 1000u);
 }
 
 TEST(SelfCrossings, AreNoneInAFlatSheetOrABentOne) {

@@ -24,12 +24,32 @@ TEST(RecordColumns, StandInTheOrderOfTheContract) {
                  .limiter = true,
                  .contact = true,
                  .structural = true,
-                 .shear = true};
-  std::vector<std::string> expected{
-      "time_s",           "step",           "kinetic_J",      "elastic_J",    "gravity_J",
-      "total_J",          "damping_loss_J", "air_work_J",     "brush_work_J", "pull_work_J",
-      "limiter_work_J",   "contact_work_J", "energy_error_J", "max_strain",   "max_strain_structural",
-      "max_strain_shear", "limiter_sweeps", "limiter_excess", "contacts",     "step_time_us"};
+                 .shear = true,
+                 .continuous_contact = true};
+  std::vector<std::string> expected{"time_s",
+                                    "step",
+                                    "kinetic_J",
+                                    "elastic_J",
+                                    "gravity_J",
+                                    "total_J",
+                                    "damping_loss_J",
+                                    "air_work_J",
+                                    "brush_work_J",
+                                    "pull_work_J",
+                                    "limiter_work_J",
+                                    "contact_work_J",
+                                    "energy_error_J",
+                                    "max_strain",
+                                    "max_strain_structural",
+                                    "max_strain_shear",
+                                    "limiter_sweeps",
+                                    "limiter_excess",
+                                    "contacts",
+                                    "held_back",
+                                    "contact_impulse_x_Ns",
+                                    "contact_impulse_y_Ns",
+                                    "contact_impulse_z_Ns",
+                                    "step_time_us"};
   EXPECT_EQ(record_columns(all), expected);
 }
 
@@ -47,6 +67,11 @@ TEST(RecordColumns, FollowTheScenesStages) {
   const Scene ball = builtin_scene("ball"), fall = builtin_scene("free-fall");
   for (const char* name : {"contact_work_J", "contacts", "limiter_work_J", "limiter_sweeps", "air_work_J"}) {
     EXPECT_TRUE(has(ball, name)) << name;
+    EXPECT_FALSE(has(fall, name)) << name;
+  }
+  for (const char* name : {"held_back", "contact_impulse_x_Ns", "contact_impulse_z_Ns"}) {
+    EXPECT_TRUE(has(builtin_scene("slope"), name)) << name;
+    EXPECT_FALSE(has(ball, name)) << name << ": contact particle by particle does not say it";
     EXPECT_FALSE(has(fall, name)) << name;
   }
   Scene bare = bare_sheet(3, 3);
@@ -92,6 +117,20 @@ TEST(Record, SaysWhatWasMeasuredToTheBit) {
   EXPECT_EQ(column_of(table, "damping_loss_J").back(), m.ledger.forces.damping_loss);
   EXPECT_EQ(column_of(table, "energy_error_J").back(), m.energy_error());
   EXPECT_EQ(column_of(table, "max_strain").back(), m.strain.maximum());
+}
+
+TEST(Record, OfAContactThatHoldsTheClothHasItsWeightTimesTheTime) {
+  const TemporaryFolder folder;
+  Scene scene = builtin_scene("slope");
+  scene.duration = 0.5;
+  run_scene(scene, {.folder = folder.path(), .progress = {}});
+  const CsvTable table = parse_csv(content_of(folder / "record.csv"));
+  const std::vector<double> times = column_of(table, "time_s"), up = column_of(table, "contact_impulse_y_Ns");
+  EXPECT_EQ(up.front(), 0);
+  const double force = (up.back() - up[10]) / (times.back() - times[10]);
+  EXPECT_NEAR(force, scene.cloth.mass * 9.81, 1e-6 * force);
+  EXPECT_NEAR(column_of(table, "contact_impulse_x_Ns").back(), 0, 1e-4 * up.back());
+  EXPECT_GT(column_of(table, "contacts").back(), 0);
 }
 
 TEST(RunFolder, HoldsTheSceneAsRunWithItsDefaultsResolved) {

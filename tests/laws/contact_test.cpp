@@ -194,6 +194,20 @@ TEST(AParticleAtAKilometreASecond, StopsAtABoxAMillimetreThick) {
   }
 }
 
+// Its way in a step is longer than what one search for pairs serves.
+TEST(AFastCloth, StopsAtAMeshThatIsWiderThanItself) {
+  Scene scene = contact_scene("cones");
+  scene.cloth.width = scene.cloth.height = 0.2;
+  scene.cloth.origin = {-0.095, 0.01, -0.102};
+  scene.integrator = {.method = "implicit-euler", .time_step = 1e-3};
+  Simulation simulation(scene, thrown({0, -250, 0}));
+  const auto stop = simulation.step();
+  ASSERT_FALSE(stop) << describe(*stop);
+  EXPECT_EQ(all_crossings(simulation).number, 0);
+  for (std::size_t i = 0; i < simulation.state().position.size(); ++i)
+    EXPECT_GT(simulation.state().position[i].y(), -0.1) << "particle " << i << " has passed";
+}
+
 TEST(ABallAtAHundredMetresASecond, DoesNotPassAHungCloth) {
   for (const double step : {1e-4, 1e-3, 1.0 / 60}) {
     Scene scene = sheet_over(0);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/continuous_contact.h"
 #include "support/contact_scenes.h"
@@ -24,55 +25,77 @@ Scene hung_cloth(Shape shape, const std::string& method) {
   return scene;
 }
 
-/// The obstacle is dragged through the cloth's plane and back, an edit every few steps.
+/// The obstacle is dragged through the cloth's plane and back: by an edit every few steps, or at once there
+/// and at once back, further than it is wide, so that it would pass the cloth unseen if it were just put
+/// there.
 struct Drag {
-  int edits = 24, steps_between = 8;
-  double reach = 0.45;  // m
+  const char* name;
+  int edits;
+  double time_between;  // s
   Vec3 way(int edit) const {
+    constexpr double reach = 0.45;  // m
     const double there = 1 - std::abs(2.0 * edit / edits - 1);
     return {0, 0, -reach * there};
   }
 };
+constexpr Drag gentle{"gently", 24, 0.016}, sudden{"at_once", 2, 1.02 * carry_time};
 
 struct Case {
   Shape shape;
   std::string method;
+  Drag drag;
 };
+
+/// How far the cloth reaches beyond the front of what was dragged towards -z, in m; below 0 it does not.
+double ahead_of(const Simulation& simulation) {
+  double furthest = 0;
+  for (std::size_t i = 0; i < simulation.state().position.size(); ++i)
+    furthest = std::min(furthest, simulation.state().position[i].z());
+  const Obstacle& obstacle = simulation.scene().obstacles[0];
+  const double half = obstacle.shape == Shape::sphere ? obstacle.radius : 0.5 * obstacle.size.z();
+  return simulation.obstacle_pose(0, simulation.time()).at(obstacle.center).z() - half - furthest;
+}
 
 class DraggedObstacle : public ::testing::TestWithParam<Case> {};
 
 TEST_P(DraggedObstacle, LetsNothingThrough) {
-  const auto& [shape, method] = GetParam();
+  const auto& [shape, method, drag] = GetParam();
   Scene scene = hung_cloth(shape, method);
   Simulation simulation(scene);
   const Vec3 start = scene.obstacles[0].center;
-  const Drag drag;
+  const int steps_between = static_cast<int>(std::ceil(drag.time_between / simulation.time_step()));
   bool touched = false;
   for (int edit = 1; edit <= drag.edits; ++edit) {
     scene.obstacles[0].center = start + drag.way(edit);
     simulation.edit(scene);
-    for (int step = 0; step < drag.steps_between; ++step) {
+    for (int step = 0; step < steps_between; ++step) {
       const auto stop = simulation.step();
       ASSERT_FALSE(stop) << describe(*stop);
       touched = touched || simulation.last_contact().contacts > 0;
       const Count count = all_crossings(simulation);
       ASSERT_EQ(count.number, 0) << "edit " << edit << ", step " << step << ": " << count.first;
     }
+    if (2 * edit == drag.edits) {
+      EXPECT_GT(ahead_of(simulation), 0) << "the cloth was not taken along";
+    }
   }
   EXPECT_TRUE(touched);
 }
 
-INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle,
-                         ::testing::Values(Case{Shape::sphere, "semi-implicit-euler"},
-                                           Case{Shape::sphere, "verlet"}, Case{Shape::sphere, "rk4"},
-                                           Case{Shape::box, "semi-implicit-euler"},
-                                           Case{Shape::box, "verlet"}, Case{Shape::box, "rk4"}),
-                         [](const auto& tested) {
-                           std::string name =
-                               std::string(name_of(tested.param.shape)) + "_" + tested.param.method;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+std::vector<Case> all_drags() {
+  std::vector<Case> cases;
+  for (const Shape shape : {Shape::sphere, Shape::box})
+    for (const char* method : {"semi-implicit-euler", "verlet", "rk4"})
+      for (const Drag& drag : {gentle, sudden}) cases.push_back({shape, method, drag});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle, ::testing::ValuesIn(all_drags()), [](const auto& tested) {
+  const Case& drag = tested.param;
+  std::string name = std::string(name_of(drag.shape)) + "_" + drag.method + "_" + drag.drag.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 TEST(ObstacleCarry, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
   Scene scene = hung_cloth(Shape::sphere, "verlet");

@@ -6,14 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "support/box_sweep.h"
 #include "support/exact_sign.h"
 
 namespace cloth::test {
 namespace {
-
-struct Extent {
-  std::array<double, 3> least, most;
-};
 
 template <class... Points>
 Extent extent_of(const Points&... points) {
@@ -27,12 +24,6 @@ Extent extent_of(const Points&... points) {
   };
   (add(points), ...);
   return extent;
-}
-
-bool apart(const Extent& a, const Extent& b) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (a.most[k] < b.least[k] || b.most[k] < a.least[k]) return true;
-  return false;
 }
 
 using Edge = std::array<int, 2>;
@@ -74,16 +65,16 @@ std::string triangle_name(std::size_t k) {
   return "triangle " + std::to_string(k);
 }
 
+std::vector<IndexPair> overlaps(Search search, const std::vector<Extent>& a, const std::vector<Extent>& b) {
+  return search == Search::sweep ? overlaps_by_sweep(a, b) : overlaps_of_all_pairs(a, b);
+}
+
 void count_edges_through(const Features& edges, const Features& triangles, const std::string& of_edges,
-                         const std::string& of_triangles, Count& count) {
-  for (std::size_t e = 0; e < edges.edges.size(); ++e) {
-    const Extent& extent = edges.edge_extents[e];
+                         const std::string& of_triangles, Search search, Count& count) {
+  for (const auto& [e, t] : overlaps(search, edges.edge_extents, triangles.triangle_extents)) {
     const Edge& edge = edges.edges[e];
-    for (std::size_t t = 0; t < triangles.triangle_extents.size(); ++t) {
-      if (apart(extent, triangles.triangle_extents[t])) continue;
-      if (triangles.meets(edges.at(edge[0]), edges.at(edge[1]), triangles.mesh.triangles[t]))
-        add(count, edge_name(edge) + of_edges + " and " + triangle_name(t) + of_triangles);
-    }
+    if (triangles.meets(edges.at(edge[0]), edges.at(edge[1]), triangles.mesh.triangles[t]))
+      add(count, edge_name(edge) + of_edges + " and " + triangle_name(t) + of_triangles);
   }
 }
 
@@ -209,25 +200,23 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const V
   return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-Count crossings(const TriangleMesh& cloth, const TriangleMesh& obstacle) {
+Count crossings(const TriangleMesh& cloth, const TriangleMesh& obstacle, Search search) {
   const Features soft(cloth), hard(obstacle);
   Count count;
-  count_edges_through(soft, hard, " of the cloth", " of the obstacle", count);
-  count_edges_through(hard, soft, " of the obstacle", " of the cloth", count);
+  count_edges_through(soft, hard, " of the cloth", " of the obstacle", search, count);
+  count_edges_through(hard, soft, " of the obstacle", " of the cloth", search, count);
   return count;
 }
 
-Count self_crossings(const TriangleMesh& cloth) {
+Count self_crossings(const TriangleMesh& cloth, Search search) {
   const Features features(cloth);
   Count count;
-  for (std::size_t i = 0; i < cloth.triangles.size(); ++i) {
-    for (std::size_t j = i + 1; j < cloth.triangles.size(); ++j) {
-      if (apart(features.triangle_extents[i], features.triangle_extents[j])) continue;
-      const Triangle &s = cloth.triangles[i], &t = cloth.triangles[j];
-      if (shared_vertices(s, t) > 1) continue;
-      if (passes_through(features, s, t) || passes_through(features, t, s))
-        add(count, "triangles " + std::to_string(i) + " and " + std::to_string(j));
-    }
+  for (const auto& [i, j] : overlaps(search, features.triangle_extents, features.triangle_extents)) {
+    if (j <= i) continue;
+    const Triangle &s = cloth.triangles[i], &t = cloth.triangles[j];
+    if (shared_vertices(s, t) > 1) continue;
+    if (passes_through(features, s, t) || passes_through(features, t, s))
+      add(count, "triangles " + std::to_string(i) + " and " + std::to_string(j));
   }
   return count;
 }

@@ -1,6 +1,7 @@
-// What contact must prevent, found by brute force and exactly: features that cross. It shares nothing with
-// the engine's contact or its geometry but the values that they are given: all pairs are looked at, a pair is
-// dismissed only where bounding boxes have no point in common, and signs are exact (exact_sign.h).
+// What contact must prevent, found exactly and without hierarchies: features that cross. It shares nothing
+// with the engine's contact or its geometry but the values that they are given: a pair is dismissed only
+// where bounding boxes have no point in common (box_sweep.h, or by looking at all pairs), and signs are exact
+// (exact_sign.h).
 //
 // Touching counts as crossing: two features cross if they have a point in common, were it a single one. A
 // triangle without area is what its edges are.
@@ -27,13 +28,16 @@ TriangleMesh box_triangles(const Vec3& center, const Eigen::Matrix3d& axes, cons
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 bool segments_meet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// How pairs whose bounding boxes meet are found; the answer is the same.
+enum class Search { sweep, all_pairs };
+
 /// Pairs of an edge of the one and a triangle of the other that cross, either way.
-Count crossings(const TriangleMesh& cloth, const TriangleMesh& obstacle);
+Count crossings(const TriangleMesh& cloth, const TriangleMesh& obstacle, Search search = Search::sweep);
 
 /// Pairs of triangles of the cloth that cross: an edge of the one and the other. Of two that share one vertex
 /// only the edges opposite to it are looked at; two that share an edge are not (they cross only where they
 /// lie in each other's plane exactly).
-Count self_crossings(const TriangleMesh& cloth);
+Count self_crossings(const TriangleMesh& cloth, Search search = Search::sweep);
 
 /// Triangles no further from the centre than the radius. In long double: where the distance differs from the
 /// radius by less than some 1e-18 of itself and of the triangle's size (divided by the sine of its smallest

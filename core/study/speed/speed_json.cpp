@@ -81,6 +81,20 @@ json growth_json(const Growth& row) {
           {"standard_error", row.exponent.points > 2 ? finite(row.exponent.standard_error) : json()}};
 }
 
+json contact_json(const ContactCost& cost) {
+  return {{"scene", cost.scene},
+          {"rows", cost.rows},
+          {"columns", cost.columns},
+          {"obstacle_triangles", cost.obstacle_triangles},
+          {"self_contact", cost.with_itself},
+          {"touched_particles", cost.touched},
+          {"pairs", cost.pairs},
+          {"ns_per_particle_step_without", spread_json(cost.without)},
+          {"ns_per_particle_step", spread_json(cost.with)},
+          {"ratio_to_without", spread_json(cost.ratio)},
+          {"remark", text_or_null(cost.remark)}};
+}
+
 json scene_json(const SceneSpeed& scene) {
   return {{"name", scene.name},
           {"method", scene.method},
@@ -127,6 +141,7 @@ std::string speed_json(const SpeedReport& report) {
                   {"reference_disagreement_m", report.rows.empty() ? json() : finite(report.disagreement)},
                   {"rows", list_of(report.rows, row_json)},
                   {"growth", list_of(report.growth, growth_json)},
+                  {"contact", list_of(report.contact, contact_json)},
                   {"scenes", list_of(report.scenes, scene_json)},
                   {"memory", list_of(report.memory, memory_json)},
                   {"start", list_of(report.starts, start_json)}};

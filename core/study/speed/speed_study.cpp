@@ -52,7 +52,8 @@ class Study {
   SpeedReport run() {
     // Memory first: nothing has been allocated and given back yet.
     report_.complete = (!has("memory") || measure_memories()) && (!has("start") || measure_starts()) &&
-                       (!has("scenes") || measure_scenes()) && (!has("steps") || measure_steps());
+                       (!has("scenes") || measure_scenes()) && (!has("contact") || measure_contacts()) &&
+                       (!has("steps") || measure_steps());
     return std::move(report_);
   }
 
@@ -112,20 +113,41 @@ class Study {
     return true;
   }
 
+  bool measure_contacts() {
+    ContactPlan plan{.timing = timing_of(options_), .part = 1, .settle = 0.3};
+    plan.timing.budget = 1;
+    if (options_.quick) plan.part = 0.5, plan.settle = 0.05, plan.timing.budget = 0.05;
+    const std::vector<std::string>& scenes = contact_cost_scenes();
+    for (std::size_t k = 0; k < scenes.size(); ++k) {
+      const double width = 0.05 / static_cast<double>(scenes.size());
+      const Share share{0.15 + width * static_cast<double>(k), 0.15 + width * static_cast<double>(k + 1)};
+      bool ended = !goes_on(share, 0, "contact, " + scenes[k]);
+      if (ended) return false;
+      const ContactCost cost =
+          measure_contact(scenes[k], plan, [&](double fraction, const std::string& name) {
+            ended = ended || !goes_on(share, fraction, name);
+            return !ended;
+          });
+      if (ended) return false;
+      report_.contact.push_back(cost);
+    }
+    return true;
+  }
+
   bool measure_steps() {
     StepPlan plan{.timing = timing_of(options_), .yardsticks = {}, .longest_step = options_.quick ? 0.1 : 3};
     plan.yardsticks =
         measure_yardsticks({.timing = plan.timing, .array_bytes = options_.quick ? std::size_t{1} << 22 : 0},
                            [&](double fraction, const std::string& name) {
-                             return goes_on({0.15, 0.2}, fraction, name);
+                             return goes_on({0.2, 0.25}, fraction, name);
                            });
     report_.yardsticks = plan.yardsticks;
 
     DevelopedCloths cloths;
     const std::vector<int>& sizes = sizes_of(options_);
     for (std::size_t k = 0; k < sizes.size(); ++k) {
-      const double width = 0.8 / static_cast<double>(sizes.size());
-      const Share share{0.2 + width * static_cast<double>(k), 0.2 + width * static_cast<double>(k + 1)};
+      const double width = 0.75 / static_cast<double>(sizes.size());
+      const Share share{0.25 + width * static_cast<double>(k), 0.25 + width * static_cast<double>(k + 1)};
       const SizeCosts costs =
           measure_size(sizes[k], wanted_rows(options_, sizes[k]), plan, cloths, report_.rows,
                        [&](double fraction, const std::string& name) {
@@ -146,7 +168,7 @@ class Study {
 }  // namespace
 
 const std::vector<std::string>& speed_parts() {
-  static const std::vector<std::string> parts{"steps", "scenes", "memory", "start"};
+  static const std::vector<std::string> parts{"steps", "contact", "scenes", "memory", "start"};
   return parts;
 }
 

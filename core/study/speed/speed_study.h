@@ -1,6 +1,6 @@
 // What Clothlab costs on this machine: the time of a step by method, size, threads and feature beside a plain
-// kernel and the machine's own limits, its growth with size, the speed of the built-in scenes, memory
-// and start.
+// kernel and the machine's own limits, its growth with size, what contact adds, the speed of the built-in
+// scenes, memory and start.
 //
 // Absolute times are this machine's and this minute's; the ratios are what carries over.
 #pragma once
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "report/machine.h"
+#include "study/speed/contact_costs.h"
 #include "study/speed/growth.h"
 #include "study/speed/process_costs.h"
 #include "study/speed/scene_speeds.h"
@@ -18,7 +19,7 @@
 
 namespace cloth::speed {
 
-/// "steps", "scenes", "memory", "start"
+/// "steps", "contact", "scenes", "memory", "start"
 const std::vector<std::string>& speed_parts();
 
 struct SpeedOptions {
@@ -42,6 +43,7 @@ struct SpeedReport {
   std::vector<StepCost> rows;  ///< by size
   double disagreement = 0;     ///< m, the largest of all sizes, see SizeCosts
   std::vector<Growth> growth;
+  std::vector<ContactCost> contact;
   std::vector<SceneSpeed> scenes;
   std::vector<MemoryCost> memory;
   std::vector<StartCost> starts;

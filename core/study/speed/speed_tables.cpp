@@ -123,6 +123,34 @@ TextTable yardstick_table(const Yardsticks& y) {
   return table;
 }
 
+TextTable contact_table(const std::vector<ContactCost>& costs) {
+  TextTable table;
+  table.columns = {{"Scene"},
+                   {"Particles"},
+                   {"On"},
+                   {"Touched", true},
+                   {"Pairs", true},
+                   {"Without (ns)", true},
+                   {"With (ns)", true},
+                   {"Quartiles (ns)", true},
+                   {"With / without", true},
+                   {"Remark"}};
+  for (const ContactCost& cost : costs) {
+    std::string on = cost.obstacle_triangles > 0 ? fmt::format("{} triangles", cost.obstacle_triangles) : "";
+    if (cost.with_itself) on += on.empty() ? "itself" : ", itself";
+    std::vector<std::string> row{cost.scene, fmt::format("{} x {}", cost.columns, cost.rows), on};
+    if (cost.with.median > 0)
+      for (const std::string& cell :
+           {std::to_string(cost.touched), std::to_string(cost.pairs), number(cost.without.median),
+            number(cost.with.median), quartiles(cost.with), number(cost.ratio.median)})
+        row.push_back(cell);
+    row.resize(table.columns.size() - 1);
+    row.push_back(cost.remark);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
 TextTable scene_table(const std::vector<SceneSpeed>& scenes) {
   TextTable table;
   table.columns = {{"Scene"},
@@ -200,6 +228,14 @@ std::string built(const SpeedReport& report, bool markdown) {
                              machine.build_type, machine.processor, machine.cores));
   if (!report.complete) page.paragraph("Interrupted: this is what was finished.");
   if (!report.rows.empty()) add_steps(page, report);
+  if (!report.contact.empty()) {
+    page.heading("Contact");
+    page.paragraph(
+        "Processor time of a whole step per particle, from a state in which the cloth lies on something, "
+        "without "
+        "obstacles and self-contact and with them.");
+    page.table(contact_table(report.contact));
+  }
   if (!report.scenes.empty()) {
     page.heading("The built-in scenes");
     page.table(scene_table(report.scenes));

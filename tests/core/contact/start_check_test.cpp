@@ -1,0 +1,120 @@
+// A scene that starts with crossings is refused with place, value and rule, for every kind of obstacle.
+#include "contact/start_check.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/scene_json.h"
+#include "support/contact_scenes.h"
+
+namespace cloth::test {
+namespace {
+
+/// The one problem that is found.
+std::string start_problem(const Scene& scene) {
+  const std::vector<Problem> problems = find_start_problems(scene);
+  EXPECT_EQ(problems.size(), 1u);
+  return problems.empty() ? "" : problems[0].text();
+}
+
+/// Three by three particles 0.2 m apart in the plane y = 0, the first at (-0.2, 0, -0.2).
+Scene sheet_on(const Obstacle& obstacle) {
+  Scene scene = sheet_over(0, 3);
+  scene.cloth.origin = {-0.2, 0, -0.2};
+  scene.obstacles = {obstacle};
+  return scene;
+}
+
+Obstacle shaped(Shape shape, const Vec3& center) {
+  Obstacle obstacle;
+  obstacle.shape = shape;
+  obstacle.center = obstacle.point = obstacle.translate = center;
+  return obstacle;
+}
+
+TEST(StartCheck, NamesObstacleRuleParticleAndPlace) {
+  Obstacle ball = shaped(Shape::sphere, {0.1, 0, 0.1});
+  ball.radius = 0.05;
+  EXPECT_EQ(
+      start_problem(sheet_on(ball)),
+      "obstacles.0: the cloth starts in this obstacle or touches it, first near particle 4 at (0, 0, 0) m");
+}
+
+TEST(StartCheck, FindsATouchAndNotAMiss) {
+  Obstacle ball = shaped(Shape::sphere, {0.15, -0.25, 0.1});
+  ball.radius = 0.25;
+  EXPECT_NE(start_problem(sheet_on(ball)), "");
+  ball.radius = 0.2499;
+  EXPECT_TRUE(find_start_problems(sheet_on(ball)).empty());
+
+  Obstacle floor = shaped(Shape::plane, {7, 0, 7});
+  EXPECT_NE(start_problem(sheet_on(floor)), "");
+  floor.point.y() = -1e-9;
+  EXPECT_TRUE(find_start_problems(sheet_on(floor)).empty());
+}
+
+TEST(StartCheck, FindsABoxByItsCornerItsEdgeAndItsInside) {
+  Obstacle box = shaped(Shape::box, {0.05, -0.2, 0.12});
+  box.size = {0.05, 0.3, 0.05};
+  EXPECT_TRUE(find_start_problems(sheet_on(box)).empty());
+  box.size.y() = 0.5;  // only its upright edges meet the inside of a face
+  EXPECT_NE(start_problem(sheet_on(box)), "");
+  box.size = {3, 3, 3};  // holds the whole cloth: no two surfaces meet
+  EXPECT_NE(start_problem(sheet_on(box)), "");
+  box.size = {0.2, 0.2, 0.2};
+  box.center = {0.05, -0.12, 0.12};
+  EXPECT_TRUE(find_start_problems(sheet_on(box)).empty());
+  box.keyframes = {{0, box.center, {0.8, 0, 0}}};  // turned, an edge comes up
+  EXPECT_NE(start_problem(sheet_on(box)), "");
+}
+
+TEST(StartCheck, FindsAMeshWhereItIsAtTheStart) {
+  Obstacle cones = shaped(Shape::mesh, {0, -0.03, 0});
+  cones.scale = 0.4;
+  cones.mesh.file = "cone-bed.obj";
+  Scene scene = sheet_on(cones);
+  ASSERT_TRUE(load_meshes(scene).empty());
+  EXPECT_NE(start_problem(scene).find("obstacles.0: the cloth starts in this obstacle"), std::string::npos);
+  scene.obstacles[0].keyframes = {{0, {0, -0.5, 0}, {0, 0, 0}}};
+  EXPECT_TRUE(find_start_problems(scene).empty());
+}
+
+TEST(StartCheck, NamesEveryObstacleThatIsTouched) {
+  Scene scene = sheet_on(shaped(Shape::sphere, {0, 0, 0}));
+  scene.obstacles.push_back(shaped(Shape::sphere, {0, -5, 0}));
+  scene.obstacles.push_back(shaped(Shape::plane, {0, 1, 0}));
+  const std::vector<Problem> problems = find_start_problems(scene);
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0].path, "obstacles.0");
+  EXPECT_EQ(problems[1].path, "obstacles.2");
+}
+
+TEST(StartCheck, AsksForAThicknessThatTheClothKeepsAtItsStart) {
+  Scene scene = sheet_over(0, 9);  // cells of 0.05 m
+  scene.self_contact = SelfContact{.thickness = 0.025};
+  EXPECT_TRUE(find_start_problems(scene).empty());
+  scene.cloth.down = {0.95, 0, 0.3};  // cells as slanting as this are narrow
+  scene.self_contact->thickness = 0.02;
+  const std::string text = start_problem(scene);
+  EXPECT_EQ(text.find("self_contact.thickness = 0.02 m: must be at most 0.0"), 0u) << text;
+  EXPECT_NE(text.find("so near parts of the cloth are at the start"), std::string::npos) << text;
+}
+
+TEST(StartCheck, IsNotAskedWhereObstaclesAreTestedParticleByParticle) {
+  Scene scene = sheet_on(shaped(Shape::sphere, {0, 0, 0}));
+  scene.contact.reset();
+  EXPECT_TRUE(find_start_problems(scene).empty());
+}
+
+TEST(StartCheck, StandsInTheReadersMessageWithItsLine) {
+  const SceneReading reading = read_scene(
+      "{ \"cloth\": {}, \"contact\": {},\n"
+      "  \"obstacles\": [\n"
+      "    { \"shape\": \"plane\", \"point\": [0, 9, 0] } ] }",
+      "name");
+  ASSERT_EQ(reading.problems.size(), 1u);
+  const std::string text = reading.problems[0].text();
+  EXPECT_EQ(text.find("name:3:5: obstacles.0: the cloth starts in this obstacle"), 0u) << text;
+}
+
+}  // namespace
+}  // namespace cloth::test

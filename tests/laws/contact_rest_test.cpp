@@ -1,0 +1,37 @@
+// A cloth that damping lets come to rest does so under contact, and then it lies still.
+#include <gtest/gtest.h>
+
+#include "support/contact_check.h"
+
+namespace cloth::test {
+namespace {
+
+/// Not the box on its corner: its sides are steeper than friction holds, and the cloth slides off slowly.
+/// With damping that takes the energy of every oscillation within a fraction of a second.
+Scene damped(Scene scene) {
+  scene.damping = 0.004;
+  for (Obstacle& obstacle : scene.obstacles) obstacle.friction = 0.6;
+  scene.integrator = {.method = "verlet", .time_step = 0.001};
+  return scene;
+}
+
+class ADampedScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ADampedScene, ComesToRestWithinFiveSecondsAndLiesStill) {
+  const Scene scene = damped(contact_scene(GetParam()));
+  const double time = GetParam() == "cones" ? 2 : 5;  // s; the cones take long, and hold the cloth soon
+  const RestingRun run = rest_run(scene, {.time = time, .watched = 1, .prepare = thrown({0, -1, 0})});
+  ASSERT_FALSE(run.stop) << describe(*run.stop);
+  EXPECT_GT(run.peak, 1e-3);
+  EXPECT_LT(run.kinetic, 1e-6 * run.peak);
+  EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
+  EXPECT_LT(run.furthest_after, 1e-4) << "it jitters or creeps";
+  EXPECT_GT(run.touched, 0) << "it fell past";
+}
+
+INSTANTIATE_TEST_SUITE_P(Contact, ADampedScene,
+                         ::testing::Values("sphere", "box", "plane", "cones", "itself"),
+                         [](const auto& tested) { return tested.param; });
+
+}  // namespace
+}  // namespace cloth::test

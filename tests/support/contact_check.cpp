@@ -1,0 +1,120 @@
+#include "support/contact_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <deque>
+#include <stdexcept>
+
+#include "measure/energy.h"
+#include "simulation/time_step.h"
+
+namespace cloth::test {
+namespace {
+
+constexpr double sixtieth = 1.0 / 60;  // s
+
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+void check_frame(const Simulation& simulation, CheckedRun& run) {
+  ++run.frames;
+  const Count count = all_crossings(simulation);
+  if (count.number == 0) return;
+  if (run.crossings.number == 0) run.crossings.first = count.first, run.crossed_at = simulation.time();
+  run.crossings.number += count.number;
+}
+
+Scene with_verlet(Scene scene) {
+  scene.integrator.method = "verlet";
+  scene.integrator.time_step.reset();
+  scene.integrator.time_step = resolved_time_step(scene).value();
+  return scene;
+}
+
+void step_on(Simulation& simulation) {
+  if (const auto stop = simulation.step()) throw std::runtime_error(describe(*stop));
+}
+
+}  // namespace
+
+double frame_interval(const Scene& scene) {
+  return scene.record.interval > 0 ? std::min(scene.record.interval, sixtieth) : sixtieth;
+}
+
+CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
+  Simulation simulation(scene, way.prepare);
+  if (way.start) simulation.restore(*way.start);
+  CheckedRun run;
+  run.begin = run.end = simulation.time();
+  const double step = simulation.time_step();
+  const std::int64_t steps = steps_to_cover(way.duration, step);
+  const double interval = way.interval > 0 ? way.interval : frame_interval(scene);
+  constexpr double rounding = 1e-6;
+  const auto stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(interval / step + rounding));
+  for (std::int64_t n = 1; n <= steps; ++n) {
+    const double begin = processor_seconds();
+    run.stop = simulation.step();
+    run.cost += processor_seconds() - begin;
+    if (run.stop) break;
+    run.touched = std::max(run.touched, simulation.last_contact().contacts);
+    run.held_back = std::max(run.held_back, simulation.last_contact().held_back);
+    run.end = simulation.time();
+    run.gave_up = run.cost > way.patience && n < steps;
+    if (n % stride == 0 || n == steps || run.gave_up) check_frame(simulation, run);
+    if (run.gave_up) break;
+  }
+  return run;
+}
+
+RestingRun rest_run(const Scene& scene, const RestingWay& way) {
+  constexpr double resting_part = 1e-6;
+  Simulation simulation(scene, way.prepare);
+  RestingRun run;
+  run.resting_since = infinity;
+  std::optional<Vec3Field> there;
+  while (simulation.time() + 0.5 * simulation.time_step() < way.time + way.watched) {
+    if ((run.stop = simulation.step())) return run;
+    const double kinetic = kinetic_energy(simulation.system(), simulation.state().velocity);
+    run.peak = std::max(run.peak, kinetic);
+    const bool rests = kinetic < resting_part * run.peak;
+    run.resting_since = rests ? std::min(run.resting_since, simulation.time()) : infinity;
+    if (simulation.time() + 0.5 * simulation.time_step() < way.time) continue;
+    const Vec3Field& position = simulation.state().position;
+    if (!there) there = position, run.kinetic = kinetic;
+    run.highest_after = std::max(run.highest_after, kinetic);
+    for (std::size_t i = 0; i < position.size(); ++i)
+      run.furthest_after = std::max(run.furthest_after, (position[i] - (*there)[i]).norm());
+  }
+  run.touched = simulation.last_contact().contacts;
+  return run;
+}
+
+Checkpoint state_at(const Scene& scene, double time) {
+  Simulation simulation(with_verlet(scene));
+  while (simulation.time() + 0.5 * simulation.time_step() < time) step_on(simulation);
+  return simulation.checkpoint();
+}
+
+Checkpoint state_before_touch(const Scene& scene, double lead) {
+  Simulation simulation(with_verlet(scene));
+  std::deque<Checkpoint> last{simulation.checkpoint()};
+  while (simulation.last_contact().contacts == 0 && simulation.time() < scene.duration) {
+    if (simulation.time() - last.back().state.time >= lead) last.push_back(simulation.checkpoint());
+    if (last.size() > 2) last.pop_front();
+    step_on(simulation);
+  }
+  return last.front();
+}
+
+Scene coarser(Scene scene, double part) {
+  const auto fewer = [part](int count) {
+    return std::max(3, static_cast<int>(std::lround((count - 1) * part)) + 1);
+  };
+  scene.cloth.rows = fewer(scene.cloth.rows);
+  scene.cloth.columns = fewer(scene.cloth.columns);
+  return scene;
+}
+
+}  // namespace cloth::test

@@ -1,0 +1,64 @@
+// A run of a scene of contact with any method and step, whose frames the checker of crossings looks at; from
+// the scene's start or from somewhere on its way.
+#pragma once
+
+#include <optional>
+
+#include "support/contact_scenes.h"
+
+namespace cloth::test {
+
+/// A frame is checked every 1/60 s, or as often as the scene records where that is more; at longer steps
+/// every step.
+double frame_interval(const Scene& scene);
+
+struct CheckedRun {
+  int frames = 0;  ///< that were checked
+  Count crossings;
+  double crossed_at = 0;           ///< s, the first
+  double begin = 0, end = 0;       ///< s, of what was run
+  int touched = 0, held_back = 0;  ///< particles, the most in a step
+  double cost = 0;                 ///< s of processor time, without the checker
+  std::optional<Divergence> stop;  ///< before its end
+  bool gave_up = false;            ///< out of patience
+};
+
+struct CheckedWay {
+  double duration = 0;                ///< s
+  double interval = 0;                ///< s between checked states; 0: a frame's
+  const Checkpoint* start = nullptr;  ///< maybe of another method and step; without it the scene's start
+  Preparation prepare = {};
+  double patience = infinity;  ///< s of processor time, after which no further step is begun
+};
+
+/// Runs the scene to the way's end, or until its method runs away. Crossings do not end it.
+CheckedRun check_run(const Scene& scene, const CheckedWay& way);
+
+struct RestingWay {
+  double time = 5;     ///< s, by which it should rest
+  double watched = 1;  ///< s, that it is looked at from then on
+  Preparation prepare = {};
+};
+
+struct RestingRun {
+  double peak = 0;            ///< J, the highest kinetic energy
+  double kinetic = 0;         ///< J, at the time by which it should rest
+  double resting_since = 0;   ///< s, from when on it stayed below 1e-6 of the peak; infinity: never
+  double highest_after = 0;   ///< J, while it was watched
+  double furthest_after = 0;  ///< m, that a particle was away from where it was at that time
+  int touched = 0;            ///< particles, in the last step
+  std::optional<Divergence> stop;
+};
+
+RestingRun rest_run(const Scene& scene, const RestingWay& way);
+
+/// A state of a run with Verlet at the step `auto`, at `time` s.
+Checkpoint state_at(const Scene& scene, double time);
+
+/// The last one at least `lead` s before something is touched, or that of the start.
+Checkpoint state_before_touch(const Scene& scene, double lead);
+
+/// With a part of the particles along every edge, at least 3.
+Scene coarser(Scene scene, double part);
+
+}  // namespace cloth::test

@@ -19,14 +19,14 @@ double relax(ContactConstraint& contact, const std::vector<double>& inverse_mass
   const Vec3 point = contact.point(value);
   const double missing = contact.bound - contact.normal.dot(point);
   const double push = std::max(contact.push + missing / contact.mobility, 0.0) - contact.push;
-  if (push == 0 && contact.push == 0) return 0;
+  if (push == 0 && contact.push == 0 && contact.pressed == 0) return 0;
   contact.push += push;
   Vec3 total = push * contact.normal;
   if (contact.friction > 0) {
     const Vec3 slip = point - contact.rest;
     const Vec3 across = slip - contact.normal.dot(slip) * contact.normal;
     Vec3 rub = contact.rub - across / contact.mobility;
-    const double most = contact.friction * contact.push, wanted = rub.norm();
+    const double most = contact.friction * std::max(contact.push, contact.pressed), wanted = rub.norm();
     if (wanted > most) rub *= most / wanted;
     total += rub - contact.rub;
     contact.rub = rub;

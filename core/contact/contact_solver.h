@@ -26,6 +26,7 @@ struct ContactConstraint {
   double friction = 0;
   double mobility = 0;  ///< sum of w^2 / m, 1/kg
   double push = 0;      ///< along the normal so far, >= 0
+  double pressed = 0;   ///< a push that friction may count on in any case
   Vec3 rub{0, 0, 0};    ///< across it
 
   Vec3 point(const Vec3Field& value) const {

@@ -312,6 +312,7 @@ Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step
     }
     contact.bound = contact.normal.dot(touch.velocity) + (coming < -least_bounce ? -restitution * coming : 0);
     contact.rest = touch.velocity;
+    contact.pressed = contact.push / step;  // what held the position rubs, even if nothing approaches
     contact.push = 0, contact.rub.setZero();
     constraints_.push_back(contact);
   }

@@ -189,8 +189,13 @@ void Simulation::resolve_contact() {
   integrator_->forget(Change::state);
 }
 
+/// What has run away is not followed: it stays where it was, and the run stops.
 void Simulation::resolve_continuous_contact(const StepTimes& times) {
   last_contact_ = {};
+  if (has_run_away(kinetic_energy(system_, state_.velocity))) {
+    state_.position = position_before_;
+    return;
+  }
   const ContactTimes contact_times{times.begin, times.end, times.step};
   if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return;
   const double before = total_energy();

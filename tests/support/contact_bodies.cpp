@@ -63,7 +63,7 @@ void add_own(const Surface& cloth, std::vector<FeaturePair>& pairs) {
     const std::vector<int> foreign = pair.kind == PairKind::edge_edge
                                          ? std::vector<int>{far[0], far[1]}
                                          : corners_of(cloth.triangles[at(pair.foreign)]);
-    if (!share_a_particle(particles_of(pair, cloth), foreign)) pairs.push_back(pair);
+    if (!share_a_particle(near_particles(pair, cloth), foreign)) pairs.push_back(pair);
   }
 }
 
@@ -115,7 +115,7 @@ Sheet random_sheet(int rows, int columns, Random& random) {
   return sheet;
 }
 
-std::vector<int> particles_of(const FeaturePair& pair, const Surface& cloth) {
+std::vector<int> near_particles(const FeaturePair& pair, const Surface& cloth) {
   switch (pair.kind) {
     case PairKind::vertex_plane:
     case PairKind::vertex_box:

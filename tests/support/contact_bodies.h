@@ -20,7 +20,7 @@ struct Sheet {
 Sheet random_sheet(int rows, int columns, Random& random);
 
 /// The particles of a feature of the cloth, and the corners of one of a body's mesh or box.
-std::vector<int> particles_of(const FeaturePair& pair, const Surface& cloth);
+std::vector<int> near_particles(const FeaturePair& pair, const Surface& cloth);
 std::vector<Vec3> foreign_points(const FeaturePair& pair, const ObstacleBody& body);
 
 /// All pairs of features that there are; of the cloth and itself those that share no particle.

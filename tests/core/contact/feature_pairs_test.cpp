@@ -1,6 +1,7 @@
 // What separate() says of two features, for random pairs of every kind: a plane that really parts them, and
 // which of the pairs around a point is the nearest.
 #include "contact/feature_pairs.h"
+#include "geometry/bounds.h"
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,8 @@ void for_random_pairs(const Look& look) {
     const Surface& surface = setting.sheet.surface;
     for (const FeaturePair& pair : all_pairs(surface, setting.bodies, true)) {
       if (random.integer(0, 3) > 0 && pair.foreign > 0) continue;
-      const Separation s = separate(pair, surface, setting.sheet.position, setting.bodies, setting.poses);
+      const Separation s =
+          separate(pair, surface, setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
       if (!(s.distance > 1e-6)) continue;
       ++looked;
       look(setting, pair, s, random);
@@ -120,7 +122,7 @@ TEST(ASeparation, NamesThePointsOfItsDistance) {
     ASSERT_LE((near - (itself ? far : s.far_point) - s.distance * s.normal).norm(), 1e-9)
         << static_cast<int>(pair.kind);
     std::vector<int> particles(s.particle.begin(), s.particle.begin() + s.near_count);
-    ASSERT_EQ(particles, particles_of(pair, setting.sheet.surface));
+    ASSERT_EQ(particles, near_particles(pair, setting.sheet.surface));
   });
 }
 
@@ -128,8 +130,8 @@ TEST(ASeparation, NamesThePointsOfItsDistance) {
 std::vector<Separation> nearest_of(const std::vector<FeaturePair>& pairs, const Setting& setting) {
   std::vector<Separation> nearest;
   for (const FeaturePair& pair : pairs) {
-    const Separation s =
-        separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses);
+    const Separation s = separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
+                                  setting.poses, Bounds::infinity);
     if (s.nearest) nearest.push_back(s);
   }
   return nearest;
@@ -160,9 +162,9 @@ TEST(TheNearestPair, AmongTheFacesThatAParticleSeesOfAConvexMeshIsOne) {
     }
     double least = HUGE_VAL;
     for (const FeaturePair& pair : pairs)
-      least = std::min(
-          least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses)
-                     .distance);
+      least = std::min(least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
+                                       setting.poses, Bounds::infinity)
+                                  .distance);
     const std::vector<Separation> nearest = nearest_of(pairs, setting);
     ASSERT_GE(nearest.size(), 1u);
     for (const Separation& s : nearest) ASSERT_NEAR(s.distance, least, 1e-3 * least);
@@ -181,9 +183,9 @@ TEST(TheNearestPair, OfASphereIsTheFaceWithTheClosestPoint) {
     std::vector<FeaturePair> pairs = all_pairs(setting.sheet.surface, setting.bodies, false);
     double least = HUGE_VAL;
     for (const FeaturePair& pair : pairs)
-      least = std::min(
-          least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses)
-                     .distance);
+      least = std::min(least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
+                                       setting.poses, Bounds::infinity)
+                                  .distance);
     int closest = 0;
     for (const Separation& s : nearest_of(pairs, setting)) closest += s.distance <= least + rounding ? 1 : 0;
     ASSERT_EQ(closest, 1) << "of the faces around the closest point one answers for it";
@@ -200,7 +202,7 @@ TEST(APairThatMeets, HasNoNormalAndIsNoPush) {
   const auto& vertices = setting.bodies[0].vertices;
   setting.sheet.position.set(0, vertices[at(a)]);
   const Separation s = separate({0, PairKind::vertex_face, 0, 0}, setting.sheet.surface,
-                                setting.sheet.position, setting.bodies, setting.poses);
+                                setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
   EXPECT_EQ(s.distance, 0);
   EXPECT_EQ(s.normal, Vec3(0, 0, 0));
   EXPECT_FALSE(s.gap() > 0);
@@ -217,7 +219,7 @@ TEST(AParticleInABox, IsToldTheNearestWayOut) {
   setting.poses = {Pose{}};
   setting.sheet.position.set(0, {0.1, 0.45, -0.2});
   const Separation s = separate({0, PairKind::vertex_box, 0, 0}, setting.sheet.surface,
-                                setting.sheet.position, setting.bodies, setting.poses);
+                                setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
   EXPECT_EQ(s.normal, Vec3(0, 1, 0));
   EXPECT_NEAR(s.distance, -0.05, rounding);
   EXPECT_NEAR(s.gap(), -0.05, rounding);

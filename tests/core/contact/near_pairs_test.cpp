@@ -1,13 +1,13 @@
 // The search for near pairs against a look at all pairs of features: nothing that could meet is missed,
 // nothing comes twice, and what hierarchies keep from one search to the next changes no answer.
-#include "contact/near_pairs.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 
+#include "contact/close_pairs.h"
 #include "support/contact_bodies.h"
 
 namespace cloth::test {
@@ -17,15 +17,16 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Every particle goes its way evenly within the step and keeps this far from the border of its box.
-struct Ways {
+/// Every particle goes its way evenly within the step and keeps this far from the border of its capsule.
+struct Motion {
   Vec3Field from, to;
-  double margin = 0;  // m
+  double margin = 0;                // m
+  double reach = 0, own_reach = 0;  // m
 
-  std::vector<Bounds> boxes() const {
-    std::vector<Bounds> boxes;
-    for (std::size_t i = 0; i < from.size(); ++i) boxes.push_back(bounds_of(from[i], to[i]).grown(margin));
-    return boxes;
+  Ways ways() const {
+    Ways ways{.reach = reach, .own_reach = own_reach};
+    for (std::size_t i = 0; i < from.size(); ++i) ways.particles.push_back({from[i], to[i], margin});
+    return ways;
   }
   Vec3 at(int i, double part) const {
     const auto n = static_cast<std::size_t>(i);
@@ -33,10 +34,10 @@ struct Ways {
   }
 };
 
-Ways random_ways(const Vec3Field& from, double furthest, Random& random) {
-  Ways ways{from, from, random.uniform(0, 0.01)};
-  for (std::size_t i = 0; i < from.size(); ++i) ways.to.add(i, random.vector(furthest));
-  return ways;
+Motion random_motion(const Vec3Field& from, double furthest, Random& random) {
+  Motion motion{from, from, random.uniform(0, 0.01), random.uniform(0, 0.01), random.uniform(0, 0.01)};
+  for (std::size_t i = 0; i < from.size(); ++i) motion.to.add(i, random.vector(furthest));
+  return motion;
 }
 
 double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -65,18 +66,18 @@ std::vector<int> foreign_particles(const FeaturePair& pair, const Surface& cloth
 }
 
 /// The least distance that the features of a pair are seen to have within the step, in m.
-double least_distance(const FeaturePair& pair, const Surface& cloth, const Ways& ways,
+double least_distance(const FeaturePair& pair, const Surface& cloth, const Motion& motion,
                       const std::vector<ObstacleBody>& bodies, const std::vector<Passage>& passages) {
   constexpr int moments = 6;
   const auto points = [&](const std::vector<int>& particles, double part) {
     std::vector<Vec3> all;
-    for (const int i : particles) all.push_back(ways.at(i, part));
+    for (const int i : particles) all.push_back(motion.at(i, part));
     return all;
   };
   double least = HUGE_VAL;
   for (int n = 0; n <= moments; ++n) {
     const double part = static_cast<double>(n) / moments;
-    const std::vector<Vec3> near = points(particles_of(pair, cloth), part);
+    const std::vector<Vec3> near = points(near_particles(pair, cloth), part);
     least = std::min(least, pair.obstacle == FeaturePair::cloth_itself
                                 ? distance(near, points(foreign_particles(pair, cloth), part))
                                 : distance_to_obstacle(pair, near, bodies[at(pair.obstacle)],
@@ -116,42 +117,55 @@ Meeting random_meeting(Random& random) {
   return meeting;
 }
 
+/// Whether a pair comes within reach of each other on its way, or could at the borders of its capsules.
+bool comes_near(const FeaturePair& pair, const Meeting& meeting, const Motion& motion, double* distance) {
+  *distance = least_distance(pair, meeting.sheet.surface, motion, meeting.bodies, meeting.passages);
+  return *distance < (pair.obstacle == FeaturePair::cloth_itself ? motion.own_reach + 2 * motion.margin
+                                                                 : motion.reach + motion.margin);
+}
+
+struct Looked {
+  std::size_t near = 0, far = 0;
+};
+
+void expect_none_missed(const std::vector<FeaturePair>& pairs, const Meeting& meeting, const Motion& motion,
+                        Looked& looked) {
+  const std::set<FeaturePair> found = told_apart(pairs);
+  for (const FeaturePair& pair : all_pairs(meeting.sheet.surface, meeting.bodies, true)) {
+    double distance = 0;
+    const bool near = comes_near(pair, meeting, motion, &distance);
+    ++(near ? looked.near : looked.far);
+    if (!near) continue;
+    ASSERT_TRUE(found.contains(pair))
+        << "obstacle " << pair.obstacle << ", kind " << static_cast<int>(pair.kind) << ", " << pair.feature
+        << " and " << pair.foreign << " come as near as " << distance << " m";
+  }
+}
+
 TEST(NearPairs, MissNoneOfAllPairsThatComeNear) {
   Random random;
-  std::size_t near = 0, far = 0;
+  Looked looked;
   for (int trial = 0; trial < 60; ++trial) {
+    SCOPED_TRACE(trial);
     const Meeting meeting = random_meeting(random);
-    const Surface& cloth = meeting.sheet.surface;
-    const Ways ways = random_ways(meeting.sheet.position, random.coin() ? 0.01 : 0.1, random);
-    const double reach = random.uniform(0, 0.01);
+    const Motion motion = random_motion(meeting.sheet.position, random.coin() ? 0.01 : 0.1, random);
     std::vector<FeaturePair> pairs;
-    PairSearch(cloth, meeting.bodies, true, 0.02).find(ways.boxes(), meeting.passages, reach, pairs);
-    const std::set<FeaturePair> found = told_apart(pairs);
-    for (const FeaturePair& pair : all_pairs(cloth, meeting.bodies, true)) {
-      const bool itself = pair.obstacle == FeaturePair::cloth_itself;
-      const double distance = least_distance(pair, cloth, ways, meeting.bodies, meeting.passages);
-      if (!(distance < (itself ? 2 * ways.margin : reach + ways.margin))) {
-        ++far;
-        continue;
-      }
-      ++near;
-      ASSERT_TRUE(found.contains(pair))
-          << "trial " << trial << ": obstacle " << pair.obstacle << ", kind " << static_cast<int>(pair.kind)
-          << ", " << pair.feature << " and " << pair.foreign << " come as near as " << distance << " m";
-    }
+    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02)
+        .find(motion.ways(), meeting.passages, pairs);
+    expect_none_missed(pairs, meeting, motion, looked);
   }
-  EXPECT_GT(near, 2000u);
-  EXPECT_GT(far, 50 * near) << "hardly anything could have been left out";
+  EXPECT_GT(looked.near, 2000u);
+  EXPECT_GT(looked.far, 10 * looked.near) << "hardly anything could have been left out";
 }
 
 TEST(NearPairs, ComeOnceAndAreOfFeaturesThatExist) {
   Random random;
   for (int trial = 0; trial < 60; ++trial) {
     const Meeting meeting = random_meeting(random);
-    const Ways ways = random_ways(meeting.sheet.position, 0.05, random);
+    const Motion motion = random_motion(meeting.sheet.position, 0.05, random);
     std::vector<FeaturePair> pairs;
     PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02)
-        .find(ways.boxes(), meeting.passages, 0.005, pairs);
+        .find(motion.ways(), meeting.passages, pairs);
     const std::set<FeaturePair> found = told_apart(pairs);
     EXPECT_EQ(found.size(), pairs.size()) << "some came twice";
     const std::vector<FeaturePair> all = all_pairs(meeting.sheet.surface, meeting.bodies, true);
@@ -160,7 +174,7 @@ TEST(NearPairs, ComeOnceAndAreOfFeaturesThatExist) {
   }
 }
 
-TEST(NearPairs, OfBoxesFarApartAreNone) {
+TEST(NearPairs, OfObstaclesFarAwayAreNone) {
   Random random;
   Meeting meeting;
   meeting.sheet = random_sheet(4, 4, random);
@@ -172,36 +186,85 @@ TEST(NearPairs, OfBoxesFarApartAreNone) {
   }
   std::vector<FeaturePair> pairs{FeaturePair{}};
   PairSearch(meeting.sheet.surface, meeting.bodies, false, 0)
-      .find(random_ways(meeting.sheet.position, 0, random).boxes(), meeting.passages, 0.01, pairs);
+      .find(random_motion(meeting.sheet.position, 0, random).ways(), meeting.passages, pairs);
   EXPECT_TRUE(pairs.empty());
+}
+
+/// Forty steps, mostly small ones, in which reach and obstacles change now and then.
+template <class Look>
+void walk(Random& random, const Look& look) {
+  Meeting meeting = random_meeting(random);
+  Motion motion{meeting.sheet.position, meeting.sheet.position, 0.003, 0.005, 0.005};
+  look(meeting, motion, true);
+  for (int step = 0; step < 40; ++step) {
+    const double reach = motion.reach;
+    motion = random_motion(motion.to, random.integer(0, 9) == 0 ? 0.05 : 0.002, random);
+    const int change = random.integer(0, 30);
+    motion.reach = motion.own_reach = change == 0 ? random.uniform(0.001, 0.01) : reach;
+    motion.margin = 0.0005;
+    if (change < 3 && !meeting.bodies.empty())
+      meeting.passages[0] = random_passage(meeting.bodies[0], random);
+    look(meeting, motion, false);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
 }
 
 TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKept) {
   Random random;
   std::size_t compared = 0;
   for (int trial = 0; trial < 20; ++trial) {
-    Meeting meeting = random_meeting(random);
     constexpr double skin = 0.02;
-    PairSearch keeping(meeting.sheet.surface, meeting.bodies, true, skin);
-    Ways ways{meeting.sheet.position, meeting.sheet.position, 0.003};
-    double reach = 0.005;
-    for (int step = 0; step < 40; ++step) {
-      ways =
-          random_ways(ways.to, random.integer(0, 9) == 0 ? 0.05 : 0.002, random);  // mostly within the skin
-      const int change = random.integer(0, 30);
-      if (change == 0) reach = random.uniform(0, 0.01);
-      if (change < 3 && !meeting.bodies.empty())
-        meeting.passages[0] = random_passage(meeting.bodies[0], random);
+    std::unique_ptr<PairSearch> keeping;
+    walk(random, [&](const Meeting& meeting, const Motion& motion, bool begins) {
+      if (begins) keeping = std::make_unique<PairSearch>(meeting.sheet.surface, meeting.bodies, true, skin);
       std::vector<FeaturePair> pairs, fresh;
-      keeping.find(ways.boxes(), meeting.passages, reach, pairs);
+      keeping->find(motion.ways(), meeting.passages, pairs);
       PairSearch(meeting.sheet.surface, meeting.bodies, true, skin)
-          .find(ways.boxes(), meeting.passages, reach, fresh);
-      ASSERT_EQ(told_apart(pairs), told_apart(fresh)) << "trial " << trial << ", step " << step;
-      ASSERT_EQ(pairs.size(), fresh.size());
+          .find(motion.ways(), meeting.passages, fresh);
+      ASSERT_EQ(pairs, fresh);
       compared += pairs.size();
-    }
+    });
   }
   EXPECT_GT(compared, 10000u);
+}
+
+std::vector<Pose> poses_at_begin(const Meeting& meeting) {
+  std::vector<Pose> poses;
+  for (const Passage& passage : meeting.passages) poses.push_back(passage.from());
+  return poses;
+}
+
+TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
+  Random random;
+  Looked looked;
+  std::size_t compared = 0, differing = 0;
+  for (int trial = 0; trial < 12; ++trial) {
+    SCOPED_TRACE(trial);
+    std::unique_ptr<ClosePairs> keeping;
+    walk(random, [&](const Meeting& meeting, const Motion& motion, bool begins) {
+      const Surface& cloth = meeting.sheet.surface;
+      if (begins) keeping = std::make_unique<ClosePairs>(cloth, meeting.bodies, true, 0.02);
+      const Ways ways = motion.ways();
+      const std::vector<Pose> poses = poses_at_begin(meeting);
+      const Situation now{motion.from, ways, meeting.passages, poses};
+      std::vector<FeaturePair> pairs, fresh;
+      std::vector<Separation> separations, fresh_separations;
+      keeping->find(now, pairs, separations);
+      ClosePairs(cloth, meeting.bodies, true, 0.02).find(now, fresh, fresh_separations);
+      ASSERT_EQ(pairs, fresh);
+      ASSERT_EQ(separations.size(), pairs.size());
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        ASSERT_EQ(separations[k].distance, fresh_separations[k].distance);
+        differing += separations[k].distance !=
+                     separate(pairs[k], cloth, motion.from, meeting.bodies, poses, 0).distance;
+      }
+      compared += pairs.size();
+      expect_none_missed(pairs, meeting, motion, looked);
+    });
+  }
+  EXPECT_EQ(differing, 0u) << "separations of another situation";
+  EXPECT_GT(compared, 3000u);
+  EXPECT_GT(looked.near, 2000u);
 }
 
 }  // namespace

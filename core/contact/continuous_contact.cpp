@@ -229,7 +229,8 @@ bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times
 }
 
 ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
-                                       const ContactTimes& times, ClothState& state) {
+                                       const ContactTimes& times, ClothState& state,
+                                       const std::function<void()>& settle) {
   ContactReport report;
   bool moved = false;
   int stuck = 0, rounds_at_rest = 0, idle = 0;
@@ -266,6 +267,7 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   report.pairs = pairs_.size();
   report.contacts = count_touched();
   state.position = safe_;
+  settle();
   report.impulse = answer_velocities(system, times.step, state);
   report.held_back = note_held_back(from, times.step, state);
   return report;

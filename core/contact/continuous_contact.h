@@ -11,6 +11,8 @@
 // the slip of the step. Velocities follow by impulses over the same pairs.
 #pragma once
 
+#include <functional>
+
 #include "cloth/cloth_system.h"
 #include "contact/close_pairs.h"
 #include "contact/contact_mark.h"
@@ -50,9 +52,10 @@ class ContinuousContact {
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
 
   /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
-  /// pinch is reported the positions are the last ones that nothing passed.
+  /// pinch is reported the positions are the last ones that nothing passed. `settle` is called once the
+  /// positions are in `state`, before the velocities answer.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
-                      ClothState& state);
+                      ClothState& state, const std::function<void()>& settle);
 
   /// The same to the bit for any team; none: one thread.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }

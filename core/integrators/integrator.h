@@ -67,6 +67,15 @@ class Integrator {
   /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
   virtual void forget(Change) {}
 
+  /// Whether the velocity at a step's end is made with the force where the step ends, so that it has to
+  /// follow where contact has moved that.
+  virtual bool velocity_follows_positions() const { return false; }
+
+  /// Makes the velocity at the end of the last step anew, from `half_velocity`, in m/s, which led from its
+  /// begin to where it ended without contact. Precondition: velocity_follows_positions().
+  virtual void follow_positions(const ClothSystem&, ForceModel&, const StepTimes&,
+                                const Vec3Field& /*half_velocity*/, ClothState&) {}
+
   /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
   /// choice. Most methods need nothing.
   virtual IntegratorMemory remember() const { return {}; }

@@ -27,20 +27,37 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
   forces.update(state.position, times.end);
   ++report.force_evaluations;
 
-  if (forces.has_damping()) {
-    half_velocity_ = state.velocity;
-    add_acceleration(system, 0.5 * h, force_, state.velocity);  // the guess: v + h a(x, v, t)
-    report.velocity_iterations = forces.centred_velocity(0.5 * h, half_velocity_, state.velocity);
-  } else {
-    forces.force(state.velocity, force_);
-    add_acceleration(system, 0.5 * h, force_, state.velocity);
-  }
+  report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
   if (forces.has_power()) {
     power_ = forces.power(state.velocity);
     work += 0.5 * h * power_;
   }
   holds_force_ = true;
   return report;
+}
+
+/// From the velocity at half the step; `force_` holds the force that led there. Returns the iterations.
+int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step,
+                            ClothState& state) {
+  if (!forces.has_damping()) {
+    forces.force(state.velocity, force_);
+    add_acceleration(system, half_step, force_, state.velocity);
+    return 0;
+  }
+  half_velocity_ = state.velocity;
+  add_acceleration(system, half_step, force_, state.velocity);  // the guess: v + h a(x, v, t)
+  return forces.centred_velocity(half_step, half_velocity_, state.velocity);
+}
+
+/// Else the cloth beside a contact would feel the springs of where contact let nobody go, and at rest keep a
+/// speed of some omega^2 h^3 g that no position follows.
+void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                              const Vec3Field& half_velocity, ClothState& state) {
+  if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
+  state.velocity = half_velocity;
+  forces.update(state.position, times.end);
+  forces.force(state.velocity, force_);
+  finish_velocity(system, forces, 0.5 * times.step, state);
 }
 
 /// The velocity at the end of a step and at the half of the next are made in one pass, so that the force need

@@ -20,9 +20,14 @@ class Verlet : public Integrator {
   bool gains_unseen(const ForceModel& forces) const override { return holds_force_ && forces.steps_verlet(); }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
+  bool velocity_follows_positions() const override { return true; }
+  void follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        const Vec3Field& half_velocity, ClothState& state) override;
   void forget(Change) override { holds_force_ = false; }
 
  private:
+  int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
+
   Vec3Field force_, half_velocity_;
   Work power_;                ///< at the end of the last step
   bool holds_force_ = false;  ///< the force model stands at the state's position and time

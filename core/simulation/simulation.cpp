@@ -199,7 +199,15 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   const ContactTimes contact_times{times.begin, times.end, times.step};
   if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return;
   const double before = total_energy();
-  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_);
+  const bool follows = integrator_->velocity_follows_positions() && !limiter_;
+  if (follows) {
+    if (half_velocity_.size() != system_.start.size()) half_velocity_ = Vec3Field(system_.start.size());
+    for (std::size_t i = 0; i < half_velocity_.size(); ++i)
+      half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
+  }
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, [&] {
+    if (follows) integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
+  });
   if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
   contact_impulse_ += last_contact_.impulse;

@@ -201,6 +201,7 @@ class Simulation {
   std::optional<ObstacleContact> contact_;                 ///< particle by particle
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
   Vec3Field position_before_;                              ///< m, at the step's start, for the latter
+  Vec3Field half_velocity_;  ///< m/s, from there to where the step ended before contact
 
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force

@@ -43,6 +43,11 @@ double frame_interval(const Scene& scene) {
   return scene.record.interval > 0 ? std::min(scene.record.interval, sixtieth) : sixtieth;
 }
 
+bool is_finite(const Vec3Field& field) {
+  const auto values = field.flat();
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
 CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
   Simulation simulation(scene, way.prepare);
   if (way.start) simulation.restore(*way.start);
@@ -57,13 +62,17 @@ CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
     const double begin = processor_seconds();
     run.stop = simulation.step();
     run.cost += processor_seconds() - begin;
-    if (run.stop) break;
     run.touched = std::max(run.touched, simulation.last_contact().contacts);
     run.held_back = std::max(run.held_back, simulation.last_contact().held_back);
     run.end = simulation.time();
     run.gave_up = run.cost > way.patience && n < steps;
-    if (n % stride == 0 || n == steps || run.gave_up) check_frame(simulation, run);
-    if (run.gave_up) break;
+    // The state that a run was stopped at was led through contact like any other, but for a pinch: there the
+    // obstacle stands where it could not get to.
+    const bool can_be_checked =
+        !run.stop || (is_finite(simulation.state().position) && !simulation.last_contact().pinch);
+    const bool is_last = n == steps || run.gave_up || run.stop;
+    if (can_be_checked && (n % stride == 0 || is_last)) check_frame(simulation, run);
+    if (is_last) break;
   }
   return run;
 }

@@ -1,6 +1,7 @@
 // A cloth that damping lets come to rest does so under contact, and then it lies still.
 #include <gtest/gtest.h>
 
+#include "simulation/time_step.h"
 #include "support/contact_check.h"
 
 namespace cloth::test {
@@ -27,6 +28,16 @@ TEST_P(ADampedScene, ComesToRestWithinFiveSecondsAndLiesStill) {
   EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
   EXPECT_LT(run.furthest_after, 1e-4) << "it jitters or creeps";
   EXPECT_GT(run.touched, 0) << "it fell past";
+}
+
+TEST_P(ADampedScene, ComesToRestNearTheLongestStableStepToo) {
+  Scene scene = damped(contact_scene(GetParam()));
+  scene.integrator.time_step.reset();
+  scene.integrator.time_step = resolved_time_step(scene).value();
+  const RestingRun run = rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
+  ASSERT_FALSE(run.stop) << describe(*run.stop);
+  EXPECT_LT(run.kinetic, 1e-6 * run.peak);
+  EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, ADampedScene,

@@ -16,13 +16,6 @@
 namespace cloth::test {
 namespace {
 
-ClothSystem shuffled_grid(int rows, int columns, Random& random) {
-  Scene scene = bare_sheet(rows, columns);
-  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = 0};
-  scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
-  return renumbered(DirectRun(scene, "verlet").system, random_order(rows * columns, random));
-}
-
 std::vector<ClothSystem> some_meshes(Random& random) {
   std::vector<ClothSystem> meshes{irregular_triangulation(3, 4, 80, true, random),
                                   irregular_triangulation(40, 53, 80, true, random),

@@ -30,13 +30,6 @@ class MeshSprings : public ::testing::TestWithParam<InstructionSet> {
 INSTANTIATE_TEST_SUITE_P(Kernels, MeshSprings, ::testing::ValuesIn(supported_instruction_sets()),
                          [](const auto& test) { return std::string(name_of(test.param)); });
 
-ClothSystem shuffled_grid(int rows, int columns, Random& random) {
-  Scene scene = bare_sheet(rows, columns);
-  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = 0};
-  scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
-  return renumbered(DirectRun(scene, "verlet").system, random_order(rows * columns, random));
-}
-
 /// Of springs that are all alike in stiffness, of three kinds, and all different; numbered at random and
 /// well.
 std::vector<ClothSystem> some_meshes(Random& random) {

@@ -8,6 +8,7 @@
 
 #include "measure/energy.h"
 #include "simulation/time_step.h"
+#include "support/states.h"
 
 namespace cloth::test {
 namespace {
@@ -43,11 +44,6 @@ double frame_interval(const Scene& scene) {
   return scene.record.interval > 0 ? std::min(scene.record.interval, sixtieth) : sixtieth;
 }
 
-bool is_finite(const Vec3Field& field) {
-  const auto values = field.flat();
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
-}
-
 CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
   Simulation simulation(scene, way.prepare);
   if (way.start) simulation.restore(*way.start);
@@ -69,7 +65,7 @@ CheckedRun check_run(const Scene& scene, const CheckedWay& way) {
     // The state that a run was stopped at was led through contact like any other, but for a pinch: there the
     // obstacle stands where it could not get to.
     const bool can_be_checked =
-        !run.stop || (is_finite(simulation.state().position) && !simulation.last_contact().pinch);
+        !run.stop || (all_finite(simulation.state().position) && !simulation.last_contact().pinch);
     const bool is_last = n == steps || run.gave_up || run.stop;
     if (can_be_checked && (n % stride == 0 || is_last)) check_frame(simulation, run);
     if (is_last) break;

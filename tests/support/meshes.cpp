@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "cloth/mesh_order.h"
+#include "support/direct_run.h"
+#include "support/scenes.h"
 
 namespace cloth::test {
 namespace {
@@ -77,6 +79,13 @@ ClothSystem irregular_triangulation(int rows, int columns, double stiffness, boo
     if (corners.size() == 2) join(corners[0], corners[1], 0.1 * stiffness, SpringFamily::flexion);
   }
   return renumbered(mesh_system(start, springs, pinned), random_order(rows * columns, random));
+}
+
+ClothSystem shuffled_grid(int rows, int columns, Random& random) {
+  Scene scene = bare_sheet(rows, columns);
+  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = 0};
+  scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
+  return renumbered(DirectRun(scene, "verlet").system, random_order(rows * columns, random));
 }
 
 std::vector<int> random_order(int size, Random& random) {

@@ -25,6 +25,10 @@ ClothSystem mesh_system(const Vec3Field& start, const std::vector<MeshSpring>& s
 /// particle of each row is pinned where `pins`.
 ClothSystem irregular_triangulation(int rows, int columns, double stiffness, bool pins, Random& random);
 
+/// A sheet of rows x columns particles on a grid, pinned at its upper corners, with springs of three
+/// stiffnesses. Numbered at random.
+ClothSystem shuffled_grid(int rows, int columns, Random& random);
+
 /// The order of a shuffle.
 std::vector<int> random_order(int size, Random& random);
 

@@ -46,10 +46,11 @@ class RowChain {
     if (first_row + 1 < pass.grid.rows) begin(work_.b, load_of(pass, first_row + 1));
   }
 
-  /// `position(row)` gives a row's positions; rows must come one after the other. A row that is not `own`
-  /// only adds to the buffers.
+  /// `position(row)` gives a row's positions; rows must come one after the other. The last two before row
+  /// `first` only add to the buffers what their springs do to the rows from there on.
   template <class Position, class Update>
-  CLOTHLAB_INLINE void run(int row, bool own, const Position& position, Update& update) {
+  CLOTHLAB_INLINE void run(int row, int first, const Position& position, Update& update) {
+    const bool own = row >= first;
     const int below = pass_.grid.rows - 1 - row;
     work_.here = position(row);
     if (below >= 1) work_.below = position(row + 1), work_.load_below = load_of(pass_, row + 1);
@@ -62,6 +63,8 @@ class RowChain {
     work_.present = pass_.grid.springs;
     if (below < 2) work_.present &= ~unsigned{down_two};
     if (below < 1) work_.present &= ~unsigned{down_one | shear_springs};
+    if (row < first) work_.present &= ~unsigned{right_one | right_two};
+    if (row + 1 < first) work_.present &= unsigned{down_two};
     row_pass<false>(work_, own, update);
   }
 
@@ -98,7 +101,7 @@ void euler_band(const Pass& pass) {
       update.inverse_mass = inverse_masses(pass, row);
       update.before = update.after = Lanes::zero();
     }
-    chain.run(row, own, position, update);
+    chain.run(row, pass.first, position, update);
     store_sum(pass, 0, row, update.before);
     store_sum(pass, 1, row, update.after);
   }
@@ -143,7 +146,7 @@ void verlet_band(const Pass& pass) {
       update.inverse_mass = inverse_masses(pass, row);
       update.after = Lanes::zero();
     }
-    chain.run(row, own, position, update);
+    chain.run(row, pass.first, position, update);
     store_sum(pass, 1, row, update.after);
   }
 }
@@ -168,7 +171,7 @@ void verlet_between_band(const Pass& pass) {
       update.inverse_mass = inverse_masses(pass, row);
       update.after = Lanes::zero();
     }
-    chain.run(row, own, position, update);
+    chain.run(row, pass.first, position, update);
     store_sum(pass, 1, row, update.after);
   }
 }
@@ -182,7 +185,7 @@ void evaluate_band(const Pass& pass) {
   for (int row = start; row < pass.last; ++row) {
     const bool own = row >= pass.first;
     if (own) update.force = row_of(pass, pass.force, row);
-    chain.run(row, own, position, update);
+    chain.run(row, pass.first, position, update);
   }
 }
 
@@ -255,10 +258,10 @@ void runge_kutta_band(const Pass& pass) {
       }
       if (s == 0)
         chains[s].run(
-            row, own, [&](int r) { return state_row(r, 0); }, update);
+            row, begin[s], [&](int r) { return state_row(r, 0); }, update);
       else
         chains[s].run(
-            row, own, [&](int r) { return stage_row(s, r, 0); }, update);
+            row, begin[s], [&](int r) { return stage_row(s, r, 0); }, update);
       if (own) store_sum(pass, s, row, update.squares);
       if (own && s + 1 == stage_count) store_sum(pass, stage_count, row, update.after);
     }

@@ -41,10 +41,14 @@ std::size_t take_direction(const ClothSystem& system, const SpringDirection& dir
   return count;
 }
 
-/// With fewer particles for each thread the others need not be tried: waking them takes as long as the pass.
-constexpr int fewest_particles = 1000;
 /// A band repeats up to two rows of the one above.
 constexpr int fewest_rows = 12;
+
+/// Doubles that the copies of a field's rows on both sides of a band take.
+std::size_t halo_size(int rows, std::size_t columns) {
+  constexpr std::size_t components = 3, sides = 2;
+  return sides * static_cast<std::size_t>(rows) * components * columns;
+}
 
 }  // namespace
 
@@ -97,84 +101,85 @@ int GridSweep::threads() const {
                     team_size());
 }
 
-/// Makes a pass for every band, without its fields.
-void GridSweep::share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads,
-                           double step) {
-  const int count = begin_pass(kind);
-  const auto rows = static_cast<std::size_t>(grid_.rows), pitch = static_cast<std::size_t>(grid_.columns);
-  const std::size_t scratch =
-      static_cast<std::size_t>(scratch_rows) * static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
-  constexpr std::size_t halo_fields = 3, components = 3, sides = 2;
-  const std::size_t halo =
-      count > 1 ? halo_fields * sides * static_cast<std::size_t>(halo_rows) * components * pitch : 0;
+void GridSweep::make_room(const Plan& plan, std::size_t bands) {
+  const auto rows = static_cast<std::size_t>(grid_.rows), columns = static_cast<std::size_t>(grid_.columns);
+  const auto pitch = static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
+  const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows) * pitch;
+  std::size_t halo = 0;
+  for (const Attached& attached : plan.fields) halo += halo_size(attached.halo_rows, columns);
+  if (bands == 1) halo = 0;
   squares_.resize(kernels::runge_kutta_sums * rows);
-  bands_.resize(static_cast<std::size_t>(count));
-  for (int b = 0; b < count; ++b) {
-    Band& band = bands_[static_cast<std::size_t>(b)];
+  bands_.resize(bands);
+  for (Band& band : bands_) {
     if (band.scratch.size() < scratch) band.scratch.resize(scratch);
     if (band.halo.size() < halo) band.halo.resize(halo);
-    band.copies.clear();
-    Pass& pass = band.pass;
-    pass = Pass{};
-    pass.grid = grid_;
-    pass.first = static_cast<int>(static_cast<long>(grid_.rows) * b / count);
-    pass.last = static_cast<int>(static_cast<long>(grid_.rows) * (b + 1) / count);
-    pass.inverse_mass = system_->inverse_mass.data();
-    if (loads.load)
-      pass.load[0] = loads.load->x(), pass.load[1] = loads.load->y(), pass.load[2] = loads.load->z();
-    for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = loads.weight[axis];
-    pass.damping = loads.damping;
-    pass.mass_of_free = has_common_mass() ? mass() : 1;
-    pass.step = step;
-    pass.scratch = band.scratch.data();
-    pass.squares = squares_.data();
   }
 }
 
-/// A field of which a band writes its own rows only and reads no others, or which nobody writes.
-void GridSweep::attach(BandField Pass::*field, Vec3Field& values) {
-  const RowBlock all{values.x(), values.y(), values.z(), 0};
-  for (Band& band : bands_) band.pass.*field = {all, all, all};
+/// By the thread that will step the band: what another core has written takes long to come.
+void GridSweep::prepare(const Plan& plan, std::size_t index) {
+  Band& band = bands_[index];
+  const auto first_row = [&](std::size_t b) {
+    return static_cast<int>(static_cast<std::size_t>(grid_.rows) * b / bands_.size());
+  };
+  Pass& pass = band.pass;
+  pass = Pass{};
+  pass.grid = grid_;
+  pass.first = first_row(index), pass.last = first_row(index + 1);
+  pass.inverse_mass = system_->inverse_mass.data();
+  if (const Vec3Field* load = plan.loads.load)
+    pass.load[0] = load->x(), pass.load[1] = load->y(), pass.load[2] = load->z();
+  for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = plan.loads.weight[axis];
+  pass.damping = plan.loads.damping;
+  pass.mass_of_free = has_common_mass() ? mass() : 1;
+  pass.step = plan.step;
+  pass.drift_first = plan.drift_first;
+  pass.scratch = band.scratch.data();
+  pass.squares = squares_.data();
+  double* halo = band.halo.data();
+  for (const Attached& attached : plan.fields) {
+    if (!attached.values) continue;
+    pass.*attached.field = with_copies(attached, pass, halo);
+    halo += halo_size(attached.halo_rows, static_cast<std::size_t>(grid_.columns));
+  }
 }
 
-/// A field that is stepped in place: what a band needs of its neighbours' rows is copied beforehand, by the
-/// thread that will need it, since rows that another core has written take long to come.
-void GridSweep::attach_with_copies(BandField Pass::*field, Vec3Field& values, int halo_rows, int slot) {
-  attach(field, values);
-  if (bands_.size() == 1) return;
+/// The field as the band sees it; copies of the rows around the band's own lie from `to` on.
+BandField GridSweep::with_copies(const Attached& attached, const Pass& pass, double* to) const {
+  const Vec3Field& values = *attached.values;
+  const RowBlock all{attached.values->x(), attached.values->y(), attached.values->z(), 0};
+  if (bands_.size() == 1 || attached.halo_rows == 0) return {all, all, all};
   const auto columns = static_cast<std::size_t>(grid_.columns);
-  const std::size_t run = static_cast<std::size_t>(halo_rows) * columns;
-  for (Band& band : bands_) {
-    double* to = band.halo.data() + static_cast<std::size_t>(slot) * 6 * run;
-    const auto copy = [&](int first, int last) {
-      const RowBlock block{to, to + run, to + 2 * run, first};
-      const auto begin = static_cast<std::size_t>(first) * columns;
-      const std::size_t count = static_cast<std::size_t>(last - first) * columns;
-      if (count > 0)
-        for (const auto& [from, into] :
-             {std::pair{values.x(), block.x}, std::pair{values.y(), block.y}, std::pair{values.z(), block.z}})
-          band.copies.push_back({from + begin, into, count});
-      to += 3 * run;
-      return block;
-    };
-    Pass& pass = band.pass;
-    (pass.*field).above = copy(std::max(0, pass.first - halo_rows), pass.first);
-    (pass.*field).below = copy(pass.last, std::min(grid_.rows, pass.last + halo_rows));
-  }
+  const std::size_t run = static_cast<std::size_t>(attached.halo_rows) * columns;
+  const auto copy = [&](int first, int last) {
+    const RowBlock block{to, to + run, to + 2 * run, first};
+    const auto begin = static_cast<std::size_t>(first) * columns;
+    const std::size_t count = static_cast<std::size_t>(last - first) * columns;
+    std::copy_n(values.x() + begin, count, block.x);
+    std::copy_n(values.y() + begin, count, block.y);
+    std::copy_n(values.z() + begin, count, block.z);
+    to += 3 * run;
+    return block;
+  };
+  const RowBlock above = copy(std::max(0, pass.first - attached.halo_rows), pass.first);
+  const RowBlock below = copy(pass.last, std::min(grid_.rows, pass.last + attached.halo_rows));
+  return {all, above, below};
 }
 
-void GridSweep::run(PassKind kind, Kernel kernel) {
-  if (bands_.size() == 1) {
-    kernel(bands_.front().pass);
+void GridSweep::run(const Plan& plan) {
+  const int count = begin_pass(plan.kind);
+  make_room(plan, static_cast<std::size_t>(count));
+  if (count == 1) {
+    prepare(plan, 0);
+    plan.kernel(bands_.front().pass);
   } else {
-    const int count = static_cast<int>(bands_.size());
-    team()->run(count, [this](int b) {
-      for (const Copy& copy : bands_[static_cast<std::size_t>(b)].copies)
-        std::copy_n(copy.from, copy.count, copy.to);
+    team()->run(count, [this, &plan](int b) {
+      prepare(plan, static_cast<std::size_t>(b));
+      team()->meet();  // nobody steps a row before its neighbours have it
+      plan.kernel(bands_[static_cast<std::size_t>(b)].pass);
     });
-    team()->run(count, [this, kernel](int b) { kernel(bands_[static_cast<std::size_t>(b)].pass); });
   }
-  end_pass(kind);
+  end_pass(plan.kind);
 }
 
 double GridSweep::sum_of(int which) const {
@@ -187,22 +192,26 @@ double GridSweep::sum_of(int which) const {
 SpringSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLoads& loads,
                                       ClothState& state) {
   assert(has_common_mass());
-  share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
-  for (Band& band : bands_) band.pass.drift_first = drift_first;
-  attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
-  attach(&Pass::velocity, state.velocity);
-  run(PassKind::step, kernels_->euler);
+  run({.kind = PassKind::step,
+       .kernel = kernels_->euler,
+       .loads = loads,
+       .step = step,
+       .drift_first = drift_first,
+       .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                   {&Pass::velocity, &state.velocity, 0}}}});
   return {sum_of(0), sum_of(1)};
 }
 
 SpringSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
                                        ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  share_rows(PassKind::step, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
-  attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
-  attach_with_copies(&Pass::velocity, state.velocity, kernels::euler_halo, 1);
-  attach_with_copies(&Pass::force, force, kernels::euler_halo, 2);
-  run(PassKind::step, kernels_->verlet);
+  run({.kind = PassKind::step,
+       .kernel = kernels_->verlet,
+       .loads = loads,
+       .step = step,
+       .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                   {&Pass::velocity, &state.velocity, kernels::euler_halo},
+                   {&Pass::force, &force, kernels::euler_halo}}}});
   return {0, sum_of(1)};
 }
 
@@ -210,11 +219,13 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
                              Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
   const auto pass = [&](PassKind kind, Kernel kernel) {
-    share_rows(kind, kernels::euler_halo, kernels::euler_scratch_rows, loads, step);
-    attach_with_copies(&Pass::position, state.position, kernels::euler_halo, 0);
-    attach(&Pass::velocity, state.velocity);
-    attach(&Pass::force, force);
-    run(kind, kernel);
+    run({.kind = kind,
+         .kernel = kernel,
+         .loads = loads,
+         .step = step,
+         .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                     {&Pass::velocity, &state.velocity, 0},
+                     {&Pass::force, &force, 0}}}});
   };
   pass(PassKind::opening, kernels_->verlet_open);
   for (std::size_t k = 0; k + 1 < squares.size(); ++k) {
@@ -227,24 +238,29 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
 
 std::array<double, 5> GridSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  share_rows(PassKind::step, kernels::runge_kutta_halo, kernels::runge_kutta_scratch_rows, loads, step);
-  attach_with_copies(&Pass::position, state.position, kernels::runge_kutta_halo, 0);
-  attach_with_copies(&Pass::velocity, state.velocity, kernels::runge_kutta_halo, 1);
-  run(PassKind::step, kernels_->runge_kutta);
+  run({.kind = PassKind::step,
+       .kernel = kernels_->runge_kutta,
+       .loads = loads,
+       .step = step,
+       .fields = {{{&Pass::position, &state.position, kernels::runge_kutta_halo},
+                   {&Pass::velocity, &state.velocity, kernels::runge_kutta_halo}}},
+       .scratch_rows = kernels::runge_kutta_scratch_rows});
   return {sum_of(0), sum_of(1), sum_of(2), sum_of(3), sum_of(4)};
 }
 
 void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  share_rows(PassKind::evaluation, kernels::euler_halo, kernels::euler_scratch_rows, loads, 0);
-  attach(&Pass::position, const_cast<Vec3Field&>(position));  // only read
-  attach(&Pass::force, force);
-  run(PassKind::evaluation, kernels_->evaluate);
+  run({.kind = PassKind::evaluation,
+       .kernel = kernels_->evaluate,
+       .loads = loads,
+       .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
+                   {&Pass::force, &force, 0}}}});
 }
 
 double GridSweep::squares(const Vec3Field& velocity) {
-  share_rows(PassKind::sums, kernels::euler_halo, kernels::euler_scratch_rows, {}, 0);
-  attach(&Pass::velocity, const_cast<Vec3Field&>(velocity));  // only read
-  run(PassKind::sums, kernels_->sum_squares);
+  run({.kind = PassKind::sums,
+       .kernel = kernels_->sum_squares,
+       .loads = {},
+       .fields = {{{&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0}}}});  // only read
   return sum_of(1);
 }
 

@@ -39,22 +39,31 @@ class GridSweep : public SpringSweep {
  private:
   using Kernel = void (*)(const kernels::Pass&);
 
-  struct Copy {
-    const double* from;
-    double* to;
-    std::size_t count;
+  /// A field of a pass. Where `halo_rows` are asked for, the pass steps the field in place and reads so many
+  /// of the rows around a band's own; else a band keeps to its own rows, or nobody writes.
+  struct Attached {
+    kernels::BandField kernels::Pass::*field;
+    Vec3Field* values;
+    int halo_rows;
   };
-  /// What a band needs of its own.
-  struct Band {
+  struct Plan {
+    PassKind kind;
+    Kernel kernel;
+    const SweepLoads& loads;
+    double step = 0;  ///< s
+    bool drift_first = false;
+    std::array<Attached, 3> fields{};  ///< those without values are none
+    int scratch_rows = kernels::euler_scratch_rows;
+  };
+  /// What a band needs of its own; written by the thread that steps it alone.
+  struct alignas(64) Band {
     kernels::Pass pass;
-    std::vector<Copy> copies;  ///< to be made before any band is stepped
     AlignedDoubles scratch, halo;
   };
-  void share_rows(PassKind kind, int halo_rows, int scratch_rows, const SweepLoads& loads, double step);
-  void attach(kernels::BandField kernels::Pass::*field, Vec3Field& values);
-  void attach_with_copies(kernels::BandField kernels::Pass::*field, Vec3Field& values, int halo_rows,
-                          int slot);
-  void run(PassKind kind, Kernel kernel);
+  void run(const Plan& plan);
+  void make_room(const Plan& plan, std::size_t bands);
+  void prepare(const Plan& plan, std::size_t index);
+  kernels::BandField with_copies(const Attached& attached, const kernels::Pass& pass, double* to) const;
   double sum_of(int which) const;
 
   const ClothSystem* system_;

@@ -12,8 +12,6 @@ using kernels::block_width;
 using kernels::FieldPointers;
 using kernels::MeshPass;
 
-/// With fewer particles for each thread the others need not be tried.
-constexpr int fewest_particles = 1000;
 constexpr int sums = 5;
 
 FieldPointers pointers(Vec3Field& field) {

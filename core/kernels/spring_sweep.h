@@ -68,6 +68,8 @@ class SpringSweep {
   /// Each takes its own time, and so makes its own choice of threads.
   enum class PassKind { step, several_steps, opening, between, closing, evaluation, sums };
   static constexpr std::size_t pass_kinds = 7;
+  /// With fewer particles for each thread the others need not be tried: waking them takes as long as the pass.
+  static constexpr int fewest_particles = 1000;
 
   /// How many threads the pass gets that begins now.
   int begin_pass(PassKind kind);

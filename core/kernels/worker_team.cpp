@@ -47,10 +47,11 @@ WorkerTeam::~WorkerTeam() {
 
 void WorkerTeam::start(int shares, Function function, const void* context) {
   assert(shares <= size());
+  shares_ = shares;
+  arrivals_.store(0, std::memory_order_relaxed);
   if (shares > 1) {
     function_ = function;
     context_ = context;
-    shares_ = shares;
     at_work_.store(static_cast<int>(workers_.size()), std::memory_order_relaxed);
     job_number_.fetch_add(1, std::memory_order_release);
     job_number_.notify_all();
@@ -60,6 +61,14 @@ void WorkerTeam::start(int shares, Function function, const void* context) {
   for (int left = at_work_.load(std::memory_order_acquire); left != 0;
        left = at_work_.load(std::memory_order_acquire))
     wait_for_change(at_work_, left);
+}
+
+void WorkerTeam::meet() {
+  const int arrived = arrivals_.fetch_add(1, std::memory_order_acq_rel) + 1;
+  const int all = (arrived + shares_ - 1) / shares_ * shares_;
+  if (arrived == all) arrivals_.notify_all();
+  for (int present = arrived; present < all; present = arrivals_.load(std::memory_order_acquire))
+    wait_for_change(arrivals_, present);
 }
 
 void WorkerTeam::work(int share) {

@@ -27,6 +27,9 @@ class WorkerTeam {
         shares, [](const void* context, int share) { (*static_cast<const Job*>(context))(share); }, &job);
   }
 
+  /// Within a job, by each of its shares as often as by the others: returns when all of them have come here.
+  void meet();
+
  private:
   using Function = void (*)(const void*, int);
   void start(int shares, Function function, const void* context);
@@ -38,6 +41,7 @@ class WorkerTeam {
   bool stops_ = false;
   alignas(64) std::atomic<std::uint32_t> job_number_{0};
   alignas(64) std::atomic<int> at_work_{0};
+  alignas(64) std::atomic<int> arrivals_{0};  ///< at meetings of the present job
   std::vector<std::thread> workers_;
 };
 

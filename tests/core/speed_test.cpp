@@ -92,7 +92,7 @@ TEST(InterleavedTiming, EndsWhenItIsTold) {
 TEST(Yardsticks, AreFiniteAndPositive) {
   const Yardsticks y = measure_yardsticks(
       {.timing = {.repeats = 3, .moment = 1e-4, .budget = 1}, .array_bytes = std::size_t{1} << 16});
-  for (const Spread& spread : {y.scalar_root, y.vector_root, y.triad, y.update})
+  for (const Spread& spread : {y.scalar_root, y.vector_root, y.triad, y.update, y.together})
     for (const double value : {spread.low, spread.median, spread.high}) {
       EXPECT_TRUE(std::isfinite(value));
       EXPECT_GT(value, 0);

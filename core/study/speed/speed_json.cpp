@@ -47,7 +47,9 @@ json yardsticks_json(const Yardsticks& y) {
           {"update_GB_per_s", finite(y.update_throughput())},
           {"triad_ns_per_element", spread_json(y.triad)},
           {"update_ns_per_element", spread_json(y.update)},
-          {"array_bytes", y.array_bytes}};
+          {"array_bytes", y.array_bytes},
+          {"cores", y.cores},
+          {"cores_gain_together", spread_json(y.together)}};
 }
 
 json row_json(const StepCost& row) {

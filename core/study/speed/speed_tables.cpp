@@ -107,7 +107,7 @@ TextTable growth_table(const std::vector<Growth>& growth) {
 
 TextTable yardstick_table(const Yardsticks& y) {
   TextTable table;
-  table.columns = {{"Machine, one core"}, {"Median", true}, {"Quartiles", true}, {"Unit"}};
+  table.columns = {{"Machine"}, {"Median", true}, {"Quartiles", true}, {"Unit"}};
   const auto add = [&](const std::string& what, const Spread& spread, const char* unit) {
     table.rows.push_back({what, fmt::format("{:.3f}", spread.median),
                           fmt::format("{:.3f} to {:.3f}", spread.low, spread.high), unit});
@@ -120,6 +120,8 @@ TextTable yardstick_table(const Yardsticks& y) {
   add("square root and division, " + y.vectors, y.vector_root, "ns per double");
   add("memory, triad a = b + s c", throughput(y.triad), "GB/s");
   add("memory, update x += s v", throughput(y.update), "GB/s");
+  if (y.cores > 1)
+    add(fmt::format("{} cores, roots, each for itself", y.cores), y.together, "times one core");
   return table;
 }
 
@@ -198,7 +200,8 @@ constexpr const char* step_legend =
 per particle and step, median and quartiles of {} interleaved repeats; processor time for one thread, wall time for
 more. Divided by: reference, the time of semi-implicit Euler in textbook code on index pairs; bare, the method's own step
 without the addition; divider, exact roots and divisions at {} ns per spring and force evaluation; memory, 96 bytes per
-particle at {} GB/s. The last two are one core's; a cloth in the caches may be below memory, a kernel that refines
+particle at {} GB/s. The last two are one core's, as are the machine's figures but the last, which is what threads can gain at
+most; a cloth in the caches may be below memory, a kernel that refines
 estimates of roots below divider. Forces: evaluations per step.)";
 
 void add_steps(Page& page, const SpeedReport& report) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <vector>
 
+#include "kernels/worker_team.h"
 #include "study/speed/scalar_roots.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -111,11 +113,26 @@ Yardsticks measure_yardsticks(const YardstickPlan& plan, const TimingProgress& p
     for (std::size_t i = 0; i < many; ++i) to[i] += s * c[i];
     keep(to);
   }));
+  result.cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  WorkerTeam team(result.cores);
+  constexpr int passes = 100;  // a job is then long beside waking the threads
+  std::vector<std::vector<double>> own(static_cast<std::size_t>(result.cores), std::vector<double>(few));
+  subjects.push_back(subject("vector roots on every core", few * passes, [&, vector] {
+    team.run(team.size(), [&](int share) {
+      double* to = own[static_cast<std::size_t>(share)].data();
+      for (int k = 0; k < passes; ++k) vector.run(x.data(), to, few), keep(to);
+    });
+  }));
+  subjects.back().threads = result.cores;
   if (!time_interleaved(subjects, plan.timing, progress)) return result;
   result.scalar_root = spread_of(subjects[0]);
   result.vector_root = spread_of(subjects[1]);
   result.triad = spread_of(subjects[2]);
   result.update = spread_of(subjects[3]);
+  result.together = ratio_of(subjects[1], subjects[4]);
+  for (double* gain :
+       {&result.together.low, &result.together.median, &result.together.high, &result.together.least})
+    *gain *= result.cores;
   return result;
 }
 

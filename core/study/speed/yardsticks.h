@@ -1,5 +1,6 @@
-// What this machine can do at best, one core, measured: square roots and divisions, and memory. A step of a
-// mass-spring cloth needs both, so that each sets a floor under its time.
+// What this machine can do at best, measured: square roots and divisions, and memory, on one core. A step of
+// a mass-spring cloth needs both, so that each sets a floor under its time. And what its cores gain together
+// when they have nothing to do with each other: no threads of one step can gain more.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,8 @@ struct Yardsticks {
   Spread triad;                 ///< ns per element of a = b + s c, 24 bytes counted (McCalpin 1995)
   Spread update;                ///< ns per element of x += s v in place, 24 bytes moved
   std::size_t array_bytes = 0;  ///< of each array of the last two
+  int cores = 1;
+  Spread together;  ///< times the roots that one core takes, if each takes its own at once; 1 with one core
 
   /// GB/s, one core.
   double triad_throughput() const { return bytes_per_element / triad.median; }

@@ -11,16 +11,16 @@ namespace clothlab::cli {
 namespace {
 
 std::string result_json(const cloth::ReproduceResult& result, const std::string& folder) {
-  nlohmann::ordered_json json{{"status", result.stopped ? "stopped" : "finished"}, {"folder", folder}};
-  json["files"] = result.files;
-  json["numbers"] = nlohmann::ordered_json::array();
+  nlohmann::ordered_json document{{"status", result.stopped ? "stopped" : "finished"}, {"folder", folder}};
+  document["files"] = result.files;
+  document["numbers"] = nlohmann::ordered_json::array();
   for (const cloth::Measured& number : result.numbers) {
     nlohmann::ordered_json entry{
         {"part", number.part}, {"name", number.name}, {"unit", number.unit}, {"value", number.value}};
     if (number.expected) entry["expected"] = *number.expected;
-    json["numbers"].push_back(std::move(entry));
+    document["numbers"].push_back(std::move(entry));
   }
-  return json.dump(2) + "\n";
+  return document.dump(2) + "\n";
 }
 
 std::string result_text(const cloth::ReproduceResult& result, const std::string& folder) {

@@ -9,7 +9,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-json value_json(const ParameterValue& value) {
+json json_of(const ParameterValue& value) {
   if (const auto* vector = std::get_if<Vec3>(&value)) return {vector->x(), vector->y(), vector->z()};
   json number;
   std::visit(
@@ -41,7 +41,7 @@ void log_own_values(const Pane& before, const Pane& after, Log& log) {
   for (const OwnValue& own : after.own) {
     const ParameterValue* was = own_value(before, own.path);
     if (!was || *was != own.value)
-      log.add(after.name, {{"path", own.path}, {"value", value_json(own.value)}});
+      log.add(after.name, {{"path", own.path}, {"value", json_of(own.value)}});
   }
   for (const OwnValue& own : before.own)
     if (!own_value(after, own.path)) log.add(after.name, {{"path", own.path}, {"value", nullptr}});

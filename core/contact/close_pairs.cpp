@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "contact/at.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-constexpr std::size_t least_share = 500;  ///< pairs that are worth a thread of their own
+constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of their own
 /// Kept pairs are found for so many more ways like this one, at most for a reach more.
 constexpr double ways_ahead = 4;
 constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and for what hardly moves
@@ -90,7 +87,7 @@ void ClosePairs::look_around(const Situation& now) {
   }
   search_.find(around, now.passages, kept_);
   kept_distance_.resize(kept_.size());
-  in_shares(team_, kept_.size(), least_share, [&](int, std::size_t begin, std::size_t end) {
+  in_shares(team_, kept_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       kept_distance_[k] = separate(kept_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
   });
@@ -137,7 +134,7 @@ void ClosePairs::separate_all(const Situation& now, const std::vector<FeaturePai
                               const Skip& skip, std::vector<FeaturePair>& pairs,
                               std::vector<Separation>& separations) {
   const int shares =
-      in_shares(team_, candidates.size(), least_share, [&](int share, std::size_t begin, std::size_t end) {
+      in_shares(team_, candidates.size(), least_kept, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
         part.pairs.clear(), part.separations.clear();
         for (std::size_t k = begin; k < end; ++k) {

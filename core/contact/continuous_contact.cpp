@@ -5,20 +5,17 @@
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/at.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Of the thickness, and of the way if that is more: how far a particle may leave the straight line to where
 /// it is wished without a new search.
 constexpr double margin_part = 0.1, aside_part = 0.1;
-constexpr std::size_t least_share = 500;  ///< pairs that are worth a thread of their own
-constexpr double skin_part = 0.25;        ///< of a mean edge: how far overlaps that were found serve again
+constexpr std::size_t least_separated = 500;  ///< pairs that are worth a thread of their own
+constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
@@ -145,7 +142,7 @@ void ContinuousContact::separate_all() {
       separations_[k] =
           separate(pairs_[k], surface_, safe_, bodies_, poses_, near_factor * memory_[k].thickness);
   };
-  in_shares(team_, pairs_.size(), least_share, separate_share);
+  in_shares(team_, pairs_.size(), least_separated, separate_share);
 }
 
 /// The pair at the end of the step: its plane is carried along by the obstacle.

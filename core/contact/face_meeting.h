@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/at.h"
 #include "contact/feature_pairs.h"
 #include "contact/slab.h"
 
@@ -40,7 +41,6 @@ class FaceMeeting {
   }
 
  private:
-  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   static bool has(const Triangle& triangle, int vertex) {
     return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
   }

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/at.h"
+
 namespace cloth {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Sines of angles by which a surface may bend towards the other without the pair counting as not nearest:
 /// the surface that a pair stands on, and the one beyond. Loose where the cloth is, since it is never quite

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/at.h"
 #include "contact/face_meeting.h"
 #include "kernels/in_shares.h"
 
@@ -11,10 +12,6 @@ namespace {
 
 /// Overlaps, and faces to be looked for in a hierarchy, that are worth a thread of their own.
 constexpr std::size_t least_share = 1000, least_queries = 200;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// How far an even turn bulges out of the chord between its ends, for a point `radius` metres from the axis.
 double bulge(const Passage& passage, double radius) {

@@ -2,14 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/at.h"
 #include "contact/continuous_contact.h"
 
 namespace cloth {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Features never come closer than this part of the thickness.
 constexpr double least_part = 1e-3;

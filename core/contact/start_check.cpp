@@ -5,16 +5,13 @@
 #include <algorithm>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/at.h"
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_body.h"
 #include "geometry/box_tree.h"
 
 namespace cloth {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return (b - a).cross(c - a).dot(d - a);

@@ -41,11 +41,11 @@ CLOTH_VECTORISED void multiply_rows(BlockRows b, ConstVectorRows d, VectorRows p
 }
 
 /// Springs are taken in chunks, as for their forces: a run whose ends overlap vectorises as well.
-constexpr int chunk_length = 128;
+constexpr int block_length = 128;
 
 CLOTH_VECTORISED void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, std::ptrdiff_t offset,
                                   int count) {
-  alignas(64) double gx[chunk_length], gy[chunk_length], gz[chunk_length];
+  alignas(64) double gx[block_length], gy[block_length], gz[block_length];
   for (int s = 0; s < count; ++s) {
     const double dx = d.x[s] - d.x[s + offset], dy = d.y[s] - d.y[s + offset], dz = d.z[s] - d.z[s + offset];
     gx[s] = b.xx[s] * dx + b.xy[s] * dy + b.xz[s] * dz;
@@ -106,8 +106,8 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
       add_spring(blocks, spring++, from, to, run.first, run.first + run.offset);
       continue;
     }
-    for (int begin = 0; begin < run.count; begin += chunk_length) {
-      const int count = std::min(chunk_length, run.count - begin);
+    for (int begin = 0; begin < run.count; begin += block_length) {
+      const int count = std::min(block_length, run.count - begin);
       const auto first = static_cast<std::size_t>(run.first + begin);
       add_springs(rows_of(springs, spring), rows_of(direction, first), rows_of(product, first), run.offset,
                   count);

@@ -17,6 +17,11 @@ namespace cloth {
 using Vec3 = Eigen::Vector3d;
 using Words = std::vector<std::string>;
 
+/// A key under a dotted path: "cloth" and "rows" are "cloth.rows"; under none it is the path itself.
+inline std::string joined_path(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
 /// number -> double, integer -> int64, vector -> Vec3, choice/text -> string, words -> Words.
 using ParameterValue = std::variant<double, std::int64_t, Vec3, std::string, Words>;
 

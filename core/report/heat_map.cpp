@@ -58,7 +58,7 @@ std::string mark_path(CellMark mark, SvgPoint c, double r) {
 /// Marks are ink on light cells and paper on dark ones, in either scheme.
 SvgStyle mark_style(const ClassStyle& style, double width) {
   const bool dark_cell = contrast(style.colour.light, "#ffffff") > contrast(style.colour.light, "#000000");
-  const Colour colour = dark_cell ? page_colours().surface : page_colours().ink;
+  const PageColour colour = dark_cell ? page_colours().surface : page_colours().ink;
   return {.stroke = colour, .stroke_width = width, .opacity = 0.65};
 }
 

@@ -22,7 +22,7 @@ struct HeatCell {
 struct OverlayCurve {
   std::string label{};
   Dash dash = Dash::solid;
-  Colour colour = page_colours().ink;
+  PageColour colour = page_colours().ink;
   std::vector<std::pair<double, double>> points{};
 };
 

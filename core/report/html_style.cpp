@@ -82,7 +82,7 @@ details[open] > summary { margin-bottom: .6rem; }
 
 std::string html_style() {
   std::string drawings;
-  for (const Colour& colour : all_colours())
+  for (const PageColour& colour : all_colours())
     drawings +=
         fmt::format("  .f-{0} {{ fill: {1}; }} .s-{0} {{ stroke: {1}; }}\n", colour.name, colour.dark);
   return std::string(light) + "@media screen and (prefers-color-scheme: dark) {\n" + dark + drawings + "}\n" +

@@ -20,7 +20,7 @@ SvgStyle marker_style(const SeriesStyle& look) {
   return {.fill = look.colour, .stroke = page_colours().surface};
 }
 
-SvgStyle hollow_style(const Colour& colour) {
+SvgStyle hollow_style(const PageColour& colour) {
   return {.fill = page_colours().surface, .stroke = colour, .stroke_width = 1.7};
 }
 

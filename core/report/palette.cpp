@@ -8,8 +8,8 @@ namespace cloth {
 namespace {
 
 // At least 3 : 1 against the surface of their scheme, as WCAG 2.1 asks of graphics.
-const std::vector<Colour>& series_colours() {
-  static const std::vector<Colour> colours = {
+const std::vector<PageColour>& series_colours() {
+  static const std::vector<PageColour> colours = {
       {"blue", "#0072b2", "#4fa8e8"},   {"vermillion", "#d55e00", "#ff8540"}, {"green", "#008f68", "#2fc79a"},
       {"purple", "#b0508a", "#e394c3"}, {"black", "#1f2328", "#f0f3f6"},      {"amber", "#b27700", "#f0ad2e"},
       {"sky", "#2e94cc", "#93d3fb"},    {"olive", "#857a00", "#efe35a"},
@@ -33,7 +33,7 @@ SeriesStyle style_of_series(int index) {
                                   Marker::triangle_down, Marker::cross,  Marker::pentagon,    Marker::hexagon,
                                   Marker::star,          Marker::plus};
   constexpr std::array dashes = {Dash::solid, Dash::dashed, Dash::dotted, Dash::dash_dotted};
-  const std::vector<Colour>& colours = series_colours();
+  const std::vector<PageColour>& colours = series_colours();
   const auto i = std::size_t(std::max(index, 0));
   return {colours[i % colours.size()], markers[i % markers.size()],
           dashes[i / colours.size() % dashes.size()]};
@@ -59,10 +59,10 @@ const PageColours& page_colours() {
   return colours;
 }
 
-std::vector<Colour> all_colours() {
+std::vector<PageColour> all_colours() {
   const PageColours& page = page_colours();
-  std::vector<Colour> all = {page.surface, page.ink, page.muted, page.grid, page.band};
-  for (const Colour& colour : series_colours()) all.push_back(colour);
+  std::vector<PageColour> all = {page.surface, page.ink, page.muted, page.grid, page.band};
+  for (const PageColour& colour : series_colours()) all.push_back(colour);
   for (const ClassStyle& style : run_classes()) all.push_back(style.colour);
   return all;
 }

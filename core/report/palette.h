@@ -9,7 +9,7 @@ namespace cloth {
 
 /// One colour in both schemes. A drawing carries the light one; a page turns to the dark one by `name`,
 /// which is unique, lower case letters and digits only. Values are "#rrggbb".
-struct Colour {
+struct PageColour {
   std::string name{};
   std::string light{};
   std::string dark{};
@@ -30,7 +30,7 @@ enum class Marker {
 enum class Dash { solid, dashed, dotted, dash_dotted };
 
 struct SeriesStyle {
-  Colour colour{};
+  PageColour colour{};
   Marker marker = Marker::circle;
   Dash dash = Dash::solid;
 };
@@ -47,7 +47,7 @@ enum class CellMark { none, dot, slash, cross, ring };
 
 struct ClassStyle {
   std::string name{};  // as legends and tables say it
-  Colour colour{};
+  PageColour colour{};
   CellMark mark = CellMark::none;
 };
 
@@ -56,16 +56,16 @@ const std::vector<ClassStyle>& run_classes();
 
 /// Paper and ink.
 struct PageColours {
-  Colour surface{};  // behind everything
-  Colour ink{};      // text and axes
-  Colour muted{};    // captions, tick labels
-  Colour grid{};     // grid lines
-  Colour band{};     // areas that are out of reach, such as a floor
+  PageColour surface{};  // behind everything
+  PageColour ink{};      // text and axes
+  PageColour muted{};    // captions, tick labels
+  PageColour grid{};     // grid lines
+  PageColour band{};     // areas that are out of reach, such as a floor
 };
 const PageColours& page_colours();
 
 /// Every colour there is, for a page's style sheet.
-std::vector<Colour> all_colours();
+std::vector<PageColour> all_colours();
 
 /// Contrast of two "#rrggbb" colours, 1 to 21 (WCAG 2.1).
 double contrast(const std::string& one, const std::string& other);

@@ -10,21 +10,21 @@ namespace {
 constexpr double widest = 56, tallest = 76, gap = 8;  // [px]
 constexpr double raster = 8;                          // between two tried places [px]
 
-struct Shape {
+struct Sides {
   std::string text;
   double width = 0, height = 0, label_width = 0;
   bool falling = false;
   double whole_width() const { return width + label_width + gap; }
 };
 
-std::vector<Shape> shapes_of(const std::vector<SlopeTriangle>& triangles, const AxisMap& x,
+std::vector<Sides> shapes_of(const std::vector<SlopeTriangle>& triangles, const AxisMap& x,
                              const AxisMap& y) {
-  std::vector<Shape> shapes;
+  std::vector<Sides> shapes;
   for (const SlopeTriangle& triangle : triangles) {
     if (!std::isfinite(triangle.slope) || triangle.slope == 0) continue;
     const std::string text = triangle.label.empty() ? short_number(std::abs(triangle.slope)) : triangle.label;
     const double steepness = std::abs(triangle.slope) * y.density() / x.density();
-    Shape shape{text, widest, widest * steepness, text_width(text, small_size), triangle.slope < 0};
+    Sides shape{text, widest, widest * steepness, text_width(text, small_size), triangle.slope < 0};
     if (shape.height > tallest) shape.width = tallest / steepness, shape.height = tallest;
     shapes.push_back(shape);
   }
@@ -65,7 +65,7 @@ Place best_place(double width, double height, const Box& frame, const std::vecto
 }
 
 /// In a box whose upper left corner this is, with `label_width` for the labels on a falling triangle's left.
-PlacedTriangle placed(const Shape& shape, SvgPoint at, double label_width) {
+PlacedTriangle placed(const Sides& shape, SvgPoint at, double label_width) {
   const double left = shape.falling ? at.x + gap + label_width : at.x;
   const double right = left + shape.width, bottom = at.y + shape.height;
   // The legs meet below the line where it rises, and left below it where it falls.
@@ -84,13 +84,13 @@ std::vector<PlacedTriangle> place_triangles(const std::vector<SlopeTriangle>& tr
                                             const AxisMap& y, const Box& frame, std::vector<Box> occupied) {
   std::vector<PlacedTriangle> result;
   if (x.scale() != AxisScale::logarithmic || y.scale() != AxisScale::logarithmic) return result;
-  const std::vector<Shape> shapes = shapes_of(triangles, x, y);
+  const std::vector<Sides> shapes = shapes_of(triangles, x, y);
   if (shapes.empty()) return result;
   const SvgPoint corner = emptiest_corner(frame, occupied);
 
   // Together if there is room: above each other, else side by side.
   double column_width = 0, column_height = -2 * gap, row_width = -2 * gap, row_height = 0, labels = 0;
-  for (const Shape& shape : shapes) {
+  for (const Sides& shape : shapes) {
     labels = std::max(labels, shape.label_width);
     column_width = std::max(column_width, shape.width);
     column_height += shape.height + 2 * gap, row_height = std::max(row_height, shape.height);
@@ -99,7 +99,7 @@ std::vector<PlacedTriangle> place_triangles(const std::vector<SlopeTriangle>& tr
   const Place column = best_place(column_width + gap + labels, column_height, frame, occupied, corner);
   if (column.overlaps == 0) {
     double top = column.at.y;
-    for (const Shape& shape : shapes) {
+    for (const Sides& shape : shapes) {
       result.push_back(placed(shape, {column.at.x, top}, labels));
       top += shape.height + 2 * gap;
     }
@@ -108,13 +108,13 @@ std::vector<PlacedTriangle> place_triangles(const std::vector<SlopeTriangle>& tr
   const Place row = best_place(row_width, row_height, frame, occupied, corner);
   if (row.overlaps == 0) {
     double left = row.at.x;
-    for (const Shape& shape : shapes) {
+    for (const Sides& shape : shapes) {
       result.push_back(placed(shape, {left, row.at.y + row_height - shape.height}, shape.label_width));
       left += shape.whole_width() + 2 * gap;
     }
     return result;
   }
-  for (const Shape& shape : shapes) {
+  for (const Sides& shape : shapes) {
     const SvgPoint at = best_place(shape.whole_width(), shape.height, frame, occupied, corner).at;
     occupied.push_back({at.x, at.y, at.x + shape.whole_width(), at.y + shape.height});
     result.push_back(placed(shape, at, shape.label_width));

@@ -30,7 +30,7 @@ struct SvgPoint {
 };
 
 struct SvgStyle {
-  std::optional<Colour> fill{}, stroke{};
+  std::optional<PageColour> fill{}, stroke{};
   double stroke_width = 1;
   Dash dash = Dash::solid;
   double opacity = 1;
@@ -43,7 +43,7 @@ struct SvgText {
   double size = 12;
   Anchor anchor = Anchor::start;
   bool bold = false;
-  Colour colour = page_colours().ink;
+  PageColour colour = page_colours().ink;
   double turn = 0;            // degrees, clockwise
   std::string superscript{};  // behind the text
   bool halo = false;          // a rim of the paper's colour, for text over lines

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "params/parameter.h"
+
 namespace cloth {
 namespace {
 
@@ -18,10 +20,6 @@ class Locator {
   }
 
  private:
-  static std::string joined(const std::string& path, const std::string& key) {
-    return path.empty() ? key : path + "." + key;
-  }
-
   void skip_space() {
     while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
       ++at_;
@@ -69,7 +67,7 @@ class Locator {
     skip_mark();
     while (at_ < text_.size() && peek() != '}') {
       const TextPosition key_position = position();
-      const std::string member = joined(path, string());
+      const std::string member = joined_path(path, string());
       if (!locations_.keys.insert_or_assign(member, key_position).second)
         locations_.repeated.push_back(member);
       skip_space();
@@ -83,7 +81,7 @@ class Locator {
   void array(const std::string& path) {
     skip_mark();
     for (int index = 0; at_ < text_.size() && peek() != ']'; ++index) {
-      value(joined(path, std::to_string(index)));
+      value(joined_path(path, std::to_string(index)));
       if (peek() == ',') skip_mark();
     }
     ++at_;

@@ -2,16 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "params/parameter.h"
 #include "scene/scene_json.h"
 
 namespace cloth {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-std::string joined(const std::string& path, const std::string& key) {
-  return path.empty() ? key : path + "." + key;
-}
 
 /// Walks two documents side by side down to the first difference of each branch.
 void compare(const json& before, const json& after, const std::string& path, std::vector<SceneEdit>& edits) {
@@ -20,7 +17,7 @@ void compare(const json& before, const json& after, const std::string& path, std
                          !after.empty() && after.front().is_object();
   if (same_list) {
     for (std::size_t i = 0; i < after.size(); ++i)
-      compare(before[i], after[i], joined(path, std::to_string(i)), edits);
+      compare(before[i], after[i], joined_path(path, std::to_string(i)), edits);
     return;
   }
   if (!before.is_object() || !after.is_object()) {
@@ -29,11 +26,11 @@ void compare(const json& before, const json& after, const std::string& path, std
   }
   for (const auto& [key, value] : after.items())
     if (before.contains(key))
-      compare(before[key], value, joined(path, key), edits);
+      compare(before[key], value, joined_path(path, key), edits);
     else
-      edits.push_back({joined(path, key), value.dump()});
+      edits.push_back({joined_path(path, key), value.dump()});
   for (const auto& [key, value] : before.items())
-    if (!after.contains(key)) edits.push_back({joined(path, key), "null"});
+    if (!after.contains(key)) edits.push_back({joined_path(path, key), "null"});
 }
 
 }  // namespace

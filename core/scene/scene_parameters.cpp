@@ -6,17 +6,13 @@
 namespace cloth {
 namespace {
 
-std::string joined(const std::string& prefix, const std::string& key) {
-  return prefix.empty() ? key : prefix + "." + key;
-}
-
 /// Binds the fields of an Owner that `owner_of` finds in a scene.
 template <class Owner, class OwnerOf>
 std::vector<Parameter> bound(const std::string& prefix, const Fields<Owner>& fields, OwnerOf owner_of) {
   std::vector<Parameter> parameters;
   for (const Field<Owner>& field : fields)
     parameters.push_back(
-        {joined(prefix, field.info.key), field.info,
+        {joined_path(prefix, field.info.key), field.info,
          [&field, owner_of](const Scene& scene) { return field.get(owner_of(const_cast<Scene&>(scene))); },
          [&field, owner_of](Scene& scene, const ParameterValue& value) {
            field.set(owner_of(scene), value);

@@ -18,10 +18,6 @@ namespace {
 
 using json = nlohmann::json;
 
-std::string joined(const std::string& path, const std::string& key) {
-  return path.empty() ? key : path + "." + key;
-}
-
 std::string number_text(const json& value) {
   return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
 }
@@ -83,7 +79,7 @@ class SceneReader {
   void known_keys(const json& from, const std::string& path, const std::set<std::string>& known) {
     for (const auto& [key, value] : from.items())
       if (!known.count(key))
-        problems.push_back({joined(path, key), "",
+        problems.push_back({joined_path(path, key), "",
                             fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
                             0});
   }
@@ -98,7 +94,7 @@ class SceneReader {
   void fields(const json& from, const std::string& path, const Fields<Owner>& declared, Owner& owner) {
     for (const Field<Owner>& field : declared)
       if (const json* value = member(from, field.info.key))
-        if (const auto parsed = parse(*value, joined(path, field.info.key), field.info))
+        if (const auto parsed = parse(*value, joined_path(path, field.info.key), field.info))
           field.set(owner, *parsed);
   }
 

@@ -12,10 +12,6 @@
 namespace cloth {
 namespace {
 
-bool finite_positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-
 HtmlCell ratio_cell(double measured, double predicted) {
   if (!finite_positive(predicted)) return "";
   const double ratio = measured / predicted;

@@ -16,10 +16,6 @@ namespace {
 
 constexpr int points_of_a_curve = 4;  // between two rows of cells
 
-bool finite_positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-
 std::string csv_limit(double limit) {
   return std::isinf(limit) ? "infinity" : csv_number(limit);
 }

@@ -1,6 +1,7 @@
 // A stability map on paper: CSV, SVG and a page that explains itself.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,11 @@
 #include "study/stability_map.h"
 
 namespace cloth {
+
+/// Whether a limit is a number that a chart or a ratio can show.
+inline bool finite_positive(double limit) {
+  return std::isfinite(limit) && limit > 0;
+}
 
 /// What a cell is called in stability.csv: "accurate", "stable-inaccurate", "energy-growth", "diverged",
 /// "solver-failed"; "refused" without a step to run with, "not-run" after a stop.

@@ -32,11 +32,11 @@ TEST(Palette, SeriesCanBeToldApart) {
 TEST(Palette, LinesAndTextStandOutOnBothPapers) {
   const PageColours& page = page_colours();
   for (int i = 0; i < 10; ++i) {
-    const Colour colour = style_of_series(i).colour;
+    const PageColour colour = style_of_series(i).colour;
     EXPECT_GE(contrast(colour.light, page.surface.light), 3) << colour.name;
     EXPECT_GE(contrast(colour.dark, page.surface.dark), 3) << colour.name;
   }
-  for (const Colour& colour : {page.ink, page.muted}) {
+  for (const PageColour& colour : {page.ink, page.muted}) {
     EXPECT_GE(contrast(colour.light, page.surface.light), 4.5) << colour.name;
     EXPECT_GE(contrast(colour.dark, page.surface.dark), 4.5) << colour.name;
     EXPECT_GE(contrast(colour.light, page.band.light), 4.5) << colour.name;
@@ -52,7 +52,7 @@ TEST(Palette, ClassesDifferWithoutColour) {
 
 TEST(Palette, NamesOfColoursAreUnique) {
   std::set<std::string> names;
-  for (const Colour& colour : all_colours()) names.insert(colour.name);
+  for (const PageColour& colour : all_colours()) names.insert(colour.name);
   EXPECT_EQ(names.size(), all_colours().size());
 }
 
@@ -180,7 +180,7 @@ TEST(HtmlPage, ContentsLeadToTheHeadings) {
 
 TEST(HtmlPage, HasTheDarkColourOfEverythingThatADrawingUses) {
   const std::string html = sample_page().to_html();
-  for (const Colour& colour : all_colours()) {
+  for (const PageColour& colour : all_colours()) {
     EXPECT_NE(html.find(".f-" + colour.name + " { fill: " + colour.dark), std::string::npos);
     EXPECT_NE(html.find(".s-" + colour.name + " { stroke: " + colour.dark), std::string::npos);
   }

@@ -1,8 +1,5 @@
 #include "bridge/compare_worker.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "bridge/fill_frame.h"
@@ -12,15 +9,6 @@ namespace clothlab {
 namespace {
 
 using Clock = WorkerPace::Clock;
-
-constexpr auto frame_interval = std::chrono::milliseconds(14);
-constexpr auto flush_interval = std::chrono::milliseconds(500);
-
-/// Where cores are few, the window draws first. The threads that the panes run on inherit it.
-void yield_to_the_window() {
-  constexpr int niceness = 5;
-  [[maybe_unused]] const int set = ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
-}
 
 int threads_for(int wanted) {
   if (wanted > 0) return wanted;

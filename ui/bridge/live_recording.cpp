@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "bridge/worker_pace.h"
 #include "simulation/session_json.h"
 
 namespace clothlab {
-namespace {
-
-constexpr auto flush_interval = std::chrono::milliseconds(500);
-
-}  // namespace
-
 std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& folder,
                                                    const cloth::Simulation& simulation) {
   folder_ = folder;

@@ -1,8 +1,6 @@
 #include "bridge/simulation_worker.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "bridge/fill_frame.h"
 #include "contact/start_check.h"
@@ -14,20 +12,7 @@ namespace {
 
 using Clock = WorkerPace::Clock;
 
-constexpr auto frame_interval =
-    std::chrono::milliseconds(14);                         // a little more often than a 60 Hz screen asks
 constexpr auto batch_time = std::chrono::milliseconds(5);  // between two looks at the inbox
-
-double seconds(Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
-
-/// Where cores are few, the window draws first and the simulation takes the rest. On Linux a thread has a
-/// niceness of its own; where it cannot be set, nothing is lost.
-void yield_to_the_window() {
-  constexpr int niceness = 5;
-  [[maybe_unused]] const int set = ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
-}
 
 /// Why a scene cannot be run, or nothing.
 std::string refusal_of(const cloth::Scene& scene) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bridge/worker_pace.h"
+
 namespace clothlab {
 namespace {
 
@@ -13,10 +15,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_offers{100}, between_writings{2000};
 constexpr int writing_share = 20;  // a large table is written less often: at most this part of the time
 constexpr int low_priority = 10;   // of nice(2): the simulation and the window go first
-
-double seconds(std::chrono::steady_clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 /// Without the states of the reference, which no diagram and no file needs.
 cloth::WorkPrecision copy_of(const cloth::WorkPrecision& study) {

@@ -1,5 +1,8 @@
 #include "bridge/worker_pace.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <cmath>
 
 namespace clothlab {
@@ -8,11 +11,12 @@ namespace {
 constexpr double longest_debt = 0.1;    // s
 constexpr double meter_interval = 0.5;  // s
 
-double seconds(WorkerPace::Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
-
 }  // namespace
+
+void yield_to_the_window() {
+  constexpr int niceness = 5;
+  [[maybe_unused]] const int set = ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
+}
 
 void WorkerPace::set_speed(double speed, double simulated, Clock::time_point now) {
   speed_ = speed;

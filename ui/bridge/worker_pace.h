@@ -5,6 +5,19 @@
 
 namespace clothlab {
 
+/// Between two frames that a worker offers: a little more often than a 60 Hz screen asks.
+inline constexpr std::chrono::milliseconds frame_interval{14};
+/// Between two writings of a recording that grows.
+inline constexpr std::chrono::milliseconds flush_interval{500};
+
+inline double seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// Where cores are few, the window draws first and the calling thread takes the rest, and so do the threads
+/// that it starts. On Linux a thread has a niceness of its own; where it cannot be set, nothing is lost.
+void yield_to_the_window();
+
 class WorkerPace {
  public:
   using Clock = std::chrono::steady_clock;

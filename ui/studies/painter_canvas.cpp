@@ -69,7 +69,7 @@ PainterCanvas::PainterCanvas(QPainter& painter, const QFont& font, Look look)
   painter_.setRenderHint(QPainter::Antialiasing);
 }
 
-QColor PainterCanvas::colour(const cloth::Colour& colour) const {
+QColor PainterCanvas::colour(const cloth::PageColour& colour) const {
   if (look_ == Look::theme) {
     const cloth::PageColours& page = cloth::page_colours();
     const Theme& t = theme();

@@ -26,7 +26,7 @@ class PainterCanvas : public cloth::PlotCanvas {
   /// The painter must outlive the canvas. `font` gives the family of all text.
   PainterCanvas(QPainter& painter, const QFont& font, Look look);
 
-  QColor colour(const cloth::Colour& colour) const;
+  QColor colour(const cloth::PageColour& colour) const;
   const std::vector<PlotTouch>& touches() const { return touches_; }
 
   void path(const std::string& data, const cloth::SvgStyle& style, const cloth::SvgTip& tip = {}) override;

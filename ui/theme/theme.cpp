@@ -29,7 +29,7 @@ bool desktop_is_dark() {
 void colour_panes(Theme& t) {
   int series = 0;
   for (QColor* colour : {&t.pane_a, &t.pane_b, &t.pane_c, &t.pane_d}) {
-    const cloth::Colour own = cloth::style_of_series(series++).colour;
+    const cloth::PageColour own = cloth::style_of_series(series++).colour;
     *colour = QColor(QString::fromStdString(t.dark ? own.dark : own.light));
   }
 }

@@ -7,15 +7,12 @@
 
 #include "viewport/cloth_view.h"
 #include "viewport/picking.h"
+#include "viewport/screen_points.h"
 
 namespace clothlab {
 namespace {
 
 constexpr double least_brush_radius = 8, most_brush_radius = 1000;  // px
-
-Eigen::Vector2d as_vector(QPointF p) {
-  return {p.x(), p.y()};
-}
 
 }  // namespace
 

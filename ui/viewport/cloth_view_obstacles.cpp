@@ -3,19 +3,9 @@
 
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
+#include "viewport/screen_points.h"
 
 namespace clothlab {
-namespace {
-
-Eigen::Vector2d as_vector(QPointF p) {
-  return {p.x(), p.y()};
-}
-
-QPointF as_point(const Eigen::Vector2d& p) {
-  return {p.x(), p.y()};
-}
-
-}  // namespace
 
 void ClothView::setObstaclesMovable(bool movable) {
   obstacles_movable_ = movable;

@@ -20,14 +20,14 @@ double dot(const Vec3Field& a, const Vec3Field& b) {
   return inner_product(a.flat(), b.flat());
 }
 
-CLOTH_VECTORISED void add_scaled(double scale, std::span<const double> from, std::span<double> to) {
+CLOTH_VECTORISED void add_multiple(double scale, std::span<const double> from, std::span<double> to) {
   const double* __restrict a = from.data();
   double* __restrict b = to.data();
   for (std::size_t k = 0; k < to.size(); ++k) b[k] += scale * a[k];
 }
 
-void add_scaled(double scale, const Vec3Field& from, Vec3Field& to) {
-  add_scaled(scale, from.flat(), to.flat());
+void add_multiple(double scale, const Vec3Field& from, Vec3Field& to) {
+  add_multiple(scale, from.flat(), to.flat());
 }
 
 /// to = scale * to + from
@@ -50,8 +50,8 @@ double ConjugateGradients::advance(double length, const BlockJacobi& preconditio
   for (std::size_t begin = 0; begin < size; begin += stretch) {
     const std::size_t count = std::min(stretch, size - begin), end = begin + count;
     for (std::size_t k = begin; k < begin + 3 * size; k += size) {
-      add_scaled(length, direction_.flat().subspan(k, count), solution.flat().subspan(k, count));
-      add_scaled(-length, image_.flat().subspan(k, count), residual_.flat().subspan(k, count));
+      add_multiple(length, direction_.flat().subspan(k, count), solution.flat().subspan(k, count));
+      add_multiple(-length, image_.flat().subspan(k, count), residual_.flat().subspan(k, count));
     }
     multiply_blocks(preconditioner.inverse(), begin, end, residual_, conditioned_);
     for (std::size_t k = begin; k < begin + 3 * size; k += size)
@@ -121,7 +121,7 @@ class ResidualCycle {
     std::vector<double> column;
     for (const Vec3Field& other : basis_) {
       column.push_back(dot(next, other));
-      add_scaled(-column.back(), other, next);
+      add_multiple(-column.back(), other, next);
     }
     const double length = std::sqrt(dot(next, next));
     for (std::size_t k = 0; k < cosines_.size(); ++k) {
@@ -153,9 +153,9 @@ class ResidualCycle {
       weights[k] = sum / columns_[k][k];
     }
     Vec3Field combined(solution.size()), conditioned(solution.size());
-    for (std::size_t k = 0; k < weights.size(); ++k) add_scaled(weights[k], basis_[k], combined);
+    for (std::size_t k = 0; k < weights.size(); ++k) add_multiple(weights[k], basis_[k], combined);
     preconditioner_(combined, conditioned);
-    add_scaled(1, conditioned, solution);
+    add_multiple(1, conditioned, solution);
   }
 
   const LinearMap& matrix_;
@@ -174,13 +174,13 @@ KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& precond
   const double goal = tolerance * std::sqrt(dot(right_hand_side, right_hand_side));
   Vec3Field residual = right_hand_side, image(residual.size());
   matrix(solution, image);
-  add_scaled(-1, image, residual);
+  add_multiple(-1, image, residual);
   ResidualCycle cycle(matrix, preconditioner);
   for (int n = 0; n < most_cycles && std::sqrt(dot(residual, residual)) > goal; ++n) {
     report.iterations += cycle.run(residual, goal, solution);
     matrix(solution, image);
     residual = right_hand_side;
-    add_scaled(-1, image, residual);
+    add_multiple(-1, image, residual);
   }
   report.converged = std::sqrt(dot(residual, residual)) <= goal;
   return report;

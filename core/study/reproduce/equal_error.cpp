@@ -13,7 +13,6 @@
 namespace cloth {
 namespace {
 
-constexpr std::array<const char*, 3> methods{"semi-implicit-euler", "rk4", "verlet"};
 constexpr int repeats = 3;
 
 struct Rung {
@@ -156,7 +155,7 @@ bool climb(std::vector<Ladder>& ladders, const Scene& scene, const Vec3Field& re
 
 std::vector<Ladder> make_ladders(const std::vector<int>& steps) {
   std::vector<Ladder> ladders;
-  for (const char* method : methods) {
+  for (const char* method : report_methods) {
     ladders.push_back({method, {}});
     for (const int n : steps) ladders.back().rungs.push_back({.steps = n});
   }

@@ -11,7 +11,6 @@
 namespace cloth {
 namespace {
 
-constexpr int panel_width = 480, panel_height = 420;
 constexpr double strain_scale = 0.2;
 
 /// The largest strain of each family over the springs that end on a pin.
@@ -91,10 +90,6 @@ Vec3Field joined(const std::vector<Vec3Field>& fields) {
   return all;
 }
 
-double panel_aspect() {
-  return static_cast<double>(panel_width) / panel_height;
-}
-
 }  // namespace
 
 void reproduce_springs(StudyPage& study) {
@@ -103,7 +98,7 @@ void reproduce_springs(StudyPage& study) {
   scene.cloth.rows = scene.cloth.columns = 5;
   scene.cloth.down = {0, -1, 0};
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
-  PictureCamera camera = camera_showing(scene, system.start, Vec3(0, 0, 1), panel_aspect());
+  PictureCamera camera = camera_showing(scene, system.start, Vec3(0, 0, 1), panel_aspect);
   camera.eye += 0.2 * (camera.eye - camera.target);  // room for the arcs
   std::vector<Image> panels;
   for (int k = 0; k < 4; ++k) {
@@ -147,7 +142,7 @@ void reproduce_deformation(StudyPage& study) {
     if (!run_limited(simulation, study, part, part + 0.3, work)) return;
     table.rows.push_back(strain_row(hung_cloths[k], simulation, work, study));
     const Vec3Field& position = simulation.state().position;
-    const PictureCamera camera = camera_showing(run.scene, position, Vec3(0.3, 0.25, 1), panel_aspect());
+    const PictureCamera camera = camera_showing(run.scene, position, Vec3(0.3, 0.25, 1), panel_aspect);
     plain.push_back(panel(run.scene, simulation.system(), position, camera, {}));
     coloured.push_back(panel(run.scene, simulation.system(), position, camera,
                              {.colouring = ClothColouring::strain, .strain_scale = strain_scale}));
@@ -180,7 +175,7 @@ void reproduce_wind(StudyPage& study) {
   const Vec3Field everywhere = joined(shapes);  // one camera for all three
   const PictureOptions look{.arrows = wind_arrows(run.scene, everywhere)};
   const PictureCamera camera =
-      camera_showing(run.scene, everywhere, Vec3(0.85, 0.12, 0.75), panel_aspect(), look.arrows);
+      camera_showing(run.scene, everywhere, Vec3(0.85, 0.12, 0.75), panel_aspect, look.arrows);
   for (const Vec3Field& shape : shapes)
     panels.push_back(panel(run.scene, simulation.system(), shape, camera, look));
   const Measurement measurement = simulation.measure();

@@ -9,10 +9,6 @@
 namespace cloth {
 namespace {
 
-constexpr int panel_width = 480, panel_height = 420;
-constexpr double panel_aspect = static_cast<double>(panel_width) / panel_height;
-constexpr std::array<const char*, 3> methods{"semi-implicit-euler", "rk4", "verlet"};
-
 Image panel(const Simulation& simulation, const Vec3& direction) {
   const Scene& scene = simulation.scene();
   const Vec3Field& position = simulation.state().position;
@@ -118,7 +114,7 @@ bool show_friction(StudyPage& study) {
 std::vector<Vec3Field> three_shapes(const char* scene, const std::string& step, StudyPage& study, double from,
                                     std::vector<Image>* panels) {
   std::vector<Vec3Field> shapes;
-  for (const char* method : methods) {
+  for (const char* method : report_methods) {
     const SceneRun run =
         scene_run(scene, {fmt::format("integrator.method={}", method), "integrator.time_step=" + step});
     Simulation simulation(run.scene);
@@ -151,7 +147,7 @@ void reproduce_methods(StudyPage& study) {
                                  {"methods", "corners-free (smooth)", "corners-shear (limited to 10 %)"});
   constexpr std::array<std::array<std::size_t, 2>, 3> pairs{{{0, 1}, {2, 1}, {0, 2}}};
   for (const auto& [a, b] : pairs) {
-    const std::string name = facts_of(methods[a]).title + " to " + facts_of(methods[b]).title;
+    const std::string name = facts_of(report_methods[a]).title + " to " + facts_of(report_methods[b]).title;
     const double free = study.number(name + ", smooth", rms_distance(smooth[a], smooth[b]), "m");
     const double held = study.number(name + ", limited", rms_distance(limited[a], limited[b]), "m");
     table.rows.push_back({{name, html_number(1000 * free) + " mm", html_number(1000 * held) + " mm"}});

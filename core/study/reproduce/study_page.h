@@ -1,6 +1,7 @@
 // What every part of the reproduction writes to: page, files, numbers, progress.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,13 @@
 #include "study/reproduce.h"
 
 namespace cloth {
+
+/// The methods of the source report.
+inline constexpr std::array<const char*, 3> report_methods{"semi-implicit-euler", "rk4", "verlet"};
+
+/// Pictures of cloth that stand side by side [px].
+inline constexpr int panel_width = 480, panel_height = 420;
+inline constexpr double panel_aspect = static_cast<double>(panel_width) / panel_height;
 
 class StudyPage {
  public:

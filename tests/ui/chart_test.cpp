@@ -48,6 +48,7 @@ class ChartTest : public QObject {
   void the_read_out_names_the_nearest_sample();
   void a_legend_entry_hides_its_curve_and_the_range_follows();
   void the_deformation_rate_is_a_line_of_its_own();
+  void values_of_the_size_of_rounding_have_an_axis_like_any_other();
   void a_reset_clears_the_curves();
   void a_hidden_panel_draws_nothing_and_catches_up();
   void an_empty_panel_says_what_to_do();
@@ -290,6 +291,26 @@ void ChartTest::the_deformation_rate_is_a_line_of_its_own() {
   bench.settle();
   QVERIFY(!entry->isVisible());
   QVERIFY(bench.frame("strain").y.high < 50);
+}
+
+void ChartTest::values_of_the_size_of_rounding_have_an_axis_like_any_other() {
+  Bench bench;
+  std::vector<ChartSample> samples = run_of(20);
+  for (ChartSample& s : samples) s.max_strain *= 1e-15;
+  bench.panel.append(samples);
+  bench.settle();
+  const QImage picture = bench.canvas("strain")->grab().toImage();
+  const QRect plot = bench.map("strain").plot.toRect();
+  const auto ink = [&](const QRect& where) {
+    int count = 0;
+    for (int y = where.top(); y <= where.bottom(); ++y)
+      for (int x = where.left(); x <= where.right(); ++x)
+        count += std::abs(picture.pixelColor(x, y).lightness() - theme().panel.lightness()) > 40;
+    return count;
+  };
+  QVERIFY2(ink({0, plot.top(), plot.left() - 4, plot.height()}) > 20, "labels beside the axis");
+  QVERIFY2(ink({plot.right() + 2, plot.top(), picture.width() - plot.right() - 3, plot.height()}) == 0,
+           "nothing beyond the plot");
 }
 
 void ChartTest::a_reset_clears_the_curves() {

@@ -85,7 +85,8 @@ void PaintedLayer::lay(QPainter& view, const QRectF& area, const Key& key,
 }
 
 void Overlay::forget() {
-  for (PaintedLayer* layer : {&bar_, &mode_, &contact_, &brush_, &ring_, &line_, &message_}) layer->forget();
+  for (PaintedLayer* layer : {&bar_, &mode_, &contact_, &brush_, &ring_, &line_, &hint_, &message_})
+    layer->forget();
 }
 
 void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum,
@@ -286,6 +287,20 @@ void Overlay::pull_line(QPainter& view, const Theme& theme, QPointF particle, QP
     p.setBrush(theme.accent);
     p.drawEllipse(particle, 4, 4);
     p.drawEllipse(cursor, 2.5, 2.5);
+  });
+}
+
+void Overlay::hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text) {
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
+  const double width = std::min(metrics.horizontalAdvance(text) + 20, size.width() - 2 * spacing);
+  const QRectF area((size.width() - width) / 2, size.height() - metrics.height() - 8 - 2 * spacing, width,
+                    metrics.height() + 8);
+  hint_.lay(view, area, {}, [&](QPainter& p) {
+    card(p, area, theme);
+    p.setFont(font_of(p, 0.9, QFont::Normal));
+    p.setPen(theme.text);
+    const double room = area.width() - 12;
+    p.drawText(area, Qt::AlignCenter, metrics.elidedText(text, Qt::ElideRight, room));
   });
 }
 

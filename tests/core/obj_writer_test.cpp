@@ -41,11 +41,11 @@ ClothSystem cloth_of(const std::string& scene_name) {
   return make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}));
 }
 
-/// At rest, but for a wave of awkward numbers.
+/// At rest, but for a gentle wave of awkward numbers.
 ClothState wavy(const ClothSystem& system) {
   ClothState state = starting_state(system);
   for (std::size_t i = 0; i < state.position.size(); ++i)
-    state.position.y()[i] += 0.1 * std::sin(0.37 * static_cast<double>(i)) / 3;
+    state.position.y()[i] += 0.1 * std::sin(3.7 * state.position.x()[i]) / 3;
   return state;
 }
 

@@ -48,7 +48,7 @@ class ChartTest : public QObject {
   void the_read_out_names_the_nearest_sample();
   void a_legend_entry_hides_its_curve_and_the_range_follows();
   void the_deformation_rate_is_a_line_of_its_own();
-  void values_of_the_size_of_rounding_have_an_axis_like_any_other();
+  void values_of_the_size_of_rounding_have_no_axis_of_their_own_unless_wanted();
   void a_reset_clears_the_curves();
   void a_hidden_panel_draws_nothing_and_catches_up();
   void an_empty_panel_says_what_to_do();
@@ -293,11 +293,14 @@ void ChartTest::the_deformation_rate_is_a_line_of_its_own() {
   QVERIFY(bench.frame("strain").y.high < 50);
 }
 
-void ChartTest::values_of_the_size_of_rounding_have_an_axis_like_any_other() {
+void ChartTest::values_of_the_size_of_rounding_have_no_axis_of_their_own_unless_wanted() {
   Bench bench;
   std::vector<ChartSample> samples = run_of(20);
   for (ChartSample& s : samples) s.max_strain *= 1e-15;
   bench.panel.append(samples);
+  bench.settle();
+  QCOMPARE(bench.frame("strain").y, (Range{0, 1}));
+  bench.chart("strain").set_y_range(Range{0, 2e-14});
   bench.settle();
   const QImage picture = bench.canvas("strain")->grab().toImage();
   const QRect plot = bench.map("strain").plot.toRect();

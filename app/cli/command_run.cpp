@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <thread>
 
+#include "cloth/mesh_cloth.h"
 #include "commands.h"
 #include "console.h"
+#include "io/cloth_obj.h"
+#include "io/run_folder.h"
 #include "progress.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
@@ -29,9 +33,23 @@ int threads_for(const RunArguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+/// Before a run that may be long.
+std::optional<cloth::IoError> missing_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  if (folder.empty() || std::filesystem::is_directory(folder)) return std::nullopt;
+  return cloth::IoError{file, "there is no folder " + folder.string()};
+}
+
+std::optional<cloth::IoError> write_cloth(const cloth::Scene& scene, const cloth::ClothState& state,
+                                          const std::string& path) {
+  const cloth::ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
+  return cloth::write_text_file(path, cloth_obj(system, state, cloth::title_at(scene.title, state.time)));
+}
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
+  if (const auto error = missing_folder_of(arguments.obj)) return report(*error);
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   const cloth::Scene& scene = *loaded.scene;
@@ -59,6 +77,8 @@ int run(const RunArguments& arguments) {
   if (!summary.notice.empty()) say(summary.notice);
   if (summary.divergence) say(cloth::describe(*summary.divergence));
   if (result.io_error) return report(*result.io_error);
+  if (!arguments.obj.empty())
+    if (const auto error = write_cloth(scene, result.final_state, arguments.obj)) return report(*error);
   const int printed =
       print(arguments.json ? cloth::summary_json(summary) : summary_text(summary, arguments.folder));
   return printed == done ? exit_code_of(summary.status) : printed;

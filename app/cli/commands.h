@@ -12,6 +12,7 @@ struct RunArguments {
   std::string scene;
   std::vector<std::string> settings;
   std::string folder;
+  std::string obj;  ///< a file for the cloth after the last step; empty: none
   int threads = 0;  ///< 0: as many as the machine has
   bool json = false;
 };

@@ -210,6 +210,9 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   run->add_option("--set", arguments.run.settings, set_help)->allow_extra_args(false);
   run->add_option("--out", arguments.run.folder,
                   "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
+  run->add_option("--obj", arguments.run.obj,
+                  "OBJ file for the cloth after the last step, with normals; of a grid also texture "
+                  "coordinates");
   run->add_option("--threads", arguments.run.threads,
                   "Threads that a step may use; without it all cores. The results are the same to the bit. "
                   "They are used while they are seen to gain; summary.json says how many could be")

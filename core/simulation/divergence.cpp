@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "cloth/sums.h"
@@ -9,6 +10,7 @@
 #include "forces/gravity.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_parameters.h"
 #include "simulation/simulation.h"
 
 namespace cloth {
@@ -28,6 +30,18 @@ std::optional<int> first_not_finite(const Vec3Field& field) {
 
 Vec3 gravity_of(const Scene& scene) {
   return scene.gravity.value_or(Vec3::Zero());
+}
+
+/// As a form calls it and as a file does: "sphere 1 (obstacles.0)".
+std::string obstacle_in_words(const Scene& scene, int obstacle) {
+  const std::string path = fmt::format("obstacles.{}", obstacle);
+  for (const Block& block : blocks_of(scene)) {
+    if (block.path != path) continue;
+    std::string title = block.title;
+    title.front() = static_cast<char>(std::tolower(title.front()));
+    return fmt::format("{} ({})", title, path);
+  }
+  return path;
 }
 
 }  // namespace
@@ -101,9 +115,10 @@ double Simulation::method_limit() const {
 
 Divergence Simulation::stop_at_pinch(const Pinch& pinch) const {
   Divergence stop = stop_at(
-      pinch.particle, fmt::format("obstacle {} cannot go on without passing through the cloth, which is held "
-                                  "at ({:.4g}, {:.4g}, {:.4g}) m",
-                                  pinch.obstacle, pinch.place.x(), pinch.place.y(), pinch.place.z()));
+      pinch.particle, fmt::format("{} cannot go on without passing through the cloth, which is held at "
+                                  "({:.4g}, {:.4g}, {:.4g}) m",
+                                  obstacle_in_words(scene_, pinch.obstacle), pinch.place.x(), pinch.place.y(),
+                                  pinch.place.z()));
   stop.pinched = true;
   return stop;
 }

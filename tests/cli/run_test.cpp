@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/command_line.h"
+#include "io/obj_reader.h"
 #include "io/run_folder.h"
 #include "scene/scene_json.h"
 #include "support/files.h"
@@ -83,6 +84,37 @@ TEST(Run, ThatDivergesExitsWithThreeAndKeepsTheLastGoodState) {
     for (const double value : column_of(state, column)) ASSERT_TRUE(std::isfinite(value));
   for (const double value : column_of(parse_csv(content_of(folder / "result/record.csv")), "kinetic_J"))
     EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(Run, WritesTheClothAfterTheLastStepAsAnObjFile) {
+  const TemporaryFolder folder;
+  const std::string obj = (folder / "the cloth.obj").string();
+  const CommandResult result = cli("run corners-free --set duration=0.05 --obj '" + obj + "' " + out(folder));
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const ObjReading reading = read_obj(obj);
+  ASSERT_TRUE(reading.mesh) << reading.problem;
+  const CsvTable state = parse_csv(content_of(folder / "result/final_state.csv"));
+  const auto x = column_of(state, "x_m"), y = column_of(state, "y_m"), z = column_of(state, "z_m");
+  ASSERT_EQ(reading.mesh->vertices.size(), x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) ASSERT_EQ(reading.mesh->vertices[i], Vec3(x[i], y[i], z[i]));
+  EXPECT_EQ(reading.mesh->triangles.size(), 2u * 32 * 32);
+  EXPECT_TRUE(has(content_of(obj), "limit on stretching, at 0.05 s\n"));
+}
+
+TEST(Run, ThatDivergesWritesTheLastGoodCloth) {
+  const TemporaryFolder folder;
+  const std::string obj = (folder / "cloth.obj").string();
+  EXPECT_EQ(cli("run corners-free --set integrator.time_step=0.005 --obj '" + obj + "'").exit_code, 3);
+  EXPECT_TRUE(read_obj(obj).mesh) << read_obj(obj).problem;  // which takes finite numbers alone
+}
+
+TEST(Run, IntoAnObjFileWithoutAFolderExitsWithFourBeforeItRuns) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      cli(short_run + "--obj '" + (folder / "none/cloth.obj").string() + "' " + out(folder));
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_TRUE(has(result.errors, "none/cloth.obj: there is no folder")) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "result"));
 }
 
 TEST(Run, WithoutAStableStepExitsWithTwoAndSaysWhy) {

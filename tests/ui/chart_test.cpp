@@ -48,6 +48,7 @@ class ChartTest : public QObject {
   void the_read_out_names_the_nearest_sample();
   void a_legend_entry_hides_its_curve_and_the_range_follows();
   void the_deformation_rate_is_a_line_of_its_own();
+  void values_of_the_size_of_rounding_have_no_axis_of_their_own_unless_wanted();
   void a_reset_clears_the_curves();
   void a_hidden_panel_draws_nothing_and_catches_up();
   void an_empty_panel_says_what_to_do();
@@ -290,6 +291,34 @@ void ChartTest::the_deformation_rate_is_a_line_of_its_own() {
   bench.settle();
   QVERIFY(!entry->isVisible());
   QVERIFY(bench.frame("strain").y.high < 50);
+}
+
+void ChartTest::values_of_the_size_of_rounding_have_no_axis_of_their_own_unless_wanted() {
+  Bench bench;
+  std::vector<ChartSample> samples = run_of(20);
+  for (ChartSample& s : samples) s.max_strain *= 1e-15;
+  bench.panel.append(samples);
+  bench.settle();
+  QCOMPARE(bench.frame("strain").y, (Range{0, 1}));
+  bench.chart("strain").set_y_range(Range{0, 2e-14});
+  bench.settle();
+  const QImage picture = bench.canvas("strain")->grab().toImage();
+  const QRect plot = bench.map("strain").plot.toRect();
+  const auto ink = [&](const QRect& where) {
+    int count = 0;
+    for (int y = where.top(); y <= where.bottom(); ++y)
+      for (int x = where.left(); x <= where.right(); ++x)
+        count += std::abs(picture.pixelColor(x, y).lightness() - theme().panel.lightness()) > 40;
+    return count;
+  };
+  const std::vector<Tick>& ticks = bench.frame("strain").y_ticks;
+  QVERIFY(ticks.size() >= 3);
+  for (const Tick& tick : ticks) {
+    const int y = qRound(bench.map("strain").y_of(tick.position));
+    QVERIFY2(ink({0, y - 4, plot.left() - 4, 8}) > 5, qPrintable(tick.label + " stands beside its value"));
+  }
+  QVERIFY2(ink({plot.right() + 2, plot.top(), picture.width() - plot.right() - 3, plot.height()}) == 0,
+           "nothing beyond the plot");
 }
 
 void ChartTest::a_reset_clears_the_curves() {

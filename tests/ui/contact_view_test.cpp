@@ -263,6 +263,7 @@ class ContactViewTest : public QObject {
     const QString text = bench.window.notice().text();
     QVERIFY2(text.contains("pinched") && text.contains("t = ") && text.contains("particle"),
              qPrintable(text));
+    QVERIFY2(text.contains("sphere 1 (obstacles.0)"), qPrintable(text));  // as the form and the file call it
     auto* button = bench.window.findChild<QPushButton*>("noticeButton");
     QVERIFY2(button->isVisible() && button->text().contains("Move sphere 1"), qPrintable(button->text()));
     const double stopped = bench.status().time;

@@ -22,6 +22,19 @@ const char* const odd_obj =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 2 5\n";
 const char* const bad_obj = "v 0 0 0\nv 1 nan 0\nf 1 2 3\n";
 
+void type(QLineEdit& into, const QString& text) {
+  into.setFocus();
+  into.selectAll();
+  QTest::keyClicks(&into, text);
+  QTest::keyClick(&into, Qt::Key_Return);
+}
+
+/// Whether the field's frame has the colour of errors, as it is painted.
+bool is_framed(QLineEdit& field) {
+  const QImage picture = field.grab().toImage();
+  return picture.pixelColor(picture.width() / 2, 0) == theme().error;
+}
+
 class Bench {
  public:
   Bench() {
@@ -164,6 +177,41 @@ class MeshFormTest : public QObject {
     QVERIFY(b.scene() == before);
     b.choose_file(b.obstacle_button(), b.path("open.obj"));
     QVERIFY2(!b.obstacle_rule()->isVisibleTo(&b.bench().window), "a good one takes the message away");
+  }
+
+  void a_refused_typed_name_is_framed_until_it_is_typed_anew_or_given_up() {
+    Bench b;
+    b.choose(b.cloth_button(), "mesh:disc.obj");
+    for (const char* path : {"obstacles.0.file", "cloth.mesh"}) {
+      b.bench().window.parameters().reveal(path);
+      auto* field = qobject_cast<QLineEdit*>(b.bench().editor(path, "field"));
+      auto* rule = qobject_cast<QLabel*>(b.bench().editor(path, "rule"));
+      QVERIFY(field && rule);
+      const QString before = field->text();
+      QVERIFY2(!is_framed(*field), path);
+      type(*field, "none.obj");
+      QVERIFY2(rule->isVisibleTo(&b.bench().window), path);
+      QCOMPARE(field->text(), QString("none.obj"));
+      QVERIFY2(is_framed(*field), path);
+      QTest::keyClick(field, Qt::Key_End);
+      QTest::keyClick(field, Qt::Key_X);
+      QVERIFY2(!is_framed(*field), "what is being typed is not refused yet");
+      QTest::keyClick(field, Qt::Key_Return);
+      QVERIFY2(is_framed(*field), path);
+      QTest::keyClick(field, Qt::Key_Escape);
+      QCOMPARE(field->text(), before);
+      QVERIFY2(!is_framed(*field) && !rule->isVisibleTo(&b.bench().window), path);
+    }
+    QCOMPARE(b.document().undoStack().count(), 1);  // the disc
+  }
+
+  void a_file_refused_by_the_dialog_leaves_the_field_alone() {
+    Bench b;
+    b.choose_file(b.obstacle_button(), b.path("bad.obj"));
+    auto* field = qobject_cast<QLineEdit*>(b.bench().editor("obstacles.0.file", "field"));
+    QVERIFY(b.obstacle_rule()->isVisibleTo(&b.bench().window));
+    QCOMPARE(field->text(), QString("closed.obj"));
+    QVERIFY2(!is_framed(*field), "the name in the field is the one in force");
   }
 
   void a_grid_becomes_a_mesh_and_a_grid_again() {

@@ -1,8 +1,16 @@
 // Going back and forth on the timeline, and sessions, as a user does it.
+#include <QDialogButtonBox>
+#include <QDir>
 #include <QFile>
+#include <QFileDialog>
 #include <QLabel>
+#include <QLineEdit>
 #include <QProcess>
+#include <QPushButton>
+#include <QTimer>
 
+#include "io/obj_reader.h"
+#include "main_window/cloth_file.h"
 #include "simulation/session_json.h"
 #include "window_bench.h"
 
@@ -27,6 +35,21 @@ QString later_text(WindowBench& bench) {
   return label->isHidden() ? QString() : label->text();
 }
 
+/// By the menu's entry and the file dialog, typing the file's name.
+void save_cloth(WindowBench& bench, const QString& path) {
+  QTimer watch;
+  bool typed = false;
+  QObject::connect(&watch, &QTimer::timeout, [&] {
+    auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+    if (!dialog || std::exchange(typed, true)) return;
+    dialog->findChild<QLineEdit*>("fileNameEdit")->setText(path);
+    QTest::mouseClick(dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), Qt::LeftButton);
+  });
+  watch.start(50);
+  bench.action("saveCloth")->trigger();
+  QVERIFY(typed);
+}
+
 }  // namespace
 
 class TimelineTest : public QObject {
@@ -37,6 +60,7 @@ class TimelineTest : public QObject {
     QStandardPaths::setTestModeEnabled(true);
     QApplication::setOrganizationName("Clothlab");
     QApplication::setApplicationName("clothlab-timeline-test");
+    QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
     apply_theme(*qApp, false);
   }
 
@@ -77,6 +101,34 @@ class TimelineTest : public QObject {
     QCOMPARE(bench.status().time, end);
     QVERIFY(bench.window.view().frame()->positions == last);
     QVERIFY(later_text(bench).isEmpty());
+  }
+
+  void the_cloth_is_saved_as_it_is_shown_also_at_an_earlier_time() {
+    const QTemporaryDir files;
+    WindowBench bench;
+    bench.play_until(0.3);
+    bench.pause();
+    drag_along(bench.window.timeline().track(), bench.status().time, 0.1);
+    bench.settle();
+    const auto shown = bench.window.view().frame()->positions;
+    save_cloth(bench, files.filePath("earlier"));
+    const cloth::ObjReading reading = cloth::read_obj(files.filePath("earlier.obj").toStdString());
+    QVERIFY2(reading.mesh, reading.problem.c_str());
+    QCOMPARE(3 * reading.mesh->vertices.size(), shown.size());
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      QCOMPARE(static_cast<float>(reading.mesh->vertices[i / 3][static_cast<int>(i % 3)]), shown[i]);
+    QVERIFY(bench.status().history.last_time >= 0.3);  // nothing of the run is lost
+    QCOMPARE(bench.window.document().undoStack().count(), 0);
+    QVERIFY(!bench.window.document().isModified());
+  }
+
+  void a_cloth_that_cannot_be_saved_is_answered_with_place_and_reason() {
+    const QTemporaryDir files;
+    const QString taken = files.filePath("taken.obj");
+    QVERIFY(QDir().mkpath(taken + "/below"));
+    WindowBench bench;
+    const QString problem = save_cloth_file(*bench.window.view().frame(), "x", taken);
+    QVERIFY2(problem.contains("taken.obj") && problem.contains("irectory"), qPrintable(problem));
   }
 
   void keys_go_by_record_intervals_and_to_the_ends() {

@@ -43,6 +43,32 @@ class ViewTest : public ViewFixture {
     QVERIFY(distance(before.pixelColor(new_place), after.pixelColor(new_place)) > 12);
   }
 
+  void a_cloth_that_has_left_the_picture_is_missed_and_one_looked_at_closely_is_not() {
+    QVERIFY(!view_->clothIsOutOfSight());
+    view_->setCameraPose(head_on(0.02));  // between four particles, the nose on the cloth
+    QVERIFY(!view_->clothIsOutOfSight());
+    view_->setCameraPose(head_on());
+    const auto lower_edge = [this] { return picture().copy(0, 450, 600, 50); };
+    auto away = std::make_shared<ClothFrame>(*flat_cloth());
+    for (std::size_t i = 2; i < away->positions.size(); i += 3) away->positions[i] += 100;  // behind the eye
+    const QImage before = lower_edge();
+    view_->showFrame(away);
+    QVERIFY(view_->clothIsOutOfSight());
+    QVERIFY2(lower_edge() != before, "it is said at the lower edge");
+    view_->frameAll();
+    QVERIFY(!view_->clothIsOutOfSight());
+  }
+
+  void nearly_all_of_it_is_enough_under_a_camera_that_nobody_moved() {
+    view_->resetCamera();
+    auto away = std::make_shared<ClothFrame>(*flat_cloth());
+    for (std::size_t i = 3; i < away->positions.size(); ++i) away->positions[i] += 100;  // but for a corner
+    view_->showFrame(away);
+    QVERIFY(view_->clothIsOutOfSight());
+    view_->setCameraPose(view_->camera().pose());
+    QVERIFY2(!view_->clothIsOutOfSight(), "whoever looks at that corner may");
+  }
+
   void the_texture_shows_both_thread_colours() {
     view_->setCameraPose(head_on(0.25));  // threads of some ten pixels
     const QImage image = picture();

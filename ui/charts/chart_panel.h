@@ -70,8 +70,7 @@ class ChartPanel : public QWidget {
 
  private:
   struct Parts;
-  void make_tool_bar();
-  void connect_chart(std::size_t index);
+  void make_bar();
   void lay_out();
   void apply_look();
   void data_changed();

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double y_tick_distance = 28, time_tick_distance = 45;
 constexpr double smallest_log_span = 1e-3;
+constexpr int legend_margin = spacing / 2;
+constexpr double noise = 1e-12;  // in any unit shown: rounding of what is zero, which gets no axis of its own
 
 int intervals(double px, double distance) {
   return std::clamp(static_cast<int>(px / distance), 3, 20);
@@ -148,7 +150,7 @@ Range LiveChart::automatic_y(const ChartRecord& record) {
   Range values = data_range(record, logarithmic_);
   const bool nothing = values.low > values.high;
   if (logarithmic_) return nothing ? Range{-2, 1} : sticky_.logarithmic(values);
-  if (nothing) return {0, 1};
+  if (nothing || std::max(std::abs(values.low), std::abs(values.high)) < noise) return {0, 1};
   // Zero belongs on the axis unless the values lie far away from it.
   if (values.low > 0 && (spec_.from_zero || values.low < values.span())) values.low = 0;
   if (values.high < 0 && -values.high < values.span()) values.high = 0;
@@ -223,12 +225,38 @@ void LiveChart::read(const ChartRecord& record, std::optional<double> time_s) {
   scene_->overlay().set_read_out(std::move(out), time_labels_);
 }
 
+std::vector<LegendEntry*> LiveChart::entries() const {
+  std::vector<LegendEntry*> all = legend_;
+  if (limit_entry_ && !limit_entry_->isHidden()) all.push_back(limit_entry_);
+  return all;
+}
+
+bool LiveChart::legend_beside_title(int width) const {
+  int needed = title_->sizeHint().width() + log_button_->sizeHint().width() + 2 * spacing;
+  for (const LegendEntry* entry : entries()) needed += entry->sizeHint().width();
+  return needed <= width;
+}
+
+std::vector<std::vector<LegendEntry*>> LiveChart::legend_rows(int width) const {
+  if (legend_beside_title(width)) return {entries()};
+  std::vector<std::vector<LegendEntry*>> rows;
+  int x = width;  // the first one begins a row
+  for (LegendEntry* entry : entries()) {
+    const int needed = entry->sizeHint().width();
+    if (x + needed > width - legend_margin) {
+      rows.emplace_back();
+      x = legend_margin;
+    }
+    rows.back().push_back(entry);
+    x += needed;
+  }
+  return rows;
+}
+
 int LiveChart::header_height(int width) const {
   const int row = log_button_->sizeHint().height();
-  int needed = title_->sizeHint().width() + log_button_->sizeHint().width() + 2 * spacing;
-  for (const LegendEntry* entry : legend_) needed += entry->sizeHint().width();
-  if (limit_entry_ && !limit_entry_->isHidden()) needed += limit_entry_->sizeHint().width();
-  return needed <= width ? row : 2 * row;
+  const int title_rows = legend_beside_title(width) ? 0 : 1;
+  return row * (title_rows + static_cast<int>(legend_rows(width).size()));
 }
 
 int LiveChart::height_beside_plot(int width) const {
@@ -246,24 +274,25 @@ QRectF LiveChart::plot_rect(double gutter) const {
 
 void LiveChart::lay_out() {
   const int row = log_button_->sizeHint().height();
-  const int header = header_height(width());
-  const bool two_rows = header > row;
-  title_->setGeometry(spacing, 0, title_->sizeHint().width(), row);
   const QSize log = log_button_->sizeHint();
   log_button_->setGeometry(width() - log.width() - plot_right_margin + spacing / 2, 0, log.width(),
                            log.height());
-  std::vector<LegendEntry*> entries = legend_;
-  if (limit_entry_ && !limit_entry_->isHidden()) entries.push_back(limit_entry_);
-  int x = spacing / 2;
-  if (!two_rows) {
-    x = log_button_->x() - spacing / 2;
-    for (const LegendEntry* entry : entries) x -= entry->sizeHint().width();
+  title_->setGeometry(spacing, 0, std::min(title_->sizeHint().width(), log_button_->x() - 2 * spacing), row);
+  const bool beside_title = legend_beside_title(width());
+  int y = beside_title ? 0 : row;
+  for (const auto& line : legend_rows(width())) {
+    int x = legend_margin;
+    if (beside_title) {
+      x = log_button_->x() - spacing / 2;
+      for (const LegendEntry* entry : line) x -= entry->sizeHint().width();
+    }
+    for (LegendEntry* entry : line) {
+      entry->setGeometry(QRect({x, y}, entry->sizeHint()));
+      x += entry->sizeHint().width();
+    }
+    y += row;
   }
-  for (LegendEntry* entry : entries) {
-    const QSize size = entry->sizeHint();
-    entry->setGeometry(x, two_rows ? row : 0, size.width(), size.height());
-    x += size.width();
-  }
+  const int header = header_height(width());
   view_->setGeometry(0, header, width(), std::max(1, height() - header));
 }
 

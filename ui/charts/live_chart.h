@@ -52,6 +52,10 @@ class LiveChart : public QWidget {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
+  std::vector<LegendEntry*> entries() const;
+  /// The legend beside the title where there is room, else in as many rows below it as it takes.
+  std::vector<std::vector<LegendEntry*>> legend_rows(int width) const;
+  bool legend_beside_title(int width) const;
   int header_height(int width) const;
   void lay_out();
   Range automatic_y(const ChartRecord& record);

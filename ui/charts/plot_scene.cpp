@@ -14,13 +14,15 @@ namespace clothlab {
 
 namespace {
 
-/// An axis whose ticks and labels are ours. A category axis puts a label at any value; on a logarithmic plot
-/// that value is a logarithm, so that Qt Charts never meets a value it cannot take the logarithm of.
+/// An axis whose ticks and labels are ours. A category axis puts a label at any value; ours are parts of the
+/// range, 0 to 1, so that Qt Charts meets neither a value it cannot take the logarithm of nor a range that it
+/// takes for none.
 QCategoryAxis* add_axis(QChart* chart, QLineSeries* carrier, Qt::Alignment side) {
   auto* axis = new QCategoryAxis;
   axis->setLabelsPosition(QCategoryAxis::AxisLabelsPositionOnValue);
   axis->setTruncateLabels(false);
   axis->setStartValue(-1e300);
+  axis->setRange(0, 1);
   chart->addAxis(axis, side);
   carrier->attachAxis(axis);
   return axis;
@@ -29,16 +31,17 @@ QCategoryAxis* add_axis(QChart* chart, QLineSeries* carrier, Qt::Alignment side)
 void set_ticks(QCategoryAxis* axis, Range range, std::vector<Tick> ticks) {
   // Without any category Qt Charts forgets the plot's place.
   if (ticks.empty()) ticks.push_back({range.low, QStringLiteral(" ")});
+  const auto place = [range](const Tick& tick) {
+    return range.span() > 0 ? (tick.position - range.low) / range.span() : 0;
+  };
   const QStringList old = axis->categoriesLabels();
   const bool same = std::equal(ticks.begin(), ticks.end(), old.begin(), old.end(),
-                               [axis](const Tick& tick, const QString& label) {
-                                 return tick.label == label && tick.position == axis->endValue(label);
+                               [&](const Tick& tick, const QString& label) {
+                                 return tick.label == label && place(tick) == axis->endValue(label);
                                });
-  if (!same)
-    for (const QString& label : old) axis->remove(label);
-  axis->setRange(range.low, range.high);
-  if (!same)
-    for (const Tick& tick : ticks) axis->append(tick.label, tick.position);
+  if (same) return;
+  for (const QString& label : old) axis->remove(label);
+  for (const Tick& tick : ticks) axis->append(tick.label, place(tick));
 }
 
 void colour_axis(QCategoryAxis* axis, const Theme& colours, const QFont& font) {

@@ -11,8 +11,6 @@ namespace clothlab {
 namespace {
 
 constexpr int refresh_interval = 34;  // ms
-constexpr int chart_gap = spacing / 2;
-constexpr double least_gutter = 30, gutter_slack = 12;  // px
 
 /// Columns of the record: a group for each quantity, a column in it for each pane that there can be, by its
 /// style.
@@ -46,17 +44,20 @@ ChartRecord empty_record() {
 
 }  // namespace
 
-CompareCharts::CompareCharts(QWidget* parent) : QWidget(parent), record_(empty_record()) {
+CompareCharts::CompareCharts(QWidget* parent)
+    : QWidget(parent), record_(empty_record()), stack_(record_, TimeView::Span::whole_run) {
   setObjectName("compareCharts");
   setAccessibleName(tr("Charts"));
-  time_.set_span(TimeView::Span::whole_run);
   timer_.setSingleShot(true);
   timer_.setInterval(refresh_interval);
   connect(&timer_, &QTimer::timeout, this, &CompareCharts::refresh);
+  connect(&stack_, &ChartStack::changed, this, &CompareCharts::changeLater);
+  connect(&stack_, &ChartStack::hovered, this,
+          [this](LiveChart*, std::optional<double> time_s) { readAt(time_s); });
 }
 
 CompareCharts::~CompareCharts() {
-  qDeleteAll(charts_);  // before the specs
+  deleteCharts();  // before the specs
 }
 
 void CompareCharts::setPanes(const cloth::Comparison& comparison) {
@@ -88,10 +89,15 @@ void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
   record_ = std::move(record);
 }
 
-void CompareCharts::makeCharts() {
-  qDeleteAll(charts_);
-  charts_.clear();
+void CompareCharts::deleteCharts() {
+  const std::vector<LiveChart*> charts = stack_.charts();
+  stack_.clear();
+  qDeleteAll(charts);
   specs_.clear();
+}
+
+void CompareCharts::makeCharts() {
+  deleteCharts();
   const auto all = chart_quantities();
   for (std::size_t q = 0; q < quantities; ++q) {
     auto spec = std::make_unique<ChartSpec>();
@@ -104,8 +110,7 @@ void CompareCharts::makeCharts() {
                               all[q].scale, pane_curve(curves_.styles[i])});
     auto* chart = new LiveChart(*spec, q + 1 == quantities, this);
     chart->set_logarithmic(all[q].logarithmic);
-    connectChart(chart);
-    charts_.push_back(chart);
+    stack_.add(chart);
     specs_.push_back(std::move(spec));
     chart->show();
   }
@@ -113,40 +118,8 @@ void CompareCharts::makeCharts() {
   changeLater();
 }
 
-void CompareCharts::connectChart(LiveChart* chart) {
-  PlotView* view = &chart->view();
-  connect(chart, &LiveChart::changed, this, &CompareCharts::changeLater);
-  connect(view, &PlotView::time_zoomed, this, [this](double anchor_s, double factor) {
-    time_.zoom(record_.times(), anchor_s, factor);
-    changeLater();
-  });
-  connect(view, &PlotView::time_panned, this, [this](double by_s) {
-    time_.pan(record_.times(), by_s);
-    changeLater();
-  });
-  connect(view, &PlotView::y_zoomed, this, [this, chart](double anchor, double factor) {
-    chart->zoom_y(anchor, factor);
-    changeLater();
-  });
-  connect(view, &PlotView::y_panned, this, [this, chart](double by) {
-    chart->pan_y(by);
-    changeLater();
-  });
-  connect(view, &PlotView::box_chosen, this, [this, chart](Range time, Range y) {
-    time_.show(record_.times(), time);
-    chart->set_y_range(y);
-    changeLater();
-  });
-  connect(view, &PlotView::reset_wanted, this, &CompareCharts::follow);
-  connect(view, &PlotView::y_reset_wanted, this, [this, chart] {
-    chart->set_y_range(std::nullopt);
-    changeLater();
-  });
-  connect(view, &PlotView::hovered, this, &CompareCharts::readAt);
-}
-
 LiveChart* CompareCharts::chart(const QString& key) const {
-  for (LiveChart* chart : charts_)
+  for (LiveChart* chart : stack_.charts())
     if (chart->spec().key == key) return chart;
   return nullptr;
 }
@@ -155,7 +128,7 @@ void CompareCharts::append(const std::vector<CompareSample>& samples) {
   for (const CompareSample& sample : samples) {
     if (sample.is_start) {
       record_ = empty_record();
-      follow();
+      stack_.follow();
     }
     std::array<double, quantities * cloth::most_panes> row;
     for (int style = 0; style < static_cast<int>(cloth::most_panes); ++style) {
@@ -170,12 +143,12 @@ void CompareCharts::append(const std::vector<CompareSample>& samples) {
 
 QString CompareCharts::exportPng(const QString& path, QSize size) {
   refresh();
-  return save_png(path, size, {record_, charts_, font()});
+  return save_png(path, size, {record_, stack_.charts(), font()});
 }
 
 QString CompareCharts::exportSvg(const QString& path, QSize size) {
   refresh();
-  return save_svg(path, size, {record_, charts_, font()});
+  return save_svg(path, size, {record_, stack_.charts(), font()});
 }
 
 QString CompareCharts::exportCsv(const QString& path) const {
@@ -185,7 +158,7 @@ QString CompareCharts::exportCsv(const QString& path) const {
     for (std::size_t q = 0; q < quantities; ++q)
       columns.push_back({curves_.names[i].toUtf8() + '_' + all[q].column, Source::samples,
                          column_of(q, curves_.styles[i])});
-  return save_csv(path, record_, columns, time_.shown(record_.times()));
+  return save_csv(path, record_, columns, stack_.shown_times());
 }
 
 void CompareCharts::saveAs() {
@@ -194,26 +167,15 @@ void CompareCharts::saveAs() {
   });
 }
 
-void CompareCharts::follow() {
-  time_.follow();
-  for (LiveChart* chart : charts_) chart->set_y_range(std::nullopt);
-  changeLater();
-}
-
 void CompareCharts::changeLater() {
   if (isVisible() && !timer_.isActive()) timer_.start();
 }
 
 void CompareCharts::refresh() {
-  if (charts_.empty()) return;
-  const Range shown = time_.shown(record_.times());
-  double needed = least_gutter;
-  for (LiveChart* chart : charts_) needed = std::max(needed, chart->prepare(record_, shown));
-  needed += spacing;
-  if (needed > gutter_ || needed < gutter_ - gutter_slack) gutter_ = needed;
-  for (LiveChart* chart : charts_) chart->draw(record_, gutter_);
+  if (stack_.charts().empty()) return;
+  stack_.draw();
   const bool begun = record_.samples.size() > 1;
-  charts_.front()->set_message(begun ? QString() : tr("Press play to compare the panes"));
+  stack_.charts().front()->set_message(begun ? QString() : tr("Press play to compare the panes"));
   readAt(cursor_);
 }
 
@@ -221,28 +183,17 @@ void CompareCharts::readAt(std::optional<double> time_s) {
   cursor_ = time_s;
   std::optional<double> at;
   if (time_s && !record_.samples.empty()) at = record_.samples.time(record_.samples.nearest(*time_s));
-  for (LiveChart* chart : charts_) chart->read(record_, at);
+  stack_.read(at);
 }
 
-/// Equal plots in what is left of the height.
 void CompareCharts::layOut() {
-  int top = spacing;
-  int plots = height() - top - spacing / 2 - static_cast<int>(quantities - 1) * chart_gap;
-  for (const LiveChart* chart : charts_) plots -= chart->height_beside_plot(width());
-  int left = static_cast<int>(charts_.size());
-  for (LiveChart* chart : charts_) {
-    const int plot = std::max(10, plots / left--);
-    plots -= plot;
-    const int height = chart->height_beside_plot(width()) + plot;
-    chart->setGeometry(0, top, width(), height);
-    top += height + chart_gap;
-  }
+  stack_.lay_out({0, spacing, width(), height() - spacing - spacing / 2});
 }
 
 void CompareCharts::changeEvent(QEvent* event) {
   QWidget::changeEvent(event);
   if (event->type() != QEvent::PaletteChange && event->type() != QEvent::FontChange) return;
-  for (LiveChart* chart : charts_) chart->apply_look();
+  for (LiveChart* chart : stack_.charts()) chart->apply_look();
   layOut();
   changeLater();
 }

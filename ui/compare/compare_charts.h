@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bridge/compare_status.h"
+#include "charts/chart_stack.h"
 #include "charts/live_chart.h"
-#include "charts/time_view.h"
 
 namespace clothlab {
 
@@ -37,7 +37,7 @@ class CompareCharts : public QWidget {
   LiveChart* chart(const QString& key) const;
 
   QSize sizeHint() const override { return {400, 600}; }
-  QSize minimumSizeHint() const override { return {250, 320}; }
+  QSize minimumSizeHint() const override { return {230, 320}; }
 
  protected:
   void changeEvent(QEvent* event) override;
@@ -53,9 +53,8 @@ class CompareCharts : public QWidget {
   };
 
   void makeCharts();
+  void deleteCharts();
   void forgetAllBut(const std::vector<int>& styles);
-  void connectChart(LiveChart* chart);
-  void follow();
   void changeLater();
   void refresh();
   void layOut();
@@ -63,12 +62,10 @@ class CompareCharts : public QWidget {
 
   Curves curves_;
   std::vector<std::unique_ptr<ChartSpec>> specs_;  ///< charts refer to them
-  std::vector<LiveChart*> charts_;
   ChartRecord record_;
-  TimeView time_;
+  ChartStack stack_;
   QTimer timer_;
   std::optional<double> cursor_;  ///< s
-  double gutter_ = 0;             ///< px, the same in all charts
 };
 
 }  // namespace clothlab

@@ -8,6 +8,7 @@
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "compare/pane_style.h"
 #include "integrators/registry.h"
@@ -21,7 +22,9 @@
 namespace clothlab {
 namespace {
 
-constexpr int frame_width = 2;  // px
+constexpr int frame_width = 2;    // px
+constexpr int step_width = 80;    // px
+constexpr int least_width = 222;  // px: letter, half of a method's name and the menu; step and gauge below
 
 void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
@@ -45,9 +48,11 @@ QString difference_text(const cloth::PaneResult& result, bool has_reference) {
 PaneView::PaneView(QWidget* parent)
     : QFrame(parent),
       view_(new ClothView(this)),
+      header_(new QWidget(this)),
       badge_(new PaneBadge(this)),
       method_(new QuietCombo(this)),
       step_(new ExactField(this)),
+      more_(new QToolButton(this)),
       gauge_(new StabilityGauge(this)),
       cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
@@ -55,18 +60,18 @@ PaneView::PaneView(QWidget* parent)
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(frame_width, frame_width, frame_width, frame_width);
   column->setSpacing(0);
-  column->addWidget(makeHeader());
+  column->addWidget(header_);
   column->addWidget(view_, 1);
   view_->setMinimumSize(160, 100);
+  makeHeader();
 
   connect(method_, &QComboBox::activated, this,
           [this](int index) { Q_EMIT methodChosen(method_->itemData(index).toString().toStdString()); });
   connect(step_, &ExactField::committed, this, &PaneView::takeStep);
 }
 
-QWidget* PaneView::makeHeader() {
-  auto* header = new QWidget(this);
-  auto* column = new QVBoxLayout(header);
+void PaneView::makeHeader() {
+  auto* column = new QVBoxLayout(header_);
   column->setContentsMargins(spacing, spacing / 2, spacing / 2, spacing / 2);
   column->setSpacing(spacing / 4);
 
@@ -78,30 +83,29 @@ QWidget* PaneView::makeHeader() {
   step_->setObjectName("step");
   step_->setUnit("s");
   step_->setAccessibleName(tr("Time step"));
-  step_->setFixedWidth(80);
-  auto* more = new QToolButton(header);
-  more->setObjectName("more");
-  more->setText(QStringLiteral("⋯"));
-  more->setStyleSheet("QToolButton::menu-indicator { image: none; } QToolButton { padding: 4px 8px; }");
-  more->setAccessibleName(tr("Pane"));
-  more->setToolTip(tr("Duplicate, remove, make it the reference"));
-  more->setPopupMode(QToolButton::InstantPopup);
-  makeMenu(*more);
-  auto* first = new QHBoxLayout;
-  first->setSpacing(spacing / 2);
-  first->addWidget(badge_);
-  first->addWidget(method_, 1);
-  first->addWidget(step_);
-  first->addWidget(more);
-  column->addLayout(first);
+  step_->setFixedWidth(step_width);
+  more_->setObjectName("more");
+  more_->setText(QStringLiteral("⋯"));
+  more_->setStyleSheet("QToolButton::menu-indicator { image: none; } QToolButton { padding: 4px 8px; }");
+  more_->setAccessibleName(tr("Pane"));
+  more_->setToolTip(tr("Duplicate, remove, make it the reference"));
+  more_->setPopupMode(QToolButton::InstantPopup);
+  makeMenu(*more_);
+  first_row_ = new QHBoxLayout;
+  first_row_->setSpacing(spacing / 2);
+  first_row_->addWidget(badge_);
+  first_row_->addWidget(method_, 1);
+  first_row_->addWidget(step_);
+  first_row_->addWidget(more_);
+  column->addLayout(first_row_);
 
-  auto* second = new QHBoxLayout;
-  second->addWidget(gauge_, 1);
+  second_row_ = new QHBoxLayout;
+  second_row_->setSpacing(spacing);
+  second_row_->addWidget(gauge_, 1);
   cost_->setObjectName("cost");
   cost_->setToolTip(tr("Seconds of stepping for each simulated second"));
-  second->addWidget(cost_);
-  second->addSpacing(spacing / 2);
-  column->addLayout(second);
+  second_row_->addWidget(cost_);
+  column->addLayout(second_row_);
 
   difference_->setObjectName("difference");
   column->addWidget(difference_);
@@ -110,7 +114,6 @@ QWidget* PaneView::makeHeader() {
   stopped_->setWordWrap(true);
   stopped_->hide();
   column->addWidget(stopped_);
-  return header;
 }
 
 void PaneView::makeMenu(QToolButton& button) {
@@ -195,6 +198,39 @@ void PaneView::dress() {
 void PaneView::changeEvent(QEvent* event) {
   QFrame::changeEvent(event);
   if (event->type() == QEvent::PaletteChange) dress();
+}
+
+QSize PaneView::minimumSizeHint() const {
+  return {least_width, QFrame::minimumSizeHint().height()};
+}
+
+/// At which the longest name of a method is whole with the step beside it.
+int PaneView::roomyWidth() const {
+  int method = 0;
+  for (int i = 0; i < method_->count(); ++i)
+    method = std::max(method, method_->widthFor(method_->itemText(i)));
+  const QMargins margins = header_->layout()->contentsMargins();
+  const int around = 2 * frame_width + margins.left() + margins.right() + 3 * first_row_->spacing();
+  return around + badge_->sizeHint().width() + method + step_width + more_->sizeHint().width();
+}
+
+/// Where the window is narrow, the step stands before the gauge, and the ranking alone says the cost.
+void PaneView::suitWidth() {
+  const bool roomy = width() >= roomyWidth(), was_roomy = first_row_->indexOf(step_) >= 0;
+  if (roomy == was_roomy) return;
+  if (roomy) {
+    second_row_->removeWidget(step_);
+    first_row_->insertWidget(first_row_->indexOf(method_) + 1, step_);
+  } else {
+    first_row_->removeWidget(step_);
+    second_row_->insertWidget(0, step_);
+  }
+  cost_->setVisible(roomy);
+}
+
+void PaneView::resizeEvent(QResizeEvent* event) {
+  QFrame::resizeEvent(event);
+  suitWidth();
 }
 
 void PaneView::paintEvent(QPaintEvent*) {

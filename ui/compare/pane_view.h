@@ -9,7 +9,7 @@
 #include "viewport/cloth_view.h"
 
 class QAction;
-class QComboBox;
+class QHBoxLayout;
 class QLabel;
 class QToolButton;
 
@@ -17,6 +17,7 @@ namespace clothlab {
 
 class ExactField;
 class PaneBadge;
+class QuietCombo;
 class Reading;
 class StabilityGauge;
 
@@ -35,6 +36,8 @@ class PaneView : public QFrame {
   /// Why the last step typed is not in force; empty: it is.
   void showStepRule(const QString& rule);
 
+  QSize minimumSizeHint() const override;
+
  Q_SIGNALS:
   void methodChosen(const std::string& method);
   void stepChosen(const cloth::ParameterValue& step);
@@ -45,22 +48,29 @@ class PaneView : public QFrame {
  protected:
   void paintEvent(QPaintEvent* event) override;
   void changeEvent(QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
-  QWidget* makeHeader();
+  void makeHeader();
   void makeMenu(QToolButton& button);
   void takeStep(const QString& text);
   void dress();
+  int roomyWidth() const;  ///< px
+  void suitWidth();
 
   int style_ = 0;
   ClothView* view_;
+  QWidget* header_;
   PaneBadge* badge_;
-  QComboBox* method_;
+  QuietCombo* method_;
   ExactField* step_;
+  QToolButton* more_;
   StabilityGauge* gauge_;
   Reading* cost_;
   QLabel* difference_;
   QLabel* stopped_;
+  QHBoxLayout* first_row_ = nullptr;
+  QHBoxLayout* second_row_ = nullptr;
   QAction* duplicate_;
   QAction* remove_;
   QAction* make_reference_;

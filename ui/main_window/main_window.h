@@ -102,6 +102,7 @@ class MainWindow : public QMainWindow {
   void compareMethods();
   void openComparison();
   void savePicture();
+  void saveCloth();
   void toggleRecording(bool on);
   void showAbout();
 
@@ -124,6 +125,7 @@ class MainWindow : public QMainWindow {
   QAction* reset_ = nullptr;
   QAction* record_ = nullptr;
   QAction* save_picture_ = nullptr;
+  QAction* save_cloth_ = nullptr;
   QAction* save_plots_ = nullptr;
 
   WorkerStatus shown_status_;

@@ -14,6 +14,7 @@
 #include "document/document_actions.h"
 #include "document/recording_folder.h"
 #include "io/run_folder.h"
+#include "main_window/cloth_file.h"
 #include "main_window/main_window.h"
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
@@ -62,9 +63,12 @@ void MainWindow::makeActions() {
   record_->setCheckable(true);
   save_picture_ = action("save-picture", tr("Save picture…"), tr("Save a picture of the view"),
                          QKeySequence("Ctrl+P"), "savePicture");
+  save_cloth_ = action("mesh", tr("Save cloth…"), tr("Save the cloth as the view shows it as an OBJ file"),
+                       QKeySequence("Ctrl+Shift+O"), "saveCloth");
   save_plots_ = action("export-plot", tr("Save plots…"), tr("Save the charts as PNG, SVG or CSV"),
                        QKeySequence("Ctrl+Shift+P"), "savePlots");
   connect(save_picture_, &QAction::triggered, this, &MainWindow::savePicture);
+  connect(save_cloth_, &QAction::triggered, this, &MainWindow::saveCloth);
   connect(save_plots_, &QAction::triggered, this, [this] { charts_->saveAs(); });
 }
 
@@ -91,7 +95,7 @@ void MainWindow::makeMenus() {
       file->addAction(tr("Save session as…"), QKeySequence("Ctrl+Alt+S"), this, &MainWindow::saveSessionAs);
   save_session->setObjectName("saveSession");
   file->addSeparator();
-  file->addActions({save_picture_, save_plots_});
+  file->addActions({save_picture_, save_cloth_, save_plots_});
   file->addSeparator();
   file->addAction(tr("Quit"), QKeySequence::Quit, this, &QWidget::close);
 
@@ -214,6 +218,21 @@ void MainWindow::savePicture() {
   if (path.isEmpty()) return;
   if (!picture.save(path))
     notice_->show("picture", NoticeBar::Level::error, tr("%1: the picture could not be written.").arg(path));
+}
+
+/// The frame that is shown when the dialog opens, however long it stays.
+void MainWindow::saveCloth() {
+  const auto shown = view_->frame();
+  if (!shown || !shown->has_cloth()) return;
+  const ClothFrame frame = *shown;
+  const QString path =
+      with_ending(QFileDialog::getSaveFileName(this, tr("Save the cloth"), {}, tr("Meshes (*.obj)")), ".obj");
+  if (path.isEmpty()) return;
+  const QString problem = save_cloth_file(frame, document_.title(), path);
+  if (problem.isEmpty())
+    notice_->withdraw("cloth");
+  else
+    notice_->show("cloth", NoticeBar::Level::error, tr("The cloth was not saved. %1").arg(problem));
 }
 
 void MainWindow::toggleRecording(bool on) {

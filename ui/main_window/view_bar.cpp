@@ -6,6 +6,7 @@
 #include <QMenu>
 #include <QSpinBox>
 #include <QToolButton>
+#include <algorithm>
 
 #include "theme/theme.h"
 #include "widgets/action_button.h"
@@ -35,8 +36,8 @@ ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
   row->addSpacing(2 * spacing);
   addContact(*row);
   row->addStretch(1);
-  addCamera(*row);
-  row->addWidget(make_action_button(save_picture, this));
+  addCamera();
+  keepLast(make_action_button(save_picture, this));
 }
 
 QAction* ViewBar::addChoice(QActionGroup* group, const char* icon_name, const QString& text,
@@ -126,10 +127,11 @@ void ViewBar::addContact(QHBoxLayout& row) {
   connect(&view_, &ClothView::hierarchyDepthChanged, this, [this](int depth) {
     box_level_->setMaximum(depth);
     box_level_->setVisible(depth > 0);
+    suitWidth();
   });
 }
 
-void ViewBar::addCamera(QHBoxLayout& row) {
+void ViewBar::addCamera() {
   const struct {
     CameraPreset preset;
     QString text, shortcut;
@@ -154,14 +156,51 @@ void ViewBar::addCamera(QHBoxLayout& row) {
   button->setPopupMode(QToolButton::InstantPopup);
   button->setToolTip(tr("Look from the front, back, left, right, top or a corner"));
   button->setAccessibleName(tr("Camera"));
-  row.addWidget(button);
+  keepLast(button);
 
   frame_all_ = new QAction(icon("frame-all"), tr("Frame all"), this);
   frame_all_->setObjectName("frameAll");
   frame_all_->setShortcut(QStringLiteral("F"));
   frame_all_->setToolTip(with_shortcut(tr("Fit the cloth and the obstacles into the view"), "F"));
   connect(frame_all_, &QAction::triggered, &view_, &ClothView::frameAll);
-  row.addWidget(make_action_button(frame_all_, this));
+  keepLast(make_action_button(frame_all_, this));
+}
+
+void ViewBar::keepLast(QWidget* button) {
+  layout()->addWidget(button);
+  last_ << button;
+}
+
+int ViewBar::roomOf(const QWidget& part) const {
+  return part.sizeHint().width() + layout()->spacing();
+}
+
+/// Without the last buttons.
+int ViewBar::leastWidth() const {
+  int least = layout()->minimumSize().width();
+  for (const QWidget* button : last_)
+    if (!button->isHidden()) least -= roomOf(*button);
+  return least;
+}
+
+/// Only the field for boxes may cost the last buttons their place.
+QSize ViewBar::minimumSizeHint() const {
+  int all_but_boxes = leastWidth() - (box_level_->isHidden() ? 0 : roomOf(*box_level_));
+  for (const QWidget* button : last_) all_but_boxes += roomOf(*button);
+  return {std::max(leastWidth(), all_but_boxes), layout()->minimumSize().height()};
+}
+
+void ViewBar::suitWidth() {
+  int needed = leastWidth();
+  for (QWidget* button : last_) {
+    needed += roomOf(*button);
+    button->setVisible(needed <= width());
+  }
+}
+
+void ViewBar::resizeEvent(QResizeEvent* event) {
+  QFrame::resizeEvent(event);
+  suitWidth();
 }
 
 void ViewBar::fillMenu(QMenu& menu) const {

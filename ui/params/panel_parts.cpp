@@ -1,8 +1,12 @@
 #include "params/panel_parts.h"
 
+#include <QHelpEvent>
 #include <QKeyEvent>
 #include <QPainter>
 #include <QStyle>
+#include <QStylePainter>
+#include <QTextDocument>
+#include <QToolTip>
 #include <QWheelEvent>
 
 #include "theme/theme.h"
@@ -33,6 +37,41 @@ QuietCombo::QuietCombo(QWidget* parent) : QComboBox(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   setMinimumContentsLength(6);
+}
+
+/// What the style keeps free on both sides of the entry comes off the room that it names.
+int QuietCombo::textRoom() const {
+  constexpr int style_margin = 1;
+  QStyleOptionComboBox option;
+  initStyleOption(&option);
+  return style()->subControlRect(QStyle::CC_ComboBox, &option, QStyle::SC_ComboBoxEditField, this).width() -
+         2 * style_margin;
+}
+
+QString QuietCombo::shownText() const {
+  return fontMetrics().elidedText(currentText(), Qt::ElideRight, textRoom());
+}
+
+int QuietCombo::widthFor(const QString& text) const {
+  return width() - textRoom() + fontMetrics().horizontalAdvance(text);
+}
+
+bool QuietCombo::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip || shownText() == currentText()) return QComboBox::event(event);
+  const QString whole = QStringLiteral("<p><b>%1</b></p>").arg(currentText().toHtmlEscaped());
+  const QString tip = Qt::mightBeRichText(toolTip()) ? toolTip() : toolTip().toHtmlEscaped();
+  QToolTip::showText(static_cast<QHelpEvent*>(event)->globalPos(), whole + tip, this);
+  return true;
+}
+
+void QuietCombo::paintEvent(QPaintEvent* event) {
+  if (currentIndex() < 0) return QComboBox::paintEvent(event);
+  QStylePainter painter(this);
+  QStyleOptionComboBox option;
+  initStyleOption(&option);
+  option.currentText = shownText();
+  painter.drawComplexControl(QStyle::CC_ComboBox, option);
+  painter.drawControl(QStyle::CE_ComboBoxLabel, option);
 }
 
 void QuietCombo::wheelEvent(QWheelEvent* event) {

@@ -22,15 +22,26 @@ class ElidedLabel : public QLabel {
   void paintEvent(QPaintEvent* event) override;
 };
 
-/// A combo box that leaves the wheel to the panel and can be narrower than its longest entry.
+/// A combo box that leaves the wheel to the panel and can be narrower than its longest entry: what has no
+/// room ends in an ellipsis, and the tooltip then begins with the whole of it.
 class QuietCombo : public QComboBox {
   Q_OBJECT
 
  public:
   explicit QuietCombo(QWidget* parent = nullptr);
 
+  /// The present entry as it is painted, whole or elided.
+  QString shownText() const;
+  /// The width at which this entry is whole.
+  int widthFor(const QString& text) const;
+
  protected:
+  bool event(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
+
+ private:
+  int textRoom() const;  ///< px
 };
 
 /// The head of a section: chevron and title, the whole width a button. Checked means open.

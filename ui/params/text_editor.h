@@ -1,4 +1,5 @@
-// A parameter that is free text.
+// A parameter that is free text. What was refused stays in the field, marked, until it is typed anew or
+// Escape brings the value back.
 #pragma once
 
 #include "params/parameter_editor.h"
@@ -18,8 +19,12 @@ class TextEditor : public ParameterEditor {
 
  protected:
   void showValue(const cloth::ParameterValue& value) override;
+  void markInvalid(bool invalid) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
+  bool hasPendingText() const;
+
   QLineEdit* field_;
 };
 

@@ -12,6 +12,7 @@
 #include "viewport/gl/cloth_renderer.h"
 #include "viewport/gl/gl_probe.h"
 #include "viewport/gl/weave.h"
+#include "viewport/picking.h"
 
 // Outside any namespace, as Qt's macro wants it: a static library's resources are linked only if something
 // asks.
@@ -21,6 +22,8 @@ static void load_viewport_resources() {
 
 namespace clothlab {
 namespace {
+
+constexpr int room_for_mode = 160;  // px: in a small pane of many its name would cover the cloth
 
 bool sizes_agree(const ClothFrame& frame) {
   if (frame.rows < 0 || frame.columns < 0) return false;
@@ -193,6 +196,13 @@ void ClothView::frameAll() {
   flyTo(camera_.framed(box, camera_.pose()));
 }
 
+bool ClothView::clothIsOutOfSight() const {
+  if (!has_cloth(frame_)) return false;
+  const double seen = share_in_picture(*frame_, camera_, {width(), height()});
+  constexpr double nearly_none = 0.1;
+  return camera_moved_ ? seen == 0 : seen < nearly_none;
+}
+
 void ClothView::setPreset(CameraPreset preset) {
   flyTo(camera_.seen_from(preset));
 }
@@ -302,8 +312,10 @@ void ClothView::paintOverlays(QPainter& painter) {
   const auto quantity = frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
   if (mode_ == ViewMode::strain && !colour_maximum_)
     overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
-  overlay_.mode_name(painter, look, mode_, quantity);
+  if (height() >= room_for_mode) overlay_.mode_name(painter, look, mode_, quantity);
   paintContactNote(painter);
+  if (clothIsOutOfSight())
+    overlay_.hint(painter, size(), look, tr("The cloth has left the picture. Press F to see it."));
   paintHandle(painter);
   paintHand(painter);
 }

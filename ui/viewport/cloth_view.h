@@ -75,6 +75,9 @@ class ClothView : public QWidget {
   void setCameraPose(const CameraPose& pose);
   bool cameraWasMoved() const { return camera_moved_; }  ///< by the user, since resetCamera()
   void frameAll();
+  /// Whether all of the cloth has left the picture, or under a camera that nobody moved nearly all. The view
+  /// then says how to see it.
+  bool clothIsOutOfSight() const;
   void setPreset(CameraPreset preset);
   /// For a newly opened scene: the next frame is framed, and every new topology until the user moves the
   /// camera.

@@ -71,7 +71,7 @@ void ClothView::paintHandle(QPainter& painter) {
   if (has_motion(obstacle)) {
     QPolygonF keys;
     for (const cloth::Keyframe& key : obstacle.keyframes) keys << as_point(camera_.project(key.position));
-    overlay_.motion(painter, theme(), keys, as_point(camera_.project(shown.place)));
+    overlay_.motion(painter, size(), theme(), keys, as_point(camera_.project(shown.place)));
   }
   const auto tips = shown.tips(camera_);
   overlay_.handle(painter, theme(), as_point(camera_.project(shown.place)),

@@ -48,6 +48,30 @@ QColor halo_of(const Theme& theme) {
   return faded(theme.dark ? QColor(Qt::black) : QColor(Qt::white), 0.65);
 }
 
+/// How much of a line (px) lies in a rectangle, to some px.
+double length_within(const QPolygonF& line, const QRectF& area) {
+  constexpr double stride = 4;
+  double within = 0;
+  for (qsizetype i = 1; i < line.size(); ++i) {
+    const QLineF part(line[i - 1], line[i]);
+    for (double s = 0; s < part.length(); s += stride)
+      if (area.contains(part.pointAt(s / part.length()))) within += stride;
+  }
+  return within;
+}
+
+/// A label of this size below the handle at `at`, or above its arrows where it would cover more of the way of
+/// the keys below; inside the view.
+QRectF place_beside_handle(QPointF at, QSizeF label, const QPolygonF& keys, QSizeF view) {
+  const double left =
+      std::clamp(at.x() - 0.5 * label.width(), 0.0, std::max(0.0, view.width() - label.width()));
+  const QRectF below(QPointF(left, at.y() + ObstacleHandle::ring_radius + 10), label);
+  const QRectF above(QPointF(left, at.y() - ObstacleHandle::arrow_length - 10 - label.height()), label);
+  const bool up = above.top() >= 0 &&
+                  (below.bottom() > view.height() || length_within(keys, above) < length_within(keys, below));
+  return up ? above : below;
+}
+
 void arrow(QPainter& painter, const QLineF& line, const QColor& colour, const QColor& halo, double width) {
   haloed_line(painter, line, colour, halo, width);
   const double length = line.length(), head = std::min(11.0, 0.5 * length);
@@ -85,7 +109,8 @@ void PaintedLayer::lay(QPainter& view, const QRectF& area, const Key& key,
 }
 
 void Overlay::forget() {
-  for (PaintedLayer* layer : {&bar_, &mode_, &contact_, &brush_, &ring_, &line_, &message_}) layer->forget();
+  for (PaintedLayer* layer : {&bar_, &mode_, &contact_, &brush_, &ring_, &line_, &hint_, &message_})
+    layer->forget();
 }
 
 void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double maximum,
@@ -195,7 +220,7 @@ void Overlay::handle(QPainter& view, const Theme& theme, QPointF at, const std::
   view.restore();
 }
 
-void Overlay::motion(QPainter& view, const Theme& theme, const QPolygonF& keys, QPointF at) {
+void Overlay::motion(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& keys, QPointF at) {
   view.save();
   view.setRenderHint(QPainter::Antialiasing);
   view.setBrush(Qt::NoBrush);
@@ -211,9 +236,8 @@ void Overlay::motion(QPainter& view, const Theme& theme, const QPolygonF& keys, 
   const QString note = tr("Moves the whole motion");
   view.setFont(font_of(view, 0.9, QFont::Normal));
   const QFontMetricsF metrics(view.font(), view.device());
-  const QRectF label(at.x() - 0.5 * metrics.horizontalAdvance(note) - 10,
-                     at.y() + ObstacleHandle::ring_radius + 10, metrics.horizontalAdvance(note) + 20,
-                     metrics.height() + 6);
+  const QRectF label =
+      place_beside_handle(at, {metrics.horizontalAdvance(note) + 20, metrics.height() + 6}, keys, size);
   card(view, label, theme);
   view.setPen(theme.text);
   view.drawText(label, Qt::AlignCenter, note);
@@ -286,6 +310,20 @@ void Overlay::pull_line(QPainter& view, const Theme& theme, QPointF particle, QP
     p.setBrush(theme.accent);
     p.drawEllipse(particle, 4, 4);
     p.drawEllipse(cursor, 2.5, 2.5);
+  });
+}
+
+void Overlay::hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text) {
+  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
+  const double width = std::min(metrics.horizontalAdvance(text) + 20, size.width() - 2 * spacing);
+  const QRectF area((size.width() - width) / 2, size.height() - metrics.height() - 8 - 2 * spacing, width,
+                    metrics.height() + 8);
+  hint_.lay(view, area, {}, [&](QPainter& p) {
+    card(p, area, theme);
+    p.setFont(font_of(p, 0.9, QFont::Normal));
+    p.setPen(theme.text);
+    const double room = area.width() - 12;
+    p.drawText(area, Qt::AlignCenter, metrics.elidedText(text, Qt::ElideRight, room));
   });
 }
 

@@ -61,11 +61,13 @@ class Overlay {
   /// A ring with arrows along x, y and z; `active`: 0 the ring, 1 to 3 an arrow, else none.
   void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
   /// The way that keyframes lead, from key to key, and beside the handle at `at` what a drag of it moves.
-  void motion(QPainter& view, const Theme& theme, const QPolygonF& keys, QPointF at);
+  void motion(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& keys, QPointF at);
+  /// One line at the lower edge.
+  void hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text);
   void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);
 
  private:
-  PaintedLayer bar_, mode_, contact_, brush_, ring_, line_, message_;
+  PaintedLayer bar_, mode_, contact_, brush_, ring_, line_, hint_, message_;
 };
 
 }  // namespace clothlab

@@ -1,5 +1,6 @@
 #include "viewport/picking.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -71,6 +72,19 @@ std::optional<int> pick_particle(const ClothFrame& frame, const Camera& camera,
     if (distance < least) least = distance, picked = i;
   }
   return picked;
+}
+
+double share_in_picture(const ClothFrame& frame, const Camera& camera, const Eigen::Vector2d& size) {
+  constexpr std::size_t enough = 1000;  // particles
+  const std::size_t count = frame.positions.size() / 3, stride = std::max<std::size_t>(count / enough, 1);
+  const Eigen::Matrix4d to_screen = camera.world_to_screen();
+  int asked = 0, inside = 0;
+  for (std::size_t i = 0; i < count; i += stride, ++asked) {
+    const Eigen::Vector4d seen = to_screen * particle_position(frame, static_cast<int>(i)).homogeneous();
+    const Eigen::Vector2d at = seen.head<2>() / seen.w();
+    if (seen.w() > 0 && (at.array() >= 0).all() && (at.array() <= size.array()).all()) ++inside;
+  }
+  return asked > 0 ? static_cast<double>(inside) / asked : 0;
 }
 
 }  // namespace clothlab

@@ -1,4 +1,4 @@
-// Which particle lies under the cursor.
+// Which particle lies under the cursor, and how many lie in the picture.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,10 @@ inline constexpr double picking_tolerance = 12;  ///< px, around particles the r
 /// particle that is drawn nearest to the cursor within the tolerance.
 std::optional<int> pick_particle(const ClothFrame& frame, const Camera& camera,
                                  const Eigen::Vector2d& cursor);
+
+/// The share of the cloth's particles that lies in a picture of this size (px); of a large cloth every n-th
+/// is asked.
+double share_in_picture(const ClothFrame& frame, const Camera& camera, const Eigen::Vector2d& size);
 
 /// m along the ray to the triangle p q r, from either side; negative if it passes by (Moeller and Trumbore
 /// 1997).

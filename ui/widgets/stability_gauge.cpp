@@ -20,6 +20,11 @@ QString step_text(double seconds) {
   return QString::number(1e6 * seconds, 'g', 3) + QStringLiteral(" µs");
 }
 
+QString percent_text(const StabilityReading& reading) {
+  constexpr long most = 9999;
+  return QStringLiteral("%1 %").arg(std::min(std::lround(100 * reading.fraction()), most));
+}
+
 QColor level_colour(StabilityReading::Level level) {
   switch (level) {
     case StabilityReading::Level::unlimited:
@@ -80,8 +85,17 @@ QString StabilityGauge::text() const {
     default:
       break;
   }
-  const int percent = static_cast<int>(std::lround(100 * reading_.fraction()));
-  return tr("%1, %2 % of the limit").arg(step_text(reading_.time_step)).arg(std::min(percent, 9999));
+  return tr("%1, %2 of the limit").arg(step_text(reading_.time_step), percent_text(reading_));
+}
+
+QString StabilityGauge::text_within(int px) const {
+  QStringList wordings{text()};
+  if (reading_.stable_step > 0)
+    wordings << QStringLiteral("%1, %2").arg(step_text(reading_.time_step), percent_text(reading_))
+             << percent_text(reading_);
+  for (const QString& wording : wordings)
+    if (fontMetrics().horizontalAdvance(wording) <= px) return wording;
+  return fontMetrics().elidedText(wordings.last(), Qt::ElideRight, px);
 }
 
 QString StabilityGauge::explanation() const {
@@ -152,8 +166,7 @@ void StabilityGauge::paintEvent(QPaintEvent*) {
   painter.setPen(alarming                                          ? theme().error
                  : reading_.level == StabilityReading::Level::near ? theme().warning
                                                                    : theme().text);
-  painter.drawText(text_rect, Qt::AlignVCenter | Qt::AlignLeft,
-                   fontMetrics().elidedText(text(), Qt::ElideRight, text_rect.width()));
+  painter.drawText(text_rect, Qt::AlignVCenter | Qt::AlignLeft, text_within(text_rect.width()));
 }
 
 }  // namespace clothlab

@@ -31,7 +31,8 @@ class StabilityGauge : public QWidget {
 
   void setReading(const StabilityReading& reading);
   const StabilityReading& reading() const { return reading_; }
-  QString text() const;  ///< "0.91 ms, 73 % of the limit"
+  QString text() const;               ///< "0.91 ms, 73 % of the limit"
+  QString text_within(int px) const;  ///< as much of it as there is room for: at least "73 %"
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;

@@ -1,0 +1,17 @@
+// A cloth as it lies, as a Wavefront OBJ file.
+#pragma once
+
+#include <string>
+
+#include "cloth/cloth_system.h"
+
+namespace cloth {
+
+/// A vertex with its normal for each particle, in their order, and the triangles between them; of a grid also
+/// texture coordinates, of which the first row is the upper edge. `title` becomes a comment.
+std::string cloth_obj(const ClothSystem& system, const ClothState& state, const std::string& title);
+
+/// The comment: what the cloth is of, and when.
+std::string title_at(const std::string& scene_title, double time);
+
+}  // namespace cloth

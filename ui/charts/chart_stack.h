@@ -1,0 +1,55 @@
+// Charts one above the other over the same times: what a hand does to one of them, their equal heights, and
+// the one left edge of their plots.
+#pragma once
+
+#include <QObject>
+#include <optional>
+#include <vector>
+
+#include "charts/chart_record.h"
+#include "charts/time_view.h"
+
+class QRect;
+
+namespace clothlab {
+
+class LiveChart;
+
+class ChartStack : public QObject {
+  Q_OBJECT
+ public:
+  /// Charts of this record, which outlives the stack.
+  ChartStack(const ChartRecord& record, TimeView::Span span, QObject* parent = nullptr);
+
+  /// Below those that there are. Whoever made a chart deletes it, after `clear`.
+  void add(LiveChart* chart);
+  void clear() { charts_.clear(); }
+  const std::vector<LiveChart*>& charts() const { return charts_; }
+
+  TimeView& time() { return time_; }
+  const TimeView& time() const { return time_; }
+  Range shown_times() const { return time_.shown(record_.times()); }
+  /// Whether the charts follow the run: all of its times, and y ranges of their own choice.
+  bool is_live() const;
+  void follow();
+
+  /// Equal plots in what is left of the height.
+  void lay_out(const QRect& room);
+  void draw();
+  /// Shows the values at a time, or none.
+  void read(std::optional<double> time_s);
+
+ Q_SIGNALS:
+  void changed();  ///< there is something else to draw
+  void hovered(clothlab::LiveChart* chart, std::optional<double> time_s);
+
+ private:
+  void connect_chart(LiveChart* chart);
+
+  const ChartRecord& record_;
+  TimeView time_;
+  std::vector<LiveChart*> charts_;  ///< from top to bottom
+  double gutter_ = 0;               ///< px, left of the plots
+};
+
+}  // namespace clothlab

@@ -66,7 +66,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
       thickness_(scene.contact.value_or(ContactSettings{}).thickness),
-      gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
+      gravity_(gravity_of(scene).norm()),
       poses_(bodies_.size()),
       next_poses_(bodies_.size()),
       end_poses_(bodies_.size()) {

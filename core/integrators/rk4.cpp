@@ -9,7 +9,7 @@ struct Stage {
   double node;  ///< where in the step the stage stands, and how far it follows the slope before it
   double weight;
 };
-constexpr std::array<Stage, 4> stages{{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};
+constexpr std::array<Stage, 4> kutta{{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};
 
 }  // namespace
 
@@ -24,16 +24,16 @@ IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const 
   next_position_ = state.position;
   next_velocity_ = state.velocity;
 
-  for (std::size_t s = 0; s < stages.size(); ++s) {
-    const double time = stages[s].node == 1 ? times.end : times.begin + stages[s].node * h;
+  for (std::size_t s = 0; s < kutta.size(); ++s) {
+    const double time = kutta[s].node == 1 ? times.end : times.begin + kutta[s].node * h;
     forces.update(stage_position_, time);
     forces.force(stage_velocity_, force_);
-    if (forces.has_power()) work += h * stages[s].weight * forces.power(stage_velocity_);
-    add_scaled(h * stages[s].weight, stage_velocity_, next_position_);
-    add_acceleration(system, h * stages[s].weight, force_, next_velocity_);
-    if (s + 1 == stages.size()) break;
+    if (forces.has_power()) work += h * kutta[s].weight * forces.power(stage_velocity_);
+    add_scaled(h * kutta[s].weight, stage_velocity_, next_position_);
+    add_acceleration(system, h * kutta[s].weight, force_, next_velocity_);
+    if (s + 1 == kutta.size()) break;
 
-    const double ahead = h * stages[s + 1].node;
+    const double ahead = h * kutta[s + 1].node;
     stage_position_ = state.position;
     add_scaled(ahead, stage_velocity_, stage_position_);
     stage_velocity_ = state.velocity;

@@ -43,11 +43,11 @@ void ThreadChoice::decide() {
   watched_ = 0, watched_jobs_ = 0;
 }
 
-/// A core that others want meanwhile shows at once: a thread that has to wait stops all of them.
+/// A core that others want meanwhile shows soon: a thread that has to wait stops all of them.
 void ThreadChoice::watch_over(double seconds) {
   watched_ += seconds;
-  if (++watched_jobs_ < watch) return;
-  if (watched_ > watch * alone_median_) chosen_ = 1;
+  if (++watched_jobs_ < watch || watched_ < watch_time) return;
+  if (watched_ > watched_jobs_ * alone_median_) chosen_ = 1;
   watched_ = 0, watched_jobs_ = 0;
 }
 

@@ -33,8 +33,10 @@ class ThreadChoice {
   static constexpr int block = 8, not_counted = 2;
   /// Several threads must gain so much to be taken: as much again is noise.
   static constexpr double worthwhile = 0.97;
-  /// Jobs after which several threads are compared with what one took.
+  /// Jobs, and the time that they took, after which several threads are compared with what one took: one
+  /// interruption of some milliseconds is no reason to give them up.
   static constexpr int watch = 32;
+  static constexpr double watch_time = 0.02;  ///< s
 
   bool trying() const { return at_ < trial; }
   bool tries_all() const { return (at_ / block) % 2 == 1; }

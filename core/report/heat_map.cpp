@@ -115,8 +115,8 @@ Drawing::Drawing(const HeatMap& map)
   side_ = std::max(side_, 60.0);
   panel_height_ = std::min(side_, map.highest);
   top_ = titles_height(map.title, map.subtitle, map.width) + legend_height_;
-  const double row_height = panel_title + panel_height_ + axis_space;
-  bottom_ = top_ + row_height * double(rows_) + title_space;
+  const double panel_row = panel_title + panel_height_ + axis_space;
+  bottom_ = top_ + panel_row * double(rows_) + title_space;
   height_ = bottom_ + caption_height(map.caption, map.width) + 8;
 }
 
@@ -186,17 +186,17 @@ void Drawing::draw_marks(PlotCanvas& svg, const HeatPanel& panel, int class_inde
   if (style.mark == CellMark::none) return;
   const std::size_t nx = map_.x_values.size(), ny = map_.y_values.size();
   std::string data;
-  double smallest = 1e9;
+  double side = 1e9;
   for (std::size_t i = 0; i < std::min(panel.cells.size(), nx * ny); ++i) {
     if (panel.cells[i].class_index != class_index) continue;
     const Box box = cell_box(i % nx, i / nx);
     const double size = std::min(box.width(), box.height());
-    smallest = std::min(smallest, size);
+    side = std::min(side, size);
     data += mark_path(style.mark, {(box.left + box.right) / 2, (box.top + box.bottom) / 2},
                       std::min(0.24 * size, 5.0));
   }
   svg.begin_group("marks", {}, true);
-  svg.path(data, mark_style(style, std::clamp(0.11 * smallest, 0.5, 1.4)));
+  svg.path(data, mark_style(style, std::clamp(0.11 * side, 0.5, 1.4)));
   svg.end_group();
 }
 

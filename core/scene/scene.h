@@ -160,6 +160,11 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
+/// m/s^2; zero where the scene has none.
+inline Vec3 gravity_of(const Scene& scene) {
+  return scene.gravity.value_or(Vec3::Zero());
+}
+
 const char* name_of(Shape shape);
 const char* name_of(NamedPin pin);
 std::optional<NamedPin> pin_named(const std::string& name);

@@ -28,10 +28,6 @@ std::optional<int> first_not_finite(const Vec3Field& field) {
   return std::nullopt;
 }
 
-Vec3 gravity_of(const Scene& scene) {
-  return scene.gravity.value_or(Vec3::Zero());
-}
-
 /// As a form calls it and as a file does: "sphere 1 (obstacles.0)".
 std::string obstacle_in_words(const Scene& scene, int obstacle) {
   const std::string path = fmt::format("obstacles.{}", obstacle);

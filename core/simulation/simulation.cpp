@@ -23,10 +23,6 @@ double elastic_scale_of(const ClothSystem& system) {
   return energy;
 }
 
-Vec3 gravity_of(const Scene& scene) {
-  return scene.gravity.value_or(Vec3::Zero());
-}
-
 /// Takes from `material` only what exists, so that an absent block is a material of zeros.
 SpringMaterial material_of(const Scene& scene) {
   return scene.springs.value_or(SpringMaterial{});

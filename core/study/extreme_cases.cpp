@@ -9,17 +9,17 @@
 namespace cloth {
 namespace {
 
-constexpr double frame = 1.0 / 60;   // s
-constexpr double base_step = 0.002;  // s: a quarter of Verlet's limit for the base scene
-constexpr double spacing = 0.1;      // m
+constexpr double frame = 1.0 / 60;        // s
+constexpr double base_step = 0.002;       // s: a quarter of Verlet's limit for the base scene
+constexpr double particle_spacing = 0.1;  // m
 
 /// What most cases differ from in one thing: 9 x 9 particles of 10 g, 0.1 m apart, hung by two corners.
 Scene base_scene(int rows = 9, int columns = 9) {
   Scene scene;
   scene.cloth.rows = rows;
   scene.cloth.columns = columns;
-  scene.cloth.width = spacing * (columns - 1);
-  scene.cloth.height = spacing * (rows - 1);
+  scene.cloth.width = particle_spacing * (columns - 1);
+  scene.cloth.height = particle_spacing * (rows - 1);
   scene.cloth.mass = 0.01 * rows * columns;
   scene.cloth.origin = Vec3::Zero();
   scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};

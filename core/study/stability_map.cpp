@@ -69,7 +69,7 @@ double energy_scale(const Simulation& run) {
   double elastic = 0;
   for (const SpringRun& springs : run.system().springs)
     elastic += 0.5 * springs.stiffness * springs.rest_length * springs.rest_length * springs.count;
-  return mass * scene.gravity.value_or(Vec3::Zero()).norm() * run.system().diagonal +
+  return mass * gravity_of(scene).norm() * run.system().diagonal +
          0.5 * mass * wind * wind + std::abs(run.checkpoint().ledger.initial) + trace * elastic;
 }
 

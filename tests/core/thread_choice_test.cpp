@@ -56,6 +56,14 @@ TEST(ThreadChoice, LeavesThreadsThatOthersKeepWaiting) {
   EXPECT_LE(run(choice, ThreadChoice::first_hold, stalled), 40);
 }
 
+TEST(ThreadChoice, KeepsThreadsThatWereInterruptedOnce) {
+  constexpr Costs large{100e-6, 60e-6}, interrupted{100e-6, 4e-3};
+  ThreadChoice choice;
+  run(choice, ThreadChoice::trial, large);
+  EXPECT_EQ(run(choice, 1, interrupted), 1);
+  EXPECT_EQ(run(choice, ThreadChoice::first_hold - 1, large), ThreadChoice::first_hold - 1);
+}
+
 TEST(ThreadChoice, IsNotMisledByAFewInterruptedJobs) {
   ThreadChoice choice;
   for (int k = 0; k < ThreadChoice::trial; ++k) {

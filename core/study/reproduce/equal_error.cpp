@@ -13,12 +13,12 @@
 namespace cloth {
 namespace {
 
-constexpr int repeats = 3;
+constexpr int runs_of_each = 3;
 
 struct Rung {
   int steps = 0;
   double error = 0;    ///< m
-  double seconds = 0;  ///< least of the repeats
+  double seconds = 0;  ///< least of all runs
 };
 struct Ladder {
   std::string method;
@@ -172,13 +172,13 @@ void add_smooth(StudyPage& study) {
   std::vector<Ladder> ladders = make_ladders({450, 900, 1800, 3600, 7200});
   for (Rung longest{.steps = 320}; Ladder & ladder : ladders)
     if (ladder.method == "rk4") ladder.rungs.insert(ladder.rungs.begin(), longest);
-  if (!climb(ladders, scene, fine->position, repeats, study, 0.3, 0.85)) return;
+  if (!climb(ladders, scene, fine->position, runs_of_each, study, 0.3, 0.85)) return;
   for (const Ladder& ladder : ladders)
     study.number(ladder.method + ": observed order, smooth", clear_order(ladder, floor), "",
                  facts_of(ladder.method).order);
   LinePlot plot = ladder_plot(ladders, scene.duration, floor, true);
   plot.title = "Error against run time, nothing limited";
-  plot.subtitle = fmt::format("corners-free, 33 x 33 particles, t = 0.5 s; least of {} runs", repeats);
+  plot.subtitle = fmt::format("corners-free, 33 x 33 particles, t = 0.5 s; least of {} runs", runs_of_each);
   study.plot("equal-error", plot,
              "The error after 0.5 s of simulated time against the time it took. The lower left is better.");
   const double crossing = add_wanted_table(ladders, scene.duration, study);

@@ -7,7 +7,7 @@ namespace cloth::speed {
 
 ReferenceKernel::ReferenceKernel(const Scene& scene, const ClothSystem& system, const ClothState& state)
     : damping_(scene.damping.value_or(0)) {
-  const Vec3 gravity = scene.gravity.value_or(Vec3::Zero());
+  const Vec3 gravity = gravity_of(scene);
   for (int axis = 0; axis < 3; ++axis) weight_[axis] = system.mass.front() * gravity[axis];
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     const Vec3 x = state.position[i], v = state.velocity[i];

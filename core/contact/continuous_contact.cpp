@@ -40,6 +40,15 @@ std::vector<ObstacleBody> bodies_of(const Scene& scene) {
   return bodies;
 }
 
+/// m, of the furthest point that can touch the cloth from the pivot.
+double reach_of(const Obstacle& obstacle, const Vec3Field& position) {
+  if (obstacle.shape != Shape::plane) return body_of(obstacle).reach;
+  double reach = 0;
+  for (std::size_t i = 0; i < position.size(); ++i)
+    reach = std::max(reach, (position[i] - obstacle.point).norm());
+  return reach;
+}
+
 double mean_edge(const Surface& surface, const Vec3Field& position) {
   double sum = 0;
   for (const auto& [a, b] : surface.edges) sum += (position[at(a)] - position[at(b)]).norm();
@@ -54,18 +63,22 @@ bool has_continuous_contact(const Scene& scene) {
                      [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
 }
 
-double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries) {
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries, const Vec3Field& position) {
   double carried = 0, highest = 0;
-  for (const ObstacleCarry& carry : carries) carried = std::max(carried, carry.speed());
+  for (std::size_t k = 0; k < carries.size(); ++k)
+    if (carries[k].carries())
+      carried = std::max(carried, carries[k].speed(carries[k].reshapes() ? reach_of(scene.obstacles[k], position) : 0));
   for (const Obstacle& obstacle : scene.obstacles)
     if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
   return highest + carried;
 }
 
-ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, double time)
+ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
+                                     double time)
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
+      carries_(std::move(carries)),
       close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
       thickness_(scene.contact.value_or(ContactSettings{}).thickness),
@@ -73,7 +86,8 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       poses_(bodies_.size()),
       next_poses_(bodies_.size()),
       end_poses_(bodies_.size()) {
-  for (const Obstacle& obstacle : obstacles_) starts_.push_back(pose_of(obstacle, time));
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    starts_.push_back(carried_pose(obstacles_, carries_, k, time));
   constexpr double edges_of_a_search = 4;
   if (scene.self_contact) {
     self_thickness_ = scene.self_contact->thickness;
@@ -88,18 +102,6 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
 void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
   assert(poses.size() == starts_.size());
   starts_ = poses;
-}
-
-void ContinuousContact::follow(const ContinuousContact& before) {
-  for (std::size_t k = 0; k < std::min(bodies_.size(), before.bodies_.size()); ++k) {
-    const ObstacleBody &now = bodies_[k], &then = before.bodies_[k];
-    if (now.shape != then.shape) continue;
-    starts_[k] = before.starts_[k];
-    if (now.pivot == then.pivot && now.normal == then.normal) continue;
-    Eigen::Matrix3d turn = before.starts_[k].turn;
-    if (now.shape == Shape::plane) turn = turn * Eigen::Quaterniond::FromTwoVectors(now.normal, then.normal);
-    starts_[k] = {turn, before.starts_[k].at(then.pivot) - turn * now.pivot};
-  }
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {

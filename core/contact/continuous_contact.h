@@ -25,8 +25,9 @@ namespace cloth {
 /// Whether the scene's contact is this one; otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
-/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest.
-double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries);
+/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest. How far from its
+/// pivot a plane that an edit has turned can touch the cloth follows from the positions.
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries, const Vec3Field& position);
 
 /// Begin and end of a step, in s.
 struct ContactTimes {
@@ -35,18 +36,14 @@ struct ContactTimes {
 
 class ContinuousContact {
  public:
-  /// Obstacles are where the scene says they are at `time`, in s.
-  ContinuousContact(const Scene& scene, const ClothSystem& system, double time);
+  /// Obstacles are where scene and carries say they are at `time`, in s.
+  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
   /// Where the obstacles are as the next step begins.
   const std::vector<Pose>& poses() const { return starts_; }
   void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
-
-  /// After an edit: obstacles that `before` had too, in the same order and shape, begin the next step where
-  /// they were, so that what the edit moved goes its way and pushes the cloth.
-  void follow(const ContinuousContact& before);
 
   /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
@@ -104,6 +101,7 @@ class ContinuousContact {
   double shrink_to_planes();
   double reached_gap(const Separation& separation) const;
   double furthest_move(const Vec3Field& before) const;
+  double reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const;
   Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
   Pinch pinch(const ClothSystem& system) const;
   int note_held_back(const Vec3Field& from, double step, ClothState& state) const;

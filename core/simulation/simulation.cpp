@@ -64,18 +64,16 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  const std::unique_ptr<ContinuousContact> contact_before = std::move(continuous_contact_);
+  continuous_contact_.reset();
   if (has_continuous_contact(scene_))
-    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, state_.time);
+    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, carries_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
-  if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
-  if (continuous_contact_) continuous_contact_->set_carries(carries_);
-  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_));
+  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_, state_.position));
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
   last_limit_ = {};
@@ -214,12 +212,24 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   integrator_->forget(Change::state);
 }
 
+TriangleMesh Simulation::cloth_mesh() const {
+  TriangleMesh mesh{{}, triangles_of(system_)};
+  for (std::size_t i = 0; i < state_.position.size(); ++i) mesh.vertices.push_back(state_.position[i]);
+  return mesh;
+}
+
+/// Of the obstacles that an edit makes other ones than they are.
+ObstacleCarries Simulation::find_carries(const Scene& edited) const {
+  if (!has_continuous_contact(edited)) return {};
+  if (continuous_contact_ && edited.obstacles == scene_.obstacles) return carries_;
+  const std::vector<Pose> poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{};
+  return carries_after({scene_.obstacles, poses, carries_}, edited, state_.time, cloth_mesh());
+}
+
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
-  carries_ = continuous_contact_ && has_continuous_contact(scene)
-                 ? carries_after(scene_.obstacles, scene.obstacles, carries_, state_.time)
-                 : ObstacleCarries{};
+  carries_ = find_carries(scene);
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));

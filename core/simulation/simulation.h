@@ -161,6 +161,9 @@ class Simulation {
   /// Appends its boxes `level` below the root; of a mesh as the scene has it, before any motion.
   void append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes);
 
+  /// The cloth as it is now.
+  TriangleMesh cloth_mesh() const;
+
   Measurement measure() const;
 
   /// The most kinetic energy in J that the scene could have given so far; what divergence is judged by.
@@ -179,6 +182,7 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  ObstacleCarries find_carries(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;

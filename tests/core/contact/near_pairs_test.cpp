@@ -51,8 +51,12 @@ double distance_to_obstacle(const FeaturePair& pair, const std::vector<Vec3>& ne
                             const Pose& pose) {
   if (pair.kind == PairKind::vertex_plane)
     return (pose.turn * body.normal).dot(near[0] - pose.at(body.point));
-  if (pair.kind == PairKind::vertex_box) return closest_on_box(pose.back(near[0]), body.box).distance;
-  if (pair.kind == PairKind::face_sphere) return distance(near, {pose.at(body.center)}) - body.radius;
+  if (pair.kind == PairKind::vertex_box)
+    return closest_on_box(near[0], {pose.at(body.box.center), pose.turn * body.box.axes,
+                                    body.box.half.cwiseProduct(pose.stretch)})
+        .distance;
+  if (pair.kind == PairKind::face_sphere)
+    return distance(near, {pose.at(body.center)}) - pose.stretch.x() * body.radius;
   std::vector<Vec3> far = foreign_points(pair, body);
   for (Vec3& point : far) point = pose.at(point);
   return distance(near, far);

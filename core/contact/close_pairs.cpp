@@ -31,8 +31,8 @@ double way_of(const ObstacleBody& body, const Passage& passage) {
 
 /// Where a body is, as far as a turn of a sphere does not matter.
 bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
-  return a == b || (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center) &&
-                    a.stretch == b.stretch);
+  return a == b ||
+         (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
 }
 
 double largest(const std::vector<double>& of, const PairParticles& pair, int begin, int end) {

@@ -22,8 +22,9 @@ constexpr double skin_part = 0.25;        ///< of a mean edge: how far overlaps 
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
-constexpr int solver_sweeps = 20, velocity_sweeps = 50;
-constexpr double velocity_tolerance = 1e-9;  ///< m/s
+/// Two faces of the cloth that rest on one corner are nearly the same contact: their velocities take long.
+constexpr int solver_sweeps = 20, velocity_sweeps = 100;
+constexpr double velocity_tolerance = 1e-7;  ///< m/s
 constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
 /// Rounds without a shorter way left, after which the few that are still on their way are held back.
 constexpr int most_rounds_idle = 6;
@@ -67,21 +68,23 @@ double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries
   double carried = 0, highest = 0;
   for (std::size_t k = 0; k < carries.size(); ++k)
     if (carries[k].carries())
-      carried = std::max(carried, carries[k].speed(carries[k].reshapes() ? reach_of(scene.obstacles[k], position) : 0));
+      carried = std::max(
+          carried, carries[k].speed(carries[k].reshapes() ? reach_of(scene.obstacles[k], position) : 0));
   for (const Obstacle& obstacle : scene.obstacles)
     if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
   return highest + carried;
 }
 
 ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
-                                     double time)
+                                     const ThicknessCarry& thickness, double time)
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
       carries_(std::move(carries)),
       close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
-      thickness_(scene.contact.value_or(ContactSettings{}).thickness),
+      thickness_carry_(thickness),
+      full_thickness_(scene.contact.value_or(ContactSettings{}).thickness),
       gravity_(scene.gravity.value_or(Vec3::Zero()).norm()),
       poses_(bodies_.size()),
       next_poses_(bodies_.size()),
@@ -90,11 +93,12 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     starts_.push_back(carried_pose(obstacles_, carries_, k, time));
   constexpr double edges_of_a_search = 4;
   if (scene.self_contact) {
-    self_thickness_ = scene.self_contact->thickness;
+    full_self_thickness_ = scene.self_contact->thickness;
     self_friction_ = scene.self_contact->friction;
   }
   const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
                                     [](const Obstacle& o) { return o.shape == Shape::mesh; });
+  set_thickness(time);
   longest_way_ =
       scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
 }
@@ -104,7 +108,18 @@ void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
   starts_ = poses;
 }
 
+/// Pairs that were found for others do not serve.
+void ContinuousContact::set_thickness(double time) {
+  const double left = thickness_carry_.carries() ? thickness_carry_.left(time) : 0;
+  const double now = full_thickness_ - left * thickness_carry_.missing,
+               own_now = full_self_thickness_ - left * thickness_carry_.own_missing;
+  if (now == thickness_ && own_now == self_thickness_) return;
+  thickness_ = now, self_thickness_ = own_now;
+  close_pairs_.forget();
+}
+
 void ContinuousContact::begin(const ContactTimes& times) {
+  set_thickness(times.end);
   passages_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -232,7 +247,7 @@ bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times
 
 ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
                                        const ContactTimes& times, ClothState& state,
-                                       const std::function<void()>& settle) {
+                                       const Settling& settling) {
   ContactReport report;
   bool moved = false;
   int stuck = 0, rounds_at_rest = 0, idle = 0;
@@ -269,8 +284,8 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   report.pairs = pairs_.size();
   report.contacts = count_touched();
   state.position = safe_;
-  settle();
-  report.impulse = answer_velocities(system, times.step, state);
+  if (settling.positions) settling.positions();
+  report.impulse = answer_velocities(system, times.step, settling, state);
   report.held_back = note_held_back(from, times.step, state);
   return report;
 }
@@ -301,8 +316,8 @@ void ContinuousContact::append_marks(const Vec3Field& position, std::vector<Cont
   }
 }
 
-/// Impulses over the touching pairs; returns their sum in N s.
-Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, ClothState& state) {
+/// The touching pairs, with what their velocities must answer.
+void ContinuousContact::take_touches(double step, const ClothState& state) {
   const double least_bounce = 2 * gravity_ * step;  // slower, and a cloth at rest would dance
   constraints_.clear();
   for (const Touch& touch : touches_) {
@@ -320,7 +335,19 @@ Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step
     contact.push = 0, contact.rub.setZero();
     constraints_.push_back(contact);
   }
+}
+
+/// Impulses over the touching pairs; returns their sum in N s.
+Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, const Settling& settling,
+                                          ClothState& state) {
+  take_touches(step, state);
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  if (settling.velocities) {
+    settling.velocities();
+    for (const ContactConstraint& contact : constraints_)
+      apply_pushes(contact, system.inverse_mass, state.velocity);
+    solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  }
   Vec3 impulse = Vec3::Zero();
   for (const ContactConstraint& contact : constraints_) {
     double weight = 0;

@@ -34,10 +34,17 @@ struct ContactTimes {
   double begin = 0, end = 0, step = 0;
 };
 
+/// How the integrator's velocities follow contact; none where they need not.
+struct Settling {
+  std::function<void()> positions;   ///< called once the positions are in the state, before velocities answer
+  std::function<void()> velocities;  ///< called once they have answered; they answer once more
+};
+
 class ContinuousContact {
  public:
   /// Obstacles are where scene and carries say they are at `time`, in s.
-  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries, double time);
+  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
+                    const ThicknessCarry& thickness, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
@@ -49,16 +56,17 @@ class ContinuousContact {
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
 
   /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
-  /// pinch is reported the positions are the last ones that nothing passed. `settle` is called once the
-  /// positions are in `state`, before the velocities answer.
+  /// pinch is reported the positions are the last ones that nothing passed.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
-                      ClothState& state, const std::function<void()>& settle);
+                      ClothState& state, const Settling& settling);
 
   /// The same to the bit for any team; none: one thread.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
 
   /// From the next step on.
-  void set_carries(ObstacleCarries carries) { carries_ = std::move(carries); }
+  void set_carries(ObstacleCarries carries, const ThicknessCarry& thickness) {
+    carries_ = std::move(carries), thickness_carry_ = thickness;
+  }
 
   /// Appends the touches of the last step; `position` is what it ended with.
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
@@ -88,6 +96,7 @@ class ContinuousContact {
   };
 
   void begin(const ContactTimes& times);
+  void set_thickness(double time);
   bool find_pairs();
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
@@ -106,7 +115,8 @@ class ContinuousContact {
   Pinch pinch(const ClothSystem& system) const;
   int note_held_back(const Vec3Field& from, double step, ClothState& state) const;
   int count_touched() const;
-  Vec3 answer_velocities(const ClothSystem& system, double step, ClothState& state);
+  void take_touches(double step, const ClothState& state);
+  Vec3 answer_velocities(const ClothSystem& system, double step, const Settling& settling, ClothState& state);
 
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
@@ -114,8 +124,10 @@ class ContinuousContact {
   ObstacleCarries carries_;
   ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
-  double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
-  double gravity_ = 0;      ///< m/s^2
+  ThicknessCarry thickness_carry_;
+  double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
+  double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step
+  double gravity_ = 0;                                                       ///< m/s^2
   double longest_way_ = 0;  ///< m, that one search for pairs serves
 
   std::vector<Pose> starts_;  ///< of the next step

@@ -201,9 +201,9 @@ Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const Obs
                       const Pose& pose) {
   const Vec3 p = cloth(pair.feature);
   const Pose placed{pose.turn, pose.shift};
-  const PointBox closest =
-      closest_on_box(placed.back(p), {body.box.center.cwiseProduct(pose.stretch), body.box.axes,
-                                      body.box.half.cwiseProduct(pose.stretch)});
+  const PointBox closest = closest_on_box(
+      placed.back(p),
+      {body.box.center.cwiseProduct(pose.stretch), body.box.axes, body.box.half.cwiseProduct(pose.stretch)});
   Separation s;
   s.normal = pose.turn * closest.normal;
   s.distance = closest.distance;

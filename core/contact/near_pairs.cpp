@@ -21,6 +21,12 @@ double bulge(const Passage& passage, double radius) {
   return radius * (1 - std::cos(0.5 * passage.angle()));
 }
 
+/// The same for a point at rest, `radius` metres from the pivot at the start, as it is seen from the obstacle:
+/// what the pivot has shifted turns as well, by t (1 - t) times the angle against the chord.
+double seen_bulge(const Passage& passage, double radius) {
+  return bulge(passage, radius) + 0.25 * passage.angle() * (passage.pivot(1) - passage.pivot(0)).norm();
+}
+
 /// Holds the whole way of a point of an obstacle. A point that turns and moves from or to the pivot leaves
 /// the chord by at most an eighth of the second derivative, the turn's and that of both.
 Bounds swept(const Passage& passage, const Vec3& pivot, const Vec3& point, double reach) {
@@ -48,7 +54,7 @@ void seen_from_body(const ObstacleBody& body, const Passage& passage, const std:
     seen[f] = at_home ? box : seen_from(passage.from(), box);
     if (!passage.rests()) seen[f].add(seen_from(passage.to(), box));
     const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
-    seen[f] = seen[f].grown((reach + bulge(passage, radius)) / passage.least_stretch());
+    seen[f] = seen[f].grown((reach + seen_bulge(passage, radius)) / passage.least_stretch());
   }
 }
 
@@ -134,7 +140,7 @@ class PairSearch::Step {
         const Vec3 normal = pose->turn * body.normal;
         lowest = std::min(lowest, normal.dot(middle - pose->at(body.point)) - normal.cwiseAbs().dot(half));
       }
-      if (passage.angle() > 0) lowest -= bulge(passage, (middle - pivot).norm() + half.norm());
+      if (passage.angle() > 0) lowest -= seen_bulge(passage, (middle - pivot).norm() + half.norm());
       if (lowest < reach_) add(PairKind::vertex_plane, static_cast<int>(i), 0);
     }
   }

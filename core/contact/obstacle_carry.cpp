@@ -8,6 +8,13 @@
 namespace cloth {
 namespace {
 
+double left_of_carry(double begin, double time) {
+  const double end = begin + carry_time;
+  if (time <= begin) return 1;
+  if (time >= end) return 0;
+  return (end - time) / carry_time;
+}
+
 /// What an obstacle was before an edit. Where obstacles came or went only an equal one is known again.
 std::optional<std::size_t> earlier_self(const CarriedObstacles& before, const std::vector<Obstacle>& after,
                                         std::size_t k) {
@@ -58,9 +65,11 @@ ObstacleCarry carry_from(const Obstacle& then, const Pose& pose_then, const Obst
 }  // namespace
 
 double ObstacleCarry::left(double time) const {
-  if (time <= begin) return 1;
-  if (time >= end()) return 0;
-  return (end() - time) / carry_time;
+  return left_of_carry(begin, time);
+}
+
+double ThicknessCarry::left(double time) const {
+  return left_of_carry(begin, time);
 }
 
 double ObstacleCarry::speed(double reach) const {
@@ -81,6 +90,17 @@ Pose carried_pose(const std::vector<Obstacle>& obstacles, const ObstacleCarries&
   const Vec3 pivot = pivot_of(obstacles[obstacle]);
   return about(pivot, pose.turn * turn_by(left * carry.turn), pose.at(pivot),
                Vec3::Ones() + left * (carry.stretch - Vec3::Ones()));
+}
+
+ThicknessCarry thickness_after(const Scene& before, const ThicknessCarry& carry, const Scene& after,
+                               double time) {
+  const auto of = [](const Scene& scene) { return scene.contact.value_or(ContactSettings{}).thickness; };
+  ThicknessCarry result{.missing = of(after) - of(before) + carry.left(time) * carry.missing, .begin = time};
+  if (before.self_contact && after.self_contact)
+    result.own_missing =
+        after.self_contact->thickness - before.self_contact->thickness + carry.left(time) * carry.own_missing;
+  result.missing = std::max(result.missing, 0.0), result.own_missing = std::max(result.own_missing, 0.0);
+  return result;
 }
 
 ObstacleCarries carries_after(const CarriedObstacles& before, const Scene& after, double time,

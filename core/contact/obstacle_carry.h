@@ -1,7 +1,7 @@
-// How an obstacle gets to what an edit has made of it. Under continuous contact it may not just be there: cloth
-// could lie in between. So the edit takes effect at once, and from it the obstacle is drawn aside, turned and
-// stretched to where and what it was; this fades away evenly, and contact sees an obstacle that moves, turns
-// and grows.
+// How an obstacle gets to what an edit has made of it. Under continuous contact it may not just be there:
+// cloth could lie in between. So the edit takes effect at once, and from it the obstacle is drawn aside,
+// turned and stretched to where and what it was; this fades away evenly, and contact sees an obstacle that
+// moves, turns and grows.
 #pragma once
 
 #include <vector>
@@ -27,6 +27,19 @@ struct ObstacleCarry {
   /// m/s, at most, of any point within `reach` metres of the pivot.
   double speed(double reach) const;
 };
+
+/// What is missing of the thicknesses that an edit has made larger: they grow to what the scene says.
+struct ThicknessCarry {
+  double missing = 0, own_missing = 0;  ///< m, at `begin`: to obstacles, and of the cloth to itself
+  double begin = 0;                     ///< s
+
+  bool carries() const { return missing > 0 || own_missing > 0; }
+  double left(double time) const;  ///< see ObstacleCarry
+};
+
+/// Of `before`, with what is left of an earlier edit, by an edit at `time`, in s.
+ThicknessCarry thickness_after(const Scene& before, const ThicknessCarry& carry, const Scene& after,
+                               double time);
 
 /// One for each obstacle; empty: none is carried.
 using ObstacleCarries = std::vector<ObstacleCarry>;

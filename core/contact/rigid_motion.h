@@ -8,17 +8,15 @@
 
 namespace cloth {
 
-/// x -> turn (stretch x) + shift, from where the scene describes an obstacle to where it is; `stretch` axis by
-/// axis, the same along all of them but for boxes.
+/// x -> turn (stretch x) + shift, from where the scene describes an obstacle to where it is; `stretch` axis
+/// by axis, the same along all of them but for boxes.
 struct Pose {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Vec3 shift{0, 0, 0};    ///< m
   Vec3 stretch{1, 1, 1};  ///< > 0
 
   Vec3 at(const Vec3& point) const { return turn * point.cwiseProduct(stretch) + shift; }
-  Vec3 back(const Vec3& point) const {
-    return (turn.transpose() * (point - shift)).cwiseQuotient(stretch);
-  }
+  Vec3 back(const Vec3& point) const { return (turn.transpose() * (point - shift)).cwiseQuotient(stretch); }
   bool operator==(const Pose&) const = default;
 };
 

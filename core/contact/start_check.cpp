@@ -81,7 +81,8 @@ class TouchSearch {
         });
       }
       case Shape::box: {
-        const OrientedBox box{pose.at(body.box.center), pose.turn * body.box.axes, body.box.half.cwiseProduct(pose.stretch)};
+        const OrientedBox box{pose.at(body.box.center), pose.turn * body.box.axes,
+                              body.box.half.cwiseProduct(pose.stretch)};
         return first_face([&](const Corners& t) { return meets_box(t, box); });
       }
       case Shape::mesh:
@@ -133,7 +134,8 @@ class TouchSearch {
 
   std::vector<Bounds> boxes() const {
     std::vector<Bounds> boxes;
-    for (const Triangle& triangle : cloth_.triangles) boxes.push_back(box_of(corners_of(cloth_.vertices, triangle)));
+    for (const Triangle& triangle : cloth_.triangles)
+      boxes.push_back(box_of(corners_of(cloth_.vertices, triangle)));
     return boxes;
   }
 
@@ -143,8 +145,7 @@ class TouchSearch {
 class StartCheck {
  public:
   explicit StartCheck(const Scene& scene)
-      : scene_(scene),
-        cloth_(mesh_of(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})))) {}
+      : scene_(scene), cloth_(mesh_of(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})))) {}
 
   std::vector<Problem> problems() {
     const TouchSearch search(cloth_);

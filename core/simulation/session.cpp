@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "io/fnv_hash.h"
 #include "contact/start_check.h"
+#include "io/fnv_hash.h"
 #include "scene/scene_parameters.h"
 #include "simulation/time_step.h"
 

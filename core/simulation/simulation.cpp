@@ -66,7 +66,8 @@ void Simulation::assemble() {
   contact_.reset();
   continuous_contact_.reset();
   if (has_continuous_contact(scene_))
-    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, carries_, state_.time);
+    continuous_contact_ =
+        std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_carry_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
@@ -136,6 +137,7 @@ std::optional<Divergence> Simulation::step() {
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact();
   if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
+  if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
   state_.time = times.end;
   state_.step = next;
   count_step(report);
@@ -203,9 +205,16 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
     for (std::size_t i = 0; i < half_velocity_.size(); ++i)
       half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
   }
-  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, [&] {
-    if (follows) integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
-  });
+  Settling settling;
+  if (follows)
+    settling.positions = [&] {
+      integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
+    };
+  if (follows && forces_->has_damping())
+    settling.velocities = [&] {
+      integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
+    };
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
   if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
   contact_impulse_ += last_contact_.impulse;
@@ -230,6 +239,9 @@ void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
   carries_ = find_carries(scene);
+  thickness_carry_ = continuous_contact_ && has_continuous_contact(scene)
+                         ? thickness_after(scene_, thickness_carry_, scene, state_.time)
+                         : ThicknessCarry{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -276,6 +288,7 @@ Checkpoint Simulation::checkpoint() const {
           .last_contact = last_contact_,
           .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
           .carries = carries_,
+          .thickness_carry = thickness_carry_,
           .obstacle_speed = obstacle_speed_,
           .contact_impulse = contact_impulse_};
 }
@@ -296,10 +309,11 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   last_contact_ = checkpoint.last_contact;
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
   carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
+  thickness_carry_ = checkpoint.thickness_carry;
   obstacle_speed_ = checkpoint.obstacle_speed;
   contact_impulse_ = checkpoint.contact_impulse;
   if (continuous_contact_) {
-    continuous_contact_->set_carries(carries_);
+    continuous_contact_->set_carries(carries_, thickness_carry_);
     restore_obstacles(checkpoint.obstacle_poses);
     continuous_contact_->forget_touches();
   }

@@ -85,6 +85,7 @@ struct Checkpoint {
   ContactReport last_contact;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
   ObstacleCarries carries;
+  ThicknessCarry thickness_carry;
   double obstacle_speed = 0;      ///< m/s, the highest so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
 
@@ -225,6 +226,7 @@ class Simulation {
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
   ObstacleCarries carries_;
+  ThicknessCarry thickness_carry_;
   bool was_finite_ = false;   ///< every position was finite after the last step
   ClothState before_unseen_;  ///< to go back to
 };

@@ -64,69 +64,92 @@ Obstacle obstacle(Shape shape, const Vec3& place) {
   obstacle.radius = 0.08;
   obstacle.size = {0.1, 0.12, 0.14};
   obstacle.scale = 0.3;
-  if (shape == Shape::mesh) obstacle.mesh.file = "bunny.obj";
+  if (shape == Shape::mesh) obstacle.mesh.file = "cone-bed.obj";
   return obstacle;
 }
 
 const EditCase edits[]{
-    {"ball_grows", "sphere", [](Scene& s) { s.obstacles[0].radius *= 1.5; }, 4},
-    {"ball_grows_far", "sphere", [](Scene& s) { s.obstacles[0].radius *= 4; }, 20},
+    {"ball_grows", "sphere", [](Scene& s) { s.obstacles[0].radius *= 1.5; }, 6},
+    {"ball_grows_far", "sphere", [](Scene& s) { s.obstacles[0].radius *= 4; }, 45},
     {"ball_shrinks", "sphere", [](Scene& s) { s.obstacles[0].radius *= 0.3; }, 4},
     {"box_grows", "box", [](Scene& s) { s.obstacles[0].size *= 1.3; }, 4},
-    {"box_grows_along_one_axis", "box", [](Scene& s) { s.obstacles[0].size.x() *= 3; }, 8},
-    {"box_gets_flat_and_wide", "box", [](Scene& s) { s.obstacles[0].size = {0.5, 0.02, 0.4}; }, 8},
+    {"box_grows_along_one_axis", "box", [](Scene& s) { s.obstacles[0].size.x() *= 3; }, 25},
+    {"box_gets_flat_and_wide", "box",
+     [](Scene& s) {
+       s.obstacles[0].size = {0.5, 0.02, 0.4};
+     },
+     20},
     {"box_shrinks", "box", [](Scene& s) { s.obstacles[0].size *= 0.4; }, 4},
-    {"box_on_its_corner_grows", "corner", [](Scene& s) { s.obstacles[0].size = {0.2, 0.3, 0.25}; }, 8},
-    {"turning_box_grows", "turning-box", [](Scene& s) { s.obstacles[0].size = {0.2, 0.3, 0.25}; }, 12},
-    {"box_moves_and_grows",
-     "box",
-     [](Scene& s) { s.obstacles[0].center.y() += 0.1, s.obstacles[0].size *= 1.4; },
-     8},
-    {"box_turns_by_keyframes",
-     "box",
-     [](Scene& s) { s.obstacles[0].keyframes = {{0, s.obstacles[0].center, {0.5, 1.2, 0}}}; },
+    {"box_on_its_corner_grows", "corner",
+     [](Scene& s) {
+       s.obstacles[0].size = {0.2, 0.3, 0.25};
+     },
+     14},
+    {"turning_box_grows", "turning-box",
+     [](Scene& s) {
+       s.obstacles[0].size = {0.2, 0.3, 0.25};
+     },
+     12},
+    {"box_moves_and_grows", "box",
+     [](Scene& s) { s.obstacles[0].center.y() += 0.1, s.obstacles[0].size *= 1.4; }, 8},
+    {"box_turns_by_keyframes", "box",
+     [](Scene& s) {
+       s.obstacles[0].keyframes = {{0, s.obstacles[0].center, {0.5, 1.2, 0}}};
+     },
      8},
     {"cones_grow", "cones", [](Scene& s) { s.obstacles[0].scale *= 1.5; }, 8},
-    {"cones_turn", "cones", [](Scene& s) { s.obstacles[0].rotate = {20, 70, 0}; }, 15},
-    {"cones_turn_move_and_shrink",
-     "cones",
+    {"cones_turn", "cones",
+     [](Scene& s) {
+       s.obstacles[0].rotate = {20, 70, 0};
+     },
+     15},
+    {"cones_turn_move_and_shrink", "cones",
      [](Scene& s) {
        s.obstacles[0].rotate.z() = 40, s.obstacles[0].translate.y() += 0.05, s.obstacles[0].scale *= 0.7;
      },
      15},
-    {"plane_turns", "plane", [](Scene& s) { s.obstacles[0].normal = {0.6, 1, 0.3}; }, 8},
-    {"plane_turns_far", "plane", [](Scene& s) { s.obstacles[0].normal = {1, -0.2, 0}; }, 20},
-    {"plane_turns_and_rises",
-     "plane",
-     [](Scene& s) { s.obstacles[0].normal = {0, 1, 0.4}, s.obstacles[0].point = {0, 0.2, 0.1}; },
+    {"plane_turns", "plane",
+     [](Scene& s) {
+       s.obstacles[0].normal = {0.6, 1, 0.3};
+     },
+     8},
+    {"plane_turns_far", "plane",
+     [](Scene& s) {
+       s.obstacles[0].normal = {1, -0.2, 0};
+     },
+     20},
+    {"plane_turns_and_rises", "plane",
+     [](Scene& s) {
+       s.obstacles[0].normal = {0, 1, 0.4}, s.obstacles[0].point = {0, 0.2, 0.1};
+     },
      15},
-    {"contact_gets_thicker", "sphere", [](Scene& s) { s.contact->thickness = 0.03; }, 4},
-    {"contact_gets_much_thicker", "corner", [](Scene& s) { s.contact->thickness = 0.1; }, 8},
-    {"contact_with_cones_gets_thicker", "cones", [](Scene& s) { s.contact->thickness = 0.02; }, 4},
-    {"contact_with_itself_gets_thicker", "itself", [](Scene& s) { s.self_contact->thickness = 0.02; }, 4},
-    {"ball_becomes_a_box",
-     "sphere",
-     [](Scene& s) { s.obstacles[0] = obstacle(Shape::box, s.obstacles[0].center + Vec3(0, 0.06, 0)); },
+    {"contact_gets_thicker", "sphere", [](Scene& s) { s.contact->thickness = 0.03; }, 6},
+    {"contact_gets_much_thicker", "corner", [](Scene& s) { s.contact->thickness = 0.1; }, 15},
+    {"contact_with_cones_gets_thicker", "cones", [](Scene& s) { s.contact->thickness = 0.02; }, 6},
+    {"contact_with_itself_gets_thicker", "itself", [](Scene& s) { s.self_contact->thickness = 0.02; }, 6},
+    {"ball_becomes_a_box", "sphere",
+     [](Scene& s) { s.obstacles[0] = obstacle(Shape::box, s.obstacles[0].center + Vec3(0, 0.06, 0)); }, 8},
+    {"box_becomes_a_bed_of_cones", "box",
+     [](Scene& s) { s.obstacles[0] = obstacle(Shape::mesh, s.obstacles[0].center); }, 10},
+    {"ball_comes_into_the_cloth", "hanging",
+     [](Scene& s) {
+       s.obstacles = {obstacle(Shape::sphere, {0.01, -0.3, 0.03})};
+     },
      8},
-    {"box_becomes_a_rabbit",
-     "box",
-     [](Scene& s) { s.obstacles[0] = obstacle(Shape::mesh, s.obstacles[0].center); },
-     10},
-    {"ball_comes_into_the_cloth",
-     "plane",
-     [](Scene& s) { s.obstacles.push_back(obstacle(Shape::sphere, {0.01, 0.03, 0})); },
+    {"box_comes_with_its_middle_in_the_cloth", "hanging",
+     [](Scene& s) {
+       s.obstacles = {obstacle(Shape::box, {0.01, -0.3, 0})};
+     },
      8},
-    {"box_comes_with_its_middle_in_the_cloth",
-     "falling",
-     [](Scene& s) { s.obstacles = {obstacle(Shape::box, {0.01, 0, 0})}; },
-     8},
-    {"rabbit_comes_into_the_cloth",
-     "falling",
-     [](Scene& s) { s.obstacles = {obstacle(Shape::mesh, {0.01, -0.1, 0})}; },
+    {"cones_come_into_the_cloth", "hanging",
+     [](Scene& s) {
+       s.obstacles = {obstacle(Shape::mesh, {0.01, -0.3, -0.01})};
+     },
      15},
-    {"plane_comes_over_half_of_the_cloth",
-     "sphere",
-     [](Scene& s) { s.obstacles.push_back(obstacle(Shape::plane, {0, -0.05, 0})); },
+    {"plane_comes_over_half_of_the_cloth", "sphere",
+     [](Scene& s) {
+       s.obstacles.push_back(obstacle(Shape::plane, {0, -0.05, 0}));
+     },
      8},
     {"contact_comes", "without-contact", [](Scene& s) { s.contact = ContactSettings{}; }, 8},
 };
@@ -134,10 +157,12 @@ const EditCase edits[]{
 class AnEdit : public ::testing::TestWithParam<std::tuple<EditCase, const char*>> {};
 
 Scene edited_scene(const std::string& name) {
-  if (name == "falling") {
-    Scene scene = resting("plane");
+  if (name == "hanging") {
+    Scene scene = resting("sphere");
     scene.obstacles.clear();
-    scene.gravity = Vec3::Zero();
+    scene.cloth.down = {0, -1, 0};
+    scene.cloth.origin = {-0.2, 0, 0};
+    scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
     return scene;
   }
   Scene scene = resting(name == "without-contact" ? "sphere" : name);
@@ -149,7 +174,7 @@ TEST_P(AnEdit, LetsNothingThroughAndNothingRunAway) {
   const auto& [tested, method] = GetParam();
   Scene scene = edited_scene(tested.scene);
   scene.integrator.method = method;
-  if (scene.integrator.method == "implicit-euler") scene.integrator.time_step = 0.01;
+  scene.integrator.time_step = scene.integrator.method == "implicit-euler" ? 0.01 : 0.001;
   Simulation simulation(scene, thrown({0, -1, 0}));
   run(simulation, static_cast<int>(0.3 / simulation.time_step()));
   tested.edit(scene);
@@ -172,10 +197,26 @@ INSTANTIATE_TEST_SUITE_P(Contact, AnEdit,
                          ::testing::Combine(::testing::ValuesIn(edits),
                                             ::testing::Values("semi-implicit-euler", "implicit-euler")),
                          [](const auto& tested) {
-                           const auto& [edit, method] = tested.param;
-                           return std::string(edit.name) +
-                                  (std::string(method) == "implicit-euler" ? "_implicitly" : "");
+                           const bool implicitly = std::get<1>(tested.param) == std::string("implicit-euler");
+                           return std::get<0>(tested.param).name +
+                                  std::string(implicitly ? "_implicitly" : "");
                          });
+
+TEST(AnEditThatLetsABallGrow, StopsARunWhereTheClothCannotGiveWay) {
+  Scene scene = resting("plane");
+  Simulation simulation(scene);
+  run(simulation, 100);
+  scene.obstacles.push_back(obstacle(Shape::sphere, {0.01, 0.03, 0}));  // it reaches into the plane
+  simulation.edit(scene);
+  std::optional<Divergence> stop;
+  for (int step = 0; step < 100; ++step) {
+    stop = simulation.step();
+    if (stop) break;
+    ASSERT_EQ(all_crossings(simulation).number, 0);
+  }
+  ASSERT_TRUE(stop);
+  EXPECT_TRUE(stop->pinched) << describe(*stop);
+}
 
 TEST(AnEditThatLetsABoxGrow, IsHalfDoneAfterHalfOfItsTime) {
   Scene scene = resting("box");

@@ -7,7 +7,6 @@
 namespace cloth::test {
 namespace {
 
-/// Not the box on its corner: its sides are steeper than friction holds, and the cloth slides off slowly.
 /// With damping that takes the energy of every oscillation within a fraction of a second.
 Scene damped(Scene scene) {
   scene.damping = 0.004;
@@ -40,8 +39,20 @@ TEST_P(ADampedScene, ComesToRestNearTheLongestStableStepToo) {
   EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
 }
 
+/// Where two faces of the cloth share the tip of a box, and springs damp what is beside it.
+TEST(AClothOnTheCornerOfABox, KeepsNoSpeedThatNoPositionFollows) {
+  Scene scene = damped(contact_scene("corner"));
+  scene.integrator.time_step.reset();
+  scene.integrator.time_step = resolved_time_step(scene).value();
+  const RestingRun run = rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
+  ASSERT_FALSE(run.stop) << describe(*run.stop);
+  EXPECT_LT(run.highest_after, 1e-8 * run.peak);
+  EXPECT_LT(run.furthest_after, 1e-4);
+  EXPECT_GT(run.touched, 0) << "it fell off";
+}
+
 INSTANTIATE_TEST_SUITE_P(Contact, ADampedScene,
-                         ::testing::Values("sphere", "box", "plane", "cones", "itself"),
+                         ::testing::Values("sphere", "box", "corner", "plane", "cones", "itself"),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace

@@ -135,15 +135,18 @@ void ContinuousContact::begin(const ContactTimes& times) {
   touches_.clear();
 }
 
-/// Whether there are any. Forgets what was pushed in earlier rounds.
+/// Whether there are any, or may be some further on a way than one search goes. Forgets what was pushed in
+/// earlier rounds.
 bool ContinuousContact::find_pairs() {
   const double least = margin_part * std::max(thickness_, self_thickness_);
   ways_.reach = thickness_, ways_.own_reach = self_thickness_;
   ways_.particles.resize(safe_.size());
+  bool are_whole = true;
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     const Vec3 here = safe_[i];
     const Vec3 way = wish_[i] - here;
     const double length = way.norm();
+    are_whole = are_whole && length <= longest_way_;
     const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
     ways_.particles[i] = {here, end, room_[i] * std::max(least, aside_part * length)};
   }
@@ -152,7 +155,7 @@ bool ContinuousContact::find_pairs() {
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
   is_separated_ = true;
-  return !pairs_.empty();
+  return !pairs_.empty() || !are_whole;
 }
 
 void ContinuousContact::separate_all() {

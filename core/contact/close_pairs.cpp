@@ -20,14 +20,16 @@ double furthest_reach(const Ways& ways) {
 /// m, at most, of any point.
 double way_of(const ObstacleBody& body, const Passage& passage) {
   if (passage.rests()) return 0;
-  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
-  if (body.shape == Shape::sphere || passage.angle() == 0) return shift;
-  return body.shape == Shape::plane ? Bounds::infinity : shift + passage.angle() * body.reach;
+  const double way = (passage.pivot(1) - passage.pivot(0)).norm() + passage.growth() * body.reach;
+  if (body.shape == Shape::sphere || passage.angle() == 0) return way;
+  return body.shape == Shape::plane ? Bounds::infinity
+                                    : way + passage.angle() * passage.largest_stretch() * body.reach;
 }
 
 /// Where a body is, as far as a turn of a sphere does not matter.
 bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
-  return a == b || (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center));
+  return a == b ||
+         (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
 }
 
 double largest(const std::vector<double>& of, const PairParticles& pair, int begin, int end) {

@@ -31,6 +31,9 @@ class ClosePairs {
   /// All pairs that can come within the reach of each other while all stay in their ways.
   void find(const Situation& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
 
+  /// What was kept was found for other reaches.
+  void forget() { kept_range_.clear(), search_.forget(); }
+
   PairSearch& search() { return search_; }
   const PairSearch& search() const { return search_; }
 

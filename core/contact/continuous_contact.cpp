@@ -19,8 +19,9 @@ constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that w
 /// Of the thickness: what is left of a way that counts as none.
 constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
-constexpr int solver_sweeps = 20, velocity_sweeps = 50;
-constexpr double velocity_tolerance = 1e-9;  ///< m/s
+/// Two faces of the cloth that rest on one corner are nearly the same contact: their velocities take long.
+constexpr int solver_sweeps = 20, velocity_sweeps = 100;
+constexpr double velocity_tolerance = 1e-7;  ///< m/s
 constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
 /// Rounds without a shorter way left, after which the few that are still on their way are held back.
 constexpr int most_rounds_idle = 6;
@@ -37,6 +38,15 @@ std::vector<ObstacleBody> bodies_of(const Scene& scene) {
   return bodies;
 }
 
+/// m, of the furthest point that can touch the cloth from the pivot.
+double reach_of(const Obstacle& obstacle, const Vec3Field& position) {
+  if (obstacle.shape != Shape::plane) return body_of(obstacle).reach;
+  double reach = 0;
+  for (std::size_t i = 0; i < position.size(); ++i)
+    reach = std::max(reach, (position[i] - obstacle.point).norm());
+  return reach;
+}
+
 double mean_edge(const Surface& surface, const Vec3Field& position) {
   double sum = 0;
   for (const auto& [a, b] : surface.edges) sum += (position[at(a)] - position[at(b)]).norm();
@@ -51,33 +61,41 @@ bool has_continuous_contact(const Scene& scene) {
                      [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
 }
 
-double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries) {
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries, const Vec3Field& position) {
   double carried = 0, highest = 0;
-  for (const ObstacleCarry& carry : carries) carried = std::max(carried, carry.speed());
+  for (std::size_t k = 0; k < carries.size(); ++k)
+    if (carries[k].carries())
+      carried = std::max(
+          carried, carries[k].speed(carries[k].reshapes() ? reach_of(scene.obstacles[k], position) : 0));
   for (const Obstacle& obstacle : scene.obstacles)
     if (moves(obstacle)) highest = std::max(highest, highest_speed(obstacle, body_of(obstacle).reach));
   return highest + carried;
 }
 
-ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, double time)
+ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
+                                     const ThicknessCarry& thickness, double time)
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
+      carries_(std::move(carries)),
       close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
-      thickness_(scene.contact.value_or(ContactSettings{}).thickness),
+      thickness_carry_(thickness),
+      full_thickness_(scene.contact.value_or(ContactSettings{}).thickness),
       gravity_(gravity_of(scene).norm()),
       poses_(bodies_.size()),
       next_poses_(bodies_.size()),
       end_poses_(bodies_.size()) {
-  for (const Obstacle& obstacle : obstacles_) starts_.push_back(pose_of(obstacle, time));
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    starts_.push_back(carried_pose(obstacles_, carries_, k, time));
   constexpr double edges_of_a_search = 4;
   if (scene.self_contact) {
-    self_thickness_ = scene.self_contact->thickness;
+    full_self_thickness_ = scene.self_contact->thickness;
     self_friction_ = scene.self_contact->friction;
   }
   const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
                                     [](const Obstacle& o) { return o.shape == Shape::mesh; });
+  set_thickness(time);
   longest_way_ =
       scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
 }
@@ -87,19 +105,18 @@ void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
   starts_ = poses;
 }
 
-void ContinuousContact::follow(const ContinuousContact& before) {
-  for (std::size_t k = 0; k < std::min(bodies_.size(), before.bodies_.size()); ++k) {
-    const ObstacleBody &now = bodies_[k], &then = before.bodies_[k];
-    if (now.shape != then.shape) continue;
-    starts_[k] = before.starts_[k];
-    if (now.pivot == then.pivot && now.normal == then.normal) continue;
-    Eigen::Matrix3d turn = before.starts_[k].turn;
-    if (now.shape == Shape::plane) turn = turn * Eigen::Quaterniond::FromTwoVectors(now.normal, then.normal);
-    starts_[k] = {turn, before.starts_[k].at(then.pivot) - turn * now.pivot};
-  }
+/// Pairs that were found for others do not serve.
+void ContinuousContact::set_thickness(double time) {
+  const double left = thickness_carry_.carries() ? thickness_carry_.left(time) : 0;
+  const double now = full_thickness_ - left * thickness_carry_.missing,
+               own_now = full_self_thickness_ - left * thickness_carry_.own_missing;
+  if (now == thickness_ && own_now == self_thickness_) return;
+  thickness_ = now, self_thickness_ = own_now;
+  close_pairs_.forget();
 }
 
 void ContinuousContact::begin(const ContactTimes& times) {
+  set_thickness(times.end);
   passages_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -115,15 +132,18 @@ void ContinuousContact::begin(const ContactTimes& times) {
   touches_.clear();
 }
 
-/// Whether there are any. Forgets what was pushed in earlier rounds.
+/// Whether there are any, or may be some further on a way than one search goes. Forgets what was pushed in
+/// earlier rounds.
 bool ContinuousContact::find_pairs() {
   const double least = margin_part * std::max(thickness_, self_thickness_);
   ways_.reach = thickness_, ways_.own_reach = self_thickness_;
   ways_.particles.resize(safe_.size());
+  bool are_whole = true;
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     const Vec3 here = safe_[i];
     const Vec3 way = wish_[i] - here;
     const double length = way.norm();
+    are_whole = are_whole && length <= longest_way_;
     const Vec3 end = length > longest_way_ ? Vec3(here + longest_way_ / length * way) : wish_[i];
     ways_.particles[i] = {here, end, room_[i] * std::max(least, aside_part * length)};
   }
@@ -132,7 +152,7 @@ bool ContinuousContact::find_pairs() {
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
   is_separated_ = true;
-  return !pairs_.empty();
+  return !pairs_.empty() || !are_whole;
 }
 
 void ContinuousContact::separate_all() {
@@ -227,7 +247,7 @@ bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times
 
 ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
                                        const ContactTimes& times, ClothState& state,
-                                       const std::function<void()>& settle) {
+                                       const Settling& settling) {
   ContactReport report;
   bool moved = false;
   int stuck = 0, rounds_at_rest = 0, idle = 0;
@@ -264,8 +284,8 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   report.pairs = pairs_.size();
   report.contacts = count_touched();
   state.position = safe_;
-  settle();
-  report.impulse = answer_velocities(system, times.step, state);
+  if (settling.positions) settling.positions();
+  report.impulse = answer_velocities(system, times.step, settling, state);
   report.held_back = note_held_back(from, times.step, state);
   return report;
 }
@@ -296,8 +316,8 @@ void ContinuousContact::append_marks(const Vec3Field& position, std::vector<Cont
   }
 }
 
-/// Impulses over the touching pairs; returns their sum in N s.
-Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, ClothState& state) {
+/// The touching pairs, with what their velocities must answer.
+void ContinuousContact::take_touches(double step, const ClothState& state) {
   const double least_bounce = 2 * gravity_ * step;  // slower, and a cloth at rest would dance
   constraints_.clear();
   for (const Touch& touch : touches_) {
@@ -315,7 +335,19 @@ Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step
     contact.push = 0, contact.rub.setZero();
     constraints_.push_back(contact);
   }
+}
+
+/// Impulses over the touching pairs; returns their sum in N s.
+Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, const Settling& settling,
+                                          ClothState& state) {
+  take_touches(step, state);
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  if (settling.velocities) {
+    settling.velocities();
+    for (const ContactConstraint& contact : constraints_)
+      apply_pushes(contact, system.inverse_mass, state.velocity);
+    solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  }
   Vec3 impulse = Vec3::Zero();
   for (const ContactConstraint& contact : constraints_) {
     double weight = 0;

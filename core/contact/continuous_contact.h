@@ -25,18 +25,26 @@ namespace cloth {
 /// Whether the scene's contact is this one; otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
-/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest.
-double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries);
+/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest. How far from its
+/// pivot a plane that an edit has turned can touch the cloth follows from the positions.
+double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries, const Vec3Field& position);
 
 /// Begin and end of a step, in s.
 struct ContactTimes {
   double begin = 0, end = 0, step = 0;
 };
 
+/// How the integrator's velocities follow contact; none where they need not.
+struct Settling {
+  std::function<void()> positions;   ///< called once the positions are in the state, before velocities answer
+  std::function<void()> velocities;  ///< called once they have answered; they answer once more
+};
+
 class ContinuousContact {
  public:
-  /// Obstacles are where the scene says they are at `time`, in s.
-  ContinuousContact(const Scene& scene, const ClothSystem& system, double time);
+  /// Obstacles are where scene and carries say they are at `time`, in s.
+  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
+                    const ThicknessCarry& thickness, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
@@ -44,24 +52,21 @@ class ContinuousContact {
   const std::vector<Pose>& poses() const { return starts_; }
   void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
 
-  /// After an edit: obstacles that `before` had too, in the same order and shape, begin the next step where
-  /// they were, so that what the edit moved goes its way and pushes the cloth.
-  void follow(const ContinuousContact& before);
-
   /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
 
   /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
-  /// pinch is reported the positions are the last ones that nothing passed. `settle` is called once the
-  /// positions are in `state`, before the velocities answer.
+  /// pinch is reported the positions are the last ones that nothing passed.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
-                      ClothState& state, const std::function<void()>& settle);
+                      ClothState& state, const Settling& settling);
 
   /// The same to the bit for any team; none: one thread.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
 
   /// From the next step on.
-  void set_carries(ObstacleCarries carries) { carries_ = std::move(carries); }
+  void set_carries(ObstacleCarries carries, const ThicknessCarry& thickness) {
+    carries_ = std::move(carries), thickness_carry_ = thickness;
+  }
 
   /// Appends the touches of the last step; `position` is what it ended with.
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
@@ -91,6 +96,7 @@ class ContinuousContact {
   };
 
   void begin(const ContactTimes& times);
+  void set_thickness(double time);
   bool find_pairs();
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
@@ -104,11 +110,13 @@ class ContinuousContact {
   double shrink_to_planes();
   double reached_gap(const Separation& separation) const;
   double furthest_move(const Vec3Field& before) const;
+  double reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const;
   Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
   Pinch pinch(const ClothSystem& system) const;
   int note_held_back(const Vec3Field& from, double step, ClothState& state) const;
   int count_touched() const;
-  Vec3 answer_velocities(const ClothSystem& system, double step, ClothState& state);
+  void take_touches(double step, const ClothState& state);
+  Vec3 answer_velocities(const ClothSystem& system, double step, const Settling& settling, ClothState& state);
 
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
@@ -116,8 +124,10 @@ class ContinuousContact {
   ObstacleCarries carries_;
   ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
-  double thickness_ = 0, self_thickness_ = 0, self_friction_ = 0;
-  double gravity_ = 0;      ///< m/s^2
+  ThicknessCarry thickness_carry_;
+  double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
+  double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step
+  double gravity_ = 0;                                                       ///< m/s^2
   double longest_way_ = 0;  ///< m, that one search for pairs serves
 
   std::vector<Pose> starts_;  ///< of the next step

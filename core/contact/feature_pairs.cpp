@@ -198,12 +198,15 @@ Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const O
 Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
                       const Pose& pose) {
   const Vec3 p = cloth(pair.feature);
-  const PointBox closest = closest_on_box(pose.back(p), body.box);
+  const Pose placed{pose.turn, pose.shift};
+  const PointBox closest = closest_on_box(
+      placed.back(p),
+      {body.box.center.cwiseProduct(pose.stretch), body.box.axes, body.box.half.cwiseProduct(pose.stretch)});
   Separation s;
   s.normal = pose.turn * closest.normal;
   s.distance = closest.distance;
   add_particles<1>(s, {pair.feature}, {1.0}, 1);
-  s.far_point = pose.at(closest.point);
+  s.far_point = placed.at(closest.point);
   s.near_level = s.normal.dot(p);
   s.far_level = s.near_level - s.distance;  // the whole box lies behind the plane through its closest point
   s.nearest = true;
@@ -214,14 +217,15 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
                        const Pose& pose) {
   const Triangle& face = cloth.surface.triangles[at(pair.feature)];
   const Vec3 center = pose.at(body.center);
+  const double radius = pose.stretch.x() * body.radius;
   const PointTriangle closest = closest_on_triangle(center, cloth(face[0]), cloth(face[1]), cloth(face[2]));
   Separation s;
   set_normal(s, -closest.separation, closest.squared_distance);
   add_particles<3>(s, face, closest.weights, 1);
   set_near_level(s, cloth);
-  s.distance -= body.radius;
-  s.far_level = s.normal.dot(center) + body.radius;
-  s.far_point = center + body.radius * s.normal;
+  s.distance -= radius;
+  s.far_level = s.normal.dot(center) + radius;
+  s.far_point = center + radius * s.normal;
 
   const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
   s.nearest = side.vertex >= 0 ? cloth.surface.triangle_of_vertex[at(side.vertex)] == pair.feature

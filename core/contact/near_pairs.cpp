@@ -18,17 +18,26 @@ double bulge(const Passage& passage, double radius) {
   return radius * (1 - std::cos(0.5 * passage.angle()));
 }
 
-/// Holds the whole way of a point of an obstacle.
+/// The same for a point at rest, `radius` metres from the pivot at the start, as it is seen from the obstacle:
+/// what the pivot has shifted turns as well, by t (1 - t) times the angle against the chord.
+double seen_bulge(const Passage& passage, double radius) {
+  return bulge(passage, radius) + 0.25 * passage.angle() * (passage.pivot(1) - passage.pivot(0)).norm();
+}
+
+/// Holds the whole way of a point of an obstacle. A point that turns and moves from or to the pivot leaves
+/// the chord by at most an eighth of the second derivative, the turn's and that of both.
 Bounds swept(const Passage& passage, const Vec3& pivot, const Vec3& point, double reach) {
+  const double radius = (point - pivot).norm();
   return bounds_of(passage.from().at(point), passage.to().at(point))
-      .grown(reach + bulge(passage, (point - pivot).norm()));
+      .grown(reach + bulge(passage, passage.largest_stretch() * radius) +
+             0.25 * passage.angle() * passage.growth() * radius);
 }
 
 /// A box as it is seen from an obstacle.
 Bounds seen_from(const Pose& pose, const Bounds& box) {
   const Vec3 middle = pose.back(0.5 * (box.lower + box.upper));
   const Vec3 half = pose.turn.cwiseAbs().transpose() * (0.5 * (box.upper - box.lower));
-  return {middle - half, middle + half};
+  return {middle - half.cwiseQuotient(pose.stretch), middle + half.cwiseQuotient(pose.stretch)};
 }
 
 /// Boxes of the cloth as a mesh meets them on its way, grown by `reach`.
@@ -42,7 +51,7 @@ void seen_from_body(const ObstacleBody& body, const Passage& passage, const std:
     seen[f] = at_home ? box : seen_from(passage.from(), box);
     if (!passage.rests()) seen[f].add(seen_from(passage.to(), box));
     const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
-    seen[f] = seen[f].grown(reach + bulge(passage, radius));
+    seen[f] = seen[f].grown((reach + seen_bulge(passage, radius)) / passage.least_stretch());
   }
 }
 
@@ -128,13 +137,14 @@ class PairSearch::Step {
         const Vec3 normal = pose->turn * body.normal;
         lowest = std::min(lowest, normal.dot(middle - pose->at(body.point)) - normal.cwiseAbs().dot(half));
       }
-      if (passage.angle() > 0) lowest -= bulge(passage, (middle - pivot).norm() + half.norm());
+      if (passage.angle() > 0) lowest -= seen_bulge(passage, (middle - pivot).norm() + half.norm());
       if (lowest < reach_) add(PairKind::vertex_plane, static_cast<int>(i), 0);
     }
   }
 
   void meet_sphere(const ObstacleBody& body, const Passage& passage) {
-    const Bounds way = swept(passage, body.pivot, body.center, reach_ + body.radius);
+    const double radius = passage.largest_stretch() * body.radius;
+    const Bounds way = swept(passage, body.pivot, body.center, reach_ + radius);
     if (!overlap(whole_, way)) return;
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f)
       if (overlap(box_of_face(f), way)) add(PairKind::face_sphere, f, 0);
@@ -173,7 +183,8 @@ class PairSearch::Step {
       near.clear();
       const Pose& pose = passage.from();
       for (const Capsule& way : ways_.particles)
-        near.push_back({pose.back(way.from), pose.back(way.to), way.radius + reach_});
+        near.push_back(
+            {pose.back(way.from), pose.back(way.to), (way.radius + reach_) / passage.least_stretch()});
       meet_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     } else {
       std::vector<Bounds>& near = search_.seen_;

@@ -33,6 +33,9 @@ class PairSearch {
   /// share a particle are no pair.
   void find(const Ways& ways, const std::vector<Passage>& passages, std::vector<FeaturePair>& pairs);
 
+  /// What was kept was found for other reaches.
+  void forget() { kept_.clear(); }
+
   /// Levels of a body's hierarchy, or with `FeaturePair::cloth_itself` of the cloth's; 0 where there is none.
   int hierarchy_depth(int body) const;
   /// Appends its boxes `level` below the root, for drawing: of a mesh as the scene has it, of the cloth

@@ -1,11 +1,13 @@
-// How an obstacle gets to where an edit has put it. Under continuous contact it may not just be there: cloth
-// could lie in between. So the edit takes effect at once, and from it the obstacle is drawn aside by the way
-// that it was moved; this shift fades away evenly, and contact sees an obstacle that moves.
+// How an obstacle gets to what an edit has made of it. Under continuous contact it may not just be there:
+// cloth could lie in between. So the edit takes effect at once, and from it the obstacle is drawn aside,
+// turned and stretched to where and what it was; this fades away evenly, and contact sees an obstacle that
+// moves, turns and grows.
 #pragma once
 
 #include <vector>
 
 #include "contact/rigid_motion.h"
+#include "geometry/triangle_mesh.h"
 
 namespace cloth {
 
@@ -13,25 +15,50 @@ namespace cloth {
 inline constexpr double carry_time = 0.05;
 
 struct ObstacleCarry {
-  Vec3 way{0, 0, 0};  ///< m, from the scene's place to where the obstacle was at `begin`
-  double begin = 0;   ///< s
+  Vec3 way{0, 0, 0};      ///< m, of the pivot, from the scene's place to where the obstacle was at `begin`
+  double begin = 0;       ///< s
+  Vec3 turn{0, 0, 0};     ///< rad along the axis, before the scene's turn
+  Vec3 stretch{1, 1, 1};  ///< at `begin`
 
   double end() const { return begin + carry_time; }
-  bool carries() const { return !way.isZero(0); }
-  Vec3 shift(double time) const;  ///< m; all of `way` until `begin`, none from `end` on
-  double speed() const { return way.norm() / carry_time; }  ///< m/s
+  bool carries() const { return !way.isZero(0) || reshapes(); }
+  bool reshapes() const { return !turn.isZero(0) || stretch != Vec3::Ones(); }
+  double left(double time) const;  ///< of all of it: 1 until `begin`, 0 from `end` on
+  /// m/s, at most, of any point within `reach` metres of the pivot.
+  double speed(double reach) const;
 };
 
-/// One for each obstacle; empty: none is carried. Obstacles that turn or grow by an edit do so at once.
+/// What is missing of the thicknesses that an edit has made larger: they grow to what the scene says.
+struct ThicknessCarry {
+  double missing = 0, own_missing = 0;  ///< m, at `begin`: to obstacles, and of the cloth to itself
+  double begin = 0;                     ///< s
+
+  bool carries() const { return missing > 0 || own_missing > 0; }
+  double left(double time) const;  ///< see ObstacleCarry
+};
+
+/// Of `before`, with what is left of an earlier edit, by an edit at `time`, in s.
+ThicknessCarry thickness_after(const Scene& before, const ThicknessCarry& carry, const Scene& after,
+                               double time);
+
+/// One for each obstacle; empty: none is carried.
 using ObstacleCarries = std::vector<ObstacleCarry>;
 
 /// Where an obstacle is, carried or not.
 Pose carried_pose(const std::vector<Obstacle>& obstacles, const ObstacleCarries& carries,
                   std::size_t obstacle, double time);
 
+/// Obstacles as they are, with the way that is left of earlier edits.
+struct CarriedObstacles {
+  const std::vector<Obstacle>& obstacles;
+  const std::vector<Pose>& poses;  ///< empty: of obstacles that were not followed continuously
+  const ObstacleCarries& carries;
+};
+
 /// What an edit at `time`, in s, makes of the carries in force: every obstacle that both scenes have stays
-/// where it is for now.
-ObstacleCarries carries_after(const std::vector<Obstacle>& before, const std::vector<Obstacle>& after,
-                              const ObstacleCarries& carries, double time);
+/// where it is, and as it is, for now. Others are at once what the scene says, unless that touches the
+/// cloth, see entry_of().
+ObstacleCarries carries_after(const CarriedObstacles& before, const Scene& after, double time,
+                              const TriangleMesh& cloth);
 
 }  // namespace cloth

@@ -6,16 +6,6 @@
 namespace cloth {
 namespace {
 
-Eigen::Matrix3d turn_by(const Vec3& rotation) {
-  const double angle = rotation.norm();
-  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
-}
-
-Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now) {
-  return {turn, pivot_now - turn * pivot};
-}
-
 Pose pose_between(const Vec3& pivot, const std::vector<Keyframe>& keys, double time) {
   const auto pose_at_key = [&](const Keyframe& key) {
     return about(pivot, turn_by(key.rotation), key.position);
@@ -30,6 +20,22 @@ Pose pose_between(const Vec3& pivot, const std::vector<Keyframe>& keys, double t
 }
 
 }  // namespace
+
+Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now, const Vec3& stretch) {
+  return {turn, pivot_now - turn * pivot.cwiseProduct(stretch), stretch};
+}
+
+Eigen::Matrix3d turn_by(const Vec3& rotation) {
+  const double angle = rotation.norm();
+  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+}
+
+Vec3 rotation_of(const Eigen::Matrix3d& turn) {
+  if (turn.isIdentity(0)) return Vec3::Zero();
+  const Eigen::AngleAxisd both(turn);
+  return both.angle() * both.axis();
+}
 
 Vec3 pivot_of(const Obstacle& obstacle) {
   switch (obstacle.shape) {
@@ -79,8 +85,10 @@ Passage::Passage(const Vec3& pivot, const Pose& from, const Pose& to)
 Pose Passage::at(double part) const {
   if (part <= 0) return from_;
   if (part >= 1) return to_;
-  if (angle_ == 0) return {from_.turn, from_.shift + part * (to_.shift - from_.shift)};
-  return about(pivot_, Eigen::AngleAxisd(part * angle_, axis_).toRotationMatrix() * from_.turn, pivot(part));
+  const Vec3 stretch = from_.stretch + part * (to_.stretch - from_.stretch);
+  if (angle_ == 0) return {from_.turn, from_.shift + part * (to_.shift - from_.shift), stretch};
+  return about(pivot_, Eigen::AngleAxisd(part * angle_, axis_).toRotationMatrix() * from_.turn, pivot(part),
+               stretch);
 }
 
 }  // namespace cloth

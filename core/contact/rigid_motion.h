@@ -1,19 +1,32 @@
-// Where an obstacle is: a function of time alone.
+// Where an obstacle is: by its own motion, a function of time alone, it turns and shifts; what an edit has
+// made larger or smaller is stretched as well until it has its size (contact/obstacle_carry).
 #pragma once
+
+#include <algorithm>
 
 #include "scene/scene.h"
 
 namespace cloth {
 
-/// x -> turn x + shift, from where the scene describes an obstacle to where it is.
+/// x -> turn (stretch x) + shift, from where the scene describes an obstacle to where it is; `stretch` axis
+/// by axis, the same along all of them but for boxes.
 struct Pose {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  Vec3 shift{0, 0, 0};  ///< m
+  Vec3 shift{0, 0, 0};    ///< m
+  Vec3 stretch{1, 1, 1};  ///< > 0
 
-  Vec3 at(const Vec3& point) const { return turn * point + shift; }
-  Vec3 back(const Vec3& point) const { return turn.transpose() * (point - shift); }
+  Vec3 at(const Vec3& point) const { return turn * point.cwiseProduct(stretch) + shift; }
+  Vec3 back(const Vec3& point) const { return (turn.transpose() * (point - shift)).cwiseQuotient(stretch); }
   bool operator==(const Pose&) const = default;
 };
+
+/// What puts `pivot` at `pivot_now`.
+Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now,
+           const Vec3& stretch = Vec3::Ones());
+
+/// A turn by |rotation| about it, in rad; and the rotation of a turn, the short way.
+Eigen::Matrix3d turn_by(const Vec3& rotation);
+Vec3 rotation_of(const Eigen::Matrix3d& turn);
 
 /// The point about which an obstacle spins: centre of a sphere or box, point of a plane, origin of a placed
 /// mesh. In m, before any motion.
@@ -27,7 +40,8 @@ Pose pose_of(const Obstacle& obstacle, double time);
 /// m/s, at most, of any point within `reach` metres of the pivot, at any time.
 double highest_speed(const Obstacle& obstacle, double reach);
 
-/// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the short way.
+/// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the short way, the
+/// stretch evenly.
 class Passage {
  public:
   Passage() = default;
@@ -36,6 +50,11 @@ class Passage {
   Pose at(double part) const;  ///< in [0, 1]; the ends are the given poses to the bit
   bool rests() const { return from_ == to_; }
   double angle() const { return angle_; }  ///< rad, >= 0
+  bool grows() const { return from_.stretch != to_.stretch; }
+  /// By how much of its distance from the pivot a point is moved away from it, or towards it, at most.
+  double growth() const { return (to_.stretch - from_.stretch).cwiseAbs().maxCoeff(); }
+  double largest_stretch() const { return std::max(from_.stretch.maxCoeff(), to_.stretch.maxCoeff()); }
+  double least_stretch() const { return std::min(from_.stretch.minCoeff(), to_.stretch.minCoeff()); }
   const Pose& from() const { return from_; }
   const Pose& to() const { return to_; }
   Vec3 pivot(double part) const { return pivot_from_ + part * (pivot_to_ - pivot_from_); }  ///< m

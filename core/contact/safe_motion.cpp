@@ -118,8 +118,12 @@ ContinuousContact::Plane ContinuousContact::carried_plane(int obstacle, const Pl
                                                           const std::vector<Pose>& to) const {
   const ObstacleBody& body = bodies_[at(obstacle)];
   const Pose &from = poses_[at(obstacle)], &end = to[at(obstacle)];
-  if (body.shape == Shape::sphere)
+  if (body.shape == Shape::sphere && end.stretch == from.stretch)
     return {plane.point + end.at(body.center) - from.at(body.center), plane.normal};
+  if (body.shape == Shape::sphere) {
+    const double growth = end.stretch.x() / from.stretch.x();
+    return {end.at(body.center) + growth * (plane.point - from.at(body.center)), plane.normal};
+  }
   return {end.at(from.back(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
 }
 
@@ -148,6 +152,24 @@ double ContinuousContact::reached_gap(const Separation& s) const {
   return level - s.far_level;
 }
 
+/// How far the feature of an obstacle that is not a plane reaches along the normal, in m. Where a shape grows
+/// each of its points goes straight, so that between two poses it reaches no further than in one of them.
+double ContinuousContact::reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const {
+  const ObstacleBody& body = bodies_[at(pair.obstacle)];
+  const auto vertex = [&](int i) { return normal.dot(pose.at(body.vertices[at(i)])); };
+  double furthest = -infinity;
+  if (pair.kind == PairKind::face_sphere)
+    return normal.dot(pose.at(body.center)) + pose.stretch.x() * body.radius;
+  if (pair.kind == PairKind::face_vertex) return vertex(pair.foreign);
+  if (pair.kind == PairKind::vertex_box)
+    for (int corner = 0; corner < 8; ++corner) furthest = std::max(furthest, vertex(corner));
+  if (pair.kind == PairKind::edge_edge)
+    for (const int end : body.surface.edges[at(pair.foreign)]) furthest = std::max(furthest, vertex(end));
+  if (pair.kind == PairKind::vertex_face)
+    for (const int end : body.surface.triangles[at(pair.foreign)]) furthest = std::max(furthest, vertex(end));
+  return furthest;
+}
+
 /// By what factor the advance to `next_poses_` must be shorter for the cloth to stay beyond every carried
 /// plane.
 double ContinuousContact::shrink_to_planes() {
@@ -159,9 +181,13 @@ double ContinuousContact::shrink_to_planes() {
     const Separation& s = separations_[k];
     const Vec3 on_plane = s.far_point + (s.far_level - s.normal.dot(s.far_point)) * s.normal;
     const Plane carried = carried_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
+    const double grown = passages_[at(pair.obstacle)].grows()
+                             ? reach_along(carried.normal, pair, next_poses_[at(pair.obstacle)]) -
+                                   carried.normal.dot(carried.point)
+                             : 0;  // beyond the plane
     double gap = infinity;
     for (int j = 0; j < s.near_count; ++j)
-      gap = std::min(gap, carried.normal.dot(safe_[at(s.particle[at(j)])] - carried.point));
+      gap = std::min(gap, carried.normal.dot(safe_[at(s.particle[at(j)])] - carried.point) - grown);
     const double now = reached_gap(s), kept = kept_gap(now, memory_[k].thickness);
     if (gap >= kept) continue;
     const double factor = caution * std::max(now - kept, 0.0) / (now - gap);

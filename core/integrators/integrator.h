@@ -76,6 +76,11 @@ class Integrator {
   virtual void follow_positions(const ClothSystem&, ForceModel&, const StepTimes&,
                                 const Vec3Field& /*half_velocity*/, ClothState&) {}
 
+  /// Makes it once more, with the damping of the velocities in the state, which contact has answered.
+  /// Precondition: follow_positions() was the last call.
+  virtual void follow_velocities(const ClothSystem&, ForceModel&, const StepTimes&,
+                                 const Vec3Field& /*half_velocity*/, ClothState&) {}
+
   /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
   /// choice. Most methods need nothing.
   virtual IntegratorMemory remember() const { return {}; }

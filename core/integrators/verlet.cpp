@@ -60,6 +60,15 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
   finish_velocity(system, forces, 0.5 * times.step, state);
 }
 
+/// Else the cloth beside a contact would be damped by how fast that would have gone without it, and at rest
+/// keep a speed of some h^2 g times damping over mass.
+void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                               const Vec3Field& half_velocity, ClothState& state) {
+  forces.force(state.velocity, force_);
+  state.velocity = half_velocity;
+  add_acceleration(system, 0.5 * times.step, force_, state.velocity);
+}
+
 /// The velocity at the end of a step and at the half of the next are made in one pass, so that the force need
 /// not be kept: a third less to bring from memory.
 IntegratorReport Verlet::unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,

@@ -21,6 +21,8 @@ class Verlet : public Integrator {
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
   bool velocity_follows_positions() const override { return true; }
+  void follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                         const Vec3Field& half_velocity, ClothState& state) override;
   void follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         const Vec3Field& half_velocity, ClothState& state) override;
   void forget(Change) override { holds_force_ = false; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "contact/start_check.h"
 #include "io/fnv_hash.h"
 #include "scene/scene_parameters.h"
 #include "simulation/time_step.h"
@@ -28,6 +29,9 @@ std::vector<Problem> carry_out_edits(const Edits& edits, Simulation& simulation)
   if (edited.scene) edited.problems = new_start_needed(simulation.scene().cloth, edited.scene->cloth);
   if (edited.problems.empty() && !resolved_time_step(*edited.scene))
     edited.problems.push_back({"integrator.time_step", "auto", no_stable_step_text(*edited.scene), "", 0, 0});
+  if (edited.problems.empty() && edited.scene->self_contact && !simulation.scene().self_contact &&
+      passes_through_itself(simulation.cloth_mesh()))
+    edited.problems.push_back({"self_contact", "", "the cloth passes through itself now", "", 0, 0});
   for (Problem& problem : edited.problems) problem.path = "set." + problem.path;
   if (edited.problems.empty()) simulation.edit(*edited.scene);
   return std::move(edited.problems);

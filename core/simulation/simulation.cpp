@@ -60,18 +60,17 @@ void Simulation::assemble() {
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
   contact_.reset();
-  const std::unique_ptr<ContinuousContact> contact_before = std::move(continuous_contact_);
+  continuous_contact_.reset();
   if (has_continuous_contact(scene_))
-    continuous_contact_ = std::make_unique<ContinuousContact>(scene_, system_, state_.time);
+    continuous_contact_ =
+        std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_carry_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles);
-  if (contact_before && continuous_contact_) continuous_contact_->follow(*contact_before);
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
-  if (continuous_contact_) continuous_contact_->set_carries(carries_);
-  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_));
+  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_, state_.position));
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
   last_limit_ = {};
@@ -134,6 +133,7 @@ std::optional<Divergence> Simulation::step() {
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact();
   if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
+  if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
   state_.time = times.end;
   state_.step = next;
   count_step(report);
@@ -201,21 +201,43 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
     for (std::size_t i = 0; i < half_velocity_.size(); ++i)
       half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
   }
-  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, [&] {
-    if (follows) integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
-  });
+  Settling settling;
+  if (follows)
+    settling.positions = [&] {
+      integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
+    };
+  if (follows && forces_->has_damping())
+    settling.velocities = [&] {
+      integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
+    };
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
   if (!last_contact_.acted) return;
   ledger_.contact += total_energy() - before;
   contact_impulse_ += last_contact_.impulse;
   integrator_->forget(Change::state);
 }
 
+TriangleMesh Simulation::cloth_mesh() const {
+  TriangleMesh mesh{{}, triangles_of(system_)};
+  for (std::size_t i = 0; i < state_.position.size(); ++i) mesh.vertices.push_back(state_.position[i]);
+  return mesh;
+}
+
+/// Of the obstacles that an edit makes other ones than they are.
+ObstacleCarries Simulation::find_carries(const Scene& edited) const {
+  if (!has_continuous_contact(edited)) return {};
+  if (continuous_contact_ && edited.obstacles == scene_.obstacles) return carries_;
+  const std::vector<Pose> poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{};
+  return carries_after({scene_.obstacles, poses, carries_}, edited, state_.time, cloth_mesh());
+}
+
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
-  carries_ = continuous_contact_ && has_continuous_contact(scene)
-                 ? carries_after(scene_.obstacles, scene.obstacles, carries_, state_.time)
-                 : ObstacleCarries{};
+  carries_ = find_carries(scene);
+  thickness_carry_ = continuous_contact_ && has_continuous_contact(scene)
+                         ? thickness_after(scene_, thickness_carry_, scene, state_.time)
+                         : ThicknessCarry{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -262,6 +284,7 @@ Checkpoint Simulation::checkpoint() const {
           .last_contact = last_contact_,
           .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
           .carries = carries_,
+          .thickness_carry = thickness_carry_,
           .obstacle_speed = obstacle_speed_,
           .contact_impulse = contact_impulse_};
 }
@@ -282,10 +305,11 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   last_contact_ = checkpoint.last_contact;
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
   carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
+  thickness_carry_ = checkpoint.thickness_carry;
   obstacle_speed_ = checkpoint.obstacle_speed;
   contact_impulse_ = checkpoint.contact_impulse;
   if (continuous_contact_) {
-    continuous_contact_->set_carries(carries_);
+    continuous_contact_->set_carries(carries_, thickness_carry_);
     restore_obstacles(checkpoint.obstacle_poses);
     continuous_contact_->forget_touches();
   }

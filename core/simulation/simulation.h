@@ -85,6 +85,7 @@ struct Checkpoint {
   ContactReport last_contact;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
   ObstacleCarries carries;
+  ThicknessCarry thickness_carry;
   double obstacle_speed = 0;      ///< m/s, the highest so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
 
@@ -161,6 +162,9 @@ class Simulation {
   /// Appends its boxes `level` below the root; of a mesh as the scene has it, before any motion.
   void append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes);
 
+  /// The cloth as it is now.
+  TriangleMesh cloth_mesh() const;
+
   Measurement measure() const;
 
   /// The most kinetic energy in J that the scene could have given so far; what divergence is judged by.
@@ -179,6 +183,7 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void resolve_contact();
+  ObstacleCarries find_carries(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
   double total_energy() const;
@@ -221,6 +226,7 @@ class Simulation {
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
   ObstacleCarries carries_;
+  ThicknessCarry thickness_carry_;
   bool was_finite_ = false;   ///< every position was finite after the last step
   ClothState before_unseen_;  ///< to go back to
 };

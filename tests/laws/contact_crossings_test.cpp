@@ -101,6 +101,17 @@ TEST_P(ASceneOfContact, LetsNothingThroughFromItsStartToItsEnd) {
 
 INSTANTIATE_TEST_SUITE_P(Contact, ASceneOfContact, ::testing::ValuesIn(scenes_of_contact()), test_name);
 
+TEST(AStepWhoseEquationsAreNotSolved, LetsNothingThroughEither) {
+  Scene scene = contact_scene("itself");
+  scene.integrator = {.method = "implicit-euler", .time_step = 1.0 / 60};
+  scene.integrator.newton_iterations = 2;
+  const CheckedRun run =
+      check_run(scene, {.duration = 1, .interval = 1.0 / 60, .prepare = thrown({0, -8, 0})});
+  ASSERT_TRUE(run.stop && run.stop->solver_failed) << describe(run);
+  EXPECT_GT(run.touched, 0) << describe(run);
+  EXPECT_EQ(run.crossings.number, 0) << describe(run);
+}
+
 /// An obstacle of any kind, anywhere under or beside the sheet, at rest or not.
 Obstacle random_obstacle(Random& random) {
   Obstacle obstacle = contact_scene(random.coin() ? "sphere" : random.coin() ? "box" : "plane").obstacles[0];

@@ -147,8 +147,9 @@ TEST(ObstacleCarry, GoesOnFromACheckpointToTheBit) {
 
 TEST(ObstacleCarry, CountsForTheHighestSpeedOfAnObstacle) {
   const Scene scene = hung_cloth(Shape::sphere, "verlet");
-  EXPECT_EQ(highest_obstacle_speed(scene, {}), 0);
-  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleCarry{Vec3(0, 0, 0.1), 1.0}}), 0.1 / carry_time, 1e-12);
+  EXPECT_EQ(highest_obstacle_speed(scene, {}, {}), 0);
+  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleCarry{.way = {0, 0, 0.1}}}, {}), 0.1 / carry_time,
+              1e-12);
 }
 
 TEST(ObstacleCarry, IsNotThereWhereObstaclesAreTestedParticleByParticle) {

@@ -93,10 +93,15 @@ Passage random_passage(const ObstacleBody& body, Random& random) {
   Pose to = from;
   to.shift += random.vector(0.2);
   if (random.coin()) return {body.pivot, from, to};
-  const Vec3 axis = random.vector(1).normalized(), pivot = to.at(body.pivot);
-  to.turn = Eigen::AngleAxisd(random.uniform(0, most_angle), axis).toRotationMatrix() * from.turn;
-  to.shift = pivot - to.turn * body.pivot;
-  return {body.pivot, from, to};
+  const Vec3 pivot = to.at(body.pivot);
+  const Vec3 rotation = random.uniform(0, most_angle) * random.vector(1).normalized();
+  const Eigen::Matrix3d turn = random.coin() ? from.turn : turn_by(rotation) * from.turn;
+  Vec3 stretch = Vec3::Ones();
+  if (random.coin() && body.shape != Shape::plane) stretch = Vec3::Constant(random.uniform(0.3, 2));
+  if (random.coin() && body.shape == Shape::box) stretch.y() = random.uniform(0.3, 2);
+  const Pose begin = about(body.pivot, from.turn, from.at(body.pivot), stretch);
+  if (random.coin()) stretch.setOnes();
+  return {body.pivot, begin, about(body.pivot, turn, pivot, stretch)};
 }
 
 Sheet random_sheet(int rows, int columns, Random& random) {

@@ -9,7 +9,7 @@ namespace cloth::test {
 /// Of some 0.4 m, near the origin; a mesh is a closed body or an irregular sheet of some dozens of triangles.
 ObstacleBody random_body(Shape shape, Random& random);
 
-/// At rest where the body is, at rest elsewhere, shifted, or turned by up to 3 rad and shifted.
+/// At rest where the body is, at rest elsewhere, or shifted; maybe turned by up to 3 rad and grown as well.
 Passage random_passage(const ObstacleBody& body, Random& random);
 
 /// rows x columns particles, and where they are: in a sheet of 0.4 m with folds and bumps about the origin.

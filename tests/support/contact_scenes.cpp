@@ -46,10 +46,10 @@ TriangleMesh moved(TriangleMesh mesh, const Pose& pose) {
 Count crossings_of(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose) {
   switch (obstacle.shape) {
     case Shape::sphere:
-      return triangles_in_sphere(cloth, pose.at(obstacle.center), obstacle.radius);
+      return triangles_in_sphere(cloth, pose.at(obstacle.center), pose.stretch.x() * obstacle.radius);
     case Shape::box:
-      return triangles_in_solid(cloth,
-                                box_triangles(pose.at(obstacle.center), pose.turn, 0.5 * obstacle.size));
+      return triangles_in_solid(cloth, box_triangles(pose.at(obstacle.center), pose.turn,
+                                                     0.5 * pose.stretch.cwiseProduct(obstacle.size)));
     case Shape::plane:
       return vertices_below_plane(cloth, pose.at(obstacle.point), pose.turn * obstacle.normal);
     case Shape::mesh:

@@ -44,7 +44,9 @@ double distance_to_mesh(const Ray& ray, const cloth::TriangleMesh& mesh) {
 
 /// m along the ray; planes are everywhere and are not hit.
 double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, const Ray& ray) {
-  const Ray local{pose.back(ray.origin), pose.turn.transpose() * ray.direction};
+  const Eigen::Vector3d pivot = cloth::pivot_of(o);
+  const cloth::Pose placed = cloth::about(pivot, pose.turn, pose.at(pivot));  // as large as it is to be
+  const Ray local{placed.back(ray.origin), placed.turn.transpose() * ray.direction};
   switch (o.shape) {
     case cloth::Shape::sphere:
       return distance_to_sphere(local, o.center, o.radius);

@@ -206,15 +206,15 @@ void ClothRenderer::draw_obstacle(QOpenGLShaderProgram& program, const cloth::Ob
   program.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
   program.setUniformValue("turn", uniform_matrix(turn));
   if (is_mesh) {
-    program.setUniformValue("scale", uniform_vector(Eigen::Vector3d::Constant(o.scale)));
+    program.setUniformValue("scale", uniform_vector(o.scale * pose.stretch));
     bodies_->draw(*o.mesh.loaded);
   } else if (o.shape == cloth::Shape::sphere) {
     const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
-    program.setUniformValue(
-        "scale", uniform_vector(Eigen::Vector3d::Constant(o.radius - std::min(arc, 0.05 * o.radius))));
+    program.setUniformValue("scale",
+                            uniform_vector((o.radius - std::min(arc, 0.05 * o.radius)) * pose.stretch));
     solids_->draw_sphere();
   } else {
-    program.setUniformValue("scale", uniform_vector(0.995 * o.size));
+    program.setUniformValue("scale", uniform_vector(0.995 * o.size.cwiseProduct(pose.stretch)));
     solids_->draw_box();
   }
 }

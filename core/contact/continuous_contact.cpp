@@ -122,7 +122,9 @@ void ContinuousContact::begin(const ContactTimes& times) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     poses_[k] = starts_[k];
     end_poses_[k] = carried_pose(obstacles_, carries_, k, times.end);
-    passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k]);
+    const Obstacle& obstacle = obstacles_[k];
+    const Vec3 spun = obstacle.keyframes.empty() ? Vec3(times.step * obstacle.spin) : Vec3(Vec3::Zero());
+    passages_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k], spun);
     all_rest = all_rest && passages_[k].rests();
   }
   starts_ = end_poses_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "contact/at.h"
 #include "contact/face_meeting.h"
@@ -15,6 +16,7 @@ constexpr std::size_t least_share = 1000, least_queries = 200;
 
 /// How far an even turn bulges out of the chord between its ends, for a point `radius` metres from the axis.
 double bulge(const Passage& passage, double radius) {
+  if (passage.angle() >= 2 * std::numbers::pi) return 2 * radius;
   return radius * (1 - std::cos(0.5 * passage.angle()));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace cloth {
 namespace {
@@ -74,12 +75,23 @@ double highest_speed(const Obstacle& obstacle, double reach) {
   return highest;
 }
 
-Passage::Passage(const Vec3& pivot, const Pose& from, const Pose& to)
+Passage::Passage(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun)
     : from_(from), to_(to), pivot_(pivot), pivot_from_(from.at(pivot)), pivot_to_(to.at(pivot)) {
-  if (from.turn == to.turn) return;
-  const Eigen::AngleAxisd turn(to.turn * from.turn.transpose());
-  angle_ = turn.angle();
-  axis_ = turn.axis();
+  if (from.turn != to.turn) {
+    const Eigen::AngleAxisd turn(to.turn * from.turn.transpose());
+    angle_ = turn.angle();
+    axis_ = turn.axis();
+  }
+  if (spun.norm() > std::numbers::pi) add_whole_turns(spun);
+}
+
+void Passage::add_whole_turns(const Vec3& spun) {
+  constexpr double whole = 2 * std::numbers::pi, rounding = 1e-9;
+  if (angle_ < rounding || whole - angle_ < rounding) axis_ = spun.normalized();
+  angle_ += whole * std::round((spun.dot(axis_) - angle_) / whole);
+  if (angle_ >= 0) return;
+  angle_ = -angle_;
+  axis_ = -axis_;
 }
 
 Pose Passage::at(double part) const {

@@ -40,15 +40,17 @@ Pose pose_of(const Obstacle& obstacle, double time);
 /// m/s, at most, of any point within `reach` metres of the pivot, at any time.
 double highest_speed(const Obstacle& obstacle, double reach);
 
-/// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the short way, the
-/// stretch evenly.
+/// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the stretch
+/// evenly.
 class Passage {
  public:
   Passage() = default;
-  Passage(const Vec3& pivot, const Pose& from, const Pose& to);
+  /// The short way; but where the obstacle has turned by `spun`, in rad along the axis, on the way, by as
+  /// many whole turns more as come nearest to that.
+  Passage(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun = Vec3::Zero());
 
   Pose at(double part) const;  ///< in [0, 1]; the ends are the given poses to the bit
-  bool rests() const { return from_ == to_; }
+  bool rests() const { return from_ == to_ && angle_ == 0; }
   double angle() const { return angle_; }  ///< rad, >= 0
   bool grows() const { return from_.stretch != to_.stretch; }
   /// By how much of its distance from the pivot a point is moved away from it, or towards it, at most.
@@ -60,6 +62,8 @@ class Passage {
   Vec3 pivot(double part) const { return pivot_from_ + part * (pivot_to_ - pivot_from_); }  ///< m
 
  private:
+  void add_whole_turns(const Vec3& spun);
+
   Pose from_, to_;
   Vec3 pivot_{0, 0, 0}, pivot_from_{0, 0, 0}, pivot_to_{0, 0, 0};
   Vec3 axis_{0, 1, 0};

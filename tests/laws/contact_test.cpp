@@ -231,6 +231,32 @@ TEST(ABallAtAHundredMetresASecond, DoesNotPassAHungCloth) {
   }
 }
 
+/// A whole turn in one step: where the blade ends it began, and no feature of it seems to have moved.
+TEST(ABladeThatTurnsOnceInAStep, PushesTheClothAsideOrIsReportedAsStuck) {
+  constexpr double step = 1.0 / 60;
+  for (const double turns : {0.75, 1.0, -1.0, 1.5}) {
+    Scene scene = sheet_over(0);
+    scene.cloth.origin = {-0.2, 0.2, 0};
+    scene.cloth.down = {0, -1, 0};
+    scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
+    scene.obstacles.resize(1);
+    scene.obstacles[0].shape = Shape::box;
+    scene.obstacles[0].center = {0.01, 0, 0.15};
+    scene.obstacles[0].size = {0.36, 0.02, 0.02};
+    scene.obstacles[0].spin = {0, 2 * std::numbers::pi * turns / step, 0};
+    scene.integrator = {.method = "implicit-euler", .time_step = step};
+    Simulation simulation(scene);
+    if (simulation.step()) {
+      EXPECT_TRUE(simulation.last_contact().pinch) << turns << " turns";
+      continue;
+    }
+    double furthest = 0;
+    for (std::size_t i = 0; i < simulation.state().position.size(); ++i)
+      furthest = std::max(furthest, std::abs(simulation.state().position[i].z()));
+    EXPECT_GT(furthest, 0.02) << turns << " turns: the blade reaches 0.03 m beyond the cloth";
+  }
+}
+
 TEST(ContinuousContact, GivesTheSameBitsAgainAndFromACheckpoint) {
   for (const std::string& name : contact_scene_names())
     for (const char* method : {"verlet", "implicit-euler"}) {

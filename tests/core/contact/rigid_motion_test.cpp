@@ -61,6 +61,23 @@ TEST(APassage, EndsAtItsPosesToTheBit) {
   EXPECT_LE((there.shift - between.shift).norm(), 1e-13);
 }
 
+TEST(APassage, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
+  Obstacle obstacle = ball();
+  for (const Vec3& spin : {Vec3(10, 40, 20), Vec3(0, -63, 0), Vec3(0, 20 * pi, 0), Vec3(-35, 0, 0)}) {
+    obstacle.spin = spin;
+    const double begin = 0.3, step = 0.1;
+    const Passage passage(obstacle.center, pose_of(obstacle, begin), pose_of(obstacle, begin + step),
+                          step * spin);
+    EXPECT_NEAR(passage.angle(), step * spin.norm(), 1e-12);
+    EXPECT_FALSE(passage.rests());
+    for (const double part : {0.1, 0.25, 0.5, 0.9}) {
+      const Pose there = pose_of(obstacle, begin + part * step), between = passage.at(part);
+      EXPECT_LE((there.turn - between.turn).norm(), 1e-12) << spin.transpose() << ", part " << part;
+      EXPECT_LE((there.shift - between.shift).norm(), 1e-12);
+    }
+  }
+}
+
 TEST(TheHighestSpeed, IsThatOfTheFastestPoint) {
   Obstacle obstacle = ball();
   obstacle.velocity = {3, 0, 0}, obstacle.spin = {0, 2, 0};

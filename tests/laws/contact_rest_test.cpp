@@ -25,7 +25,8 @@ TEST_P(ADampedScene, ComesToRestWithinFiveSecondsAndLiesStill) {
   EXPECT_GT(run.peak, 1e-3);
   EXPECT_LT(run.kinetic, 1e-6 * run.peak);
   EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
-  EXPECT_LT(run.furthest_after, 2e-4) << "it jitters or creeps";  // the last of it settles ever more slowly
+  const double still = GetParam() == "sphere" ? 2e-4 : 1e-4;  // m; on the ball it settles ever more slowly
+  EXPECT_LT(run.furthest_after, still) << "it jitters or creeps";
   EXPECT_GT(run.touched, 0) << "it fell past";
 }
 

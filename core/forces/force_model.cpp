@@ -129,22 +129,23 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
     for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
   }
   const SweepLoads loads{weight_, viscous_, has_load() ? &position_force_ : nullptr};
-  const SpringSweep::Squares squares = sweep_->euler(step, drift_first, loads, state);
+  SpringSweep::Squares squares;
+  sweep_->euler(step, drift_first, loads, {&squares, 1}, state);
   power.damping_loss += viscous_ * squares.before;
   if (has_power_) work += step * power;
   return squares.after;
 }
 
-bool ForceModel::gains_euler_steps() const {
-  return can_step() && !has_load() && sweep_->gains_euler_steps();
+bool ForceModel::gains_steps_at_once() const {
+  return can_step() && !has_load() && sweep_->gains_steps_at_once();
 }
 
 void ForceModel::euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state,
                              Work& work) {
-  assert(gains_euler_steps());
+  assert(gains_steps_at_once());
   evaluations_ += static_cast<std::int64_t>(squares.size());
   std::vector<SpringSweep::Squares> of_steps(squares.size());
-  sweep_->euler_steps(step, drift_first, {weight_, viscous_, nullptr}, of_steps, state);
+  sweep_->euler(step, drift_first, {weight_, viscous_, nullptr}, of_steps, state);
   for (std::size_t k = 0; k < squares.size(); ++k) {
     squares[k] = of_steps[k].after;
     if (has_power_) work += step * Work{.damping_loss = viscous_ * of_steps[k].before};
@@ -154,7 +155,7 @@ void ForceModel::euler_steps(double step, bool drift_first, std::span<double> sq
 std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
   if (!steps_verlet()) return std::nullopt;
   ++evaluations_;
-  const double squares = sweep_->verlet(step, {weight_, viscous_, nullptr}, position_force_, state).after;
+  const double squares = sweep_->verlet(step, {weight_, viscous_, nullptr}, position_force_, state);
   power = power_after(squares);
   return squares;
 }
@@ -167,10 +168,28 @@ void ForceModel::verlet_steps(double step, std::span<double> squares, ClothState
 
 std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& state, Work& work) {
   if (!can_step() || has_load()) return std::nullopt;
-  evaluations_ += 4;
-  const auto squares = sweep_->runge_kutta(step, {weight_, viscous_, nullptr}, state);
-  work.damping_loss += step * viscous_ * (squares[0] / 6 + squares[1] / 3 + squares[2] / 3 + squares[3] / 6);
-  return squares[4];
+  double squares = 0;
+  runge_kutta_steps(step, {&squares, 1}, state, work);
+  return squares;
+}
+
+void ForceModel::runge_kutta_steps(double step, std::span<double> squares, ClothState& state, Work& work) {
+  assert(can_step() && !has_load());
+  evaluations_ += 4 * static_cast<std::int64_t>(squares.size());
+  stage_squares_.resize(squares.size());
+  sweep_->runge_kutta(step, {weight_, viscous_, nullptr}, stage_squares_, state);
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    const auto& s = stage_squares_[k];
+    work.damping_loss += step * viscous_ * (s[0] / 6 + s[1] / 3 + s[2] / 3 + s[3] / 6);
+    squares[k] = s[4];
+  }
+}
+
+void ForceModel::copy(const ClothState& from, ClothState& to) {
+  if (sweep_)
+    sweep_->copy(from, to);
+  else
+    to = from;
 }
 
 void ForceModel::set_team(WorkerTeam* team, ThreadUse use) {

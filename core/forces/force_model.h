@@ -1,6 +1,7 @@
 // The forces that a scene has, as one f(x, v, t) = p(x, t) - D(x) v. What integrators see.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -74,9 +75,12 @@ class ForceModel {
   /// v' = v + h a(x, v, t), x' = x + h v', or with `drift_first` x + h v. Adds the work.
   std::optional<double> euler_step(double time, double step, bool drift_first, ClothState& state, Work& work);
   /// As many such steps as there are `squares`, to the bit; each of the squares becomes a step's sum of
-  /// |v|^2. Precondition: gains_euler_steps().
+  /// |v|^2. Precondition: gains_steps_at_once().
   void euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state, Work& work);
-  bool gains_euler_steps() const;
+  void runge_kutta_steps(double step, std::span<double> squares, ClothState& state, Work& work);
+  bool gains_steps_at_once() const;
+  /// to = from, by the threads that step it.
+  void copy(const ClothState& from, ClothState& to);
   /// From the last update, at the state's position, to the end of the step. `power` becomes that at the end.
   std::optional<double> verlet_step(double step, ClothState& state, Work& power);
   /// As many such steps as there are `squares`, without the states in between: the same bits. Each of the
@@ -121,8 +125,9 @@ class ForceModel {
   double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
-  Vec3Field position_force_;                        ///< sized when first needed
-  Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
+  std::vector<std::array<double, 5>> stage_squares_;  ///< scratch of Runge-Kutta's steps
+  Vec3Field position_force_;                          ///< sized when first needed
+  Vec3Field rhs_, residual_, direction_, product_;    ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;
 };

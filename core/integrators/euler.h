@@ -10,7 +10,7 @@ class ExplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_euler_steps(); }
+  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
 
@@ -24,7 +24,7 @@ class SemiImplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_euler_steps(); }
+  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
 

@@ -12,6 +12,9 @@ class Rk4 : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
+  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
+                                ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;

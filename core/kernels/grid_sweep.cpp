@@ -41,13 +41,29 @@ std::size_t take_direction(const ClothSystem& system, const SpringDirection& dir
   return count;
 }
 
-/// A band repeats up to two rows of the one above.
+/// A band repeats up to two rows of the one above, Runge-Kutta's up to eight on either side.
 constexpr int fewest_rows = 12;
+static_assert(fewest_rows >= kernels::runge_kutta_halo);
 
-/// Doubles that the copies of a field's rows on both sides of a band take.
-std::size_t halo_size(int rows, std::size_t columns) {
-  constexpr std::size_t components = 3, sides = 2;
-  return sides * static_cast<std::size_t>(rows) * components * columns;
+constexpr std::size_t components = 3, sides = 2;
+
+/// Doubles that so many rows of a field take.
+std::size_t rows_size(int rows, int columns) {
+  return components * static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+}
+
+/// The rows that lie from `at` on, one component after the other.
+RowBlock copied_rows(double* at, int first, int rows, int columns) {
+  const std::size_t run = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  return {at, at + run, at + 2 * run, first};
+}
+
+void copy_rows(const Vec3Field& from, int rows, int columns, const RowBlock& to) {
+  const auto begin = static_cast<std::size_t>(to.first) * static_cast<std::size_t>(columns);
+  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+  std::copy_n(from.x() + begin, count, to.x);
+  std::copy_n(from.y() + begin, count, to.y);
+  std::copy_n(from.z() + begin, count, to.z);
 }
 
 }  // namespace
@@ -101,18 +117,21 @@ int GridSweep::threads() const {
                     team_size());
 }
 
-void GridSweep::make_room(const Plan& plan, std::size_t bands) {
-  const auto rows = static_cast<std::size_t>(grid_.rows), columns = static_cast<std::size_t>(grid_.columns);
+void GridSweep::make_room(const Plan& plan, std::size_t passes, std::size_t bands) {
+  const auto rows = static_cast<std::size_t>(grid_.rows);
   const auto pitch = static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
   const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows) * pitch;
-  std::size_t halo = 0;
-  for (const Attached& attached : plan.fields) halo += halo_size(attached.halo_rows, columns);
-  if (bands == 1) halo = 0;
-  squares_.resize(kernels::runge_kutta_sums * rows);
-  bands_.resize(bands);
+  std::size_t edges = 0;
+  for (const Attached& attached : plan.fields) edges += sides * rows_size(attached.halo_rows, grid_.columns);
+  if (bands == 1) edges = 0;
+  const std::size_t sums = passes * static_cast<std::size_t>(plan.sums) * rows;
+  if (squares_.size() < sums) squares_.resize(sums);
+  while (bands_.size() > bands) bands_.pop_back();
+  while (bands_.size() < bands) bands_.emplace_back();
   for (Band& band : bands_) {
     if (band.scratch.size() < scratch) band.scratch.resize(scratch);
-    if (band.halo.size() < halo) band.halo.resize(halo);
+    for (AlignedDoubles& turn : band.edges)
+      if (turn.size() < edges) turn.resize(edges);
   }
 }
 
@@ -135,133 +154,164 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
   pass.step = plan.step;
   pass.drift_first = plan.drift_first;
   pass.scratch = band.scratch.data();
-  pass.squares = squares_.data();
-  double* halo = band.halo.data();
   for (const Attached& attached : plan.fields) {
     if (!attached.values) continue;
-    pass.*attached.field = with_copies(attached, pass, halo);
-    halo += halo_size(attached.halo_rows, static_cast<std::size_t>(grid_.columns));
+    const RowBlock all{attached.values->x(), attached.values->y(), attached.values->z(), 0};
+    pass.*attached.field = {all, all, all};
   }
 }
 
-/// The field as the band sees it; copies of the rows around the band's own lie from `to` on.
-BandField GridSweep::with_copies(const Attached& attached, const Pass& pass, double* to) const {
-  const Vec3Field& values = *attached.values;
-  const RowBlock all{attached.values->x(), attached.values->y(), attached.values->z(), 0};
-  if (bands_.size() == 1 || attached.halo_rows == 0) return {all, all, all};
-  const auto columns = static_cast<std::size_t>(grid_.columns);
-  const std::size_t run = static_cast<std::size_t>(attached.halo_rows) * columns;
-  const auto copy = [&](int first, int last) {
-    const RowBlock block{to, to + run, to + 2 * run, first};
-    const auto begin = static_cast<std::size_t>(first) * columns;
-    const std::size_t count = static_cast<std::size_t>(last - first) * columns;
-    std::copy_n(values.x() + begin, count, block.x);
-    std::copy_n(values.y() + begin, count, block.y);
-    std::copy_n(values.z() + begin, count, block.z);
-    to += 3 * run;
-    return block;
+/// Leaves the rows at the band's edges for the bands beside it, before `pass`.
+void GridSweep::publish(const Plan& plan, std::size_t index, std::size_t pass) {
+  Band& band = bands_[index];
+  double* to = band.edges[pass % 2].data();
+  const int columns = grid_.columns;
+  for (const Attached& attached : plan.fields) {
+    const int rows = attached.halo_rows;
+    if (!attached.values || rows == 0) continue;
+    const RowBlock upper = copied_rows(to, band.pass.first, rows, columns);
+    const RowBlock lower = copied_rows(to + rows_size(rows, columns), band.pass.last - rows, rows, columns);
+    if (index > 0) copy_rows(*attached.values, rows, columns, upper);
+    if (index + 1 < bands_.size()) copy_rows(*attached.values, rows, columns, lower);
+    to += sides * rows_size(rows, columns);
+  }
+  band.published.reach(static_cast<int>(pass) + 1);
+}
+
+/// Lets the band see what the bands beside it have left for it. By then these have made the pass before, so
+/// that nobody needs any more what lies where the band will leave its own edges next.
+void GridSweep::await_neighbours(const Plan& plan, std::size_t index, std::size_t pass) {
+  Band& band = bands_[index];
+  const Band* above = index > 0 ? &bands_[index - 1] : nullptr;
+  const Band* below = index + 1 < bands_.size() ? &bands_[index + 1] : nullptr;
+  for (const Band* other : {above, below})
+    if (other) other->published.await(static_cast<int>(pass) + 1);
+  const auto edge = [&](const Band& of, std::size_t at, int first, int rows) {
+    return copied_rows(const_cast<double*>(of.edges[pass % 2].data()) + at, first, rows, grid_.columns);
   };
-  const RowBlock above = copy(std::max(0, pass.first - attached.halo_rows), pass.first);
-  const RowBlock below = copy(pass.last, std::min(grid_.rows, pass.last + attached.halo_rows));
-  return {all, above, below};
-}
-
-void GridSweep::run(const Plan& plan) {
-  const int count = begin_pass(plan.kind);
-  make_room(plan, static_cast<std::size_t>(count));
-  if (count == 1) {
-    prepare(plan, 0);
-    plan.kernel(bands_.front().pass);
-  } else {
-    team()->run(count, [this, &plan](int b) {
-      prepare(plan, static_cast<std::size_t>(b));
-      team()->meet();  // nobody steps a row before its neighbours have it
-      plan.kernel(bands_[static_cast<std::size_t>(b)].pass);
-    });
+  std::size_t upper = 0;  // where a field's upper edge begins; its lower one follows
+  for (const Attached& attached : plan.fields) {
+    const int rows = attached.halo_rows;
+    if (!attached.values || rows == 0) continue;
+    const std::size_t lower = upper + rows_size(rows, grid_.columns);
+    BandField& field = band.pass.*attached.field;
+    if (above) field.above = edge(*above, lower, band.pass.first - rows, rows);
+    if (below) field.below = edge(*below, upper, band.pass.last, rows);
+    upper = lower + rows_size(rows, grid_.columns);
   }
-  end_pass(plan.kind);
 }
 
-double GridSweep::sum_of(int which) const {
+void GridSweep::run(const Plan& plan, std::size_t passes, int threads) {
+  make_room(plan, passes, static_cast<std::size_t>(threads));
+  for (Band& band : bands_) band.published.begin();
+  if (threads == 1)
+    step_band(plan, 0, passes);
+  else
+    team()->run(threads, [&](int share) { step_band(plan, static_cast<std::size_t>(share), passes); });
+}
+
+/// All passes, one thread a band: between two of them it waits only for the bands beside it.
+void GridSweep::step_band(const Plan& plan, std::size_t index, std::size_t passes) {
+  prepare(plan, index);
+  Band& band = bands_[index];
+  const bool has_edges = bands_.size() > 1 && plan.has_edges();
+  if (has_edges && !plan.opening) publish(plan, index, 0);
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    const bool is_first = pass == 0, is_last = pass + 1 == passes;
+    if (has_edges && !(is_first && plan.opening)) await_neighbours(plan, index, pass);
+    band.pass.squares = squares_.data() + pass * static_cast<std::size_t>(plan.sums * grid_.rows);
+    const Kernel kernel = is_first && plan.opening  ? plan.opening
+                          : is_last && plan.closing ? plan.closing
+                                                    : plan.kernel;
+    kernel(band.pass);
+    if (has_edges && !is_last) publish(plan, index, pass + 1);
+  }
+}
+
+double GridSweep::sum_of(const Plan& plan, std::size_t pass, int which) const {
   const auto rows = static_cast<std::size_t>(grid_.rows);
-  return ordered_sum(rows, [p = squares_.data() + static_cast<std::size_t>(which) * rows](std::size_t row) {
-    return p[row];
+  const std::size_t first =
+      (pass * static_cast<std::size_t>(plan.sums) + static_cast<std::size_t>(which)) * rows;
+  return ordered_sum(rows, [p = squares_.data() + first](std::size_t row) { return p[row]; });
+}
+
+void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+                      ClothState& state) {
+  assert(has_common_mass() && (!loads.load || squares.size() == 1));
+  const Plan plan{.kernel = kernels_->euler,
+                  .loads = loads,
+                  .step = step,
+                  .drift_first = drift_first,
+                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                              {&Pass::velocity, &state.velocity, 0}}}};
+  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    run(plan, count, threads);
+    for (std::size_t k = 0; k < count; ++k) squares[first + k] = {sum_of(plan, k, 0), sum_of(plan, k, 1)};
   });
 }
 
-SpringSweep::Squares GridSweep::euler(double step, bool drift_first, const SweepLoads& loads,
-                                      ClothState& state) {
-  assert(has_common_mass());
-  run({.kind = PassKind::step,
-       .kernel = kernels_->euler,
-       .loads = loads,
-       .step = step,
-       .drift_first = drift_first,
-       .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
-                   {&Pass::velocity, &state.velocity, 0}}}});
-  return {sum_of(0), sum_of(1)};
-}
-
-SpringSweep::Squares GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
-                                       ClothState& state) {
+double GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  run({.kind = PassKind::step,
-       .kernel = kernels_->verlet,
-       .loads = loads,
-       .step = step,
-       .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
-                   {&Pass::velocity, &state.velocity, kernels::euler_halo},
-                   {&Pass::force, &force, kernels::euler_halo}}}});
-  return {0, sum_of(1)};
+  const Plan plan{.kernel = kernels_->verlet,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                              {&Pass::velocity, &state.velocity, kernels::euler_halo},
+                              {&Pass::force, &force, kernels::euler_halo}}}};
+  run_once(PassKind::step, plan);
+  return sum_of(plan, 0, 1);
 }
 
 void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  const auto pass = [&](PassKind kind, Kernel kernel) {
-    run({.kind = kind,
-         .kernel = kernel,
-         .loads = loads,
-         .step = step,
-         .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
-                     {&Pass::velocity, &state.velocity, 0},
-                     {&Pass::force, &force, 0}}}});
-  };
-  pass(PassKind::opening, kernels_->verlet_open);
-  for (std::size_t k = 0; k + 1 < squares.size(); ++k) {
-    pass(PassKind::between, kernels_->verlet_between);
-    squares[k] = sum_of(1);
-  }
-  pass(PassKind::closing, kernels_->verlet_close);
-  squares.back() = sum_of(1);
+  const Plan plan{.kernel = kernels_->verlet_between,
+                  .opening = kernels_->verlet_open,
+                  .closing = kernels_->verlet_close,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                              {&Pass::velocity, &state.velocity, 0},
+                              {&Pass::force, &force, 0}}}};
+  in_jobs(PassKind::several_steps, squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    run(plan, count + 1, threads);
+    for (std::size_t k = 0; k < count; ++k) squares[first + k] = sum_of(plan, k + 1, 1);
+  });
 }
 
-std::array<double, 5> GridSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
+void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+                            ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  run({.kind = PassKind::step,
-       .kernel = kernels_->runge_kutta,
-       .loads = loads,
-       .step = step,
-       .fields = {{{&Pass::position, &state.position, kernels::runge_kutta_halo},
-                   {&Pass::velocity, &state.velocity, kernels::runge_kutta_halo}}},
-       .scratch_rows = kernels::runge_kutta_scratch_rows});
-  return {sum_of(0), sum_of(1), sum_of(2), sum_of(3), sum_of(4)};
+  const Plan plan{.kernel = kernels_->runge_kutta,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, kernels::runge_kutta_halo},
+                              {&Pass::velocity, &state.velocity, kernels::runge_kutta_halo}}},
+                  .sums = kernels::runge_kutta_sums,
+                  .scratch_rows = kernels::runge_kutta_scratch_rows};
+  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    run(plan, count, threads);
+    for (std::size_t k = 0; k < count; ++k)
+      for (int sum = 0; sum < kernels::runge_kutta_sums; ++sum)
+        squares[first + k][static_cast<std::size_t>(sum)] = sum_of(plan, k, sum);
+  });
 }
 
 void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  run({.kind = PassKind::evaluation,
-       .kernel = kernels_->evaluate,
-       .loads = loads,
-       .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
-                   {&Pass::force, &force, 0}}}});
+  run_once(PassKind::evaluation,
+           {.kernel = kernels_->evaluate,
+            .loads = loads,
+            .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
+                        {&Pass::force, &force, 0}}}});
 }
 
 double GridSweep::squares(const Vec3Field& velocity) {
-  run({.kind = PassKind::sums,
-       .kernel = kernels_->sum_squares,
-       .loads = {},
-       .fields = {{{&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0}}}});  // only read
-  return sum_of(1);
+  const SweepLoads none;
+  const Plan plan{.kernel = kernels_->sum_squares,
+                  .loads = none,
+                  .fields = {{{&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0}}}};  // only read
+  run_once(PassKind::sums, plan);
+  return sum_of(plan, 0, 1);
 }
 
 }  // namespace cloth

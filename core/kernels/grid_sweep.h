@@ -3,9 +3,12 @@
 // report.
 //
 // The same bits for any number of threads: every band of rows makes its sums in the order in which one
-// thread makes them, from copies of the neighbours' rows taken before anybody writes.
+// thread makes them, from copies of the rows at its neighbours' edges that these leave for it between two
+// passes.
 #pragma once
 
+#include <algorithm>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -28,11 +31,15 @@ class GridSweep : public SpringSweep {
   GridSweep(const ClothSystem& system, const kernels::Grid& grid, std::optional<double> mass);
 
   int threads() const override;
-  Squares euler(double step, bool drift_first, const SweepLoads& loads, ClothState& state) override;
-  Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
+  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+             ClothState& state) override;
+  double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state) override;
+  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+                   ClothState& state) override;
+  /// Threads that step on need not be called for every step.
+  bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
   double squares(const Vec3Field& velocity) override;
 
@@ -47,30 +54,44 @@ class GridSweep : public SpringSweep {
     int halo_rows;
   };
   struct Plan {
-    PassKind kind;
     Kernel kernel;
+    Kernel opening = nullptr, closing = nullptr;  ///< the first and the last pass, where they are others
     const SweepLoads& loads;
     double step = 0;  ///< s
     bool drift_first = false;
     std::array<Attached, 3> fields{};  ///< those without values are none
+    int sums = kernels::euler_sums;
     int scratch_rows = kernels::euler_scratch_rows;
+
+    bool has_edges() const {
+      return std::any_of(fields.begin(), fields.end(),
+                         [](const Attached& attached) { return attached.halo_rows > 0; });
+    }
   };
-  /// What a band needs of its own; written by the thread that steps it alone.
+  /// What a band needs of its own; written by the thread that steps it alone, except that a neighbour may
+  /// write to the edges that were left for it.
   struct alignas(64) Band {
     kernels::Pass pass;
-    AlignedDoubles scratch, halo;
+    AlignedDoubles scratch;
+    std::array<AlignedDoubles, 2> edges;  ///< of the attached fields; passes take turns
+    Milestone published;                  ///< the pass, from 1 on, before which its edges were left
   };
-  void run(const Plan& plan);
-  void make_room(const Plan& plan, std::size_t bands);
+  void run(const Plan& plan, std::size_t passes, int threads);
+  void step_band(const Plan& plan, std::size_t index, std::size_t passes);
+  void run_once(PassKind kind, const Plan& plan) {
+    in_jobs(kind, 1, [&](std::size_t, std::size_t, int threads) { run(plan, 1, threads); });
+  }
+  void make_room(const Plan& plan, std::size_t passes, std::size_t bands);
   void prepare(const Plan& plan, std::size_t index);
-  kernels::BandField with_copies(const Attached& attached, const kernels::Pass& pass, double* to) const;
-  double sum_of(int which) const;
+  void publish(const Plan& plan, std::size_t index, std::size_t pass);
+  void await_neighbours(const Plan& plan, std::size_t index, std::size_t pass);
+  double sum_of(const Plan& plan, std::size_t pass, int which) const;
 
   const ClothSystem* system_;
   kernels::Grid grid_;
   const kernels::GridKernels* kernels_;
-  std::vector<Band> bands_;
-  std::vector<double> squares_;  ///< see kernels::Pass
+  std::deque<Band> bands_;
+  std::vector<double> squares_;  ///< of every pass of a job, see kernels::Pass
 };
 
 }  // namespace cloth

@@ -127,82 +127,76 @@ double MeshSweep::sum_of(int which) const {
   });
 }
 
-SpringSweep::Squares MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads,
-                                      ClothState& state) {
-  Squares squares;
-  euler_steps(step, drift_first, loads, {&squares, 1}, state);
+void MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+                      ClothState& state) {
+  assert(has_common_mass() && (!loads.load || squares.size() == 1));
+  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    sharing_ = threads;
+    Vec3Field &position = take(state.position, inner_.position),
+              &velocity = take(state.velocity, inner_.velocity);
+    MeshPass pass = pass_with(loads, step);
+    pass.position = pointers(position), pass.velocity = pointers(velocity);
+    pass.drift_first = drift_first;
+    for (Squares& of_step : squares.subspan(first, count)) {
+      run(pass, kernels_->euler);
+      of_step = {sum_of(0), sum_of(1)};
+    }
+    give_back(position, state.position);
+    give_back(velocity, state.velocity);
+  });
+}
+
+double MeshSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
+  double squares = 0;
+  verlet_steps(step, loads, {&squares, 1}, force, state);
   return squares;
 }
 
-void MeshSweep::euler_steps(double step, bool drift_first, const SweepLoads& loads,
-                            std::span<Squares> squares, ClothState& state) {
-  assert(has_common_mass());
-  const PassKind kind = squares.size() == 1 ? PassKind::step : PassKind::several_steps;
-  sharing_ = begin_pass(kind);
-  Vec3Field &position = take(state.position, inner_.position),
-            &velocity = take(state.velocity, inner_.velocity);
-  MeshPass pass = pass_with(loads, step);
-  pass.position = pointers(position), pass.velocity = pointers(velocity);
-  pass.drift_first = drift_first;
-  for (Squares& of_step : squares) {
-    run(pass, kernels_->euler);
-    of_step = {sum_of(0), sum_of(1)};
-  }
-  give_back(position, state.position);
-  give_back(velocity, state.velocity);
-  end_pass(kind);
-}
-
-SpringSweep::Squares MeshSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
-                                       ClothState& state) {
-  assert(has_common_mass() && !loads.load);
-  sharing_ = begin_pass(PassKind::step);
-  Vec3Field &position = take(state.position, inner_.position),
-            &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
-  MeshPass pass = pass_with(loads, step);
-  pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
-  pass.kicks = true;
-  run(pass, kernels_->verlet);
-  give_back(position, state.position);
-  give_back(velocity, state.velocity);
-  give_back(p, force);
-  end_pass(PassKind::step);
-  return {0, sum_of(1)};
-}
-
+/// The first step kicks and drifts while it loads, the others at the end of the step before.
 void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  sharing_ = begin_pass(PassKind::several_steps);
-  Vec3Field &position = take(state.position, inner_.position),
-            &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
-  MeshPass pass = pass_with(loads, step);
-  pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
-  pass.kicks = true;
-  load_all(pass);
-  pass.kicks = false;
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    run(pass, k + 1 < squares.size() ? kernels_->verlet_between : kernels_->verlet);
-    squares[k] = sum_of(1);
-  }
-  give_back(position, state.position);
-  give_back(velocity, state.velocity);
-  give_back(p, force);
-  end_pass(PassKind::several_steps);
+  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    sharing_ = threads;
+    Vec3Field &position = take(state.position, inner_.position),
+              &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
+    MeshPass pass = pass_with(loads, step);
+    pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
+    for (std::size_t k = 0; k < count; ++k) {
+      pass.kicks = k == 0;
+      run(pass, k + 1 < count ? kernels_->verlet_between : kernels_->verlet);
+      squares[first + k] = sum_of(1);
+    }
+    give_back(position, state.position);
+    give_back(velocity, state.velocity);
+    give_back(p, force);
+  });
 }
 
-std::array<double, 5> MeshSweep::runge_kutta(double step, const SweepLoads& loads, ClothState& state) {
+void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+                            ClothState& state) {
   assert(has_common_mass() && !loads.load);
+  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+    sharing_ = threads;
+    Vec3Field &position = take(state.position, inner_.position),
+              &velocity = take(state.velocity, inner_.velocity);
+    for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
+      if (field->size() != position.size()) *field = Vec3Field(position.size());
+    MeshPass pass = pass_with(loads, step);
+    for (StageSquares& of_step : squares.subspan(first, count)) {
+      runge_kutta_step(pass, step, pointers(position), pointers(velocity));
+      for (int sum = 0; sum < sums; ++sum) of_step[static_cast<std::size_t>(sum)] = sum_of(sum);
+    }
+    give_back(position, state.position);
+    give_back(velocity, state.velocity);
+  });
+}
+
+void MeshSweep::runge_kutta_step(MeshPass& pass, double step, const FieldPointers& x,
+                                 const FieldPointers& v) {
   constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}, ahead{0.5, 0.5, 1.0, 0.0};
-  sharing_ = begin_pass(PassKind::step);
-  Vec3Field &position = take(state.position, inner_.position),
-            &velocity = take(state.velocity, inner_.velocity);
-  for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
-    if (field->size() != position.size()) *field = Vec3Field(position.size());
-  const FieldPointers x = pointers(position), v = pointers(velocity), sum_x = pointers(sum_.position),
-                      sum_v = pointers(sum_.velocity), next_x = pointers(stage_.position),
-                      next_v = pointers(stage_.velocity);
-  MeshPass pass = pass_with(loads, step);
+  const FieldPointers sum_x = pointers(sum_.position), sum_v = pointers(sum_.velocity),
+                      next_x = pointers(stage_.position), next_v = pointers(stage_.velocity);
   for (int s = 0; s < 4; ++s) {
     const bool first = s == 0, last = s == 3;
     pass.position = first ? x : next_x, pass.velocity = first ? v : next_v;
@@ -221,34 +215,32 @@ std::array<double, 5> MeshSweep::runge_kutta(double step, const SweepLoads& load
     pass.squares[1] = squares_.data() + 4 * layout_.blocks;
     run(pass, kernels_->runge_kutta);
   }
-  give_back(position, state.position);
-  give_back(velocity, state.velocity);
-  end_pass(PassKind::step);
-  return {sum_of(0), sum_of(1), sum_of(2), sum_of(3), sum_of(4)};
 }
 
 void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  sharing_ = begin_pass(PassKind::evaluation);
-  MeshPass pass = pass_with(loads, 0);
-  pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
-  if (!layout_.order.empty() && inner_.force.size() != force.size()) inner_.force = Vec3Field(force.size());
-  Vec3Field& result = layout_.order.empty() ? force : inner_.force;
-  pass.force = pointers(result);
-  run(pass, kernels_->evaluate);
-  give_back(result, force);
-  end_pass(PassKind::evaluation);
+  in_jobs(PassKind::evaluation, 1, [&](std::size_t, std::size_t, int threads) {
+    sharing_ = threads;
+    MeshPass pass = pass_with(loads, 0);
+    pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
+    if (!layout_.order.empty() && inner_.force.size() != force.size()) inner_.force = Vec3Field(force.size());
+    Vec3Field& result = layout_.order.empty() ? force : inner_.force;
+    pass.force = pointers(result);
+    run(pass, kernels_->evaluate);
+    give_back(result, force);
+  });
 }
 
 double MeshSweep::squares(const Vec3Field& velocity) {
-  sharing_ = begin_pass(PassKind::sums);
-  MeshPass pass = pass_with({}, 0);
-  pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
-  for_each_share(layout_.blocks, [&](int begin, int end) {
-    MeshPass share = pass;
-    share.begin = begin, share.end = end;
-    kernels_->sum_squares(share);
+  in_jobs(PassKind::sums, 1, [&](std::size_t, std::size_t, int threads) {
+    sharing_ = threads;
+    MeshPass pass = pass_with({}, 0);
+    pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
+    for_each_share(layout_.blocks, [&](int begin, int end) {
+      MeshPass share = pass;
+      share.begin = begin, share.end = end;
+      kernels_->sum_squares(share);
+    });
   });
-  end_pass(PassKind::sums);
   return sum_of(1);
 }
 

@@ -18,14 +18,15 @@ class MeshSweep : public SpringSweep {
   MeshSweep(const ClothSystem& system, std::optional<double> mass);
 
   int threads() const override;
-  Squares euler(double step, bool drift_first, const SweepLoads& loads, ClothState& state) override;
-  void euler_steps(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
-                   ClothState& state) override;
-  bool gains_euler_steps() const override { return !layout_.order.empty(); }
-  Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
+  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+             ClothState& state) override;
+  double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state) override;
+  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+                   ClothState& state) override;
+  /// The state need not go into the layout's order and back for every step.
+  bool gains_steps_at_once() const override { return !layout_.order.empty(); }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
   double squares(const Vec3Field& velocity) override;
 
@@ -46,6 +47,8 @@ class MeshSweep : public SpringSweep {
   template <class Visit>
   void for_each_share(int of, Visit visit);
   double sum_of(int which) const;
+  void runge_kutta_step(kernels::MeshPass& pass, double step, const kernels::FieldPointers& x,
+                        const kernels::FieldPointers& v);
 
   MeshLayout layout_;
   ParticleOrder number_;  ///< that undoes the layout's order
@@ -55,7 +58,7 @@ class MeshSweep : public SpringSweep {
   std::vector<double> squares_;  ///< see kernels::MeshPass; five sums
   Fields inner_;
   ClothState stage_, sum_;  ///< of Runge-Kutta
-  int sharing_ = 1;         ///< threads of the pass that is being made
+  int sharing_ = 1;         ///< threads of the job that is being done
 };
 
 }  // namespace cloth

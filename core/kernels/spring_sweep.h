@@ -42,48 +42,68 @@ class SpringSweep {
   struct Squares {
     double before = 0, after = 0;
   };
-  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v).
-  virtual Squares euler(double step, bool drift_first, const SweepLoads& loads, ClothState& state) = 0;
-  /// As many steps of euler() as there are `squares`, to the bit. No load.
-  virtual void euler_steps(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
-                           ClothState& state);
-  /// Whether euler_steps() costs less than so many calls of euler().
-  virtual bool gains_euler_steps() const { return false; }
+  /// At the four stages, and after the step.
+  using StageSquares = std::array<double, 5>;
+  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v); as many steps as there are `squares`, each
+  /// to the bits of a step alone. A load only where there is one step.
+  virtual void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+                     ClothState& state) = 0;
   /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
-  /// after. No load. Only `after` is given.
-  virtual Squares verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) = 0;
-  /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between; each
-  /// of the squares is a step's `after`.
+  /// after. No load. The sum after the step.
+  virtual double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) = 0;
+  /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between.
   virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                             ClothState& state) = 0;
-  /// Kutta's method of order four. No load. The sums at the four stages, and after the step.
-  virtual std::array<double, 5> runge_kutta(double step, const SweepLoads& loads, ClothState& state) = 0;
+  /// Kutta's method of order four; as many steps as there are `squares`. No load.
+  virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+                           ClothState& state) = 0;
+  /// Whether several steps of euler() or runge_kutta() in one call cost less than one by one.
+  virtual bool gains_steps_at_once() const = 0;
 
   /// force = springs + weight + load; `load` may be `force`.
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
+  /// to = from, each thread the part that it is going to step.
+  void copy(const ClothState& from, ClothState& to);
   /// The sum of |v|^2 to the bits in which the steps report it.
   virtual double squares(const Vec3Field& velocity) = 0;
 
  protected:
   /// Each takes its own time, and so makes its own choice of threads.
-  enum class PassKind { step, several_steps, opening, between, closing, evaluation, sums };
-  static constexpr std::size_t pass_kinds = 7;
-  /// With fewer particles for each thread the others need not be tried: waking them takes as long as the pass.
+  enum class PassKind { step, several_steps, evaluation, sums, copies };
+  static constexpr std::size_t pass_kinds = 5;
+  static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
+  /// With fewer particles for each thread the others need not be tried: waking them takes as long as the
+  /// pass.
   static constexpr int fewest_particles = 1000;
 
-  /// How many threads the pass gets that begins now.
-  int begin_pass(PassKind kind);
-  void end_pass(PassKind kind);
+  /// job(first, count, threads) for one run of passes after the other, until `passes` are done: as many at
+  /// once as the choice of threads allows.
+  template <class Job>
+  void in_jobs(PassKind kind, std::size_t passes, const Job& job) {
+    for (std::size_t done = 0; done < passes;) {
+      const Begun begun = begin_job(kind, passes - done);
+      job(done, begun.passes, begun.threads);
+      end_job(kind, begun);
+      done += begun.passes;
+    }
+  }
 
   WorkerTeam* team() const { return team_; }
   int team_size() const { return team_ ? team_->size() : 1; }
 
  private:
+  struct Begun {
+    std::size_t passes = 0;
+    int threads = 1;
+    std::chrono::steady_clock::time_point at = {};  ///< where the time is wanted
+  };
+  Begun begin_job(PassKind kind, std::size_t passes);
+  void end_job(PassKind kind, const Begun& begun);
+
   std::optional<double> mass_;
   WorkerTeam* team_ = nullptr;
   ThreadUse use_ = ThreadUse::where_they_gain;
   std::array<ThreadChoice, pass_kinds> choices_;
-  std::chrono::steady_clock::time_point begun_;  ///< the pass, where its time is wanted
 };
 
 }  // namespace cloth

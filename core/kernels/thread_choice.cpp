@@ -1,6 +1,7 @@
 #include "kernels/thread_choice.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace cloth {
 namespace {
@@ -24,11 +25,12 @@ int ThreadChoice::next(int most) {
   return chosen_;
 }
 
-void ThreadChoice::took(double seconds) {
+void ThreadChoice::took(double seconds, int jobs) {
+  assert(jobs <= at_once());
   if (most_ <= 1) return;
   if (!trying()) {
-    if (chosen_ > 1) watch_over(seconds);
-    ++at_;
+    if (chosen_ > 1) watch_over(seconds, jobs);
+    at_ += jobs;
     return;
   }
   if (at_ % block >= not_counted) (tries_all() ? together_ : alone_).push_back(seconds);
@@ -44,9 +46,10 @@ void ThreadChoice::decide() {
 }
 
 /// A core that others want meanwhile shows soon: a thread that has to wait stops all of them.
-void ThreadChoice::watch_over(double seconds) {
+void ThreadChoice::watch_over(double seconds, int jobs) {
   watched_ += seconds;
-  if (++watched_jobs_ < watch || watched_ < watch_time) return;
+  watched_jobs_ += jobs;
+  if (watched_jobs_ < watch || watched_ < watch_time) return;
   if (watched_ > watched_jobs_ * alone_median_) chosen_ = 1;
   watched_ = 0, watched_jobs_ = 0;
 }

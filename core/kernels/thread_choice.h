@@ -4,9 +4,12 @@
 //     const int threads = choice.next(most);   // before the job
 //     choice.took(seconds);                    // after it, where choice.wants_time()
 //
+// Jobs that follow each other may be done as one, up to at_once() of them: took(seconds, jobs).
+//
 // It may only be used where the result is the same to the bit for any number of threads.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace cloth {
@@ -18,10 +21,12 @@ class ThreadChoice {
  public:
   /// How many threads the next job gets: 1 or `most`.
   int next(int most);
-  /// Whether took() wants to know how long the job lasted.
+  /// How many jobs may follow the last call of next() as one: a trial tells them apart.
+  int at_once() const { return most_ > 1 && trying() ? 1 : std::numeric_limits<int>::max(); }
+  /// Whether took() wants to know how long the jobs lasted.
   bool wants_time() const { return most_ > 1 && (trying() || chosen_ > 1); }
-  /// Wall time in s of the job that followed the last call of next().
-  void took(double seconds);
+  /// Wall time in s of the jobs that followed the last call of next(), at most at_once() of them.
+  void took(double seconds, int jobs = 1);
 
   /// Jobs of a trial, and between two trials: few at first, when nothing is warm yet, then twice as many each
   /// time up to the most.
@@ -41,7 +46,7 @@ class ThreadChoice {
   bool trying() const { return at_ < trial; }
   bool tries_all() const { return (at_ / block) % 2 == 1; }
   void decide();
-  void watch_over(double seconds);
+  void watch_over(double seconds, int jobs);
 
   int most_ = 1;
   int at_ = 0;  ///< jobs since the trial began

@@ -33,6 +33,17 @@ void wait_for_change(const std::atomic<T>& value, T old) {
 
 }  // namespace
 
+void Milestone::reach(int number) {
+  reached_.store(number, std::memory_order_release);
+  reached_.notify_all();
+}
+
+void Milestone::await(int number) const {
+  for (int reached = reached_.load(std::memory_order_acquire); reached < number;
+       reached = reached_.load(std::memory_order_acquire))
+    wait_for_change(reached_, reached);
+}
+
 WorkerTeam::WorkerTeam(int size) {
   assert(size >= 1);
   for (int share = 1; share < size; ++share) workers_.emplace_back([this, share] { work(share); });
@@ -48,7 +59,6 @@ WorkerTeam::~WorkerTeam() {
 void WorkerTeam::start(int shares, Function function, const void* context) {
   assert(shares <= size());
   shares_ = shares;
-  arrivals_.store(0, std::memory_order_relaxed);
   if (shares > 1) {
     function_ = function;
     context_ = context;
@@ -61,14 +71,6 @@ void WorkerTeam::start(int shares, Function function, const void* context) {
   for (int left = at_work_.load(std::memory_order_acquire); left != 0;
        left = at_work_.load(std::memory_order_acquire))
     wait_for_change(at_work_, left);
-}
-
-void WorkerTeam::meet() {
-  const int arrived = arrivals_.fetch_add(1, std::memory_order_acq_rel) + 1;
-  const int all = (arrived + shares_ - 1) / shares_ * shares_;
-  if (arrived == all) arrivals_.notify_all();
-  for (int present = arrived; present < all; present = arrivals_.load(std::memory_order_acquire))
-    wait_for_change(arrivals_, present);
 }
 
 void WorkerTeam::work(int share) {

@@ -9,6 +9,20 @@
 
 namespace cloth {
 
+/// How far one thread of a job has come, for others that need what it has done so far.
+class alignas(64) Milestone {
+ public:
+  /// Before the job.
+  void begin() { reached_.store(0, std::memory_order_relaxed); }
+  /// By the one thread whose milestone it is. Who awaits `number`, or one before, sees what came before this.
+  void reach(int number);
+  /// Returns when `number` has been reached.
+  void await(int number) const;
+
+ private:
+  std::atomic<int> reached_{0};
+};
+
 class WorkerTeam {
  public:
   /// The caller of run() is one of the `size` threads. Precondition: size >= 1.
@@ -27,9 +41,6 @@ class WorkerTeam {
         shares, [](const void* context, int share) { (*static_cast<const Job*>(context))(share); }, &job);
   }
 
-  /// Within a job, by each of its shares as often as by the others: returns when all of them have come here.
-  void meet();
-
  private:
   using Function = void (*)(const void*, int);
   void start(int shares, Function function, const void* context);
@@ -41,7 +52,6 @@ class WorkerTeam {
   bool stops_ = false;
   alignas(64) std::atomic<std::uint32_t> job_number_{0};
   alignas(64) std::atomic<int> at_work_{0};
-  alignas(64) std::atomic<int> arrivals_{0};  ///< at meetings of the present job
   std::vector<std::thread> workers_;
 };
 

@@ -31,7 +31,7 @@ std::int64_t Simulation::advance_unseen(std::int64_t count) {
     return 0;
   std::array<double, most_at_once> squares{};
   const std::span<double> of_steps(squares.data(), static_cast<std::size_t>(count));
-  before_unseen_ = state_;
+  forces_->copy(state_, before_unseen_);
   const Work work = ledger_.forces;
   const IntegratorReport report =
       integrator_->unseen_steps(*forces_, time_step_, of_steps, state_, ledger_.forces);

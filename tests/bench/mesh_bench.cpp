@@ -38,10 +38,10 @@ class MeshStep {
     loads_.damping = damping;
   }
 
-  void step() { sweep_.euler(time_step, false, loads_, state_); }
+  void step() { steps(1); }
   void steps(int count) {
     std::vector<SpringSweep::Squares> squares(static_cast<std::size_t>(count));
-    sweep_.euler_steps(time_step, false, loads_, squares, state_);
+    sweep_.euler(time_step, false, loads_, squares, state_);
   }
   void evaluate() {
     if (force_.size() != state_.position.size()) force_ = Vec3Field(state_.position.size());

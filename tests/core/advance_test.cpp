@@ -66,16 +66,32 @@ TEST(ManyStepsAtOnce, AreTheSameInEveryInstructionSet) {
 }
 
 TEST(ManyStepsAtOnce, AreTheSameForAnyNumberOfThreads) {
-  Scene scene = hanging("verlet");
-  scene.cloth.rows = 151, scene.cloth.columns = 103;
-  scene.integrator.time_step = 1e-4;
-  Simulation single(scene);
-  ASSERT_FALSE(one_by_one(single, 60));
-  for (const int threads : {2, 3, 5}) {
-    Simulation many(scene);
-    many.set_threads(threads, ThreadUse::always);
-    ASSERT_FALSE(many.advance(60));
-    expect_same(single, many, std::to_string(threads));
+  for (const char* method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"}) {
+    Scene scene = hanging(method);
+    scene.cloth.rows = 151, scene.cloth.columns = 103;
+    scene.integrator.time_step = 1e-4;
+    Simulation single(scene);
+    ASSERT_FALSE(one_by_one(single, 60));
+    for (const int threads : {2, 3, 5}) {
+      Simulation many(scene);
+      many.set_threads(threads, ThreadUse::always);
+      for (const int part : {9, 1, 50}) ASSERT_FALSE(many.advance(part));
+      expect_same(single, many, std::string(method) + ", " + std::to_string(threads));
+    }
+  }
+}
+
+/// While the number of threads is being found out, it changes within a batch of steps.
+TEST(ManyStepsAtOnce, AreTheSameWhileThreadsAreTried) {
+  for (const char* method : {"semi-implicit-euler", "verlet", "rk4"}) {
+    Scene scene = hanging(method);
+    scene.cloth.rows = 61, scene.cloth.columns = 53;
+    scene.integrator.time_step = 1e-4;
+    Simulation single(scene), many(scene);
+    many.set_threads(3);
+    ASSERT_FALSE(one_by_one(single, 200));
+    ASSERT_FALSE(many.advance(200));
+    expect_same(single, many, method);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace cloth::test {
 namespace {
 
@@ -76,6 +78,37 @@ TEST(ThreadChoice, IsNotMisledByAFewInterruptedJobs) {
 TEST(ThreadChoice, TriesAboutAsManyJobsAloneAsTogether) {
   ThreadChoice choice;
   EXPECT_EQ(run(choice, ThreadChoice::trial, gain), ThreadChoice::trial / 2);
+}
+
+/// Jobs of which as many as may be are done as one; returns how many were done by all threads.
+int run_at_once(ThreadChoice& choice, int jobs, const Costs& costs) {
+  int shared = 0;
+  for (int done = 0; done < jobs;) {
+    const int threads = choice.next(4), part = std::min(choice.at_once(), std::min(32, jobs - done));
+    shared += threads > 1 ? part : 0;
+    choice.took(choice.wants_time() ? part * (threads > 1 ? costs.together : costs.alone) : 0, part);
+    done += part;
+  }
+  return shared;
+}
+
+TEST(ThreadChoice, TellsJobsApartWhileItTriesAndNotAfterwards) {
+  for (const Costs& costs : {gain, loss}) {
+    ThreadChoice choice;
+    choice.next(4);
+    EXPECT_EQ(choice.at_once(), 1);
+    EXPECT_EQ(run_at_once(choice, ThreadChoice::trial, costs), ThreadChoice::trial / 2);
+    choice.next(4);
+    EXPECT_GT(choice.at_once(), 1000);
+    const bool gains = costs.together < costs.alone;
+    EXPECT_EQ(run_at_once(choice, ThreadChoice::first_hold, costs), gains ? ThreadChoice::first_hold : 0);
+  }
+}
+
+TEST(ThreadChoice, LeavesThreadsThatOthersKeepWaitingAmongJobsDoneAsOne) {
+  ThreadChoice choice;
+  run_at_once(choice, ThreadChoice::trial, gain);
+  EXPECT_LE(run_at_once(choice, ThreadChoice::first_hold, stalled), 40);
 }
 
 TEST(ThreadChoice, HasNothingToChooseWithOneThread) {

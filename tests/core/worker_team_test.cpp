@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
-#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -21,23 +21,36 @@ TEST(WorkerTeam, GivesEveryShareToOneThread) {
 }
 
 /// Every share waits now and then, another one each time, so that who comes late changes.
-TEST(WorkerTeam, AfterAMeetingEachShareSeesWhatTheOthersWroteBefore) {
-  constexpr int meetings = 60;
+TEST(Milestone, ShowsThoseWhoAwaitItWhatCameBefore) {
+  constexpr int numbers = 60;
   WorkerTeam team(4);
   for (int shares = 1; shares <= team.size(); ++shares) {
-    std::vector<int> written(static_cast<std::size_t>(shares), 0);  // not atomic: the meeting orders them
+    const auto count = static_cast<std::size_t>(shares);
+    std::vector<std::array<int, numbers + 1>> written(count);  // not atomic: the milestones order them
+    std::vector<Milestone> milestones(count);
+    for (Milestone& milestone : milestones) milestone.begin();
     std::atomic<int> missed{0};
     team.run(shares, [&](int share) {
-      for (int k = 1; k <= meetings; ++k) {
+      const auto own = static_cast<std::size_t>(share), next = (own + 1) % count;
+      for (int k = 1; k <= numbers; ++k) {
         if (k % shares == share) std::this_thread::sleep_for(std::chrono::microseconds(200));
-        written[static_cast<std::size_t>(share)] = k;
-        team.meet();
-        if (std::accumulate(written.begin(), written.end(), 0) != k * shares) ++missed;
-        team.meet();  // nobody writes the next before all have read
+        written[own][static_cast<std::size_t>(k)] = k;
+        milestones[own].reach(k);
+        milestones[next].await(k);
+        if (written[next][static_cast<std::size_t>(k)] != k) ++missed;
       }
     });
     EXPECT_EQ(missed, 0) << shares << " shares";
   }
+}
+
+TEST(Milestone, ThatIsPassedIsNotAwaited) {
+  Milestone milestone;
+  milestone.reach(7);
+  milestone.await(3);
+  milestone.await(7);
+  milestone.begin();
+  milestone.await(0);
 }
 
 }  // namespace

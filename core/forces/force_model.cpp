@@ -1,6 +1,7 @@
 #include "forces/force_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "forces/air.h"
@@ -21,6 +22,13 @@ void clear(Vec3Field& field, std::size_t size) {
     field = Vec3Field(size);
 }
 
+/// b = a - b
+void subtract_from(const Vec3Field& a, Vec3Field& b) {
+  const auto from = a.flat();
+  const auto to = b.flat();
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] - to[k];
+}
+
 }  // namespace
 
 ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(&system) {
@@ -35,7 +43,7 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(
   }
   if (!system.springs.empty()) spring_force_ = keep(std::make_unique<SpringForce>());
   if (!system.springs.empty() && scene.springs->damping > 0)
-    keep(std::make_unique<SpringDamping>(scene.springs->damping));
+    spring_damping_ = keep(std::make_unique<SpringDamping>(scene.springs->damping));
   if (scene.damping && *scene.damping > 0) {
     viscous_ = *scene.damping;
     viscous_force_ = keep(std::make_unique<ViscousDamping>(viscous_));
@@ -58,7 +66,7 @@ void ForceModel::system_changed() {
   }
   beside_sweep_.clear();
   for (const auto& force : forces_)
-    if (force.get() != spring_force_ && force.get() != viscous_force_ &&
+    if (force.get() != spring_force_ && force.get() != viscous_force_ && force.get() != spring_damping_ &&
         !(force.get() == gravity_force_ && can_step()))
       beside_sweep_.push_back(force.get());
 }
@@ -89,6 +97,7 @@ void ForceModel::update(const Vec3Field& position, double time) {
       update_load(position, time);
     else if (position_force_.size() != position.size())
       position_force_ = Vec3Field(position.size());
+    if (spring_damping_) spring_damping_->update(*system_, position, time, position_force_);
     sweep_->evaluate({weight_, 0, has_load() ? &position_force_ : nullptr}, position, position_force_);
     return;
   }
@@ -102,6 +111,12 @@ void ForceModel::update_load(const Vec3Field& position, double time) {
   clear(position_force_, position.size());
   for (Force* force : beside_sweep_) force->update(*system_, position, time, position_force_);
   if (pull_) pull_->update(*system_, position, time, position_force_);
+}
+
+/// What acts beside the elasticity of springs in a whole step.
+SweepLoads ForceModel::sweep_loads() const {
+  return {weight_, viscous_, has_load() ? &position_force_ : nullptr,
+          spring_damping_ ? spring_damping_->damping() : 0};
 }
 
 bool ForceModel::can_step() const {
@@ -128,12 +143,11 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
     const auto damping = product_.flat();
     for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
   }
-  const SweepLoads loads{weight_, viscous_, has_load() ? &position_force_ : nullptr};
-  SpringSweep::Squares squares;
-  sweep_->euler(step, drift_first, loads, {&squares, 1}, state);
-  power.damping_loss += viscous_ * squares.before;
+  StepSums sums;
+  sweep_->euler(step, drift_first, sweep_loads(), {&sums, 1}, state);
+  power.damping_loss += viscous_ * sums.before + sums.dampers;
   if (has_power_) work += step * power;
-  return squares.after;
+  return sums.after;
 }
 
 bool ForceModel::gains_steps_at_once() const {
@@ -144,18 +158,18 @@ void ForceModel::euler_steps(double step, bool drift_first, std::span<double> sq
                              Work& work) {
   assert(gains_steps_at_once());
   evaluations_ += static_cast<std::int64_t>(squares.size());
-  std::vector<SpringSweep::Squares> of_steps(squares.size());
-  sweep_->euler(step, drift_first, {weight_, viscous_, nullptr}, of_steps, state);
+  std::vector<StepSums> of_steps(squares.size());
+  sweep_->euler(step, drift_first, sweep_loads(), of_steps, state);
   for (std::size_t k = 0; k < squares.size(); ++k) {
     squares[k] = of_steps[k].after;
-    if (has_power_) work += step * Work{.damping_loss = viscous_ * of_steps[k].before};
+    if (has_power_) work += step * Work{.damping_loss = viscous_ * of_steps[k].before + of_steps[k].dampers};
   }
 }
 
 std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
   if (!steps_verlet()) return std::nullopt;
   ++evaluations_;
-  const double squares = sweep_->verlet(step, {weight_, viscous_, nullptr}, position_force_, state);
+  const double squares = sweep_->verlet(step, sweep_loads(), position_force_, state);
   power = power_after(squares);
   return squares;
 }
@@ -163,7 +177,7 @@ std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Wo
 void ForceModel::verlet_steps(double step, std::span<double> squares, ClothState& state) {
   assert(steps_verlet());
   evaluations_ += static_cast<std::int64_t>(squares.size());
-  sweep_->verlet_steps(step, {weight_, viscous_, nullptr}, squares, position_force_, state);
+  sweep_->verlet_steps(step, sweep_loads(), squares, position_force_, state);
 }
 
 std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& state, Work& work) {
@@ -176,12 +190,16 @@ std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& stat
 void ForceModel::runge_kutta_steps(double step, std::span<double> squares, ClothState& state, Work& work) {
   assert(can_step() && !has_load());
   evaluations_ += 4 * static_cast<std::int64_t>(squares.size());
-  stage_squares_.resize(squares.size());
-  sweep_->runge_kutta(step, {weight_, viscous_, nullptr}, stage_squares_, state);
+  constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  stage_sums_.resize(squares.size());
+  sweep_->runge_kutta(step, sweep_loads(), stage_sums_, state);
   for (std::size_t k = 0; k < squares.size(); ++k) {
-    const auto& s = stage_squares_[k];
-    work.damping_loss += step * viscous_ * (s[0] / 6 + s[1] / 3 + s[2] / 3 + s[3] / 6);
-    squares[k] = s[4];
+    const StageSums& sums = stage_sums_[k];
+    double loss = 0;
+    for (std::size_t s = 0; s < weights.size(); ++s)
+      loss += weights[s] * (viscous_ * sums.squares[s] + sums.dampers[s]);
+    work.damping_loss += step * loss;
+    squares[k] = sums.after;
   }
 }
 
@@ -216,10 +234,17 @@ NodeDamping ForceModel::damping_parts() const {
   return parts;
 }
 
-void ForceModel::damping_product(const Vec3Field& velocity, Vec3Field& product) const {
-  product.fill(0);
-  for (const auto& force : forces_) force->add_damping(velocity, product);
+/// Returns the power of the dampers along springs where a sweep computes them.
+double ForceModel::damping_product(const Vec3Field& velocity, Vec3Field& product) const {
+  double dampers = 0;
+  if (sweeps_dampers())
+    dampers = sweep_->damp(spring_damping_->damping(), spring_damping_->position(), velocity, product);
+  else
+    product.fill(0);
+  for (const auto& force : forces_)
+    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_damping(velocity, product);
   if (pull_) pull_->add_damping(velocity, product);
+  return dampers;
 }
 
 void ForceModel::force(const Vec3Field& velocity, Vec3Field& result) const {
@@ -228,18 +253,40 @@ void ForceModel::force(const Vec3Field& velocity, Vec3Field& result) const {
     return;
   }
   damping_product(velocity, result);
-  const auto p = position_force_.flat();
-  const auto f = result.flat();
-  for (std::size_t k = 0; k < f.size(); ++k) f[k] = p[k] - f[k];
+  subtract_from(position_force_, result);
+}
+
+Work ForceModel::force_and_power(const Vec3Field& velocity, Vec3Field& result) const {
+  if (!sweeps_dampers()) {
+    force(velocity, result);
+    return has_power_ ? power(velocity) : Work{};
+  }
+  Work power{.damping_loss = damping_product(velocity, result)};
+  subtract_from(position_force_, result);
+  power += power_beside_dampers(velocity);
+  return power;
 }
 
 Work ForceModel::power(const Vec3Field& velocity) const {
+  Work power;
+  if (sweeps_dampers()) {
+    if (damper_product_.size() != velocity.size()) damper_product_ = Vec3Field(velocity.size());
+    power.damping_loss =
+        sweep_->damp(spring_damping_->damping(), spring_damping_->position(), velocity, damper_product_);
+  }
+  power += power_beside_dampers(velocity);
+  return power;
+}
+
+/// Without that of dampers along springs where a sweep computes them.
+Work ForceModel::power_beside_dampers(const Vec3Field& velocity) const {
   Work power;
   if (can_step() && !has_load()) {  // to the bits of a whole step
     if (viscous_ > 0) power.damping_loss = viscous_ * sweep_->squares(velocity);
     return power;
   }
-  for (const auto& force : forces_) force->add_power(velocity, power);
+  for (const auto& force : forces_)
+    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_power(velocity, power);
   if (pull_) pull_->add_power(velocity, power);
   return power;
 }

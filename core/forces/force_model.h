@@ -1,7 +1,6 @@
 // The forces that a scene has, as one f(x, v, t) = p(x, t) - D(x) v. What integrators see.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,12 +9,15 @@
 
 #include "forces/force.h"
 #include "forces/hand.h"
+#include "kernels/step_sums.h"
 #include "kernels/thread_choice.h"
 #include "scene/scene.h"
 
 namespace cloth {
 
+struct SweepLoads;
 class AirForce;
+class SpringDamping;
 class SpringSweep;
 class WorkerTeam;
 
@@ -46,6 +48,9 @@ class ForceModel {
 
   /// p - D v, in N. Pinned particles have a force too; their inverse mass is 0.
   void force(const Vec3Field& velocity, Vec3Field& result) const;
+
+  /// The same, and its power().
+  Work force_and_power(const Vec3Field& velocity, Vec3Field& result) const;
 
   /// The power of everything that is not the derivative of an energy.
   Work power(const Vec3Field& velocity) const;
@@ -87,7 +92,7 @@ class ForceModel {
   /// squares becomes a step's sum of |v|^2, of which power_after() makes its power. Precondition:
   /// steps_verlet(), that verlet_step would not return nothing.
   void verlet_steps(double step, std::span<double> squares, ClothState& state);
-  bool steps_verlet() const { return can_step() && !has_load(); }
+  bool steps_verlet() const { return can_step() && !has_load() && !spring_damping_; }
   Work power_after(double squares) const { return Work{.damping_loss = viscous_ * squares}; }
   /// Kutta's method of order four. Adds the work.
   std::optional<double> runge_kutta_step(double step, ClothState& state, Work& work);
@@ -108,7 +113,10 @@ class ForceModel {
   bool has_load() const { return pull_ || !beside_sweep_.empty(); }
   void update_load(const Vec3Field& position, double time);
   bool can_step() const;
-  void damping_product(const Vec3Field& velocity, Vec3Field& product) const;
+  bool sweeps_dampers() const { return sweep_ && spring_damping_; }
+  SweepLoads sweep_loads() const;
+  double damping_product(const Vec3Field& velocity, Vec3Field& product) const;
+  Work power_beside_dampers(const Vec3Field& velocity) const;
   void solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
                       Vec3Field& velocity) const;
   int solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& velocity);
@@ -120,14 +128,17 @@ class ForceModel {
   std::unique_ptr<SpringSweep> sweep_;  ///< computes springs and `weight_`, of a grid or a mesh
   std::vector<Force*> beside_sweep_;    ///< those of forces_ that the sweep does not compute
   Force *gravity_force_ = nullptr, *spring_force_ = nullptr, *viscous_force_ = nullptr;  ///< of forces_
+  SpringDamping* spring_damping_ = nullptr;                                              ///< of forces_
   Vec3 gravity_{0, 0, 0};                                                                ///< m/s^2
   Vec3 weight_{0, 0, 0};  ///< N, of every particle, where the sweep takes care of gravity
   double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
-  std::vector<std::array<double, 5>> stage_squares_;  ///< scratch of Runge-Kutta's steps
-  Vec3Field position_force_;                          ///< sized when first needed
-  Vec3Field rhs_, residual_, direction_, product_;    ///< scratch, sized when first needed
+  std::vector<StageSums> stage_sums_;               ///< scratch
+  mutable Vec3Field damper_product_;                ///< scratch, sized when first needed
+  Vec3Field position_force_;                        ///< sized when first needed
+  std::vector<double> inverse_diagonal_;            ///< 1/kg, scratch
+  Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;
 };

@@ -44,6 +44,28 @@ void spring_chunk(const SpringRun& run, int first, int count, const Vec3Field& p
   }
 }
 
+/// d/|d|, or nothing
+Vec3 direction(const Vec3& d) {
+  const double length = d.norm();
+  return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+}
+
+void damper_chunk(const SpringRun& run, int first, int count, const Vec3Field& position,
+                  const Vec3Field& velocity, double damping, Chunk& g) {
+  const double *xi = position.x() + first, *yi = position.y() + first, *zi = position.z() + first;
+  const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
+  const double *vxi = velocity.x() + first, *vyi = velocity.y() + first, *vzi = velocity.z() + first;
+  const double *vxj = vxi + run.offset, *vyj = vyi + run.offset, *vzj = vzi + run.offset;
+  for (int s = 0; s < count; ++s) {
+    const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
+    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double inverse = length > 0 ? 1 / length : 0;
+    const double ex = inverse * dx, ey = inverse * dy, ez = inverse * dz;
+    const double closing = (vxi[s] - vxj[s]) * ex + (vyi[s] - vyj[s]) * ey + (vzi[s] - vzj[s]) * ez;
+    g.x[s] = damping * closing * ex, g.y[s] = damping * closing * ey, g.z[s] = damping * closing * ez;
+  }
+}
+
 double run_energy(const SpringRun& run, const Vec3Field& position) {
   const double *xi = position.x() + run.first, *yi = position.y() + run.first, *zi = position.z() + run.first;
   const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
@@ -100,47 +122,26 @@ std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field&
 
 void SpringDamping::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field&) {
   system_ = &system;
-  std::size_t springs = 0;
-  for (const SpringRun& run : system.springs) springs += static_cast<std::size_t>(run.count);
-  if (direction_.size() != springs) direction_ = Vec3Field(springs);
-
-  double *ex = direction_.x(), *ey = direction_.y(), *ez = direction_.z();
-  for (const SpringRun& run : system.springs) {
-    const double *xi = position.x() + run.first, *yi = position.y() + run.first,
-                 *zi = position.z() + run.first;
-    const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
-    for (int s = 0; s < run.count; ++s) {
-      const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
-      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
-      const double scale = length > 0 ? 1 / length : 0;
-      ex[s] = scale * dx, ey[s] = scale * dy, ez[s] = scale * dz;
-    }
-    ex += run.count, ey += run.count, ez += run.count;
-  }
+  position_ = position;
 }
 
 void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
   Chunk g;
-  std::size_t spring = 0;
   for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
-    const double *vxi = velocity.x() + first, *vyi = velocity.y() + first, *vzi = velocity.z() + first;
-    const double *vxj = vxi + run.offset, *vyj = vyi + run.offset, *vzj = vzi + run.offset;
-    const double *ex = direction_.x() + spring, *ey = direction_.y() + spring, *ez = direction_.z() + spring;
-    for (int s = 0; s < count; ++s) {
-      const double closing =
-          (vxi[s] - vxj[s]) * ex[s] + (vyi[s] - vyj[s]) * ey[s] + (vzi[s] - vzj[s]) * ez[s];
-      const double scale = damping_ * closing;
-      g.x[s] = scale * ex[s], g.y[s] = scale * ey[s], g.z[s] = scale * ez[s];
-    }
+    damper_chunk(run, first, count, position_, velocity, damping_, g);
     add_to_ends(g, first, run.offset, count, product);
-    spring += static_cast<std::size_t>(count);
   });
 }
 
-void SpringDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
+void SpringDamping::add_linearisation(const ClothSystem& system, const Vec3Field& position,
                                       const LinearisationWeights& weights, Linearisation& to) const {
   const double along = weights.velocity * damping_;
-  for (std::size_t s = 0; s < to.springs.size(); ++s) to.springs.add(s, block_along(0, along, direction_[s]));
+  std::size_t spring = 0;
+  for (const SpringRun& run : system.springs)
+    for (int s = 0; s < run.count; ++s, ++spring) {
+      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
+      to.springs.add(spring, block_along(0, along, direction(position[j] - position[i])));
+    }
 }
 
 /// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
@@ -153,7 +154,8 @@ void SpringDamping::add_asymmetric_product(const ClothSystem& system, const Vec3
       const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
       const double length = (position[j] - position[i]).norm();
       if (!(length > 0)) continue;
-      const Vec3 e = direction_[spring], u = velocity[j] - velocity[i], dd = direction[j] - direction[i];
+      const Vec3 e = (position[j] - position[i]) / length, u = velocity[j] - velocity[i],
+                 dd = direction[j] - direction[i];
       const Vec3 de = (dd - e.dot(dd) * e) / length;
       const Vec3 change = damping_ * (u.dot(de) * e + u.dot(e) * de);  // of F_i
       product.add(i, -change);
@@ -168,18 +170,17 @@ bool SpringDamping::add_node_damping(NodeDamping& damping) const {
 }
 
 void SpringDamping::add_power(const Vec3Field& velocity, Work& power) const {
-  std::size_t spring = 0;
   for (const SpringRun& run : system_->springs) {
-    const double *vxi = velocity.x() + run.first, *vyi = velocity.y() + run.first,
-                 *vzi = velocity.z() + run.first;
-    const double *vxj = vxi + run.offset, *vyj = vyi + run.offset, *vzj = vzi + run.offset;
-    const double *ex = direction_.x() + spring, *ey = direction_.y() + spring, *ez = direction_.z() + spring;
+    const auto *x = position_.x() + run.first, *y = position_.y() + run.first, *z = position_.z() + run.first;
+    const auto *vx = velocity.x() + run.first, *vy = velocity.y() + run.first, *vz = velocity.z() + run.first;
+    const std::size_t to = static_cast<std::size_t>(run.offset);
     power.damping_loss += damping_ * ordered_sum(static_cast<std::size_t>(run.count), [=](std::size_t s) {
-                            const double rate = (vxj[s] - vxi[s]) * ex[s] + (vyj[s] - vyi[s]) * ey[s] +
-                                                (vzj[s] - vzi[s]) * ez[s];
-                            return rate * rate;
+                            const double dx = x[s + to] - x[s], dy = y[s + to] - y[s], dz = z[s + to] - z[s];
+                            const double square = dx * dx + dy * dy + dz * dz;
+                            const double rate = (vx[s + to] - vx[s]) * dx + (vy[s + to] - vy[s]) * dy +
+                                                (vz[s + to] - vz[s]) * dz;
+                            return square > 0 ? rate * rate / square : 0;
                           });
-    spring += static_cast<std::size_t>(run.count);
   }
 }
 

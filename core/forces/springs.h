@@ -23,6 +23,10 @@ class SpringDamping : public Force {
  public:
   explicit SpringDamping(double damping) : damping_(damping) {}
 
+  double damping() const { return damping_; }
+  /// That of the last update.
+  const Vec3Field& position() const { return position_; }
+
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
@@ -37,7 +41,7 @@ class SpringDamping : public Force {
  private:
   double damping_;  ///< N s/m
   const ClothSystem* system_ = nullptr;
-  Vec3Field direction_;  ///< d/|d| of every spring, run after run
+  Vec3Field position_;  ///< m, of the last update
 };
 
 }  // namespace cloth

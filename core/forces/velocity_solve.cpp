@@ -16,12 +16,6 @@ double dot(const Vec3Field& a, const Vec3Field& b) {
   return cloth::dot(a.flat(), b.flat());
 }
 
-void add_scaled(Vec3Field& to, double scale, const Vec3Field& from) {
-  const auto a = to.flat();
-  const auto b = from.flat();
-  for (std::size_t k = 0; k < a.size(); ++k) a[k] += scale * b[k];
-}
-
 void clear_pinned(const ClothSystem& system, Vec3Field& field) {
   for (std::size_t i = 0; i < field.size(); ++i)
     if (system.pinned[i]) field.set(i, Vec3::Zero());
@@ -34,6 +28,53 @@ void for_each_component(const ClothSystem& system, Visit visit) {
   const std::size_t size = system.mass.size();
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i < size; ++i) visit(axis * size + i, mass[i]);
+}
+
+/// visit(first) for the first component of each axis in a flat field.
+template <class Visit>
+void for_each_axis(std::size_t particles, Visit visit) {
+  for (std::size_t axis = 0; axis < 3; ++axis) visit(axis * particles);
+}
+
+/// result = m in + weight result, 0 where pinned
+void add_inertia(const ClothSystem& system, double weight, const Vec3Field& in, Vec3Field& result) {
+  const std::size_t size = system.mass.size();
+  for_each_axis(size, [&](std::size_t first) {
+    const double *m = system.mass.data(), *inverse = system.inverse_mass.data(),
+                 *v = in.flat().data() + first;
+    double* out = result.flat().data() + first;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double free = inverse[i] == 0 ? 0.0 : 1.0;
+      out[i] = free * (m[i] * v[i] + weight * out[i]);
+    }
+  });
+}
+
+/// result = factor r, where every particle has its factor
+void scale_each(const std::vector<double>& factors, const Vec3Field& r, Vec3Field& result) {
+  for_each_axis(factors.size(), [&](std::size_t first) {
+    const double *factor = factors.data(), *from = r.flat().data() + first;
+    double* out = result.flat().data() + first;
+    for (std::size_t i = 0; i < factors.size(); ++i) out[i] = factor[i] * from[i];
+  });
+}
+
+/// v += length d, r -= length q
+void advance(double length, const Vec3Field& direction, const Vec3Field& product, Vec3Field& velocity,
+             Vec3Field& residual) {
+  const double *d = direction.flat().data(), *q = product.flat().data();
+  double *v = velocity.flat().data(), *r = residual.flat().data();
+  const std::size_t size = velocity.flat().size();
+  for (std::size_t k = 0; k < size; ++k) v[k] += length * d[k];
+  for (std::size_t k = 0; k < size; ++k) r[k] -= length * q[k];
+}
+
+/// direction = z + keep direction
+void turn(double keep, const Vec3Field& z, Vec3Field& direction) {
+  const double* from = z.flat().data();
+  double* d = direction.flat().data();
+  const std::size_t size = direction.flat().size();
+  for (std::size_t k = 0; k < size; ++k) d[k] = from[k] + keep * d[k];
 }
 
 }  // namespace
@@ -89,41 +130,42 @@ int ForceModel::solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& ve
   NodeDamping local;
   for (const auto& force : forces_) force->add_node_damping(local);
   if (pull_) pull_->add_node_damping(local);
+  const bool is_diagonal = !local.normal && local.held_particle < 0;
+  inverse_diagonal_.resize(rhs.size());
+  for (std::size_t i = 0; i < rhs.size(); ++i)
+    inverse_diagonal_[i] = 1 / (system_->mass[i] + weight * local.isotropic);
 
   const auto multiply = [&](const Vec3Field& v, Vec3Field& result) {
     damping_product(v, result);
-    const auto out = result.flat();
-    const auto in = v.flat();
-    for_each_component(*system_,
-                       [&](std::size_t k, double mass) { out[k] = mass * in[k] + weight * out[k]; });
-    clear_pinned(*system_, result);
+    add_inertia(*system_, weight, v, result);
+  };
+  Vec3Field& preconditioned = product_;  // shares storage: never needed at the same time as A d
+  const auto precondition = [&] {
+    if (is_diagonal)
+      scale_each(inverse_diagonal_, residual_, preconditioned);
+    else
+      solve_per_node(weight, local, residual_, preconditioned);
+    return dot(residual_, preconditioned);
   };
 
   clear_pinned(*system_, velocity);
-  multiply(velocity, product_);
   residual_ = rhs;
-  add_scaled(residual_, -1, product_);
-  const double goal = tolerance * tolerance * dot(rhs, rhs);
-  Vec3Field& preconditioned = product_;  // shares storage: never needed at the same time as A p
-  solve_per_node(weight, local, residual_, preconditioned);
+  precondition();
+  const double goal = tolerance * tolerance * dot(rhs, preconditioned);
+  multiply(velocity, product_);
+  for (std::size_t k = 0; k < rhs.flat().size(); ++k) residual_.flat()[k] -= product_.flat()[k];
+  double slope = precondition();
   direction_ = preconditioned;
-  double slope = dot(residual_, preconditioned);
 
   int iterations = 0;
-  while (iterations < max_iterations && dot(residual_, residual_) > goal) {
+  while (iterations < max_iterations && slope > goal) {
     multiply(direction_, product_);
     const double curvature = dot(direction_, product_);
     if (!(curvature > 0)) break;
-    const double length = slope / curvature;
-    add_scaled(velocity, length, direction_);
-    add_scaled(residual_, -length, product_);
-    solve_per_node(weight, local, residual_, preconditioned);
-    const double next_slope = dot(residual_, preconditioned);
-    const double keep = next_slope / slope;
+    advance(slope / curvature, direction_, product_, velocity, residual_);
+    const double next_slope = precondition();
+    turn(next_slope / slope, preconditioned, direction_);
     slope = next_slope;
-    const auto d = direction_.flat();
-    const auto q = preconditioned.flat();
-    for (std::size_t k = 0; k < d.size(); ++k) d[k] = q[k] + keep * d[k];
     ++iterations;
   }
   return iterations;

@@ -6,39 +6,44 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
                               ClothState& state, Work& work) {
   IntegratorReport report;
   const double h = times.step;
-  if (!holds_force_) {
+  if (!holds_position_force_) {
     forces.update(state.position, times.begin);
-    if (forces.has_power()) power_ = forces.power(state.velocity);
     ++report.force_evaluations;
   }
-  if (forces.has_power()) work += 0.5 * h * power_;
-  report.speed_squares = forces.verlet_step(h, state, power_);
-  if (report.speed_squares) {
-    if (forces.has_power()) work += 0.5 * h * power_;
+  if (forces.steps_verlet()) {
+    if (!holds_position_force_ && forces.has_power()) power_ = forces.power(state.velocity);
+    work += 0.5 * h * power_;
+    report.speed_squares = forces.verlet_step(h, state, power_);
+    work += 0.5 * h * power_;
     ++report.force_evaluations;
-    holds_force_ = true;
+    holds_position_force_ = true;
     return report;
   }
 
-  if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
-  forces.force(state.velocity, force_);
+  if (!holds_force_) evaluate(forces, state.velocity);
+  work += 0.5 * h * power_;
   add_acceleration(system, 0.5 * h, force_, state.velocity);
   add_scaled(h, state.velocity, state.position);
   forces.update(state.position, times.end);
   ++report.force_evaluations;
-
   report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
-  if (forces.has_power()) {
-    power_ = forces.power(state.velocity);
-    work += 0.5 * h * power_;
-  }
-  holds_force_ = true;
+  evaluate(forces, state.velocity);
+  work += 0.5 * h * power_;
+  holds_position_force_ = true;
   return report;
+}
+
+/// f and its power, at the positions of the last update.
+void Verlet::evaluate(ForceModel& forces, const Vec3Field& velocity) {
+  if (force_.size() != velocity.size()) force_ = Vec3Field(velocity.size());
+  power_ = forces.force_and_power(velocity, force_);
+  holds_force_ = true;
 }
 
 /// From the velocity at half the step; `force_` holds the force that led there. Returns the iterations.
 int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step,
                             ClothState& state) {
+  holds_force_ = false;
   if (!forces.has_damping()) {
     forces.force(state.velocity, force_);
     add_acceleration(system, half_step, force_, state.velocity);
@@ -64,6 +69,7 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
 /// keep a speed of some h^2 g times damping over mass.
 void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                const Vec3Field& half_velocity, ClothState& state) {
+  holds_force_ = false;
   forces.force(state.velocity, force_);
   state.velocity = half_velocity;
   add_acceleration(system, 0.5 * times.step, force_, state.velocity);

@@ -17,7 +17,9 @@ class Verlet : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override { return holds_force_ && forces.steps_verlet(); }
+  bool gains_unseen(const ForceModel& forces) const override {
+    return holds_position_force_ && forces.steps_verlet();
+  }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
   bool velocity_follows_positions() const override { return true; }
@@ -25,14 +27,16 @@ class Verlet : public Integrator {
                          const Vec3Field& half_velocity, ClothState& state) override;
   void follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         const Vec3Field& half_velocity, ClothState& state) override;
-  void forget(Change) override { holds_force_ = false; }
+  void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  private:
+  void evaluate(ForceModel& forces, const Vec3Field& velocity);
   int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
 
   Vec3Field force_, half_velocity_;
-  Work power_;                ///< at the end of the last step
-  bool holds_force_ = false;  ///< the force model stands at the state's position and time
+  Work power_;                         ///< at the end of the last step
+  bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
+  bool holds_force_ = false;           ///< and `force_` is the whole force there
 };
 
 }  // namespace cloth

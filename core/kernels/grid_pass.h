@@ -43,34 +43,37 @@ struct BandField {
 };
 
 /// How many rows beyond its own a band reads on either side, at most.
-inline constexpr int euler_halo = 2, runge_kutta_halo = 8;
+inline constexpr int step_halo = 2, runge_kutta_halo = 8;
 
 /// A row of scratch: room for whole vectors beyond the last column.
 constexpr int pitch_of(int columns) {
   return (columns + 7) / 8 * 8 + 8;
 }
 /// Doubles of scratch that a pass needs, for each double of pitch.
-inline constexpr int euler_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2);
+inline constexpr int step_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2);
 
 /// One pass over a band of rows [first, last) of the grid. Everything beyond those is only read.
 struct Pass {
   Grid grid;
   int first = 0, last = 0;
   BandField position, velocity;
-  BandField force;                                      ///< of Verlet and of evaluate
+  BandField force;                                      ///< of Verlet, evaluate and damp
   const double* inverse_mass = nullptr;                 ///< 1/kg; 0 where pinned
   const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, of every particle, in addition; may be null
   double weight[3] = {0, 0, 0};                         ///< N, of every particle
   double damping = 0;                                   ///< N s/m, viscous
+  double spring_damping = 0;                            ///< N s/m, along every spring
   double mass_of_free = 1;                              ///< kg
   double step = 0;                                      ///< s
   bool drift_first = false;   ///< explicit Euler: the position follows the old velocity
   double* scratch = nullptr;  ///< 64-byte aligned
-  /// Sums of |v|^2 of each row, one array of `rows` after the other: before the step and after it; of
-  /// Runge-Kutta at its four stages and after the step.
-  double* squares = nullptr;
+  /// Sums over each row, one array of `rows` after the other: |v|^2 before the step and after it, and what
+  /// the dampers along the springs take before it, in W; of Runge-Kutta |v|^2 at its four stages and after
+  /// the step, and what the dampers take at the stages.
+  double* sums = nullptr;
 };
-inline constexpr int euler_sums = 2, runge_kutta_sums = 5;
+enum StepSum { squares_before, squares_after, dampers_before, step_sums };
+enum StageSum { stage_squares = 0, squares_of_result = 4, stage_dampers = 5, stage_sums = 9 };
 
 /// The passes of one instruction set.
 struct GridKernels {
@@ -88,11 +91,15 @@ struct GridKernels {
   void (*runge_kutta)(const Pass& pass);
   /// force = springs + weight + load. `load` may be `force` itself. No sums.
   void (*evaluate)(const Pass& pass);
+  /// force = D v of the dampers along the springs, and what they take.
+  void (*damp)(const Pass& pass);
   /// The sums of |v|^2 as the steps make them, into the place after the step.
   void (*sum_squares)(const Pass& pass);
   /// What the springs make of the squares of their lengths: result[i] = k - k L / sqrt(s[i]), k where s[i] is
   /// zero; the two ways in which the kernels do it.
   void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);
+  /// result[i] = 1 / sqrt(s[i]), 0 where s[i] is zero; the two ways as well.
+  void (*inverse_roots[2])(const double* squares, double* result, int count);
 };
 
 const GridKernels& portable_grid_kernels();

@@ -32,6 +32,7 @@ inline Row scratch_row(const Pass& pass, int n) {
 }
 
 /// The two row buffers of one chain of rows, and the rows' order.
+template <Law law>
 class RowChain {
  public:
   RowChain(const Pass& pass, const Springs& springs, int buffer, int first_row) : pass_(pass) {
@@ -46,26 +47,24 @@ class RowChain {
     if (first_row + 1 < pass.grid.rows) begin(work_.b, load_of(pass, first_row + 1));
   }
 
-  /// `position(row)` gives a row's positions; rows must come one after the other. The last two before row
-  /// `first` only add to the buffers what their springs do to the rows from there on.
-  template <class Position, class Update>
-  CLOTHLAB_INLINE void run(int row, int first, const Position& position, Update& update) {
+  /// `particles(row)` gives a row's particles; rows must come one after the other. The last two before row
+  /// `first` only add to the buffers what their springs do to the rows from there on. Returns what the row's
+  /// dampers take.
+  template <class ParticlesOf, class Update>
+  CLOTHLAB_INLINE V run(int row, int first, const ParticlesOf& particles, Update& update) {
     const bool own = row >= first;
     const int below = pass_.grid.rows - 1 - row;
-    work_.here = position(row);
-    if (below >= 1) work_.below = position(row + 1), work_.load_below = load_of(pass_, row + 1);
-    if (below >= 2) work_.second = position(row + 2), work_.load_second = load_of(pass_, row + 2);
-    if (has_all_ && own && below >= 2) {
-      row_pass<true>(work_, true, update);
-      return;
-    }
+    work_.here = particles(row);
+    if (below >= 1) work_.below = particles(row + 1), work_.load_below = load_of(pass_, row + 1);
+    if (below >= 2) work_.second = particles(row + 2), work_.load_second = load_of(pass_, row + 2);
+    if (has_all_ && own && below >= 2) return row_pass<law, true>(work_, true, update);
     work_.has_below = below >= 1, work_.has_second = below >= 2;
     work_.present = pass_.grid.springs;
     if (below < 2) work_.present &= ~unsigned{down_two};
     if (below < 1) work_.present &= ~unsigned{down_one | shear_springs};
     if (row < first) work_.present &= ~unsigned{right_one | right_two};
     if (row + 1 < first) work_.present &= unsigned{down_two};
-    row_pass<false>(work_, own, update);
+    return row_pass<law, false>(work_, own, update);
   }
 
  private:
@@ -79,32 +78,61 @@ class RowChain {
   bool has_all_ = false;
 };
 
-/// The sums of squares of a row go to the row's own place, so that their order does not depend on the bands.
-inline void store_sum(const Pass& pass, int which, int row, V sum) {
-  if (row >= pass.first && row < pass.last)
-    pass.squares[static_cast<long>(which) * pass.grid.rows + row] = Lanes::sum(sum);
+/// The first row whose springs reach the row `first`.
+inline int first_row_of_springs(int first) {
+  return first < 2 ? 0 : first - 2;
 }
 
-void euler_band(const Pass& pass) {
-  const Springs springs(pass.grid);
-  const int start = pass.first < 2 ? 0 : pass.first - 2;
-  RowChain chain(pass, springs, 0, start);
+/// The sums of a row go to the row's own place, so that their order does not depend on the bands.
+inline void store_sum(const Pass& pass, int which, int row, V sum) {
+  if (row >= pass.first && row < pass.last)
+    pass.sums[static_cast<long>(which) * pass.grid.rows + row] = Lanes::sum(sum);
+}
+
+/// before(row), for the band's own rows, then the row's force and `update`, then after(row, what its dampers
+/// take).
+template <Law law, class Update, class Before, class After>
+void band_pass(const Pass& pass, Update& update, const Before& before, const After& after) {
+  const Springs springs(pass);
+  const int start = first_row_of_springs(pass.first);
+  RowChain<law> chain(pass, springs, 0, start);
+  const auto particles = [&](int row) -> ParticleRow {
+    if constexpr (law == Law::elastic) return {row_of(pass, pass.position, row), {}};
+    return {row_of(pass, pass.position, row), row_of(pass, pass.velocity, row)};
+  };
+  for (int row = start; row < pass.last; ++row) {
+    before(row, row >= pass.first);
+    const V loss = chain.run(row, pass.first, particles, update);
+    after(row, loss);
+  }
+}
+
+template <Law law>
+void euler_rows(const Pass& pass) {
   EulerUpdate update{};
   update.step = Lanes::set(pass.step), update.damping = Lanes::set(pass.damping);
   update.drift_first = pass.drift_first;
-  const auto position = [&](int row) { return row_of(pass, pass.position, row); };
-  for (int row = start; row < pass.last; ++row) {
-    const bool own = row >= pass.first;
-    if (own) {
-      update.position = position(row);
-      update.velocity = row_of(pass, pass.velocity, row);
-      update.inverse_mass = inverse_masses(pass, row);
-      update.before = update.after = Lanes::zero();
-    }
-    chain.run(row, pass.first, position, update);
-    store_sum(pass, 0, row, update.before);
-    store_sum(pass, 1, row, update.after);
-  }
+  band_pass<law>(
+      pass, update,
+      [&](int row, bool own) {
+        if (!own) return;
+        update.position = row_of(pass, pass.position, row);
+        update.velocity = row_of(pass, pass.velocity, row);
+        update.inverse_mass = inverse_masses(pass, row);
+        update.before = update.after = Lanes::zero();
+      },
+      [&](int row, V loss) {
+        store_sum(pass, squares_before, row, update.before);
+        store_sum(pass, squares_after, row, update.after);
+        if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, loss);
+      });
+}
+
+void euler_band(const Pass& pass) {
+  if (pass.spring_damping > 0)
+    euler_rows<Law::damped>(pass);
+  else
+    euler_rows<Law::elastic>(pass);
 }
 
 inline void kick_drift_row(const Pass& pass, int row) {
@@ -128,27 +156,23 @@ inline V centring(const Pass& pass) {
 /// With the kick and the drift before the force, or after a pass that has done them.
 template <bool KickAndDrift>
 void verlet_band(const Pass& pass) {
-  const Springs springs(pass.grid);
-  const int start = pass.first < 2 ? 0 : pass.first - 2;
-  RowChain chain(pass, springs, 0, start);
   VerletUpdate update{};
   update.half_step = Lanes::set(0.5 * pass.step);
   update.centred = centring(pass);
-  const auto position = [&](int row) { return row_of(pass, pass.position, row); };
+  const int start = first_row_of_springs(pass.first);
   if (KickAndDrift) kick_drift_row(pass, start);
   if (KickAndDrift) kick_drift_row(pass, start + 1);
-  for (int row = start; row < pass.last; ++row) {
-    if (KickAndDrift) kick_drift_row(pass, row + 2);
-    const bool own = row >= pass.first;
-    if (own) {
-      update.velocity = row_of(pass, pass.velocity, row);
-      update.force = row_of(pass, pass.force, row);
-      update.inverse_mass = inverse_masses(pass, row);
-      update.after = Lanes::zero();
-    }
-    chain.run(row, pass.first, position, update);
-    store_sum(pass, 1, row, update.after);
-  }
+  band_pass<Law::elastic>(
+      pass, update,
+      [&](int row, bool own) {
+        if (KickAndDrift) kick_drift_row(pass, row + 2);
+        if (!own) return;
+        update.velocity = row_of(pass, pass.velocity, row);
+        update.force = row_of(pass, pass.force, row);
+        update.inverse_mass = inverse_masses(pass, row);
+        update.after = Lanes::zero();
+      },
+      [&](int row, V) { store_sum(pass, squares_after, row, update.after); });
 }
 
 void verlet_open_band(const Pass& pass) {
@@ -156,37 +180,39 @@ void verlet_open_band(const Pass& pass) {
 }
 
 void verlet_between_band(const Pass& pass) {
-  const Springs springs(pass.grid);
-  const int start = pass.first < 2 ? 0 : pass.first - 2;
-  RowChain chain(pass, springs, 0, start);
   VerletBetweenUpdate update{};
   update.half_step = Lanes::set(0.5 * pass.step), update.step = Lanes::set(pass.step);
   update.centred = centring(pass), update.damping = Lanes::set(pass.damping);
-  const auto position = [&](int row) { return row_of(pass, pass.position, row); };
-  for (int row = start; row < pass.last; ++row) {
-    const bool own = row >= pass.first;
-    if (own) {
-      update.position = position(row);
-      update.velocity = row_of(pass, pass.velocity, row);
-      update.inverse_mass = inverse_masses(pass, row);
-      update.after = Lanes::zero();
-    }
-    chain.run(row, pass.first, position, update);
-    store_sum(pass, 1, row, update.after);
-  }
+  band_pass<Law::elastic>(
+      pass, update,
+      [&](int row, bool own) {
+        if (!own) return;
+        update.position = row_of(pass, pass.position, row);
+        update.velocity = row_of(pass, pass.velocity, row);
+        update.inverse_mass = inverse_masses(pass, row);
+        update.after = Lanes::zero();
+      },
+      [&](int row, V) { store_sum(pass, squares_after, row, update.after); });
 }
 
 void evaluate_band(const Pass& pass) {
-  const Springs springs(pass.grid);
-  const int start = pass.first < 2 ? 0 : pass.first - 2;
-  RowChain chain(pass, springs, 0, start);
   EvaluateUpdate update{};
-  const auto position = [&](int row) { return row_of(pass, pass.position, row); };
-  for (int row = start; row < pass.last; ++row) {
-    const bool own = row >= pass.first;
-    if (own) update.force = row_of(pass, pass.force, row);
-    chain.run(row, pass.first, position, update);
-  }
+  band_pass<Law::elastic>(
+      pass, update,
+      [&](int row, bool own) {
+        if (own) update.force = row_of(pass, pass.force, row);
+      },
+      [](int, V) {});
+}
+
+void damp_band(const Pass& pass) {
+  DampUpdate update{};
+  band_pass<Law::damper>(
+      pass, update,
+      [&](int row, bool own) {
+        if (own) update.product = row_of(pass, pass.force, row);
+      },
+      [&](int row, V loss) { store_sum(pass, dampers_before, row, loss); });
 }
 
 void sum_squares_band(const Pass& pass) {
@@ -198,15 +224,16 @@ void sum_squares_band(const Pass& pass) {
     for (; j + Lanes::width <= columns; j += Lanes::width)
       sum = plus_square(sum, load_part<false>(velocity, j, Lanes::width));
     if (j < columns) sum = plus_square(sum, load_part<true>(velocity, j, columns - j));
-    store_sum(pass, 1, row, sum);
+    store_sum(pass, squares_after, row, sum);
   }
 }
 
 /// The four stages follow each other down the rows, two rows apart, so that what lies between them never
 /// leaves the cache: rings of three rows for each stage's state, of seven for the sums. Near the band's ends
 /// the first stages also do the rows of other bands that the later ones will need.
-void runge_kutta_band(const Pass& pass) {
-  const Springs springs(pass.grid);
+template <Law law>
+void runge_kutta_rows(const Pass& pass) {
+  const Springs springs(pass);
   const int rows = pass.grid.rows;
   constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * stage_count;
   const auto stage_row = [&](int stage, int row, int field) {  // of stages 1, 2, 3
@@ -223,13 +250,13 @@ void runge_kutta_band(const Pass& pass) {
   for (int s = 0; s < stage_count; ++s) {
     const int reach = 2 * (stage_count - 1 - s);
     begin[s] = pass.first - reach < 0 ? 0 : pass.first - reach;
-    start[s] = begin[s] < 2 ? 0 : begin[s] - 2;
+    start[s] = first_row_of_springs(begin[s]);
     end[s] = pass.last + reach > rows ? rows : pass.last + reach;
   }
-  RowChain chains[stage_count] = {{pass, springs, 0, start[0]},
-                                  {pass, springs, 2, start[1]},
-                                  {pass, springs, 4, start[2]},
-                                  {pass, springs, 6, start[3]}};
+  RowChain<law> chains[stage_count] = {{pass, springs, 0, start[0]},
+                                       {pass, springs, 2, start[1]},
+                                       {pass, springs, 4, start[2]},
+                                       {pass, springs, 6, start[3]}};
 
   for (int front = start[0]; front < pass.last + 2 * (stage_count - 1); ++front)
     for (int s = 0; s < stage_count; ++s) {
@@ -256,15 +283,30 @@ void runge_kutta_band(const Pass& pass) {
           update.next_velocity = stage_row(s + 1, row, 1);
         }
       }
-      if (s == 0)
-        chains[s].run(
-            row, begin[s], [&](int r) { return state_row(r, 0); }, update);
-      else
-        chains[s].run(
-            row, begin[s], [&](int r) { return stage_row(s, r, 0); }, update);
-      if (own) store_sum(pass, s, row, update.squares);
-      if (own && s + 1 == stage_count) store_sum(pass, stage_count, row, update.after);
+      const V loss = s == 0 ? chains[s].run(
+                                  row, begin[s],
+                                  [&](int r) {
+                                    return ParticleRow{state_row(r, 0), state_row(r, 1)};
+                                  },
+                                  update)
+                            : chains[s].run(
+                                  row, begin[s],
+                                  [&](int r) {
+                                    return ParticleRow{stage_row(s, r, 0), stage_row(s, r, 1)};
+                                  },
+                                  update);
+      if (!own) continue;
+      store_sum(pass, stage_squares + s, row, update.squares);
+      if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, loss);
+      if (s + 1 == stage_count) store_sum(pass, squares_of_result, row, update.after);
     }
+}
+
+void runge_kutta_band(const Pass& pass) {
+  if (pass.spring_damping > 0)
+    runge_kutta_rows<Law::damped>(pass);
+  else
+    runge_kutta_rows<Law::elastic>(pass);
 }
 
 template <bool Divide>
@@ -276,10 +318,25 @@ void spring_scales(const SpringKind& kind, const double* squares, double* result
   }
 }
 
-constexpr GridKernels grid_kernels{
-    euler_band,          verlet_band<true>,  verlet_open_band,
-    verlet_between_band, verlet_band<false>, runge_kutta_band,
-    evaluate_band,       sum_squares_band,   {spring_scales<false>, spring_scales<true>}};
+template <bool Divide>
+void inverse_roots(const double* squares, double* result, int count) {
+  for (int i = 0; i < count; i += Lanes::width) {
+    const V s = Lanes::load(squares + i, count - i, Lanes::set(1));
+    Lanes::store(result + i, Lanes::inverse_root<Divide>(s), count - i);
+  }
+}
+
+constexpr GridKernels grid_kernels{euler_band,
+                                   verlet_band<true>,
+                                   verlet_open_band,
+                                   verlet_between_band,
+                                   verlet_band<false>,
+                                   runge_kutta_band,
+                                   evaluate_band,
+                                   damp_band,
+                                   sum_squares_band,
+                                   {spring_scales<false>, spring_scales<true>},
+                                   {inverse_roots<false>, inverse_roots<true>}};
 
 }  // namespace
 }  // namespace cloth::kernels

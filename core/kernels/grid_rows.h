@@ -29,22 +29,36 @@ CLOTHLAB_INLINE Vector moved_two(const Vector& before, const Vector& now) {
 }
 struct Springs {
   Lanes::Spring kind[spring_kinds];
-  explicit Springs(const Grid& grid) {
+  V damping;
+  explicit Springs(const Pass& pass) : damping(Lanes::set(pass.spring_damping)) {
     for (int k = 0; k < spring_kinds; ++k)
-      kind[k] = Lanes::spring(grid.kind[k].stiffness, grid.kind[k].rest_tension);
+      kind[k] = Lanes::spring(pass.grid.kind[k].stiffness, pass.grid.kind[k].rest_tension);
   }
-  /// The force on the first end is this times d.
-  template <unsigned Bit>
-  CLOTHLAB_INLINE V scale(const Vector& d) const {
-    const V s = Lanes::fma(d.z, d.z, Lanes::fma(d.y, d.y, Lanes::mul(d.x, d.x)));
-    return Lanes::spring_scale<(Bit & Lanes::divided) != 0>(s, kind[__builtin_ctz(Bit)]);
+  /// The force on `from` is this times d, which becomes the way from there to `to`. What the damper takes is
+  /// added to `loss`.
+  template <Law law, unsigned Bit>
+  CLOTHLAB_INLINE V pull(const Particles& from, const Particles& to, Vector& d, V& loss) const {
+    constexpr bool divided = (Bit & Lanes::divided) != 0;
+    const Lanes::Spring& spring = kind[__builtin_ctz(Bit)];
+    d = to.position - from.position;
+    const V s = squared(d);
+    if constexpr (law == Law::elastic) return Lanes::spring_scale<divided>(s, spring);
+    const V inverse = Lanes::inverse_root<divided>(s);
+    const V damper = damper_scale(from, to, d, inverse, damping, loss);
+    if constexpr (law == Law::damper) return damper;
+    return Lanes::add(Lanes::scale_at(inverse, spring), damper);
   }
+};
+
+/// Where a row's particles are.
+struct ParticleRow {
+  ConstRow position, velocity;
 };
 
 /// What a row's springs need beside the method.
 struct RowWork {
   int columns;
-  ConstRow here, below, second;      ///< positions; only those that exist are looked at
+  ParticleRow here, below, second;   ///< only those that exist are looked at
   ConstRow load_below, load_second;  ///< null: `weight`
   Row a, b;                          ///< the buffers
   Vector weight;
@@ -59,17 +73,31 @@ struct Carry {
   Vector one, two, one_below;
 };
 
+template <Law law>
+CLOTHLAB_INLINE Particles particles_at(const ParticleRow& row, int j) {
+  const Vector x = load(row.position, j);
+  if constexpr (law == Law::elastic) return {x, x};
+  return {x, load(row.velocity, j)};
+}
+template <Law law>
+CLOTHLAB_INLINE Particles particles_at(const ParticleRow& row, int j, int count, const Particles& otherwise) {
+  const Vector x = load(row.position, j, count, otherwise.position);
+  if constexpr (law == Law::elastic) return {x, x};
+  return {x, load(row.velocity, j, count, otherwise.velocity)};
+}
+
 /// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so
 /// in all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may
 /// lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no
 /// force.
-template <bool Full, bool Edge>
-CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const Vector& here, Carry& carry) {
+template <Law law, bool Full, bool Edge>
+CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const Particles& here, Carry& carry,
+                                   V& loss) {
   const Springs& springs = *work.springs;
   const auto has = [&](unsigned bits) { return Full || (work.present & bits) != 0; };
-  const auto ahead = [&](const ConstRow& row, int columns, const Vector& otherwise) {
-    if constexpr (Edge) return load(row, j + columns, count - columns, otherwise);
-    return load(row, j + columns);
+  const auto ahead = [&](const ParticleRow& row, int columns, const Particles& otherwise) {
+    if constexpr (Edge) return particles_at<law>(row, j + columns, count - columns, otherwise);
+    return particles_at<law>(row, j + columns);
   };
   const Vector nothing{Lanes::zero(), Lanes::zero(), Lanes::zero()};
   const bool has_below = Full || work.has_below;
@@ -80,46 +108,41 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
   else if (has_below)
     below_force = initial<Edge>(work.load_below, work.weight, j, count);
   Vector one = nothing, two = nothing, one_below = nothing;  // what moves on to later columns
+  Vector d;
 
-  Vector right = here;
+  Particles right = here;
   if (has(right_one | antidiagonal)) right = ahead(work.here, 1, here);
   if (has(right_one)) {
-    const Vector d = right - here;
-    const V s = springs.scale<right_one>(d);
+    const V s = springs.pull<law, right_one>(here, right, d, loss);
     force = plus(force, s, d);
     one = minus(one, s, d);
   }
   if (has(right_two)) {
-    const Vector d = ahead(work.here, 2, here) - here;
-    const V s = springs.scale<right_two>(d);
+    const V s = springs.pull<law, right_two>(here, ahead(work.here, 2, here), d, loss);
     force = plus(force, s, d);
     two = scaled(s, d);
   }
   if (Full || (work.has_second && work.uses_b)) {
-    const Vector d = ahead(work.second, 0, here) - here;
-    const V s = springs.scale<down_two>(d);
+    const V s = springs.pull<law, down_two>(here, ahead(work.second, 0, here), d, loss);
     force = plus(force, s, d);
     store(work.b, j, minus(initial<Edge>(work.load_second, work.weight, j, count), s, d));
   }
-  Vector below = here;
+  Particles below = here;
   if (has(down_one | antidiagonal)) below = ahead(work.below, 0, here);
   if (has(down_one)) {
-    const Vector d = below - here;
-    const V s = springs.scale<down_one>(d);
+    const V s = springs.pull<law, down_one>(here, below, d, loss);
     force = plus(force, s, d);
     below_force = minus(below_force, s, d);
   }
   if (has(antidiagonal)) {
-    Vector from = right;
+    Particles from = right;
     if constexpr (Edge) from = ahead(work.here, 1, below);
-    const Vector d = below - from;
-    const V s = springs.scale<antidiagonal>(d);
+    const V s = springs.pull<law, antidiagonal>(from, below, d, loss);
     one = plus(one, s, d);
     below_force = minus(below_force, s, d);
   }
   if (has(diagonal)) {
-    const Vector d = ahead(work.below, 1, here) - here;
-    const V s = springs.scale<diagonal>(d);
+    const V s = springs.pull<law, diagonal>(here, ahead(work.below, 1, here), d, loss);
     force = plus(force, s, d);
     one_below = scaled(s, d);
     below_force = below_force - moved_one(carry.one_below, one_below);
@@ -132,24 +155,27 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
 }
 
 /// One row: its force, and `update(j, count, here, force)` for every block; an update<Edge> is a call
-/// operator with that template argument. A row of another band has no update.
-template <bool Full, class Update>
-CLOTHLAB_INLINE void row_pass(const RowWork& work, bool own, Update& update) {
+/// operator with that template argument. A row of another band has no update. Returns what the row's dampers
+/// take.
+template <Law law, bool Full, class Update>
+CLOTHLAB_INLINE V row_pass(const RowWork& work, bool own, Update& update) {
   const V zero = Lanes::zero();
   const Vector nothing{zero, zero, zero};
   Carry carry{nothing, nothing, nothing};
+  V loss = zero;
   int j = 0;
   for (; j + Lanes::width + 2 <= work.columns; j += Lanes::width) {
-    const Vector here = load(work.here, j);
-    const Vector force = block_force<Full, false>(work, j, Lanes::width, here, carry);
-    if (Full || own) update.template operator()<false>(j, Lanes::width, here, force);
+    const Particles here = particles_at<law>(work.here, j);
+    const Vector force = block_force<law, Full, false>(work, j, Lanes::width, here, carry, loss);
+    if (Full || own) update.template operator()<false>(j, Lanes::width, here.position, force);
   }
   for (; j < work.columns; j += Lanes::width) {
     const int count = work.columns - j;
-    const Vector here = load_part<true>(work.here, j, count);
-    const Vector force = block_force<Full, true>(work, j, count, here, carry);
-    if (Full || own) update.template operator()<true>(j, count, here, force);
+    const Particles here = particles_at<law>(work.here, j, count, {nothing, nothing});
+    const Vector force = block_force<law, Full, true>(work, j, count, here, carry, loss);
+    if (Full || own) update.template operator()<true>(j, count, here.position, force);
   }
+  return loss;
 }
 
 }  // namespace

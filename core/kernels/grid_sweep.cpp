@@ -125,7 +125,7 @@ void GridSweep::make_room(const Plan& plan, std::size_t passes, std::size_t band
   for (const Attached& attached : plan.fields) edges += sides * rows_size(attached.halo_rows, grid_.columns);
   if (bands == 1) edges = 0;
   const std::size_t sums = passes * static_cast<std::size_t>(plan.sums) * rows;
-  if (squares_.size() < sums) squares_.resize(sums);
+  if (sums_.size() < sums) sums_.resize(sums);
   while (bands_.size() > bands) bands_.pop_back();
   while (bands_.size() < bands) bands_.emplace_back();
   for (Band& band : bands_) {
@@ -150,6 +150,7 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
     pass.load[0] = load->x(), pass.load[1] = load->y(), pass.load[2] = load->z();
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = plan.loads.weight[axis];
   pass.damping = plan.loads.damping;
+  pass.spring_damping = plan.loads.spring_damping;
   pass.mass_of_free = has_common_mass() ? mass() : 1;
   pass.step = plan.step;
   pass.drift_first = plan.drift_first;
@@ -219,7 +220,7 @@ void GridSweep::step_band(const Plan& plan, std::size_t index, std::size_t passe
   for (std::size_t pass = 0; pass < passes; ++pass) {
     const bool is_first = pass == 0, is_last = pass + 1 == passes;
     if (has_edges && !(is_first && plan.opening)) await_neighbours(plan, index, pass);
-    band.pass.squares = squares_.data() + pass * static_cast<std::size_t>(plan.sums * grid_.rows);
+    band.pass.sums = sums_.data() + pass * static_cast<std::size_t>(plan.sums * grid_.rows);
     const Kernel kernel = is_first && plan.opening  ? plan.opening
                           : is_last && plan.closing ? plan.closing
                                                     : plan.kernel;
@@ -232,54 +233,59 @@ double GridSweep::sum_of(const Plan& plan, std::size_t pass, int which) const {
   const auto rows = static_cast<std::size_t>(grid_.rows);
   const std::size_t first =
       (pass * static_cast<std::size_t>(plan.sums) + static_cast<std::size_t>(which)) * rows;
-  return ordered_sum(rows, [p = squares_.data() + first](std::size_t row) { return p[row]; });
+  return ordered_sum(rows, [p = sums_.data() + first](std::size_t row) { return p[row]; });
 }
 
-void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                       ClothState& state) {
-  assert(has_common_mass() && (!loads.load || squares.size() == 1));
+  assert(has_common_mass() && (!loads.load || sums.size() == 1));
+  const int velocity_halo = loads.spring_damping > 0 ? kernels::step_halo : 0;
   const Plan plan{.kernel = kernels_->euler,
                   .loads = loads,
                   .step = step,
                   .drift_first = drift_first,
-                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
-                              {&Pass::velocity, &state.velocity, 0}}}};
-  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+                  .fields = {{{&Pass::position, &state.position, kernels::step_halo},
+                              {&Pass::velocity, &state.velocity, velocity_halo}}}};
+  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     run(plan, count, threads);
-    for (std::size_t k = 0; k < count; ++k) squares[first + k] = {sum_of(plan, k, 0), sum_of(plan, k, 1)};
+    for (std::size_t k = 0; k < count; ++k) {
+      StepSums& of_step = sums[first + k];
+      of_step = {sum_of(plan, k, kernels::squares_before), sum_of(plan, k, kernels::squares_after)};
+      if (loads.spring_damping > 0) of_step.dampers = sum_of(plan, k, kernels::dampers_before);
+    }
   });
 }
 
 double GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
-  assert(has_common_mass() && !loads.load);
+  assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
   const Plan plan{.kernel = kernels_->verlet,
                   .loads = loads,
                   .step = step,
-                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
-                              {&Pass::velocity, &state.velocity, kernels::euler_halo},
-                              {&Pass::force, &force, kernels::euler_halo}}}};
+                  .fields = {{{&Pass::position, &state.position, kernels::step_halo},
+                              {&Pass::velocity, &state.velocity, kernels::step_halo},
+                              {&Pass::force, &force, kernels::step_halo}}}};
   run_once(PassKind::step, plan);
-  return sum_of(plan, 0, 1);
+  return sum_of(plan, 0, kernels::squares_after);
 }
 
 void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
-  assert(has_common_mass() && !loads.load);
+  assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
   const Plan plan{.kernel = kernels_->verlet_between,
                   .opening = kernels_->verlet_open,
                   .closing = kernels_->verlet_close,
                   .loads = loads,
                   .step = step,
-                  .fields = {{{&Pass::position, &state.position, kernels::euler_halo},
+                  .fields = {{{&Pass::position, &state.position, kernels::step_halo},
                               {&Pass::velocity, &state.velocity, 0},
                               {&Pass::force, &force, 0}}}};
   in_jobs(PassKind::several_steps, squares.size(), [&](std::size_t first, std::size_t count, int threads) {
     run(plan, count + 1, threads);
-    for (std::size_t k = 0; k < count; ++k) squares[first + k] = sum_of(plan, k + 1, 1);
+    for (std::size_t k = 0; k < count; ++k) squares[first + k] = sum_of(plan, k + 1, kernels::squares_after);
   });
 }
 
-void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                             ClothState& state) {
   assert(has_common_mass() && !loads.load);
   const Plan plan{.kernel = kernels_->runge_kutta,
@@ -287,13 +293,19 @@ void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
                   .step = step,
                   .fields = {{{&Pass::position, &state.position, kernels::runge_kutta_halo},
                               {&Pass::velocity, &state.velocity, kernels::runge_kutta_halo}}},
-                  .sums = kernels::runge_kutta_sums,
+                  .sums = kernels::stage_sums,
                   .scratch_rows = kernels::runge_kutta_scratch_rows};
-  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     run(plan, count, threads);
-    for (std::size_t k = 0; k < count; ++k)
-      for (int sum = 0; sum < kernels::runge_kutta_sums; ++sum)
-        squares[first + k][static_cast<std::size_t>(sum)] = sum_of(plan, k, sum);
+    for (std::size_t k = 0; k < count; ++k) {
+      StageSums& of_step = sums[first + k];
+      for (int stage = 0; stage < 4; ++stage) {
+        const auto s = static_cast<std::size_t>(stage);
+        of_step.squares[s] = sum_of(plan, k, kernels::stage_squares + stage);
+        of_step.dampers[s] = loads.spring_damping > 0 ? sum_of(plan, k, kernels::stage_dampers + stage) : 0;
+      }
+      of_step.after = sum_of(plan, k, kernels::squares_of_result);
+    }
   });
 }
 
@@ -305,13 +317,25 @@ void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec
                         {&Pass::force, &force, 0}}}});
 }
 
+double GridSweep::damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+                       Vec3Field& product) {
+  const SweepLoads loads{.spring_damping = damping};
+  const Plan plan{.kernel = kernels_->damp,
+                  .loads = loads,
+                  .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
+                              {&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0},  // only read
+                              {&Pass::force, &product, 0}}}};
+  run_once(PassKind::dampers, plan);
+  return sum_of(plan, 0, kernels::dampers_before);
+}
+
 double GridSweep::squares(const Vec3Field& velocity) {
   const SweepLoads none;
   const Plan plan{.kernel = kernels_->sum_squares,
                   .loads = none,
                   .fields = {{{&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0}}}};  // only read
   run_once(PassKind::sums, plan);
-  return sum_of(plan, 0, 1);
+  return sum_of(plan, 0, kernels::squares_after);
 }
 
 }  // namespace cloth

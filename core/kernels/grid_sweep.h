@@ -31,16 +31,18 @@ class GridSweep : public SpringSweep {
   GridSweep(const ClothSystem& system, const kernels::Grid& grid, std::optional<double> mass);
 
   int threads() const override;
-  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
              ClothState& state) override;
   double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
   /// Threads that step on need not be called for every step.
   bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
+  double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+              Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
 
  private:
@@ -60,8 +62,8 @@ class GridSweep : public SpringSweep {
     double step = 0;  ///< s
     bool drift_first = false;
     std::array<Attached, 3> fields{};  ///< those without values are none
-    int sums = kernels::euler_sums;
-    int scratch_rows = kernels::euler_scratch_rows;
+    int sums = kernels::step_sums;
+    int scratch_rows = kernels::step_scratch_rows;
 
     bool has_edges() const {
       return std::any_of(fields.begin(), fields.end(),
@@ -91,7 +93,7 @@ class GridSweep : public SpringSweep {
   kernels::Grid grid_;
   const kernels::GridKernels* kernels_;
   std::deque<Band> bands_;
-  std::vector<double> squares_;  ///< of every pass of a job, see kernels::Pass
+  std::vector<double> sums_;  ///< of every pass of a job, see kernels::Pass
 };
 
 }  // namespace cloth

@@ -66,12 +66,36 @@ CLOTHLAB_INLINE Vector plus(const Vector& c, V s, const Vector& a) {
 CLOTHLAB_INLINE Vector minus(const Vector& c, V s, const Vector& a) {
   return {Lanes::fnma(s, a.x, c.x), Lanes::fnma(s, a.y, c.y), Lanes::fnma(s, a.z, c.z)};
 }
+CLOTHLAB_INLINE V product(const Vector& a, const Vector& b) {
+  return Lanes::fma(a.z, b.z, Lanes::fma(a.y, b.y, Lanes::mul(a.x, b.x)));
+}
+CLOTHLAB_INLINE V squared(const Vector& a) {
+  return product(a, a);
+}
 /// sum + |a|^2 lane by lane
 CLOTHLAB_INLINE V plus_square(V sum, const Vector& a) {
   return Lanes::fma(a.z, a.z, Lanes::fma(a.y, a.y, Lanes::fma(a.x, a.x, sum)));
 }
 CLOTHLAB_INLINE Vector vector_of(const double* a) {
   return {Lanes::set(a[0]), Lanes::set(a[1]), Lanes::set(a[2])};
+}
+
+/// What acts along a spring: its elastic force, that and a damper, or the damper alone.
+enum class Law { elastic, damped, damper };
+
+/// Of some particles side by side. The velocity only where the law asks for it.
+struct Particles {
+  Vector position, velocity;
+};
+
+/// Along a spring from `from` to `to`, whose force is this times d: the damper, and what it takes is added to
+/// `loss`. `inverse` is 1/|d|, or 0.
+CLOTHLAB_INLINE V damper_scale(const Particles& from, const Particles& to, const Vector& d, V inverse,
+                               V damping, V& loss) {
+  const V opening = Lanes::mul(product(to.velocity - from.velocity, d), inverse);  // how fast the ends part
+  const V along = Lanes::mul(damping, opening);
+  loss = Lanes::fma(along, opening, loss);
+  return Lanes::mul(along, inverse);
 }
 
 /// A force before any spring: the weight and, where there is a load, that of the particles.

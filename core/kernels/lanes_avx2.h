@@ -51,7 +51,7 @@ struct Lanes {
   ///     1/sqrt(s) = y (1 - e)^(-1/2) = y (1 + e/2 + 3/8 e^2 + 5/16 e^3 + 35/128 e^4 + ...),
   /// whose rest is below 2^-53. Numbers beyond the range of single precision have no seed; they show in e^2
   /// and are computed exactly.
-  static V inverse_root(V s) {
+  static V refined_root(V s) {
     const V y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(s)));
     const V e = fnma(mul(s, y), y, set(1));
     const V square = mul(e, e);
@@ -62,13 +62,20 @@ struct Lanes {
     return fma(mul(y, e), fma(high, e, set(0.5)), y);
   }
   template <bool Divide>
+  static V inverse_root(V s) {
+    return Divide ? divided_root(s) : refined_root(s);
+  }
+  static V scale_at(V inverse_root, const Spring& spring) {
+    return fnma(spring.rest_tension, inverse_root, spring.stiffness);
+  }
+  template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
-    const V inverse = Divide ? divided_root(s) : inverse_root(s);
-    return fnma(spring.rest_tension, inverse, spring.stiffness);
+    return scale_at(inverse_root<Divide>(s), spring);
   }
 
   // Of general meshes. A table is read number by number: there is no register for eight of them.
 
+  static V where_positive(V k, V value) { return _mm256_and_pd(_mm256_cmp_pd(k, zero(), _CMP_GT_OQ), value); }
   static V scale(V s, V stiffness, V tension) {
     return fnma(tension, _mm256_div_pd(set(1), _mm256_sqrt_pd(s)), stiffness);
   }

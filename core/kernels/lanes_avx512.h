@@ -64,8 +64,23 @@ struct Lanes {
     return _mm512_mask3_fnmadd_pd(y, series, spring.stiffness, has_direction);
   }
 
+  template <bool Divide>
+  static V inverse_root(V s) {
+    const V y = _mm512_rsqrt14_pd(s);
+    const V e = fnma(mul(s, y), y, set(1));
+    const V root = fma(mul(y, e), fma(fma(set(5.0 / 16), e, set(3.0 / 8)), e, set(0.5)), y);
+    return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(e, e, _CMP_ORD_Q), root);
+  }
+
+  static V scale_at(V inverse_root, const Spring& spring) {
+    return fnma(spring.rest_tension, inverse_root, spring.stiffness);
+  }
+
   // Of general meshes.
 
+  static V where_positive(V k, V value) {
+    return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(k, zero(), _CMP_GT_OQ), value);
+  }
   static V scale(V s, V stiffness, V tension) {
     const V y = _mm512_rsqrt14_pd(s);
     const V e = fnma(mul(s, y), y, set(1));

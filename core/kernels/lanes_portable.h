@@ -2,12 +2,15 @@
 //
 // load(p, count, otherwise): lanes from `count` on come from `otherwise`, and memory behind is not touched.
 // shift_one(before, now): every lane moves one column to the right, the last one of `before` comes in first.
-// spring_scale(s, k): k - k L / sqrt(s), and k where s is 0.
+// spring_scale(s, k): k - k L / sqrt(s), and k where s is 0. inverse_root(s): 1 / sqrt(s), and 0 where s is
+// 0.
+// scale_at(inverse_root(s), k): as spring_scale.
 //
-// Of general meshes: exact_scale(s, k, kL), the same for springs that all differ; scale(s, k, kL), the
-// same in haste, which need not be a number where s is 0 or not finite. is_in_doubt(f): some lane is no
-// number. pick(table, kinds): of a table of eight numbers those of the lanes' kinds. gather(vectors, at, x,
-// y, z), put(to, x, y, z): 4-vectors x y z 0 at vectors + at[lane], or one after the other.
+// Of general meshes: where_positive(k, a): a, and 0 where k is not positive. exact_scale(s, k, kL), the same
+// for springs that all differ; scale(s, k, kL), the same in haste, which need not be a number where s is 0 or
+// not finite. is_in_doubt(f): some lane is no number. pick(table, kinds): of a table of eight numbers those
+// of the lanes' kinds. gather(vectors, at, x, y, z), put(to, x, y, z): 4-vectors x y z 0 at vectors +
+// at[lane], or one after the other.
 #pragma once
 
 namespace cloth::kernels {
@@ -51,6 +54,16 @@ struct Lanes {
     return V{scale_of(s[0], spring), scale_of(s[1], spring)};
   }
 
+  static double inverse_root_of(double s) { return s == 0 ? 0 : 1 / __builtin_sqrt(s); }
+  template <bool Divide>
+  static V inverse_root(V s) {
+    return V{inverse_root_of(s[0]), inverse_root_of(s[1])};
+  }
+  static V scale_at(V inverse_root, const Spring& spring) {
+    return fnma(set(spring.rest_tension), inverse_root, set(spring.stiffness));
+  }
+
+  static V where_positive(V k, V value) { return V{k[0] > 0 ? value[0] : 0, k[1] > 0 ? value[1] : 0}; }
   static V exact_scale(V s, V stiffness, V tension) {
     return V{scale_of(s[0], {stiffness[0], tension[0]}), scale_of(s[1], {stiffness[1], tension[1]})};
   }

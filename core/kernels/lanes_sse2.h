@@ -43,8 +43,17 @@ struct Lanes {
     return _mm_sub_pd(spring.stiffness, _mm_andnot_pd(_mm_cmpeq_pd(s, zero()), part));
   }
 
+  template <bool Divide>
+  static V inverse_root(V s) {
+    return _mm_andnot_pd(_mm_cmpeq_pd(s, zero()), _mm_div_pd(set(1), _mm_sqrt_pd(s)));
+  }
+  static V scale_at(V inverse_root, const Spring& spring) {
+    return fnma(spring.rest_tension, inverse_root, spring.stiffness);
+  }
+
   // Of general meshes.
 
+  static V where_positive(V k, V value) { return _mm_and_pd(_mm_cmpgt_pd(k, zero()), value); }
   static V scale(V s, V stiffness, V tension) {
     return _mm_sub_pd(stiffness, _mm_div_pd(tension, _mm_sqrt_pd(s)));
   }

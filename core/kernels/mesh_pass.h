@@ -55,29 +55,33 @@ struct MeshPass {
   bool kicks = false;  ///< Verlet's first half comes before loading
   double* vectors =
       nullptr;  ///< m: x y z 0 of every particle, for whole slices, and nowhere; 64-byte aligned
+  double* velocities = nullptr;  ///< m/s, as `vectors`; only where springs are damped
   FieldPointers position, velocity, force;
   const double* inverse_mass = nullptr;  ///< 1/kg; 0 where pinned
   FieldPointers load;                    ///< N, of every particle, in addition; may be null
   double weight[3] = {0, 0, 0};          ///< N, of every particle
   double damping = 0;                    ///< N s/m, viscous
+  double spring_damping = 0;             ///< N s/m, along every spring
   double mass_of_free = 1;               ///< kg
   double step = 0;                       ///< s
   bool drift_first = false;              ///< explicit Euler: the position follows the old velocity
   MeshStage stage;                       ///< of runge_kutta
   /// Sums of |v|^2 of each block: those before the step (Runge-Kutta: at the stage), then those after it.
   double* squares[2] = {nullptr, nullptr};
+  double* dampers = nullptr;  ///< W, of each block: what the dampers along the springs take
 };
 
 /// The passes of one instruction set; what they compute is in grid_pass.h.
 struct MeshKernels {
   /// Takes the positions of the particles [begin, end), whole slices, into `vectors`; after Verlet's first
-  /// half where the pass `kicks`.
+  /// half where the pass `kicks`. With damped springs their velocities too.
   void (*load)(const MeshPass& pass, int begin, int end);
   void (*euler)(const MeshPass& pass);
   void (*verlet)(const MeshPass& pass);  ///< the half after the force
   void (*verlet_between)(const MeshPass& pass);
   void (*runge_kutta)(const MeshPass& pass);  ///< one stage
   void (*evaluate)(const MeshPass& pass);
+  void (*damp)(const MeshPass& pass);
   void (*sum_squares)(const MeshPass& pass);
 };
 

@@ -62,6 +62,9 @@ CLOTHLAB_INLINE void load_block(const MeshPass& pass, int j, int count) {
                            Lanes::set(pass.damping), j, count);
   const Vector x = load_part<Edge>(row_of(pass.position), j, count);
   Lanes::put(pass.vectors + 4 * j, x.x, x.y, x.z);
+  if (!(pass.spring_damping > 0)) return;
+  const Vector v = load_part<Edge>(row_of(pass.velocity), j, count);
+  Lanes::put(pass.velocities + 4 * j, v.x, v.y, v.z);
 }
 
 void load_vectors(const MeshPass& pass, int begin, int end) {
@@ -107,49 +110,90 @@ CLOTHLAB_INLINE Vector mesh_force(const MeshPass& pass, const Springs& springs, 
   return force;
 }
 
-/// before(block), then for every slice of the block its force and `update`, then after(block).
-template <class Update, class Before, class After>
+/// The same with dampers along the springs, or these alone. Each of them is met at both its ends: half of
+/// what it takes is added to `loss`.
+template <Law law, bool Edge, class Springs>
+CLOTHLAB_INLINE Vector damped_force(const MeshPass& pass, const Springs& springs, const Particles& here,
+                                    int slice, int part, int count, V& loss) {
+  const V damping = Lanes::set(pass.spring_damping), zero = Lanes::zero();
+  Vector force{zero, zero, zero};
+  if constexpr (law == Law::damped)
+    force = initial<Edge>(row_of(pass.load), vector_of(pass.weight), slice * slice_width + part, count);
+  V both = zero;
+  const int end = pass.slots.slot_begin[slice + 1] * slice_width + part;
+  for (int at = pass.slots.slot_begin[slice] * slice_width + part; at < end; at += slice_width) {
+    Particles other;
+    const int* neighbour = pass.slots.neighbour + at;
+    Lanes::gather(pass.vectors, neighbour, other.position.x, other.position.y, other.position.z);
+    Lanes::gather(pass.velocities, neighbour, other.velocity.x, other.velocity.y, other.velocity.z);
+    const Vector d = other.position - here.position;
+    const V inverse = Lanes::inverse_root<true>(squared(d));
+    const V scale = springs.at(at, [&](V k, V kL) {
+      const V damper = damper_scale(here, other, d, inverse, Lanes::where_positive(k, damping), both);
+      return law == Law::damper ? damper : Lanes::add(Lanes::fnma(kL, inverse, k), damper);
+    });
+    force = plus(force, scale, d);
+  }
+  loss = Lanes::fma(Lanes::set(0.5), both, loss);
+  return force;
+}
+
+/// before(), then for every slice of the block its force and `update`, then after(block, what the dampers
+/// take).
+template <Law law, class Update, class Before, class After>
 void mesh_pass(const MeshPass& pass, Update& update, const Before& before, const After& after) {
   with_springs(pass.slots, [&](const auto& springs) {
     int loaded = pass.begin * block_width;
-    const ConstRow position = row_of(pass.position);
+    const ConstRow position = row_of(pass.position), velocity = row_of(pass.velocity);
+    V loss = Lanes::zero();
+    const auto at = [&]<bool Edge>(int slice, int part, int j, int count) {
+      const Vector here = load_part<Edge>(position, j, count);
+      Vector force;
+      if constexpr (law == Law::elastic)
+        force = mesh_force<Edge>(pass, springs, here, slice, part, count);
+      else
+        force = damped_force<law, Edge>(pass, springs, {here, load_part<Edge>(velocity, j, count)}, slice,
+                                        part, count, loss);
+      update.template operator()<Edge>(j, count, here, force);
+    };
     for (int block = pass.begin; block < pass.end; ++block) {
       if (pass.load_until && loaded < pass.load_until[block]) {
         load_vectors(pass, loaded, pass.load_until[block]);
         loaded = pass.load_until[block];
       }
       before();
+      loss = Lanes::zero();
       for (int slice = block * block_slices; slice < (block + 1) * block_slices; ++slice)
         for (int part = 0; part < slice_width; part += Lanes::width) {
           const int j = slice * slice_width + part, count = pass.particles - j;
           if (count <= 0) break;
-          if (count >= Lanes::width) {
-            const Vector here = load_part<false>(position, j, Lanes::width);
-            const Vector force = mesh_force<false>(pass, springs, here, slice, part, Lanes::width);
-            update.template operator()<false>(j, Lanes::width, here, force);
-          } else {
-            const Vector here = load_part<true>(position, j, count);
-            const Vector force = mesh_force<true>(pass, springs, here, slice, part, count);
-            update.template operator()<true>(j, count, here, force);
-          }
+          if (count >= Lanes::width)
+            at.template operator()<false>(slice, part, j, Lanes::width);
+          else
+            at.template operator()<true>(slice, part, j, count);
         }
-      after(block);
+      after(block, loss);
     }
   });
 }
 
-void mesh_euler(const MeshPass& pass) {
+template <Law law>
+void mesh_euler_of(const MeshPass& pass) {
   EulerUpdate update{};
   update.step = Lanes::set(pass.step), update.damping = Lanes::set(pass.damping);
   update.drift_first = pass.drift_first;
   update.position = row_of(pass.position), update.velocity = row_of(pass.velocity);
   update.inverse_mass = pass.inverse_mass;
-  mesh_pass(
+  mesh_pass<law>(
       pass, update, [&] { update.before = update.after = Lanes::zero(); },
-      [&](int block) {
+      [&](int block, V loss) {
         pass.squares[0][block] = Lanes::sum(update.before);
         pass.squares[1][block] = Lanes::sum(update.after);
+        if constexpr (law == Law::damped) pass.dampers[block] = Lanes::sum(loss);
       });
+}
+void mesh_euler(const MeshPass& pass) {
+  pass.spring_damping > 0 ? mesh_euler_of<Law::damped>(pass) : mesh_euler_of<Law::elastic>(pass);
 }
 
 void mesh_verlet(const MeshPass& pass) {
@@ -158,9 +202,9 @@ void mesh_verlet(const MeshPass& pass) {
   update.centred = Lanes::set(centring(pass.step, pass.damping, pass.mass_of_free));
   update.velocity = row_of(pass.velocity), update.force = row_of(pass.force);
   update.inverse_mass = pass.inverse_mass;
-  mesh_pass(
+  mesh_pass<Law::elastic>(
       pass, update, [&] { update.after = Lanes::zero(); },
-      [&](int block) { pass.squares[1][block] = Lanes::sum(update.after); });
+      [&](int block, V) { pass.squares[1][block] = Lanes::sum(update.after); });
 }
 
 void mesh_verlet_between(const MeshPass& pass) {
@@ -170,12 +214,13 @@ void mesh_verlet_between(const MeshPass& pass) {
   update.damping = Lanes::set(pass.damping);
   update.position = row_of(pass.position), update.velocity = row_of(pass.velocity);
   update.inverse_mass = pass.inverse_mass;
-  mesh_pass(
+  mesh_pass<Law::elastic>(
       pass, update, [&] { update.after = Lanes::zero(); },
-      [&](int block) { pass.squares[1][block] = Lanes::sum(update.after); });
+      [&](int block, V) { pass.squares[1][block] = Lanes::sum(update.after); });
 }
 
-void mesh_runge_kutta(const MeshPass& pass) {
+template <Law law>
+void mesh_runge_kutta_of(const MeshPass& pass) {
   const MeshStage& stage = pass.stage;
   StageUpdate update{};
   update.weight = Lanes::set(stage.weight), update.ahead = Lanes::set(stage.ahead);
@@ -188,18 +233,28 @@ void mesh_runge_kutta(const MeshPass& pass) {
   update.next_sum_velocity = row_of(stage.next_sum_velocity);
   update.state_position = row_of(stage.state_position), update.state_velocity = row_of(stage.state_velocity);
   update.next_position = row_of(stage.next_position), update.next_velocity = row_of(stage.next_velocity);
-  mesh_pass(
+  mesh_pass<law>(
       pass, update, [&] { update.squares = update.after = Lanes::zero(); },
-      [&](int block) {
+      [&](int block, V loss) {
         pass.squares[0][block] = Lanes::sum(update.squares);
         pass.squares[1][block] = Lanes::sum(update.after);
+        if constexpr (law == Law::damped) pass.dampers[block] = Lanes::sum(loss);
       });
+}
+void mesh_runge_kutta(const MeshPass& pass) {
+  pass.spring_damping > 0 ? mesh_runge_kutta_of<Law::damped>(pass) : mesh_runge_kutta_of<Law::elastic>(pass);
 }
 
 void mesh_evaluate(const MeshPass& pass) {
   EvaluateUpdate update{row_of(pass.force)};
-  mesh_pass(
-      pass, update, [] {}, [](int) {});
+  mesh_pass<Law::elastic>(
+      pass, update, [] {}, [](int, V) {});
+}
+
+void mesh_damp(const MeshPass& pass) {
+  DampUpdate update{row_of(pass.force)};
+  mesh_pass<Law::damper>(
+      pass, update, [] {}, [&](int block, V loss) { pass.dampers[block] = Lanes::sum(loss); });
 }
 
 void mesh_sum_squares(const MeshPass& pass) {
@@ -215,8 +270,8 @@ void mesh_sum_squares(const MeshPass& pass) {
   }
 }
 
-constexpr MeshKernels mesh_kernels{load_vectors,     mesh_euler,    mesh_verlet,     mesh_verlet_between,
-                                   mesh_runge_kutta, mesh_evaluate, mesh_sum_squares};
+constexpr MeshKernels mesh_kernels{load_vectors,     mesh_euler,    mesh_verlet, mesh_verlet_between,
+                                   mesh_runge_kutta, mesh_evaluate, mesh_damp,   mesh_sum_squares};
 
 }  // namespace
 }  // namespace cloth::kernels

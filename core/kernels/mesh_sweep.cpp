@@ -12,7 +12,7 @@ using kernels::block_width;
 using kernels::FieldPointers;
 using kernels::MeshPass;
 
-constexpr int sums = 5;
+constexpr int after = 4, dampers = 5, all_sums = 9;  // among the sums; the stages' squares come first
 
 FieldPointers pointers(Vec3Field& field) {
   return {field.x(), field.y(), field.z()};
@@ -41,7 +41,7 @@ MeshSweep::MeshSweep(const ClothSystem& system, std::optional<double> mass)
       kernels_(&mesh_kernels(active_instruction_set())),
       inverse_mass_(system.inverse_mass),
       vectors_((static_cast<std::size_t>(kernels::nobody(layout_.slices)) + 1) * 4),
-      squares_(static_cast<std::size_t>(layout_.blocks) * sums) {
+      squares_(static_cast<std::size_t>(layout_.blocks) * all_sums) {
   std::copy(std::begin(kernels::nowhere), std::end(kernels::nowhere), vectors_.end() - 4);
   number_ = inverse_of(layout_.order);
   for (std::size_t k = 0; k < layout_.order.size(); ++k)
@@ -92,6 +92,12 @@ MeshPass MeshSweep::pass_with(const SweepLoads& loads, double step) {
   if (loads.load) pass.load = pointers(take(const_cast<Vec3Field&>(*loads.load), inner_.load));  // only read
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = loads.weight[axis];
   pass.damping = loads.damping;
+  pass.spring_damping = loads.spring_damping;
+  if (loads.spring_damping > 0) {
+    velocities_.resize(vectors_.size());  // nobody is at rest
+    pass.velocities = velocities_.data();
+  }
+  pass.dampers = squares_.data() + dampers * layout_.blocks;
   pass.mass_of_free = has_common_mass() ? mass() : 1;
   pass.step = step;
   pass.squares[0] = squares_.data();
@@ -127,19 +133,20 @@ double MeshSweep::sum_of(int which) const {
   });
 }
 
-void MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+void MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                       ClothState& state) {
-  assert(has_common_mass() && (!loads.load || squares.size() == 1));
-  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+  assert(has_common_mass() && (!loads.load || sums.size() == 1));
+  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     sharing_ = threads;
     Vec3Field &position = take(state.position, inner_.position),
               &velocity = take(state.velocity, inner_.velocity);
     MeshPass pass = pass_with(loads, step);
     pass.position = pointers(position), pass.velocity = pointers(velocity);
     pass.drift_first = drift_first;
-    for (Squares& of_step : squares.subspan(first, count)) {
+    for (StepSums& of_step : sums.subspan(first, count)) {
       run(pass, kernels_->euler);
       of_step = {sum_of(0), sum_of(1)};
+      if (loads.spring_damping > 0) of_step.dampers = sum_of(dampers);
     }
     give_back(position, state.position);
     give_back(velocity, state.velocity);
@@ -155,7 +162,7 @@ double MeshSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
 /// The first step kicks and drifts while it loads, the others at the end of the step before.
 void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
-  assert(has_common_mass() && !loads.load);
+  assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
   in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
     sharing_ = threads;
     Vec3Field &position = take(state.position, inner_.position),
@@ -173,19 +180,24 @@ void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
   });
 }
 
-void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                             ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
+  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     sharing_ = threads;
     Vec3Field &position = take(state.position, inner_.position),
               &velocity = take(state.velocity, inner_.velocity);
     for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
       if (field->size() != position.size()) *field = Vec3Field(position.size());
     MeshPass pass = pass_with(loads, step);
-    for (StageSquares& of_step : squares.subspan(first, count)) {
+    for (StageSums& of_step : sums.subspan(first, count)) {
       runge_kutta_step(pass, step, pointers(position), pointers(velocity));
-      for (int sum = 0; sum < sums; ++sum) of_step[static_cast<std::size_t>(sum)] = sum_of(sum);
+      for (int stage = 0; stage < 4; ++stage) {
+        const auto s = static_cast<std::size_t>(stage);
+        of_step.squares[s] = sum_of(stage);
+        of_step.dampers[s] = loads.spring_damping > 0 ? sum_of(dampers + stage) : 0;
+      }
+      of_step.after = sum_of(after);
     }
     give_back(position, state.position);
     give_back(velocity, state.velocity);
@@ -212,7 +224,8 @@ void MeshSweep::runge_kutta_step(MeshPass& pass, double step, const FieldPointer
                   .next_position = next_x,
                   .next_velocity = next_v};
     pass.squares[0] = squares_.data() + s * layout_.blocks;
-    pass.squares[1] = squares_.data() + 4 * layout_.blocks;
+    pass.squares[1] = squares_.data() + after * layout_.blocks;
+    pass.dampers = squares_.data() + (dampers + s) * layout_.blocks;
     run(pass, kernels_->runge_kutta);
   }
 }
@@ -228,6 +241,23 @@ void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec
     run(pass, kernels_->evaluate);
     give_back(result, force);
   });
+}
+
+double MeshSweep::damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+                       Vec3Field& product) {
+  in_jobs(PassKind::dampers, 1, [&](std::size_t, std::size_t, int threads) {
+    sharing_ = threads;
+    MeshPass pass = pass_with({.spring_damping = damping}, 0);
+    pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
+    pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
+    if (!layout_.order.empty() && inner_.force.size() != product.size())
+      inner_.force = Vec3Field(product.size());
+    Vec3Field& result = layout_.order.empty() ? product : inner_.force;
+    pass.force = pointers(result);
+    run(pass, kernels_->damp);
+    give_back(result, product);
+  });
+  return sum_of(dampers);
 }
 
 double MeshSweep::squares(const Vec3Field& velocity) {

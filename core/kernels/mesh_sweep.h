@@ -18,16 +18,18 @@ class MeshSweep : public SpringSweep {
   MeshSweep(const ClothSystem& system, std::optional<double> mass);
 
   int threads() const override;
-  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+  void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
              ClothState& state) override;
   double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+  void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
   /// The state need not go into the layout's order and back for every step.
   bool gains_steps_at_once() const override { return !layout_.order.empty(); }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
+  double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+              Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
 
   const MeshLayout& layout() const { return layout_; }
@@ -55,7 +57,8 @@ class MeshSweep : public SpringSweep {
   const kernels::MeshKernels* kernels_;
   std::vector<double> inverse_mass_;
   AlignedDoubles vectors_;
-  std::vector<double> squares_;  ///< see kernels::MeshPass; five sums
+  AlignedDoubles velocities_;    ///< sized when springs are damped
+  std::vector<double> squares_;  ///< see kernels::MeshPass; five sums, and four of dampers
   Fields inner_;
   ClothState stage_, sum_;  ///< of Runge-Kutta
   int sharing_ = 1;         ///< threads of the job that is being done

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "cloth/cloth_system.h"
+#include "kernels/step_sums.h"
 #include "kernels/thread_choice.h"
 #include "kernels/worker_team.h"
 
@@ -17,11 +18,13 @@ namespace cloth {
 /// The mass of every free particle, if all particles have the same.
 std::optional<double> common_mass(const ClothSystem& system);
 
-/// What acts beside the springs: f = springs + weight + load - damping v.
+/// What acts beside the springs' elasticity: f = springs + weight + load - damping v - D v, where D are
+/// dampers along the springs: F_i = spring_damping ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0.
 struct SweepLoads {
   Vec3 weight{0, 0, 0};             ///< N, on every particle
   double damping = 0;               ///< N s/m
   const Vec3Field* load = nullptr;  ///< N, or none
+  double spring_damping = 0;        ///< N s/m
 };
 
 class SpringSweep {
@@ -38,24 +41,18 @@ class SpringSweep {
   /// How many of the team's threads a pass may use: only one where the shares would be too small.
   virtual int threads() const = 0;
 
-  /// Sums over all particles of |v|^2, in (m/s)^2: before and after the step.
-  struct Squares {
-    double before = 0, after = 0;
-  };
-  /// At the four stages, and after the step.
-  using StageSquares = std::array<double, 5>;
-  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v); as many steps as there are `squares`, each
+  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v); as many steps as there are `sums`, each
   /// to the bits of a step alone. A load only where there is one step.
-  virtual void euler(double step, bool drift_first, const SweepLoads& loads, std::span<Squares> squares,
+  virtual void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                      ClothState& state) = 0;
   /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
-  /// after. No load. The sum after the step.
+  /// after. No load, no dampers. The sum of |v|^2 after the step.
   virtual double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) = 0;
   /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between.
   virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                             ClothState& state) = 0;
-  /// Kutta's method of order four; as many steps as there are `squares`. No load.
-  virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSquares> squares,
+  /// Kutta's method of order four; as many steps as there are `sums`. No load.
+  virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                            ClothState& state) = 0;
   /// Whether several steps of euler() or runge_kutta() in one call cost less than one by one.
   virtual bool gains_steps_at_once() const = 0;
@@ -64,13 +61,17 @@ class SpringSweep {
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
   /// to = from, each thread the part that it is going to step.
   void copy(const ClothState& from, ClothState& to);
+  /// product = D v for dampers of `damping`, in N s/m, along the springs at `position`. Returns what they
+  /// take, in W.
+  virtual double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+                      Vec3Field& product) = 0;
   /// The sum of |v|^2 to the bits in which the steps report it.
   virtual double squares(const Vec3Field& velocity) = 0;
 
  protected:
   /// Each takes its own time, and so makes its own choice of threads.
-  enum class PassKind { step, several_steps, evaluation, sums, copies };
-  static constexpr std::size_t pass_kinds = 5;
+  enum class PassKind { step, several_steps, evaluation, dampers, sums, copies };
+  static constexpr std::size_t pass_kinds = 6;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
   /// With fewer particles for each thread the others need not be tried: waking them takes as long as the
   /// pass.

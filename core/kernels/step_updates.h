@@ -93,6 +93,17 @@ struct EvaluateUpdate {
   }
 };
 
+/// D v, from the force of the dampers alone.
+struct DampUpdate {
+  Row product;
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& force) {
+    const V zero = Lanes::zero();
+    store<Edge>(product, j, count, Vector{zero, zero, zero} - force);
+  }
+};
+
 /// One stage of Runge-Kutta: the sums so far move on by `weight` h, the next stage stands `ahead` h from the
 /// state along this one's slope.
 struct StageUpdate {

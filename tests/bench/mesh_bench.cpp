@@ -40,8 +40,8 @@ class MeshStep {
 
   void step() { steps(1); }
   void steps(int count) {
-    std::vector<SpringSweep::Squares> squares(static_cast<std::size_t>(count));
-    sweep_.euler(time_step, false, loads_, squares, state_);
+    std::vector<StepSums> sums(static_cast<std::size_t>(count));
+    sweep_.euler(time_step, false, loads_, sums, state_);
   }
   void evaluate() {
     if (force_.size() != state_.position.size()) force_ = Vec3Field(state_.position.size());

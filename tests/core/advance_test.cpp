@@ -66,8 +66,11 @@ TEST(ManyStepsAtOnce, AreTheSameInEveryInstructionSet) {
 }
 
 TEST(ManyStepsAtOnce, AreTheSameForAnyNumberOfThreads) {
-  for (const char* method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"}) {
-    Scene scene = hanging(method);
+  for (const std::string method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4", "damped rk4",
+                                   "damped semi-implicit-euler"}) {
+    const bool damped = method.starts_with("damped ");
+    Scene scene = hanging(damped ? method.substr(7) : method);
+    if (damped) scene.springs->damping = 0.01;
     scene.cloth.rows = 151, scene.cloth.columns = 103;
     scene.integrator.time_step = 1e-4;
     Simulation single(scene);
@@ -76,7 +79,7 @@ TEST(ManyStepsAtOnce, AreTheSameForAnyNumberOfThreads) {
       Simulation many(scene);
       many.set_threads(threads, ThreadUse::always);
       for (const int part : {9, 1, 50}) ASSERT_FALSE(many.advance(part));
-      expect_same(single, many, std::string(method) + ", " + std::to_string(threads));
+      expect_same(single, many, method + ", " + std::to_string(threads));
     }
   }
 }

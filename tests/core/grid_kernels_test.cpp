@@ -9,6 +9,7 @@
 #include "kernels/grid_sweep.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
+#include "support/reference.h"
 #include "support/scenes.h"
 #include "support/states.h"
 
@@ -96,6 +97,35 @@ TEST_P(EveryInstructionSet, HasNoRootOfLessThanFullPrecision) {
       ASSERT_LE(std::abs((result[i] - exact) / exact), 2 * DBL_EPSILON) << squares[i];
     }
   }
+  for (const auto inverse_roots : grid_kernels(GetParam()).inverse_roots) {
+    inverse_roots(squares.data(), result.data(), static_cast<int>(squares.size()));
+    EXPECT_EQ(result[0], 0);
+    for (std::size_t i = 1; i < squares.size(); ++i) {
+      const long double exact = 1 / std::sqrt(static_cast<long double>(squares[i]));
+      ASSERT_LE(std::abs((result[i] - exact) / exact), 2 * DBL_EPSILON) << squares[i];
+    }
+  }
+}
+
+TEST_P(EveryInstructionSet, GivesTheDampersOfSpringsTakenOneByOne) {
+  Random random;
+  constexpr double damping = 0.7;
+  for (const auto& [rows, columns] : odd_sizes)
+    for (int families = 1; families < 8; ++families) {
+      const Scene scene = sheet_of(rows, columns, families);
+      const ClothSystem system = make_grid(scene.cloth, *scene.springs);
+      if (system.springs.empty()) continue;
+      ClothState state = crumpled_state(system, 0.04, 0.3, random);
+      state.position.set(1, state.position[0]);  // a spring of no length
+      Vec3Field product(state.position.size()), expected;
+      GridSweep sweep(system, *recognise_grid(system), common_mass(system));
+      const double loss = sweep.damp(damping, state.position, state.velocity, product);
+      const double expected_loss = damper_product(system, damping, state, expected);
+      const std::string what =
+          std::to_string(rows) + " x " + std::to_string(columns) + ", families " + std::to_string(families);
+      EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected)) << what;
+      EXPECT_NEAR(loss, expected_loss, 1e-13 * expected_loss) << what;
+    }
 }
 
 TEST_P(EveryInstructionSet, LetsNothingNotFiniteReachWhereNoSpringLeads) {
@@ -122,8 +152,9 @@ TEST_P(EveryInstructionSet, StepsAsTheGeneralWayDoes) {
   Random random;
   for (const char* method : fused_methods)
     for (const auto& [rows, columns] : odd_sizes)
-      for (int families = 1; families < 8; ++families) {
-        const Scene scene = sheet_of(rows, columns, families);
+      for (int families = 1; families < 16; ++families) {
+        Scene scene = sheet_of(rows, columns, families % 8);
+        if (families > 8) scene.springs->damping = 0.02;
         DirectRun whole(scene, method);
         if (whole.system.springs.empty()) continue;
 
@@ -145,11 +176,14 @@ TEST_P(EveryInstructionSet, StepsAsTheGeneralWayDoes) {
 
 TEST_P(EveryInstructionSet, GivesTheSameBitsForAnyNumberOfThreads) {
   for (const char* method : fused_methods)
-    for (const bool air : {false, true}) {
+    for (const char* feature : {"", "air", "spring damping", "both"}) {
+      const std::string with = feature;
       Scene scene = sheet_of(151, 103, 7);
       scene.integrator.method = method;
       scene.integrator.time_step = 2e-4;
-      if (air) scene.air = Air{.drag = 0.002, .wind = {0, 0, 2}, .gust = std::nullopt};
+      if (with == "spring damping" || with == "both") scene.springs->damping = 0.01;
+      if (with == "air" || with == "both")
+        scene.air = Air{.drag = 0.002, .wind = {0, 0, 2}, .gust = std::nullopt};
       Simulation alone(scene);
       const auto advance = [](Simulation& simulation) {
         for (int k = 0; k < 12; ++k) ASSERT_FALSE(simulation.step());
@@ -160,7 +194,7 @@ TEST_P(EveryInstructionSet, GivesTheSameBitsForAnyNumberOfThreads) {
         shared.set_threads(threads, ThreadUse::always);
         ASSERT_EQ(shared.threads(), threads);
         advance(shared);
-        EXPECT_EQ(alone.state(), shared.state()) << method << ", " << threads;
+        EXPECT_EQ(alone.state(), shared.state()) << method << ", " << with << ", " << threads;
         EXPECT_EQ(alone.measure().ledger.forces.damping_loss, shared.measure().ledger.forces.damping_loss);
       }
     }

@@ -224,9 +224,9 @@ TEST(MeshLayout, KeepsTheOrderOfAWellNumberedMesh) {
 
 const char* const fused_methods[] = {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"};
 
-Scene beside_springs(double damping) {
+Scene beside_springs(double damping, double spring_damping = 0) {
   Scene scene = bare_sheet(4, 4);
-  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = 0};
+  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = spring_damping};
   scene.gravity = Vec3(0.3, -9.81, 0.1);
   if (damping > 0) scene.damping = damping;
   return scene;
@@ -242,18 +242,19 @@ void unlike_masses(DirectRun& run) {
 TEST_P(MeshSprings, StepAsTheGeneralWayDoes) {
   Random random;
   for (const char* method : fused_methods)
-    for (const ClothSystem& system : some_meshes(random)) {
-      const Scene scene = beside_springs(1e-3);
-      DirectRun whole(system, scene, exactly(method)), parts(system, scene, exactly(method));
-      unlike_masses(parts);
-      whole.state = parts.state = crumpled_state(system, 0.001, 0.1, random);
-      whole.advance(10, 2e-4);
-      parts.advance(10, 2e-4);
-      EXPECT_LE(largest_distance(whole.state.position, parts.state.position), 1e-13) << method;
-      EXPECT_LE(largest_distance(whole.state.velocity, parts.state.velocity), 1e-10) << method;
-      EXPECT_NEAR(whole.work.damping_loss, parts.work.damping_loss, 1e-11 * parts.work.damping_loss)
-          << method;
-    }
+    for (const double spring_damping : {0.0, 2e-4})
+      for (const ClothSystem& system : some_meshes(random)) {
+        const Scene scene = beside_springs(1e-3, spring_damping);
+        DirectRun whole(system, scene, exactly(method)), parts(system, scene, exactly(method));
+        unlike_masses(parts);
+        whole.state = parts.state = crumpled_state(system, 0.001, 0.1, random);
+        whole.advance(10, 2e-4);
+        parts.advance(10, 2e-4);
+        EXPECT_LE(largest_distance(whole.state.position, parts.state.position), 1e-13) << method;
+        EXPECT_LE(largest_distance(whole.state.velocity, parts.state.velocity), 1e-10) << method;
+        EXPECT_NEAR(whole.work.damping_loss, parts.work.damping_loss, 1e-11 * parts.work.damping_loss)
+            << method;
+      }
 }
 
 TEST_P(MeshSprings, StepToTheSameBitsOnAnyNumberOfThreads) {
@@ -261,28 +262,46 @@ TEST_P(MeshSprings, StepToTheSameBitsOnAnyNumberOfThreads) {
   for (const bool numbered : {false, true}) {
     ClothSystem system = irregular_triangulation(71, 80, 80, true, random);
     if (numbered) system = renumbered(system, order_for_sweeps(system));
-    for (const char* method : fused_methods) {
-      const Scene scene = beside_springs(1e-3);
-      DirectRun alone(system, scene, exactly(method));
-      alone.advance(5, 1e-4);
-      for (const int threads : {2, 3}) {
-        WorkerTeam team(threads);
-        DirectRun shared(system, scene, exactly(method));
-        shared.forces.set_team(&team, ThreadUse::always);
-        shared.advance(5, 1e-4);
-        EXPECT_EQ(shared.state, alone.state) << method << ", " << threads;
-        EXPECT_EQ(shared.work.damping_loss, alone.work.damping_loss) << method;
+    for (const char* method : fused_methods)
+      for (const double spring_damping : {0.0, 2e-4}) {
+        const Scene scene = beside_springs(1e-3, spring_damping);
+        DirectRun alone(system, scene, exactly(method));
+        alone.advance(5, 1e-4);
+        for (const int threads : {2, 3}) {
+          WorkerTeam team(threads);
+          DirectRun shared(system, scene, exactly(method));
+          shared.forces.set_team(&team, ThreadUse::always);
+          shared.advance(5, 1e-4);
+          EXPECT_EQ(shared.state, alone.state) << method << ", " << threads;
+          EXPECT_EQ(shared.work.damping_loss, alone.work.damping_loss) << method;
+        }
       }
-    }
+  }
+}
+
+TEST_P(MeshSprings, HaveDampersThatAreTheSumOverTheSprings) {
+  Random random;
+  constexpr double damping = 0.7;
+  for (const ClothSystem& system : some_meshes(random)) {
+    ClothState state = crumpled_state(system, 0.02, 0.3, random);
+    const SpringRun& short_one = system.springs.front();  // of no length
+    state.position.set(static_cast<std::size_t>(short_one.first + short_one.offset),
+                       state.position[static_cast<std::size_t>(short_one.first)]);
+    Vec3Field product(state.position.size()), expected;
+    MeshSweep sweep(system, common_mass(system));
+    const double loss = sweep.damp(damping, state.position, state.velocity, product);
+    const double expected_loss = damper_product(system, damping, state, expected);
+    EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected));
+    EXPECT_NEAR(loss, expected_loss, 1e-13 * expected_loss);
   }
 }
 
 TEST_P(MeshSprings, ManyStepsAtOnceAreTheStepsOneByOneToTheBit) {
   Random random;
   const ClothSystem system = irregular_triangulation(30, 31, 80, true, random);
-  for (const char* method : {"explicit-euler", "semi-implicit-euler", "verlet"})
+  for (const std::string method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"})
     for (const double damping : {0.0, 1e-3}) {
-      const Scene scene = beside_springs(damping);
+      const Scene scene = beside_springs(damping, method == "verlet" ? 0 : damping / 5);
       DirectRun single(system, scene, exactly(method)), many(system, scene, exactly(method));
       constexpr double step = 1e-4;
       single.advance(1, step), many.advance(1, step);

@@ -74,6 +74,26 @@ double spring_energy(const std::vector<SpringPair>& springs, const Vec3Field& po
   return energy;
 }
 
+double damper_product(const ClothSystem& system, double damping, const ClothState& state,
+                      Vec3Field& product) {
+  using Long3 = Eigen::Matrix<long double, 3, 1>;
+  std::vector<Long3> sums(state.position.size(), Long3::Zero());
+  long double loss = 0;
+  for (const SpringPair& spring : springs_of(system)) {
+    const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
+    const Long3 d = state.position[j].cast<long double>() - state.position[i].cast<long double>();
+    const Long3 u = state.velocity[j].cast<long double>() - state.velocity[i].cast<long double>();
+    if (!(d.norm() > 0)) continue;
+    const long double opening = u.dot(d) / d.norm();
+    const Long3 on_i = damping * opening / d.norm() * d;
+    sums[i] -= on_i, sums[j] += on_i;
+    loss += damping * opening * opening;
+  }
+  product = Vec3Field(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) product.set(i, sums[i].cast<double>());
+  return static_cast<double>(loss);
+}
+
 Eigen::MatrixXd spring_hessian(const ClothSystem& system, const Vec3Field& position) {
   const auto size = 3 * static_cast<Eigen::Index>(system.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);

@@ -27,6 +27,10 @@ std::vector<SpringPair> springs_of(const ClothSystem& system);
 Vec3Field spring_forces(const std::vector<SpringPair>& springs, const Vec3Field& position);
 double spring_energy(const std::vector<SpringPair>& springs, const Vec3Field& position);
 
+/// D v in N of dampers of `damping` along the springs, pair by pair in long double. Returns what they take,
+/// in W.
+double damper_product(const ClothSystem& system, double damping, const ClothState& state, Vec3Field& product);
+
 /// d2E/dx2 of the springs; particle i's component a is row 3 i + a.
 Eigen::MatrixXd spring_hessian(const ClothSystem& system, const Vec3Field& position);
 

@@ -33,6 +33,9 @@ TEST_P(EveryScene, RunsToItsEndAtTheAutomaticStepOrIsToldThatThereIsNone) {
   constexpr double newton_duration = 0.3;
   if (facts_of(method).settings == MethodSettings::newton)
     scene.duration = std::min(scene.duration, newton_duration);
+  // Explicit Euler is held stable by steps so short that the first tenth of a second is most of what it can tell.
+  constexpr double most_steps = 50'000;
+  scene.duration = std::min(scene.duration, most_steps * *resolved_time_step(scene));
   // Scenes of continuous contact are run on elsewhere, with the checker of crossings.
   constexpr double steps_of_contact = 300, seconds_of_contact = 0.1;
   if (has_continuous_contact(scene))

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double nanoseconds = 1e9;
 const char* const kernel_feature = "damping";  // the reference kernel is that of a damped cloth
+const char* const damped_springs_feature = "spring-damping";
 
 struct Variant {
   Wanted wanted;
@@ -159,8 +160,9 @@ int threads_used(Engine& engine, [[maybe_unused]] int threads) {
 Subject subject_of(Variant& variant, double scale) {
   constexpr int steps_between_rows = 16;
   const bool shared = variant.wanted.threads > 1;
-  const bool in_one_pass =
-      variant.wanted.feature == bare_feature().name || variant.wanted.feature == kernel_feature;
+  const bool in_one_pass = variant.wanted.feature == bare_feature().name ||
+                           variant.wanted.feature == kernel_feature ||
+                           variant.wanted.feature == damped_springs_feature;
   return {.name = title_of(variant.wanted),
           .scale = scale,
           .run = [&variant](int steps) { return advance(variant, steps); },

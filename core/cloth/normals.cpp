@@ -1,29 +1,82 @@
 #include "cloth/normals.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace cloth {
 namespace {
 
-struct Triple {
-  double x, y, z;
-};
-
-Triple between(const double* x, const double* y, const double* z, int from, int to) {
-  return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
-}
-
-Triple cross(const Triple& u, const Triple& v) {
-  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-}
-
-void normalise(Vec3Field& normal) {
-  double *nx = normal.x(), *ny = normal.y(), *nz = normal.z();
-  for (std::size_t i = 0; i < normal.size(); ++i) {
+void normalise(double* nx, double* ny, double* nz, int count) {
+  for (int i = 0; i < count; ++i) {
     const double length = std::sqrt(nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i]);
     const double scale = length > 0 ? 1 / length : 0;
     nx[i] *= scale, ny[i] *= scale, nz[i] *= scale;
+  }
+}
+
+/// So many columns of a grid at a time: what lies between two rows of them stays in the first cache.
+constexpr int strip_width = 128;
+
+/// The cross products of one row of cells: [k] is that of the cell whose left edge is column first - 1 + k, 0
+/// where there is none. A cell's corners are a b above and d c below; its two triangles share a c.
+struct CellRow {
+  static constexpr int most = strip_width + 1;
+  std::array<double, most> lower_x, lower_y, lower_z;  ///< (d - a) x (c - a)
+  std::array<double, most> upper_x, upper_y, upper_z;  ///< (c - a) x (b - a)
+
+  void clear() {
+    for (auto* of : {&lower_x, &lower_y, &lower_z, &upper_x, &upper_y, &upper_z}) of->fill(0);
+  }
+
+  /// Of the cells below `row` with left edges in the columns [begin, end).
+  void compute(int columns, int row, int first, int begin, int end, const Vec3Field& position) {
+    const int at = row * columns + begin, to = begin - (first - 1);
+    const double *xa = position.x() + at, *ya = position.y() + at, *za = position.z() + at;
+    const double *xd = xa + columns, *yd = ya + columns, *zd = za + columns;
+    double *lx = lower_x.data() + to, *ly = lower_y.data() + to, *lz = lower_z.data() + to;
+    double *ux = upper_x.data() + to, *uy = upper_y.data() + to, *uz = upper_z.data() + to;
+#pragma GCC ivdep  // the cells are nobody's positions
+    for (int k = 0; k < end - begin; ++k) {
+      const double cx = xd[k + 1] - xa[k], cy = yd[k + 1] - ya[k], cz = zd[k + 1] - za[k];  // c - a
+      const double dx = xd[k] - xa[k], dy = yd[k] - ya[k], dz = zd[k] - za[k];
+      const double bx = xa[k + 1] - xa[k], by = ya[k + 1] - ya[k], bz = za[k + 1] - za[k];
+      lx[k] = dy * cz - dz * cy, ly[k] = dz * cx - dx * cz, lz[k] = dx * cy - dy * cx;
+      ux[k] = cy * bz - cz * by, uy[k] = cz * bx - cx * bz, uz[k] = cx * by - cy * bx;
+    }
+  }
+};
+
+/// One component of a row's sums: of a particle's cells above it and below it, left and right.
+void add_cells(const double* lower_above, const double* upper_above, const double* lower_below,
+               const double* upper_below, int count, double* sum) {
+  for (int k = 0; k < count; ++k)
+    sum[k] = lower_above[k] + upper_above[k] + lower_above[k + 1] + upper_below[k] +
+             (lower_below[k + 1] + upper_below[k + 1]);
+}
+
+/// The normals of the columns [first, last).
+void strip_normals(int rows, int columns, int first, int last, const Vec3Field& position, Vec3Field& normal) {
+  const int begin = std::max(0, first - 1), end = std::min(last, columns - 1);  // left edges of its cells
+  std::array<CellRow, 2> cells;
+  for (CellRow& of_row : cells) of_row.clear();
+  for (int row = 0; row < rows; ++row) {
+    const CellRow& above = cells[static_cast<std::size_t>((row + 1) % 2)];
+    CellRow& below = cells[static_cast<std::size_t>(row % 2)];
+    if (row + 1 < rows)
+      below.compute(columns, row, first, begin, end, position);
+    else
+      below.clear();
+    const int count = last - first, at = row * columns + first;
+    double *nx = normal.x() + at, *ny = normal.y() + at, *nz = normal.z() + at;
+    const auto add = [&](const auto& lower, const auto& upper, double* sum) {
+      add_cells((above.*lower).data(), (above.*upper).data(), (below.*lower).data(), (below.*upper).data(),
+                count, sum);
+    };
+    add(&CellRow::lower_x, &CellRow::upper_x, nx);
+    add(&CellRow::lower_y, &CellRow::upper_y, ny);
+    add(&CellRow::lower_z, &CellRow::upper_z, nz);
+    normalise(nx, ny, nz, count);
   }
 }
 
@@ -49,22 +102,8 @@ void add_to_corners(const Triangle& t, const Vec3& vector, Vec3Field& to) {
 }  // namespace
 
 void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal) {
-  const double *x = position.x(), *y = position.y(), *z = position.z();
-  double *nx = normal.x(), *ny = normal.y(), *nz = normal.z();
-  normal.fill(0);
-  const auto add = [&](int i, const Triple& n) { nx[i] += n.x, ny[i] += n.y, nz[i] += n.z; };
-
-  for (int row = 0; row + 1 < rows; ++row) {
-    for (int column = 0; column + 1 < columns; ++column) {
-      const int a = row * columns + column, b = a + 1, d = a + columns, c = d + 1;
-      const Triple to_c = between(x, y, z, a, c);
-      const Triple lower = cross(between(x, y, z, a, d), to_c);
-      const Triple upper = cross(to_c, between(x, y, z, a, b));
-      const Triple both{lower.x + upper.x, lower.y + upper.y, lower.z + upper.z};
-      add(a, both), add(b, upper), add(c, both), add(d, lower);
-    }
-  }
-  normalise(normal);
+  for (int first = 0; first < columns; first += strip_width)
+    strip_normals(rows, columns, first, std::min(first + strip_width, columns), position, normal);
 }
 
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
@@ -102,7 +141,7 @@ void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3
     const auto [u, v] = sides_of(t, position);
     add_to_corners(t, u.cross(v), normal);
   }
-  normalise(normal);
+  normalise(normal.x(), normal.y(), normal.z(), static_cast<int>(normal.size()));
 }
 
 void particle_normal_changes(const ClothSystem& system, const Vec3Field& position, const Vec3Field& direction,

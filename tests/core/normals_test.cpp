@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "cloth/mesh_cloth.h"
 #include "support/random.h"
 #include "support/scenes.h"
 #include "support/states.h"
@@ -24,6 +25,26 @@ TEST(Normals, OfAFlatSheetPointDownCrossAcross) {
   const Vec3 front = scene.cloth.down.cross(scene.cloth.across);  // model.md
   const Vec3Field normal = normals_of(4, 5, system.start);
   for (std::size_t i = 0; i < normal.size(); ++i) EXPECT_LE((normal[i] - front).norm(), 1e-15) << i;
+}
+
+/// Of every size around those at which the way of computing them changes: the cross products of the triangles
+/// at each particle, added up one by one.
+TEST(Normals, AreTheSumsOverTheTrianglesAtEveryParticle) {
+  Random random;
+  for (const auto& [rows, columns] :
+       {std::pair{2, 2}, {3, 2}, {2, 127}, {3, 128}, {5, 129}, {4, 130}, {3, 257}}) {
+    const ClothSystem system = make_grid(lying_sheet(rows, columns).cloth, {});
+    const Vec3Field position = crumpled_state(system, 0.02, 0, random).position;
+    Vec3Field expected(position.size());
+    for (const Triangle& t : triangles_of(system)) {
+      const auto corner = [&](int k) { return static_cast<std::size_t>(t[static_cast<std::size_t>(k)]); };
+      const Vec3 u = position[corner(1)] - position[corner(0)], v = position[corner(2)] - position[corner(0)];
+      for (int k = 0; k < 3; ++k) expected.add(corner(k), u.cross(v));
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) expected.set(i, expected[i].normalized());
+    EXPECT_LE(largest_distance(normals_of(rows, columns, position), expected), 1e-14)
+        << rows << " x " << columns;
+  }
 }
 
 TEST(Normals, AlongAFoldHalveTheAngle) {

@@ -43,10 +43,7 @@ void add_inertia(const ClothSystem& system, double weight, const Vec3Field& in, 
     const double *m = system.mass.data(), *inverse = system.inverse_mass.data(),
                  *v = in.flat().data() + first;
     double* out = result.flat().data() + first;
-    for (std::size_t i = 0; i < size; ++i) {
-      const double free = inverse[i] == 0 ? 0.0 : 1.0;
-      out[i] = free * (m[i] * v[i] + weight * out[i]);
-    }
+    for (std::size_t i = 0; i < size; ++i) out[i] = inverse[i] == 0 ? 0.0 : m[i] * v[i] + weight * out[i];
   });
 }
 

@@ -183,12 +183,12 @@ void GridSweep::publish(const Plan& plan, std::size_t index, std::size_t pass) {
 /// that nobody needs any more what lies where the band will leave its own edges next.
 void GridSweep::await_neighbours(const Plan& plan, std::size_t index, std::size_t pass) {
   Band& band = bands_[index];
-  const Band* above = index > 0 ? &bands_[index - 1] : nullptr;
-  const Band* below = index + 1 < bands_.size() ? &bands_[index + 1] : nullptr;
+  Band* above = index > 0 ? &bands_[index - 1] : nullptr;
+  Band* below = index + 1 < bands_.size() ? &bands_[index + 1] : nullptr;
   for (const Band* other : {above, below})
     if (other) other->published.await(static_cast<int>(pass) + 1);
-  const auto edge = [&](const Band& of, std::size_t at, int first, int rows) {
-    return copied_rows(const_cast<double*>(of.edges[pass % 2].data()) + at, first, rows, grid_.columns);
+  const auto edge = [&](Band& of, std::size_t at, int first, int rows) {
+    return copied_rows(of.edges[pass % 2].data() + at, first, rows, grid_.columns);
   };
   std::size_t upper = 0;  // where a field's upper edge begins; its lower one follows
   for (const Attached& attached : plan.fields) {

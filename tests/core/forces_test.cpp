@@ -4,8 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "cloth/grid.h"
 #include "forces/air.h"
+#include "forces/springs.h"
 #include "support/direct_run.h"
+#include "support/reference.h"
 #include "support/scenes.h"
 #include "support/states.h"
 
@@ -31,6 +34,28 @@ Scene two_by_two(const SpringMaterial& material) {
   Scene scene = bare_sheet(2, 2, spacing);
   scene.springs = material;
   return scene;
+}
+
+/// As the forces take them where no kernel knows the springs.
+TEST(SpringDamping, ByRunsIsTheSumOverTheSprings) {
+  Random random;
+  for (const auto& [rows, columns] : {std::pair{2, 3}, {9, 21}, {5, 300}}) {
+    Scene scene = bare_sheet(rows, columns);
+    scene.springs = SpringMaterial{.structural = 70, .shear = 40, .flexion = 15, .damping = 0};
+    const ClothSystem system = make_grid(scene.cloth, *scene.springs);
+    ClothState state = crumpled_state(system, 0.04, 0.3, random);
+    state.position.set(1, state.position[0]);  // a spring of no length
+    SpringDamping damping(0.7);
+    Vec3Field product(state.position.size()), none(state.position.size()), expected;
+    damping.update(system, state.position, 0, none);
+    damping.add_damping(state.velocity, product);
+    Work power;
+    damping.add_power(state.velocity, power);
+    const double loss = damper_product(system, 0.7, state, expected);
+    EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected));
+    EXPECT_NEAR(power.damping_loss, loss, 1e-13 * loss);
+    EXPECT_EQ(largest_norm(none), 0);
+  }
 }
 
 TEST(SpringForce, PullsBackInProportionToItsElongation) {

@@ -107,6 +107,14 @@ void band_pass(const Pass& pass, Update& update, const Before& before, const Aft
   }
 }
 
+/// Lets an update that moves the particles stand at one of the band's own rows.
+template <class Update>
+void stand_at(const Pass& pass, int row, Update& update) {
+  update.position = row_of(pass, pass.position, row);
+  update.velocity = row_of(pass, pass.velocity, row);
+  update.inverse_mass = inverse_masses(pass, row);
+}
+
 template <Law law>
 void euler_rows(const Pass& pass) {
   EulerUpdate update{};
@@ -116,9 +124,7 @@ void euler_rows(const Pass& pass) {
       pass, update,
       [&](int row, bool own) {
         if (!own) return;
-        update.position = row_of(pass, pass.position, row);
-        update.velocity = row_of(pass, pass.velocity, row);
-        update.inverse_mass = inverse_masses(pass, row);
+        stand_at(pass, row, update);
         update.before = update.after = Lanes::zero();
       },
       [&](int row, V loss) {
@@ -187,9 +193,7 @@ void verlet_between_band(const Pass& pass) {
       pass, update,
       [&](int row, bool own) {
         if (!own) return;
-        update.position = row_of(pass, pass.position, row);
-        update.velocity = row_of(pass, pass.velocity, row);
-        update.inverse_mass = inverse_masses(pass, row);
+        stand_at(pass, row, update);
         update.after = Lanes::zero();
       },
       [&](int row, V) { store_sum(pass, squares_after, row, update.after); });

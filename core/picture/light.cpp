@@ -34,7 +34,7 @@ bool on_band(float at, float bands) {
   return place - std::floor(place) < 0.5F;
 }
 
-Colour woven_colour(const Surface& surface, const SurfacePoint& point) {
+Colour woven_colour(const PictureSurface& surface, const SeenPoint& point) {
   const Colour& ground = point.front ? surface.front : surface.back;
   if (surface.weave == Weave::plain) return ground;
   float share = on_band(point.u, surface.bands.x()) ? 0.5F : 0.0F;
@@ -72,7 +72,7 @@ Light::Light(const EyeFrame& frame) : eye_(frame.eye.cast<float>()) {
 
 // wrap softens the terminator as cloth does; through: share of the key light that a thin sheet lets shine
 // through from behind; gloss: Blinn-Phong's specular strength, at an exponent of 16.
-Colour Light::lit(const Colour& albedo, const SurfacePoint& point, float wrap, float through,
+Colour Light::lit(const Colour& albedo, const SeenPoint& point, float wrap, float through,
                   float gloss) const {
   const Eigen::Vector3f& n = point.normal;
   const Eigen::Vector3f to_eye = (eye_ - point.position).normalized();
@@ -93,7 +93,7 @@ Colour Light::lit(const Colour& albedo, const SurfacePoint& point, float wrap, f
   return (exposure * (albedo.cwiseProduct(light) + highlight * key_colour)).unaryExpr(&soft_clip);
 }
 
-Colour Light::shade(const Surface& surface, const SurfacePoint& point) const {
+Colour Light::shade(const PictureSurface& surface, const SeenPoint& point) const {
   switch (surface.look) {
     case Look::flat:
       break;

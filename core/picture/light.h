@@ -24,7 +24,7 @@ enum class Look {
 
 enum class Weave { plain, checks, stripes };
 
-struct Surface {
+struct PictureSurface {
   Look look = Look::matte;
   Colour front = Colour::Constant(0.5F), back = Colour::Constant(0.5F);
   Colour front_thread = front, back_thread = back;  ///< of the pattern's bands
@@ -34,7 +34,7 @@ struct Surface {
 };
 
 /// What is known of a surface where it is seen.
-struct SurfacePoint {
+struct SeenPoint {
   Eigen::Vector3f position;  ///< m
   Eigen::Vector3f normal;    ///< unit vector on the viewer's side
   float u = 0, v = 0;        ///< 0 to 1 over the cloth
@@ -51,12 +51,12 @@ class Light {
   void set_key_shadow(const KeyShadow* shadow) { hidden_ = shadow; }
   Vec3 key_direction() const { return key_.cast<double>(); }  ///< unit vector, towards the light
 
-  Colour shade(const Surface& surface, const SurfacePoint& point) const;
+  Colour shade(const PictureSurface& surface, const SeenPoint& point) const;
   /// Towards the light that casts shadows on the floor: the key light, raised.
   Vec3 shadow_direction() const { return shadow_; }
 
  private:
-  Colour lit(const Colour& albedo, const SurfacePoint& point, float wrap, float through, float gloss) const;
+  Colour lit(const Colour& albedo, const SeenPoint& point, float wrap, float through, float gloss) const;
 
   Eigen::Vector3f eye_, key_, fill_;
   Vec3 shadow_;

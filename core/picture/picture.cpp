@@ -90,7 +90,7 @@ void Painter::add_obstacles() {
   // Cloth rests on the obstacles' surface with its particles, and its flat cells cut below. So that they stay
   // seen, bodies are drawn a little farther away and smaller: a ball by the height of the arc over a cell's
   // diagonal, a box by what a cell across its edge cuts off, its edges rounded.
-  Surface surface;
+  PictureSurface surface;
   surface.look = Look::matte;
   surface.front = surface.back = linear_light(body);
   surface.nearer = -0.004F;
@@ -117,7 +117,7 @@ void Painter::add_obstacles() {
 }
 
 void Painter::add_cloth() {
-  Surface surface;
+  PictureSurface surface;
   surface.look = options_.colouring == ClothColouring::strain ? Look::strain : Look::woven;
   const bool plain = options_.wireframe || options_.pattern == ClothPattern::none;
   surface.weave = plain                                       ? Weave::plain
@@ -140,7 +140,7 @@ void Painter::add_springs() {
   const double cell = cell_pixels();
   for (const SpringRun& run : system_.springs) {
     if (!options_.springs_shown[static_cast<std::size_t>(run.family)]) continue;
-    Surface thread;
+    PictureSurface thread;
     thread.look = Look::flat;
     thread.front = linear_light(spring_colour(run.family));
     thread.nearer = run.family == SpringFamily::structural ? 0.005F : 0.004F;
@@ -174,7 +174,7 @@ void Painter::add_spring(const SpringRun& run, int particle, double width, int s
 }
 
 void Painter::add_pins() {
-  Surface marker;
+  PictureSurface marker;
   marker.look = Look::flat;
   marker.front = linear_light(accent);
   marker.back = linear_light(white);
@@ -197,7 +197,7 @@ void Painter::add_pins() {
 void Painter::add_arrows() {
   const double scale = std::max(1.0, height_ / 480.0);
   for (const PictureArrow& arrow : options_.arrows) {
-    Surface surface;
+    PictureSurface surface;
     surface.look = Look::flat;
     surface.nearer = 0.999F;  // over everything
     surface.front = linear_light(arrow.colour);

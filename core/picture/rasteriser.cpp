@@ -42,7 +42,7 @@ double middle_of(int sample) {
 
 }  // namespace
 
-int Rasteriser::add_surface(const Surface& surface) {
+int Rasteriser::add_surface(const PictureSurface& surface) {
   surfaces_.push_back(surface);
   return static_cast<int>(surfaces_.size()) - 1;
 }
@@ -161,7 +161,7 @@ void Rasteriser::draw_triangle(const Triangle& triangle, SampleBand& band) const
                    std::max({a.pixel.x(), b.pixel.x(), c.pixel.x()}), 0, band.sample_width());
   const auto [first_y, last_y] =
       sample_range(triangle.top, triangle.bottom, band.first_row * n, band.last_row * n);
-  const Surface& surface = surfaces_[static_cast<std::size_t>(triangle.surface)];
+  const PictureSurface& surface = surfaces_[static_cast<std::size_t>(triangle.surface)];
   const double step_b = (c.pixel.y() - a.pixel.y()) / area, step_c = -(b.pixel.y() - a.pixel.y()) / area;
   for (int y = first_y; y < last_y; ++y) {
     const Pixel row(-a.pixel.x(), middle_of(y) - a.pixel.y());
@@ -182,7 +182,7 @@ void Rasteriser::draw_triangle(const Triangle& triangle, SampleBand& band) const
       }
       const auto s = static_cast<float>(near_b / nearness), t = static_cast<float>(near_c / nearness);
       const float r = 1 - s - t;
-      SurfacePoint point;
+      SeenPoint point;
       point.position = r * a.seen.position + s * b.seen.position + t * c.seen.position;
       point.normal = (r * a.seen.normal + s * b.seen.normal + t * c.seen.normal).normalized();
       point.u = r * a.seen.u + s * b.seen.u + t * c.seen.u;
@@ -200,7 +200,7 @@ void Rasteriser::draw_disc(const Disc& disc, SampleBand& band) const {
       sample_range(disc.pixel.x() - disc.radius, disc.pixel.x() + disc.radius, 0, band.sample_width());
   const auto [first_y, last_y] = sample_range(disc.pixel.y() - disc.radius, disc.pixel.y() + disc.radius,
                                               band.first_row * n, band.last_row * n);
-  const Surface& surface = surfaces_[static_cast<std::size_t>(disc.surface)];
+  const PictureSurface& surface = surfaces_[static_cast<std::size_t>(disc.surface)];
   for (int y = first_y; y < last_y; ++y) {
     for (int x = first_x; x < last_x; ++x) {
       const double r = (Pixel(middle_of(x), middle_of(y)) - disc.pixel).norm() / disc.radius;

@@ -36,7 +36,7 @@ class Rasteriser {
   Rasteriser(const EyeFrame& frame, const Light& light, int width, int height)
       : frame_(frame), light_(light), width_(width), height_(height) {}
 
-  int add_surface(const Surface& surface);
+  int add_surface(const PictureSurface& surface);
   /// Triples of indices into `vertices`; counter-clockwise seen from the front. What is not finite is left
   /// out.
   void add_mesh(std::span<const PictureVertex> vertices, std::span<const int> triangles, int surface);
@@ -55,7 +55,7 @@ class Rasteriser {
   struct Corner {
     Eigen::Vector2d pixel;
     double nearness;
-    SurfacePoint seen;
+    SeenPoint seen;
   };
   struct Triangle {
     std::array<Corner, 3> corner;
@@ -78,7 +78,7 @@ class Rasteriser {
   EyeFrame frame_;
   const Light& light_;
   int width_, height_;
-  std::vector<Surface> surfaces_;
+  std::vector<PictureSurface> surfaces_;
   std::vector<Triangle> triangles_;
   std::vector<Disc> discs_;
 };

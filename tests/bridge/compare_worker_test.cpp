@@ -11,7 +11,7 @@
 #include "io/csv.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test {
+namespace clothlab::test::compare_worker_test {
 namespace {
 
 namespace command = compare_command;
@@ -295,4 +295,4 @@ TEST(CompareWorker, EndsWithinAStepHoweverLongTheIntervalIs) {
 }
 
 }  // namespace
-}  // namespace clothlab::test
+}  // namespace clothlab::test::compare_worker_test

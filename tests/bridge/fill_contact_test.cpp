@@ -6,7 +6,7 @@
 #include "scene/builtin_scenes.h"
 #include "support/count_allocations.h"
 
-namespace clothlab {
+namespace clothlab::fill_contact_test {
 namespace {
 
 void run_to_contact(cloth::Simulation& simulation) {
@@ -96,4 +96,4 @@ TEST(FillContact, AllocatesNothingOnceItHasBeenAsMuch) {
 }
 
 }  // namespace
-}  // namespace clothlab
+}  // namespace clothlab::fill_contact_test

@@ -8,7 +8,7 @@
 #include "scene/builtin_scenes.h"
 #include "support/count_allocations.h"
 
-namespace clothlab {
+namespace clothlab::fill_frame_test {
 namespace {
 
 TEST(FillFrame, NormalsAreOfUnitLengthAndStrainsLargestIsTheLargest) {
@@ -50,4 +50,4 @@ TEST(FillFrame, AFrameGoesFromTheSimulationToItsReaderWithoutAllocating) {
 }
 
 }  // namespace
-}  // namespace clothlab
+}  // namespace clothlab::fill_frame_test

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace clothlab {
+namespace clothlab::frame_exchange_test {
 namespace {
 
 TEST(FrameExchange, TheNewestFrameWins) {
@@ -66,4 +66,4 @@ TEST(FrameExchange, AReaderSeesOnlyWholeFramesWhileAWriterPublishes) {
 }
 
 }  // namespace
-}  // namespace clothlab
+}  // namespace clothlab::frame_exchange_test

@@ -8,7 +8,7 @@
 #include "simulation/recorder.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test {
+namespace clothlab::test::live_recording_test {
 namespace {
 
 using nlohmann::json;
@@ -131,4 +131,4 @@ TEST(LiveRecording, IsWholeWhenTheWorkerIsDestroyedInMidRun) {
 }
 
 }  // namespace
-}  // namespace clothlab::test
+}  // namespace clothlab::test::live_recording_test

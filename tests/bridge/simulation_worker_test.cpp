@@ -7,7 +7,7 @@
 #include "simulation/time_step.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test {
+namespace clothlab::test::simulation_worker_test {
 namespace {
 
 constexpr double fastest = std::numeric_limits<double>::infinity();
@@ -170,4 +170,4 @@ TEST(SimulationWorker, AHandOutsideTheClothIsIgnored) {
 }
 
 }  // namespace
-}  // namespace clothlab::test
+}  // namespace clothlab::test::simulation_worker_test

@@ -7,7 +7,7 @@
 #include "study/study_runs.h"
 #include "support/files.h"
 
-namespace clothlab::test {
+namespace clothlab::test::study_runner_test {
 namespace {
 
 using cloth::test::TemporaryFolder;
@@ -108,4 +108,4 @@ TEST(StudyRunner, RunsOneStudyAfterAnother) {
 }
 
 }  // namespace
-}  // namespace clothlab::test
+}  // namespace clothlab::test::study_runner_test

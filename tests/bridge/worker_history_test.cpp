@@ -6,7 +6,7 @@
 #include "simulation/session_json.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test {
+namespace clothlab::test::worker_history_test {
 namespace {
 
 constexpr double fastest = std::numeric_limits<double>::infinity();
@@ -297,4 +297,4 @@ TEST_F(WorkerHistory, BeginsAnewWithARestart) {
 }
 
 }  // namespace
-}  // namespace clothlab::test
+}  // namespace clothlab::test::worker_history_test

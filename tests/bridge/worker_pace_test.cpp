@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace clothlab {
+namespace clothlab::worker_pace_test {
 namespace {
 
 using Clock = WorkerPace::Clock;
@@ -53,4 +53,4 @@ TEST(RateMeter, CountsStepsAndSimulatedSecondsPerSecond) {
 }
 
 }  // namespace
-}  // namespace clothlab
+}  // namespace clothlab::worker_pace_test

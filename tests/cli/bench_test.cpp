@@ -6,7 +6,7 @@
 #include "cli/command_line.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::bench_test {
 namespace {
 
 const std::string few =
@@ -126,4 +126,4 @@ TEST(Bench, ThatIsInterruptedLeavesAValidFile) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::bench_test

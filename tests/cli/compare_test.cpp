@@ -8,7 +8,7 @@
 #include "support/files.h"
 #include "support/xml.h"
 
-namespace cloth::test {
+namespace cloth::test::compare_test {
 namespace {
 
 const std::string quick = "compare --scene pendulum --methods semi-implicit-euler,verlet,rk4 --duration 0.5 ";
@@ -143,4 +143,4 @@ TEST(Schema, OfTheComparisonIsGivenOnRequest) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::compare_test

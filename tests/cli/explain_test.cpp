@@ -9,7 +9,7 @@
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::explain_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -94,4 +94,4 @@ TEST(Explain, SaysHowEveryImplicitMethodWouldSolveItsLinearSystemsAndWhatBothWay
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::explain_test

@@ -10,7 +10,7 @@
 #include "io/csv.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::extremes_test {
 namespace {
 
 const std::string few = "extremes --methods verlet,explicit-euler --cases cloth-2x2,step-1s ";
@@ -94,4 +94,4 @@ TEST(Extremes, ThatAreInterruptedLeaveValidFiles) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::extremes_test

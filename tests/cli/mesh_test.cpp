@@ -8,7 +8,7 @@
 #include "io/obj_reader.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::mesh_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -71,4 +71,4 @@ TEST(Mesh, ThatCannotBeReadIsOneProblemWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::mesh_test

@@ -7,7 +7,7 @@
 #include "simulation/session_json.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::replay_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -118,4 +118,4 @@ TEST_F(Replay, OfAFileThatIsNotThereExitsWithFour) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::replay_test

@@ -5,7 +5,7 @@
 #include "cli/command_line.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::reproduce_test {
 namespace {
 
 TEST(ReproduceCommand, LeavesTheReportAndGivesItsNumbersAsJson) {
@@ -37,4 +37,4 @@ TEST(ReproduceCommand, InterruptedLeavesAWholePage) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::reproduce_test

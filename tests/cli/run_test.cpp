@@ -11,7 +11,7 @@
 #include "scene/scene_json.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::run_test {
 namespace {
 
 const std::string short_run = "run pendulum --set duration=0.2 ";
@@ -212,4 +212,4 @@ TEST(Run, AcceptsThreadsAndGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::run_test

@@ -8,7 +8,7 @@
 #include "io/csv.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::stability_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -87,4 +87,4 @@ TEST(Stability, ThatIsInterruptedExitsWith130AndLeavesValidFiles) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::stability_test

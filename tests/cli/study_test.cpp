@@ -7,7 +7,7 @@
 #include "io/run_folder.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::study_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -63,4 +63,4 @@ TEST(Study, ExtremesOfASceneNameTheSceneInTheirFolder) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::study_test

@@ -9,7 +9,7 @@
 #include "scene/reference_page.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::usage_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -134,4 +134,4 @@ TEST(AFullStandardOutput, ExitsWithFour) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::usage_test

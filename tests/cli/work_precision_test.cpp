@@ -7,7 +7,7 @@
 #include "support/files.h"
 #include "support/xml.h"
 
-namespace cloth::test {
+namespace cloth::test::work_precision_test {
 namespace {
 
 const std::string quick = "work-precision pendulum --methods verlet,rk4 --horizon 0.5 ";
@@ -75,4 +75,4 @@ TEST(WorkPrecision, SaysWhichFolderCannotBeMadeBeforeItWorks) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::work_precision_test

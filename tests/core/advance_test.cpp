@@ -6,7 +6,7 @@
 #include "simulation/simulation.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::advance_test {
 namespace {
 
 Scene hanging(const std::string& method, double damping = 0.01) {
@@ -153,4 +153,4 @@ TEST(ManyStepsAtOnce, StopAtTheStepWhereOneByOneStops) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::advance_test

@@ -11,7 +11,7 @@
 
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::amplification_test {
 namespace {
 
 double spectral_radius(const Eigen::MatrixXd& matrix) {
@@ -202,4 +202,4 @@ TEST(OscillatorError, IsThatOfThePoweredMatrix) {  // many steps, from the matri
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::amplification_test

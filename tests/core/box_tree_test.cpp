@@ -9,7 +9,7 @@
 
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::box_tree_test {
 namespace {
 
 using Boxes = std::vector<Bounds>;
@@ -221,4 +221,4 @@ TEST(BoxTree, HasOneBoxAtTheTopAndTheGivenOnesAtTheBottom) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::box_tree_test

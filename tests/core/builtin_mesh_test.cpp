@@ -8,7 +8,7 @@
 #include "geometry/mesh_look.h"
 #include "geometry/mesh_repair.h"
 
-namespace cloth::test {
+namespace cloth::test::builtin_mesh_test {
 namespace {
 
 double volume_of(const TriangleMesh& mesh) {
@@ -123,4 +123,4 @@ TEST(MeshLook, AFlatSheetKeepsItsLengths) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::builtin_mesh_test

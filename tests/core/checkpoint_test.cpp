@@ -8,7 +8,7 @@
 #include "simulation/time_step.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::checkpoint_test {
 namespace {
 
 struct Case {
@@ -175,4 +175,4 @@ TEST(ACheckpoint, OfAMethodThatIsNoLongerInForceGivesTheStateAlone) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::checkpoint_test

@@ -10,7 +10,7 @@
 
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::closest_points_test {
 namespace {
 
 /// Features of every kind of bad shape, about 1 m large.
@@ -307,4 +307,4 @@ TEST(OrientedBox, HasTwelveEdgesAlongItsAxes) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::closest_points_test

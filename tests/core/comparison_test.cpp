@@ -13,7 +13,7 @@
 #include "study/reference_solution.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::comparison_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -307,4 +307,4 @@ TEST(AComparisonFile, WithABadOwnValueSaysWhereItStands) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::comparison_test

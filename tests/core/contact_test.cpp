@@ -7,7 +7,7 @@
 #include "support/random.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_test {
 namespace {
 
 Obstacle sphere() {
@@ -197,4 +197,4 @@ TEST(ObstacleContact, PutsEveryParticleOnTheNearestSurface) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_test

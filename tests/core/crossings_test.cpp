@@ -12,7 +12,7 @@
 #include "support/exact_sign.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::crossings_test {
 namespace {
 
 const Vec3 origin(0, 0, 0), far(1e6, -1e6, 1e6);  // doubles near 1e6 are 2^-33 apart
@@ -376,4 +376,4 @@ TEST(VerticesBelowPlane, HoldsVerticesOnItAndBelow) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::crossings_test

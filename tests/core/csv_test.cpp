@@ -17,7 +17,7 @@
 #include "support/files.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::csv_test {
 namespace {
 
 TEST(CsvField, IsQuotedWhereItMust) {
@@ -218,4 +218,4 @@ TEST(Folder, IsMadeWithThoseAboveItOrSaysWhyNot) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::csv_test

@@ -8,7 +8,7 @@
 #include "simulation/simulation.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::extreme_starts_test {
 namespace {
 
 TEST(APositionThatIsNotFinite, StopsTheRunThoughEveryVelocityIs) {
@@ -86,4 +86,4 @@ TEST(Tunnelling, IsPossibleWhereAParticleMovesFurtherThanTheThinnestObstacle) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::extreme_starts_test

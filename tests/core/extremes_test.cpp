@@ -13,7 +13,7 @@
 #include "study/extremes_report.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::extremes_test {
 namespace {
 
 /// A case with fewer steps, so that slow methods are tested too.
@@ -172,4 +172,4 @@ TEST(ARunThatIsStopped, EndsAtTheNextStep) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::extremes_test

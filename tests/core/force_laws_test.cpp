@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::force_laws_test {
 namespace {
 
 /// -dE/dx by central differences.
@@ -199,4 +199,4 @@ TEST(CentredVelocity, SolvesItsEquationForEveryCombinationWithPins) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::force_laws_test

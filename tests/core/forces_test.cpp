@@ -12,7 +12,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::forces_test {
 namespace {
 
 constexpr double spacing = 0.1;  // m
@@ -211,4 +211,4 @@ TEST(ForceModel, HasOnlyTheForcesThatTheSceneHas) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::forces_test

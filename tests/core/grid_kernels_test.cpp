@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::grid_kernels_test {
 namespace {
 
 class EveryInstructionSet : public ::testing::TestWithParam<InstructionSet> {
@@ -256,4 +256,4 @@ TEST(InstructionSetNames, ReadBackToTheirSets) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::grid_kernels_test

@@ -9,7 +9,7 @@
 #include "support/reference.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::grid_test {
 namespace {
 
 const SpringMaterial all_families{.structural = 3, .shear = 2, .flexion = 1, .damping = 0};
@@ -129,4 +129,4 @@ TEST(StartingState, IsAtRestWhereTheSheetStarts) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::grid_test

@@ -8,7 +8,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::hand_test {
 namespace {
 
 BrushGust brush_at(const Eigen::Vector2d& cursor, double radius = 80) {
@@ -124,4 +124,4 @@ TEST(Pull, OnAPinnedParticleDoesNothing) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::hand_test

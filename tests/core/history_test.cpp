@@ -10,7 +10,7 @@
 #include "support/random.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::history_test {
 namespace {
 
 Scene swinging() {
@@ -241,4 +241,4 @@ TEST(AHistory, OfASessionLeadsToEveryStepOfIt) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::history_test

@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::jacobian_test {
 namespace {
 
 constexpr double of_positions = 0.3, of_velocities = 0.7;  // weights of -df/dx and -df/dv
@@ -164,4 +164,4 @@ TEST(LinearSolvers, AllFindTheSameSolution) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::jacobian_test

@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::limiter_direct_test {
 namespace {
 
 constexpr double spacing = 0.1;
@@ -364,4 +364,4 @@ TEST(UnreachableRate, OfShearSpringsAloneIsJudgedOnTheirColour) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::limiter_direct_test

@@ -12,7 +12,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::limiter_sweep_test {
 namespace {
 
 constexpr double spacing = 0.1;
@@ -283,4 +283,4 @@ TEST(Sweeps, GiveTheSameBitsForTheSameState) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::limiter_sweep_test

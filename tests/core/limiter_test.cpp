@@ -8,7 +8,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::limiter_test {
 namespace {
 
 constexpr double spacing = 0.1;
@@ -206,4 +206,4 @@ TEST(UnreachableRate, IsNotSaidOfASheetAtRestOrWithoutLimits) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::limiter_test

@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::measure_test {
 namespace {
 
 /// 2x2, particles of 10 g, spacing 0.1; particle 3 moved to the length 0.15 of its two structural springs...
@@ -112,4 +112,4 @@ TEST(OrderedSum, AddsEveryTermOnce) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::measure_test

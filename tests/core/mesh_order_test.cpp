@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::mesh_order_test {
 namespace {
 
 std::vector<ClothSystem> some_meshes(Random& random) {
@@ -109,4 +109,4 @@ TEST(MeshOrder, ForSweepsHasParticlesOfEquallyManySpringsSideBySideAndKeepsTheBa
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::mesh_order_test

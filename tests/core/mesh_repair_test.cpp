@@ -7,7 +7,7 @@
 
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::mesh_repair_test {
 namespace {
 
 /// A closed surface of four triangles that face outward.
@@ -165,4 +165,4 @@ TEST(Inspect, NamesEdgesOfMoreThanTwoTrianglesAndUnusedVertices) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::mesh_repair_test

@@ -18,7 +18,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::mesh_sweep_test {
 namespace {
 
 class MeshSprings : public ::testing::TestWithParam<InstructionSet> {
@@ -338,4 +338,4 @@ TEST_P(MeshSprings, MoveAGridAsTheGridThatItIs) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::mesh_sweep_test

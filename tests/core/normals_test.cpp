@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::normals_test {
 namespace {
 
 Vec3Field normals_of(int rows, int columns, const Vec3Field& position) {
@@ -87,4 +87,4 @@ TEST(Normals, AreOfLengthOneOnACrumpledSheet) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::normals_test

@@ -8,7 +8,7 @@
 
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::obj_reader_test {
 namespace {
 
 const char* const square =
@@ -102,4 +102,4 @@ TEST(ObjReader, SaysWhyAFileCannotBeOpened) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::obj_reader_test

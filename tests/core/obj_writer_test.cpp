@@ -12,7 +12,7 @@
 #include "io/obj_reader.h"
 #include "scene/builtin_scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::obj_writer_test {
 namespace {
 
 /// The numbers of the lines that begin with `key`.
@@ -116,4 +116,4 @@ TEST(ObjWriter, ATitleStaysAComment) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::obj_writer_test

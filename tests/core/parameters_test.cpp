@@ -10,7 +10,7 @@
 #include "scene/scene_parameters.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::parameters_test {
 namespace {
 
 /// A scene that has every block.
@@ -166,4 +166,4 @@ TEST(ReferencePage, NamesEveryParameter) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::parameters_test

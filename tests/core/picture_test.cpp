@@ -12,7 +12,7 @@
 #include "support/random.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::picture_test {
 namespace {
 
 constexpr int width = 160, height = 120;
@@ -388,4 +388,4 @@ TEST(StrainColours, RunFromDarkToLightAndStopAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::picture_test

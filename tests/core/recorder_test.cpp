@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::recorder_test {
 namespace {
 
 TEST(RecordColumns, StandInTheOrderOfTheContract) {
@@ -275,4 +275,4 @@ TEST(ARunWithoutAFolder, LeavesNothingAndEndsInTheSameState) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::recorder_test

@@ -14,7 +14,7 @@
 #include "support/random.h"
 #include "support/xml.h"
 
-namespace cloth::test {
+namespace cloth::test::report_plot_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -386,4 +386,4 @@ TEST(HeatMap, IsValidWhateverTheData) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::report_plot_test

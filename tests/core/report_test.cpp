@@ -14,7 +14,7 @@
 #include "report/svg.h"
 #include "support/xml.h"
 
-namespace cloth::test {
+namespace cloth::test::report_test {
 namespace {
 
 TEST(Palette, SeriesCanBeToldApart) {
@@ -208,4 +208,4 @@ TEST(MachineFacts, NameTheBuildAndNeitherMachineNorUser) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::report_test

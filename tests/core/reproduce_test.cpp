@@ -10,7 +10,7 @@
 #include "study/reproduce/errata.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::reproduce_test {
 namespace {
 
 /// Made once: the parts that measure no times.
@@ -122,4 +122,4 @@ TEST(StoppedReproduction, LeavesAPageOfWhatWasDone) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::reproduce_test

@@ -8,7 +8,7 @@
 #include "scene/json_locator.h"
 #include "scene/scene_json.h"
 
-namespace cloth::test {
+namespace cloth::test::scene_edits_test {
 namespace {
 
 using Edits = std::map<std::string, std::string>;
@@ -72,4 +72,4 @@ TEST(JsonLocator, FindsValuesKeysAndRepeats) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::scene_edits_test

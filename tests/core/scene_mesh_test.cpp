@@ -10,7 +10,7 @@
 #include "scene/scene_parameters.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::scene_mesh_test {
 namespace {
 
 const char* const tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -205,4 +205,4 @@ TEST(SceneMesh, AnObstacleIsOfferedWithABuiltInMesh) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::scene_mesh_test

@@ -9,7 +9,7 @@
 #include "scene/scene_json.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::scene_reader_test {
 namespace {
 
 std::vector<std::string> problems_of(const std::string& text, const std::vector<Override>& overrides = {}) {
@@ -261,4 +261,4 @@ TEST(SceneChecks, FindWhatAFileCouldNotEvenSay) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::scene_reader_test

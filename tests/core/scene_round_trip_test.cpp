@@ -9,7 +9,7 @@
 #include "scene/scene_json.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::scene_round_trip_test {
 namespace {
 
 void expect_reads_back(const Scene& scene) {
@@ -148,4 +148,4 @@ TEST(SceneHash, TellsScenesApartAndIsTheSameForEqualOnes) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::scene_round_trip_test

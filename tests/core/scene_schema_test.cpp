@@ -12,7 +12,7 @@
 #include "scene/builtin_scenes.h"
 #include "scene/scene_json.h"
 
-namespace cloth::test {
+namespace cloth::test::scene_schema_test {
 namespace {
 
 class SchemaTest : public ::testing::Test {
@@ -115,4 +115,4 @@ TEST_F(ComparisonSchema, RefusesWhatTheReaderRefuses) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::scene_schema_test

@@ -7,7 +7,7 @@
 #include "support/files.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::session_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -214,4 +214,4 @@ TEST(StateHash, ChangesWithEveryBit) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::session_test

@@ -8,7 +8,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::simulation_edit_test {
 namespace {
 
 Scene swinging() {
@@ -217,4 +217,4 @@ TEST(ACheckpoint, GoesOnToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::simulation_edit_test

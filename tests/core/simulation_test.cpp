@@ -12,7 +12,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::simulation_test {
 namespace {
 
 TEST(Simulation, StartsAtRestWithoutErrorOrWork) {
@@ -141,4 +141,4 @@ TEST(Stages, SayOfEachWhetherItIsInAndWhy) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::simulation_test

@@ -13,7 +13,7 @@
 #include "support/random.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::sparse_test {
 namespace {
 
 ClothSystem square_cloth(int size) {
@@ -225,4 +225,4 @@ TEST(DenseKernels, GiveTheSameBitsForEveryInstructionSet) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::sparse_test

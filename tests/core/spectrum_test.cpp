@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::spectrum_test {
 namespace {
 
 struct Ratio {
@@ -215,4 +215,4 @@ TEST(GuaranteedFrequency, CountsSpringsToPinsOnce) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::spectrum_test

@@ -11,7 +11,7 @@
 #include "study/speed/speed_study.h"
 #include "study/speed/speed_tables.h"
 
-namespace cloth::speed {
+namespace cloth::speed::speed_test {
 namespace {
 
 StepCost row_of(int size, const std::string& method, double nanoseconds) {
@@ -200,4 +200,4 @@ TEST(TextTable, AlignsItsColumnsAndLeavesOutEmptyOnes) {
 }
 
 }  // namespace
-}  // namespace cloth::speed
+}  // namespace cloth::speed::speed_test

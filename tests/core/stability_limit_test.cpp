@@ -15,7 +15,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::stability_limit_test {
 namespace {
 
 constexpr std::array<double, 7> ratios{0, 0.01, 0.1, 0.5, 1, 2, 5};  // damping ratios zeta
@@ -299,4 +299,4 @@ TEST(StableStep, OfTheWorkedExampleIsThePrintedOne) {  // numerics.md 3.2: 1 m^2
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::stability_limit_test

@@ -12,7 +12,7 @@
 #include "study/work_precision_tables.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::study_folder_test {
 namespace {
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
@@ -211,4 +211,4 @@ TEST(ExtremesOfAScene, BeginWithTheSceneItselfAndAreAllValid) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::study_folder_test

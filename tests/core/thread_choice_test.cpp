@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace cloth::test {
+namespace cloth::test::thread_choice_test {
 namespace {
 
 struct Costs {
@@ -125,4 +125,4 @@ TEST(ThreadChoice, BeginsAnewWithAnotherNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::thread_choice_test

@@ -9,7 +9,7 @@
 #include "scene/builtin_scenes.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::time_step_test {
 namespace {
 
 TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysAtEightyPercent) {
@@ -73,4 +73,4 @@ TEST(StepsPerRow, IsTheIntervalInWholeStepsAndAtLeastOne) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::time_step_test

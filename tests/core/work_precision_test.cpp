@@ -11,7 +11,7 @@
 #include "study/work_precision_tables.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::work_precision_test {
 namespace {
 
 /// Errors that behave as `error(step)` at n steps halved from `longest`.
@@ -364,4 +364,4 @@ TEST(TheTable, BeginsWithTheColumnsOfItsContract) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::work_precision_test

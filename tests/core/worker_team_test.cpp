@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace cloth {
+namespace cloth::worker_team_test {
 namespace {
 
 TEST(WorkerTeam, GivesEveryShareToOneThread) {
@@ -54,4 +54,4 @@ TEST(Milestone, ThatIsPassedIsNotAwaited) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::worker_team_test

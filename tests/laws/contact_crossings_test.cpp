@@ -14,7 +14,7 @@
 #include "support/contact_check.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_crossings_test {
 namespace {
 
 std::vector<std::string> scenes_of_contact() {
@@ -148,4 +148,4 @@ TEST(AThousandRandomDrops, LetNothingThrough) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_crossings_test

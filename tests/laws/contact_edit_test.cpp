@@ -9,7 +9,7 @@
 #include "simulation/session.h"
 #include "support/contact_scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_edit_test {
 namespace {
 
 void run(Simulation& simulation, int steps) {
@@ -338,4 +338,4 @@ TEST(TheImpulseOfContact, IsTheMomentumThatGravityDoesNotExplain) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_edit_test

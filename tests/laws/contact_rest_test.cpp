@@ -4,7 +4,7 @@
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_rest_test {
 namespace {
 
 /// With damping that takes the energy of every oscillation within a fraction of a second.
@@ -58,4 +58,4 @@ INSTANTIATE_TEST_SUITE_P(Contact, ADampedScene,
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_rest_test

@@ -11,7 +11,7 @@
 #include "support/contact_scenes.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_test {
 namespace {
 
 Vec3 mean_position(const Simulation& simulation) {
@@ -277,4 +277,4 @@ TEST(ContinuousContact, GivesTheSameBitsAgainAndFromACheckpoint) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_test

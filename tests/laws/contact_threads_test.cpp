@@ -7,7 +7,7 @@
 #include "simulation/simulation.h"
 #include "simulation/time_step.h"
 
-namespace cloth::test {
+namespace cloth::test::contact_threads_test {
 namespace {
 
 struct Outcome {
@@ -54,4 +54,4 @@ TEST(ContactOfManyThreads, IsTheSameOfAClothOnItself) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_threads_test

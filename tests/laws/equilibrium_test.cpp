@@ -8,7 +8,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::equilibrium_test {
 namespace {
 
 constexpr double spacing = 0.1, mass = 0.01, stiffness = 20, g = 9.81;
@@ -92,4 +92,4 @@ TEST(ElasticCatenary, IsTheShapeOfAStripBetweenLevelEnds) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::equilibrium_test

@@ -10,7 +10,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::error_control_test {
 namespace {
 
 constexpr double horizon = 0.4;  // s
@@ -131,4 +131,4 @@ TEST(ErrorControl, ShortensStepsUntilAStiffClothIsFollowed) {  // at 1000 times 
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::error_control_test

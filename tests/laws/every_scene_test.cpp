@@ -12,7 +12,7 @@
 #include "simulation/time_step.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::every_scene_test {
 namespace {
 
 using Case = std::tuple<std::string, std::string>;  // scene, method
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
                          test_name);
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::every_scene_test

@@ -18,7 +18,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::exact_motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -416,4 +416,4 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
 INSTANTIATE_TEST_SUITE_P(Of, ExactMotion, ::testing::ValuesIn(integrator_names()), test_name);
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::exact_motion_test

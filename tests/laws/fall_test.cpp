@@ -11,7 +11,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::fall_test {
 namespace {
 
 constexpr double mass = 0.01, g = 9.81;
@@ -113,4 +113,4 @@ TEST(TerminalVelocity, OfAnUpwindIsShiftedByIt) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::fall_test

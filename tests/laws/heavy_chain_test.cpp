@@ -8,7 +8,7 @@
 #include "integrators/xpbd.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::heavy_chain_test {
 namespace {
 
 struct Chain {
@@ -74,4 +74,4 @@ TEST(Xpbd, ReproducesTheSeriesOfTheHeavyChain) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::heavy_chain_test

@@ -11,7 +11,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::implicit_test {
 namespace {
 
 IntegratorChoice tight(const std::string& method) {
@@ -219,4 +219,4 @@ INSTANTIATE_TEST_SUITE_P(Method, Implicit, ::testing::Values("implicit-euler", "
                          test_name);
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::implicit_test

@@ -7,7 +7,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::invariance_test {
 namespace {
 
 /// Every force that a scene can have, hung by two corners.
@@ -114,4 +114,4 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryMethod, ::testing::ValuesIn(integrator_names()
 INSTANTIATE_TEST_SUITE_P(Of, EveryOtherMethod, ::testing::ValuesIn(names_but_explicit_euler()), test_name);
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::invariance_test

@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::invariants_test {
 namespace {
 
 constexpr double horizon = 2;  // s
@@ -151,4 +151,4 @@ TEST(SpringDamping, OnlyTakesEnergy) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::invariants_test

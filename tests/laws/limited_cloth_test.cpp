@@ -9,7 +9,7 @@
 #include "simulation/time_step.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::limited_cloth_test {
 namespace {
 
 struct Row {
@@ -121,4 +121,4 @@ TEST(AnUnlimitedCloth, StretchesBeyondTenPercentAtItsCorners) {  // why Provot l
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::limited_cloth_test

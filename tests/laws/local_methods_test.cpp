@@ -14,7 +14,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::local_methods_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -407,4 +407,4 @@ TEST(Xpbd, LeavesOutSpringsWithoutStiffnessHoweverHeavyTheCloth) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::local_methods_test

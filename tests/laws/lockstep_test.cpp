@@ -15,7 +15,7 @@
 #include "support/states.h"
 #include "support/xml.h"
 
-namespace cloth::test {
+namespace cloth::test::lockstep_test {
 namespace {
 
 Comparison comparison_of(const Scene& scene, const std::vector<std::string>& methods, double time_step) {
@@ -377,4 +377,4 @@ TEST(AComparisonsReport, ShowsEveryPaneInItsStyleAndNamesThoseThatStopped) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::lockstep_test

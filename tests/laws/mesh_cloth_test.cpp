@@ -22,7 +22,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::mesh_cloth_test {
 namespace {
 
 MeshChoice chosen(const TriangleMesh& surface) {
@@ -308,4 +308,4 @@ TEST(MeshCloth, ARateThatItsPinsMakeUnreachableIsFoundByTheShortestChain) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::mesh_cloth_test

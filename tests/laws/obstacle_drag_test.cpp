@@ -7,7 +7,7 @@
 #include "contact/continuous_contact.h"
 #include "support/contact_scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::obstacle_drag_test {
 namespace {
 
 Scene hung_cloth(Shape shape, const std::string& method) {
@@ -201,4 +201,4 @@ TEST(ContactMarks, DoNotChangeABit) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::obstacle_drag_test

@@ -11,7 +11,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::order_test {
 namespace {
 
 constexpr double horizon = 0.4;  // s
@@ -158,4 +158,4 @@ TEST(DormandPrince, NeedsSixForceEvaluationsAStepOfFixedLength) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::order_test

@@ -11,7 +11,7 @@
 #include "support/direct_run.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::oscillator_test {
 namespace {
 
 using std::numbers::pi;
@@ -214,4 +214,4 @@ TEST(ExplicitEuler, MultipliesTheLinearOscillatorByItsStabilityPolynomial) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::oscillator_test

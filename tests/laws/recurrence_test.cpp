@@ -7,7 +7,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::recurrence_test {
 namespace {
 
 constexpr double step = 1e-3;
@@ -125,4 +125,4 @@ TEST(SemiImplicitEuler, StartedHalfAKickEarlierIsVerlet) {  // numerics.md 2.4
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::recurrence_test

@@ -8,7 +8,7 @@
 #include "simulation/recorder.h"
 #include "support/files.h"
 
-namespace cloth::test {
+namespace cloth::test::repeat_test {
 namespace {
 
 class Repeated : public ::testing::TestWithParam<const char*> {};
@@ -55,4 +55,4 @@ TEST(ARecordedScene, RunAgainFromItsFolderGivesTheSameRecord) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::repeat_test

@@ -11,7 +11,7 @@
 #include "study/stability_report.h"
 #include "support/scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::stability_map_test {
 namespace {
 
 // ---- the criterion -------------------------------------------------------------------------------------
@@ -260,4 +260,4 @@ TEST(StudyAxisOption, OfAllStiffnessesKeepsTheirRatio) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::stability_map_test

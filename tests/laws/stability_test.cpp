@@ -14,7 +14,7 @@
 #include "support/scenes.h"
 #include "support/states.h"
 
-namespace cloth::test {
+namespace cloth::test::stability_test {
 namespace {
 
 Scene stiff_hanging_cloth(double damping) {
@@ -152,4 +152,4 @@ TEST(Rk4, IsStableJustBelowItsLimit) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::stability_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace cloth::test {
+namespace cloth::test::contact_solver_test {
 namespace {
 
 ContactConstraint on_floor(int particle, double friction) {
@@ -86,4 +86,4 @@ TEST(ContactSolver, TakesAPushBackThatAnotherMadeNeedless) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::contact_solver_test

@@ -11,7 +11,7 @@
 #include "support/contact_bodies.h"
 #include "support/crossings.h"
 
-namespace cloth::test {
+namespace cloth::test::feature_pairs_test {
 namespace {
 
 constexpr double rounding = 1e-12;
@@ -227,4 +227,4 @@ TEST(AParticleInABox, IsToldTheNearestWayOut) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::feature_pairs_test

@@ -9,7 +9,7 @@
 #include "support/contact_scenes.h"
 #include "support/random.h"
 
-namespace cloth::test {
+namespace cloth::test::keyframes_test {
 namespace {
 
 std::string with_keyframes(const std::string& keyframes) {
@@ -127,4 +127,4 @@ TEST(Keyframes, LeadAnObstacleThroughAStep) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::keyframes_test

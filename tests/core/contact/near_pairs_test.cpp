@@ -10,7 +10,7 @@
 #include "contact/close_pairs.h"
 #include "support/contact_bodies.h"
 
-namespace cloth::test {
+namespace cloth::test::near_pairs_test {
 namespace {
 
 std::size_t at(int index) {
@@ -298,4 +298,4 @@ TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::near_pairs_test

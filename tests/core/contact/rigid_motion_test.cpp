@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cloth::test {
+namespace cloth::test::rigid_motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -87,4 +87,4 @@ TEST(TheHighestSpeed, IsThatOfTheFastestPoint) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::rigid_motion_test

@@ -6,7 +6,7 @@
 #include "scene/scene_json.h"
 #include "support/contact_scenes.h"
 
-namespace cloth::test {
+namespace cloth::test::start_check_test {
 namespace {
 
 /// The one problem that is found.
@@ -117,4 +117,4 @@ TEST(StartCheck, StandsInTheReadersMessageWithItsLine) {
 }
 
 }  // namespace
-}  // namespace cloth::test
+}  // namespace cloth::test::start_check_test

@@ -48,7 +48,7 @@ void AirForce::add_brush(const Vec3Field& position, Vec3Field& force) {
   }
 }
 
-void AirForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+void AirForce::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
   const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
   const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
   double *px = product.x(), *py = product.y(), *pz = product.z();
@@ -101,7 +101,7 @@ bool AirForce::add_node_damping(NodeDamping& damping) const {
   return true;
 }
 
-void AirForce::add_power(const Vec3Field& velocity, Work& power) const {
+void AirForce::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
   const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
   const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
   power.air += air_.drag * ordered_sum(velocity.size(), [=, u = wind_](std::size_t i) {

@@ -17,9 +17,9 @@ class AirForce : public Force {
   void set_brush(const std::optional<BrushGust>& brush) { brush_ = brush; }
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
-  void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
+  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
-  void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
   bool has_asymmetric_part() const override { return true; }

@@ -18,11 +18,11 @@ Work operator*(double scale, Work work) {
   return work;
 }
 
-void Force::add_damping(const Vec3Field&, Vec3Field&) const {}
+void Force::add_damping(const Vec3Field&, const Vec3Field&, Vec3Field&) const {}
 bool Force::add_node_damping(NodeDamping&) const {
   return true;
 }
-void Force::add_power(const Vec3Field&, Work&) const {}
+void Force::add_power(const Vec3Field&, const Vec3Field&, Work&) const {}
 void Force::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights&,
                               Linearisation&) const {}
 void Force::add_asymmetric_product(const ClothSystem&, const Vec3Field&, const Vec3Field&, const Vec3Field&,

@@ -39,6 +39,7 @@ class Force {
   virtual ~Force() = default;
 
   /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
+  /// Where those ask for `position`, it is the same once more: few forces keep it.
   virtual void update(const ClothSystem& system, const Vec3Field& position, double time,
                       Vec3Field& force) = 0;
 
@@ -47,16 +48,16 @@ class Force {
   virtual bool is_internal() const { return false; }
 
   /// product += D v
-  virtual void add_damping(const Vec3Field& velocity, Vec3Field& product) const;
+  virtual void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
 
   /// Adds this force's part of D to `damping` and returns true, or returns false: D couples particles.
   virtual bool add_node_damping(NodeDamping& damping) const;
 
   /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
-  virtual void add_power(const Vec3Field& velocity, Work& power) const;
+  virtual void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const;
 
   /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx, to
-  /// `to`. `position` is that of the last update.
+  /// `to`.
   virtual void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                                  const LinearisationWeights& weights, Linearisation& to) const;
 

@@ -132,12 +132,12 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
     update_load(state.position, time);
     clear(product_, state.position.size());
     for (const Force* force : beside_sweep_) {
-      force->add_damping(state.velocity, product_);
-      force->add_power(state.velocity, power);
+      force->add_damping(state.position, state.velocity, product_);
+      force->add_power(state.position, state.velocity, power);
     }
     if (pull_) {
-      pull_->add_damping(state.velocity, product_);
-      pull_->add_power(state.velocity, power);
+      pull_->add_damping(state.position, state.velocity, product_);
+      pull_->add_power(state.position, state.velocity, power);
     }
     const auto load = position_force_.flat();
     const auto damping = product_.flat();
@@ -235,59 +235,60 @@ NodeDamping ForceModel::damping_parts() const {
 }
 
 /// Returns the power of the dampers along springs where a sweep computes them.
-double ForceModel::damping_product(const Vec3Field& velocity, Vec3Field& product) const {
+double ForceModel::damping_product(const Vec3Field& position, const Vec3Field& velocity,
+                                   Vec3Field& product) const {
   double dampers = 0;
   if (sweeps_dampers())
-    dampers = sweep_->damp(spring_damping_->damping(), spring_damping_->position(), velocity, product);
+    dampers = sweep_->damp(spring_damping_->damping(), position, velocity, product);
   else
     product.fill(0);
   for (const auto& force : forces_)
-    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_damping(velocity, product);
-  if (pull_) pull_->add_damping(velocity, product);
+    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_damping(position, velocity, product);
+  if (pull_) pull_->add_damping(position, velocity, product);
   return dampers;
 }
 
-void ForceModel::force(const Vec3Field& velocity, Vec3Field& result) const {
+void ForceModel::force(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& result) const {
   if (!has_damping_) {
     result = position_force_;
     return;
   }
-  damping_product(velocity, result);
+  damping_product(position, velocity, result);
   subtract_from(position_force_, result);
 }
 
-Work ForceModel::force_and_power(const Vec3Field& velocity, Vec3Field& result) const {
+Work ForceModel::force_and_power(const Vec3Field& position, const Vec3Field& velocity,
+                                 Vec3Field& result) const {
   if (!sweeps_dampers()) {
-    force(velocity, result);
-    return has_power_ ? power(velocity) : Work{};
+    force(position, velocity, result);
+    return has_power_ ? power(position, velocity) : Work{};
   }
-  Work power{.damping_loss = damping_product(velocity, result)};
+  Work power{.damping_loss = damping_product(position, velocity, result)};
   subtract_from(position_force_, result);
-  power += power_beside_dampers(velocity);
+  power += power_beside_dampers(position, velocity);
   return power;
 }
 
-Work ForceModel::power(const Vec3Field& velocity) const {
+Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) const {
   Work power;
   if (sweeps_dampers()) {
     if (damper_product_.size() != velocity.size()) damper_product_ = Vec3Field(velocity.size());
-    power.damping_loss =
-        sweep_->damp(spring_damping_->damping(), spring_damping_->position(), velocity, damper_product_);
+    power.damping_loss = sweep_->damp(spring_damping_->damping(), position, velocity, damper_product_);
   }
-  power += power_beside_dampers(velocity);
+  power += power_beside_dampers(position, velocity);
   return power;
 }
 
 /// Without that of dampers along springs where a sweep computes them.
-Work ForceModel::power_beside_dampers(const Vec3Field& velocity) const {
+Work ForceModel::power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity) const {
   Work power;
   if (can_step() && !has_load()) {  // to the bits of a whole step
     if (viscous_ > 0) power.damping_loss = viscous_ * sweep_->squares(velocity);
     return power;
   }
   for (const auto& force : forces_)
-    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_power(velocity, power);
-  if (pull_) pull_->add_power(velocity, power);
+    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_power(position, velocity, power);
+  if (pull_) pull_->add_power(position, velocity, power);
   return power;
 }
 

@@ -34,7 +34,8 @@ class ForceModel {
   /// One more force, which no scene file describes; it takes part like those of the scene.
   void add(std::unique_ptr<Force> force);
 
-  /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it.
+  /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it; where
+  /// they ask for `position`, it is the same once more.
   void update(const Vec3Field& position, double time);
 
   /// The same without springs and their damping. Only position_force() and damping_parts() may follow.
@@ -47,18 +48,18 @@ class ForceModel {
   NodeDamping damping_parts() const;
 
   /// p - D v, in N. Pinned particles have a force too; their inverse mass is 0.
-  void force(const Vec3Field& velocity, Vec3Field& result) const;
+  void force(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& result) const;
 
   /// The same, and its power().
-  Work force_and_power(const Vec3Field& velocity, Vec3Field& result) const;
+  Work force_and_power(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& result) const;
 
   /// The power of everything that is not the derivative of an energy.
-  Work power(const Vec3Field& velocity) const;
+  Work power(const Vec3Field& position, const Vec3Field& velocity) const;
 
   bool has_damping() const { return has_damping_; }
   bool has_power() const { return has_power_; }
 
-  /// A = M + weights.velocity D + weights.position K at the last update, whose positions are `position`.
+  /// A = M + weights.velocity D + weights.position K at the last update.
   void linearise(const Vec3Field& position, const LinearisationWeights& weights, Linearisation& result) const;
 
   /// product = (-df/dx - K) direction at `velocity`, the part of the exact Jacobian that K leaves out.
@@ -67,10 +68,10 @@ class ForceModel {
                           Vec3Field& product) const;
 
   /// Solves (m + weight D) v = m known + weight p for the velocity of the free particles: the damping centred
-  /// in time. `velocity` holds the guess and becomes the answer; pinned particles keep 0. Returns the
-  /// iterations of conjugate gradients that were needed; 0 where D does not couple particles and the solution
-  /// is closed.
-  int centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity);
+  /// in time. `velocity` holds `known` and becomes v; pinned particles keep 0. `force` holds about p - D v,
+  /// in N, from which the solution starts, and is scratch. Returns the iterations of conjugate gradients that
+  /// were needed; 0 where D does not couple particles and the solution is closed.
+  int centred_velocity(double weight, const Vec3Field& position, Vec3Field& velocity, Vec3Field& force);
 
   /// Whole steps, for a cloth whose particles have one mass and whose springs a sweep knows: force and motion
   /// in one pass. Each returns nothing, and has done nothing, where the scene needs more than that; else the
@@ -115,11 +116,12 @@ class ForceModel {
   bool can_step() const;
   bool sweeps_dampers() const { return sweep_ && spring_damping_; }
   SweepLoads sweep_loads() const;
-  double damping_product(const Vec3Field& velocity, Vec3Field& product) const;
-  Work power_beside_dampers(const Vec3Field& velocity) const;
-  void solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
-                      Vec3Field& velocity) const;
-  int solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& velocity);
+  double damping_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
+  double coupled_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
+  Work power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity) const;
+  void solve_per_node(double weight, const NodeDamping& damping, Vec3Field& velocity);
+  int solve_coupled(double weight, const NodeDamping& local, const Vec3Field& position, Vec3Field& velocity,
+                    Vec3Field& product);
 
   const ClothSystem* system_;
   std::vector<std::unique_ptr<Force>> forces_;
@@ -134,11 +136,11 @@ class ForceModel {
   double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
-  std::vector<StageSums> stage_sums_;               ///< scratch
-  mutable Vec3Field damper_product_;                ///< scratch, sized when first needed
-  Vec3Field position_force_;                        ///< sized when first needed
-  std::vector<double> inverse_diagonal_;            ///< 1/kg, scratch
-  Vec3Field rhs_, residual_, direction_, product_;  ///< scratch, sized when first needed
+  std::vector<StageSums> stage_sums_;         ///< scratch
+  mutable Vec3Field damper_product_;          ///< scratch, sized when first needed
+  Vec3Field position_force_;                  ///< sized when first needed
+  std::vector<double> inverse_diagonal_;      ///< 1/kg, scratch
+  Vec3Field residual_, direction_, product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;
 };

@@ -7,7 +7,7 @@ void PullForce::update(const ClothSystem&, const Vec3Field& position, double, Ve
   force.add(held(), spring_force_);
 }
 
-void PullForce::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+void PullForce::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
   product.add(held(), damping_ * velocity[held()]);
 }
 
@@ -18,7 +18,7 @@ bool PullForce::add_node_damping(NodeDamping& damping) const {
   return true;
 }
 
-void PullForce::add_power(const Vec3Field& velocity, Work& power) const {
+void PullForce::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
   const Vec3 v = velocity[held()];
   power.pull += (spring_force_ - damping_ * v).dot(v);
 }

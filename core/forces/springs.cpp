@@ -120,15 +120,15 @@ std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field&
   return energy;
 }
 
-void SpringDamping::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field&) {
+void SpringDamping::update(const ClothSystem& system, const Vec3Field&, double, Vec3Field&) {
   system_ = &system;
-  position_ = position;
 }
 
-void SpringDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+void SpringDamping::add_damping(const Vec3Field& position, const Vec3Field& velocity,
+                                Vec3Field& product) const {
   Chunk g;
   for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
-    damper_chunk(run, first, count, position_, velocity, damping_, g);
+    damper_chunk(run, first, count, position, velocity, damping_, g);
     add_to_ends(g, first, run.offset, count, product);
   });
 }
@@ -169,9 +169,9 @@ bool SpringDamping::add_node_damping(NodeDamping& damping) const {
   return false;
 }
 
-void SpringDamping::add_power(const Vec3Field& velocity, Work& power) const {
+void SpringDamping::add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const {
   for (const SpringRun& run : system_->springs) {
-    const auto *x = position_.x() + run.first, *y = position_.y() + run.first, *z = position_.z() + run.first;
+    const auto *x = position.x() + run.first, *y = position.y() + run.first, *z = position.z() + run.first;
     const auto *vx = velocity.x() + run.first, *vy = velocity.y() + run.first, *vz = velocity.z() + run.first;
     const std::size_t to = static_cast<std::size_t>(run.offset);
     power.damping_loss += damping_ * ordered_sum(static_cast<std::size_t>(run.count), [=](std::size_t s) {

@@ -24,14 +24,12 @@ class SpringDamping : public Force {
   explicit SpringDamping(double damping) : damping_(damping) {}
 
   double damping() const { return damping_; }
-  /// That of the last update.
-  const Vec3Field& position() const { return position_; }
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   bool is_internal() const override { return true; }
-  void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
+  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
-  void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
   bool has_asymmetric_part() const override { return true; }
@@ -41,7 +39,6 @@ class SpringDamping : public Force {
  private:
   double damping_;  ///< N s/m
   const ClothSystem* system_ = nullptr;
-  Vec3Field position_;  ///< m, of the last update
 };
 
 }  // namespace cloth

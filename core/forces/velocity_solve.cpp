@@ -1,8 +1,14 @@
 // The damping centred in time: (m + weight D) v = m known + weight p. Where D couples no particles (viscous
 // damping, air) every particle has a 3x3 system with a closed solution; spring damping couples them and takes
-// a few steps of conjugate gradients, preconditioned by the closed solution of the rest.
+// a few steps of conjugate gradients, preconditioned by the closed solution of the rest. What is done between
+// two products with D goes through the particles in strips that stay in the nearest cache.
+#include <algorithm>
+
 #include "cloth/sums.h"
 #include "forces/force_model.h"
+#include "forces/node_matrix.h"
+#include "forces/springs.h"
+#include "kernels/spring_sweep.h"
 
 namespace cloth {
 namespace {
@@ -12,156 +18,150 @@ namespace {
 constexpr double tolerance = 1e-13;
 constexpr int max_iterations = 200;
 
-double dot(const Vec3Field& a, const Vec3Field& b) {
-  return cloth::dot(a.flat(), b.flat());
+/// m v + weight p
+void right_hand_side(const double* mass, double weight, const Strip<const double>& v,
+                     const Strip<const double>& p, const Strip<double>& result) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double *known = v.axis[axis], *force = p.axis[axis];
+    double* to = result.axis[axis];
+    for (std::size_t i = 0; i < result.count; ++i) to[i] = mass[i] * known[i] + weight * force[i];
+  }
 }
 
-void clear_pinned(const ClothSystem& system, Vec3Field& field) {
-  for (std::size_t i = 0; i < field.size(); ++i)
-    if (system.pinned[i]) field.set(i, Vec3::Zero());
-}
-
-/// visit(k, mass of the particle that component k of a field belongs to)
-template <class Visit>
-void for_each_component(const ClothSystem& system, Visit visit) {
-  const double* mass = system.mass.data();
-  const std::size_t size = system.mass.size();
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < size; ++i) visit(axis * size + i, mass[i]);
-}
-
-/// visit(first) for the first component of each axis in a flat field.
-template <class Visit>
-void for_each_axis(std::size_t particles, Visit visit) {
-  for (std::size_t axis = 0; axis < 3; ++axis) visit(axis * particles);
-}
-
-/// result = m in + weight result, 0 where pinned
-void add_inertia(const ClothSystem& system, double weight, const Vec3Field& in, Vec3Field& result) {
-  const std::size_t size = system.mass.size();
-  for_each_axis(size, [&](std::size_t first) {
-    const double *m = system.mass.data(), *inverse = system.inverse_mass.data(),
-                 *v = in.flat().data() + first;
-    double* out = result.flat().data() + first;
-    for (std::size_t i = 0; i < size; ++i) out[i] = inverse[i] == 0 ? 0.0 : m[i] * v[i] + weight * out[i];
-  });
-}
-
-/// result = factor r, where every particle has its factor
-void scale_each(const std::vector<double>& factors, const Vec3Field& r, Vec3Field& result) {
-  for_each_axis(factors.size(), [&](std::size_t first) {
-    const double *factor = factors.data(), *from = r.flat().data() + first;
-    double* out = result.flat().data() + first;
-    for (std::size_t i = 0; i < factors.size(); ++i) out[i] = factor[i] * from[i];
-  });
-}
-
-/// v += length d, r -= length q
-void advance(double length, const Vec3Field& direction, const Vec3Field& product, Vec3Field& velocity,
-             Vec3Field& residual) {
-  const double *d = direction.flat().data(), *q = product.flat().data();
-  double *v = velocity.flat().data(), *r = residual.flat().data();
-  const std::size_t size = velocity.flat().size();
-  for (std::size_t k = 0; k < size; ++k) v[k] += length * d[k];
-  for (std::size_t k = 0; k < size; ++k) r[k] -= length * q[k];
+/// v += weight f/m
+void accelerate(double weight, const double* inverse_mass, const Strip<const double>& force,
+                const Strip<double>& v) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* f = force.axis[axis];
+    double* to = v.axis[axis];
+    for (std::size_t i = 0; i < v.count; ++i) to[i] += weight * inverse_mass[i] * f[i];
+  }
 }
 
 /// direction = z + keep direction
-void turn(double keep, const Vec3Field& z, Vec3Field& direction) {
-  const double* from = z.flat().data();
-  double* d = direction.flat().data();
-  const std::size_t size = direction.flat().size();
-  for (std::size_t k = 0; k < size; ++k) d[k] = from[k] + keep * d[k];
+void turn(double keep, const Strip<const double>& z, const Strip<double>& direction) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* from = z.axis[axis];
+    double* d = direction.axis[axis];
+    for (std::size_t i = 0; i < z.count; ++i) d[i] = from[i] + keep * d[i];
+  }
+}
+
+/// v += length d
+void advance(double length, const Strip<const double>& d, const Strip<double>& v) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* from = d.axis[axis];
+    double* to = v.axis[axis];
+    for (std::size_t i = 0; i < v.count; ++i) to[i] += length * from[i];
+  }
 }
 
 }  // namespace
 
-int ForceModel::centred_velocity(double weight, const Vec3Field& known, Vec3Field& velocity) {
-  if (rhs_.size() != known.size()) rhs_ = Vec3Field(known.size());
-  const auto rhs = rhs_.flat();
-  const auto v = known.flat();
-  const auto p = position_force_.flat();
-  for_each_component(*system_, [&](std::size_t k, double mass) { rhs[k] = mass * v[k] + weight * p[k]; });
-  clear_pinned(*system_, rhs_);
-
-  NodeDamping damping;
-  bool local = true;
-  for (const auto& force : forces_) local = force->add_node_damping(damping) && local;
-  if (pull_) pull_->add_node_damping(damping);
-  if (!local) return solve_coupled(weight, rhs_, velocity);
-  solve_per_node(weight, damping, rhs_, velocity);
+int ForceModel::centred_velocity(double weight, const Vec3Field& position, Vec3Field& velocity,
+                                 Vec3Field& force) {
+  NodeDamping local;
+  bool coupled = false;
+  for (const auto& each : forces_) coupled = !each->add_node_damping(local) || coupled;
+  if (pull_) pull_->add_node_damping(local);
+  if (coupled) return solve_coupled(weight, local, position, velocity, force);
+  solve_per_node(weight, local, velocity);
   return 0;
 }
 
-/// ((m + w a) I + w b n n^T) v = r, inverted after Sherman and Morrison (1950): n is of length one or zero.
-void ForceModel::solve_per_node(double weight, const NodeDamping& damping, const Vec3Field& rhs,
-                                Vec3Field& velocity) const {
-  const double isotropic = weight * damping.isotropic;
-  const auto r = rhs.flat();
-  const auto v = velocity.flat();
-  for_each_component(*system_, [&](std::size_t k, double mass) { v[k] = r[k] / (mass + isotropic); });
+void ForceModel::solve_per_node(double weight, const NodeDamping& damping, Vec3Field& velocity) {
+  const NodeMatrix matrix(*system_, weight, damping, inverse_diagonal_);
+  const bool holds = damping.held_particle >= 0;
+  const auto held = static_cast<std::size_t>(std::max(damping.held_particle, 0));
+  const Vec3 of_held = system_->mass[held] * velocity[held] + weight * position_force_[held];
 
-  if (damping.normal) {
-    const double along = weight * damping.along_normal;
-    const double* mass = system_->mass.data();
-    const double *nx = damping.normal->x(), *ny = damping.normal->y(), *nz = damping.normal->z();
-    double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-      const double scale = along / (mass[i] + isotropic + along);
-      const double correction = scale * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
-      vx[i] -= correction * nx[i], vy[i] -= correction * ny[i], vz[i] -= correction * nz[i];
-    }
-  }
-  if (damping.held_particle >= 0) {
-    const auto held = static_cast<std::size_t>(damping.held_particle);
+  OwnStrip own;
+  for_each_strip(velocity.size(), [&](std::size_t first, std::size_t count) {
+    const Strip<double> v = strip_of(velocity, first, count), rhs = own.of(count);
+    right_hand_side(system_->mass.data() + first, weight, read(v), read_strip(position_force_, first, count),
+                    rhs);
+    matrix.solve(first, read(rhs), v);
+  });
+  if (holds) {
     const Vec3 n = damping.normal ? (*damping.normal)[held] : Vec3::Zero();
-    const double held_diagonal = system_->mass[held] + isotropic + weight * damping.held_isotropic;
+    const double diagonal = system_->mass[held] + weight * (damping.isotropic + damping.held_isotropic);
     const double along = weight * damping.along_normal;
-    const Vec3 r_held = rhs[held];
-    velocity.set(held, (r_held - along / (held_diagonal + along) * n.dot(r_held) * n) / held_diagonal);
+    velocity.set(held, (of_held - along / (diagonal + along) * n.dot(of_held) * n) / diagonal);
   }
 }
 
-int ForceModel::solve_coupled(double weight, const Vec3Field& rhs, Vec3Field& velocity) {
-  if (residual_.size() != rhs.size()) residual_ = direction_ = product_ = Vec3Field(rhs.size());
-  NodeDamping local;
-  for (const auto& force : forces_) force->add_node_damping(local);
-  if (pull_) pull_->add_node_damping(local);
-  const bool is_diagonal = !local.normal && local.held_particle < 0;
-  inverse_diagonal_.resize(rhs.size());
-  for (std::size_t i = 0; i < rhs.size(); ++i)
-    inverse_diagonal_[i] = 1 / (system_->mass[i] + weight * local.isotropic);
+/// product = the part of D v that couples particles, and the hand's. Returns what it takes, in W.
+double ForceModel::coupled_product(const Vec3Field& position, const Vec3Field& velocity,
+                                   Vec3Field& product) const {
+  double taken = 0;
+  if (sweeps_dampers())
+    taken = sweep_->damp(spring_damping_->damping(), position, velocity, product);
+  else
+    product.fill(0);
+  bool is_all = sweeps_dampers() && !pull_;
+  for (const auto& force : forces_) {
+    NodeDamping unused;
+    if ((sweeps_dampers() && force.get() == spring_damping_) || force->add_node_damping(unused)) continue;
+    force->add_damping(position, velocity, product);
+    is_all = false;
+  }
+  if (pull_) pull_->add_damping(position, velocity, product);
+  return is_all ? taken : cloth::dot(velocity.flat(), product.flat());
+}
 
-  const auto multiply = [&](const Vec3Field& v, Vec3Field& result) {
-    damping_product(v, result);
-    add_inertia(*system_, weight, v, result);
-  };
-  Vec3Field& preconditioned = product_;  // shares storage: never needed at the same time as A d
-  const auto precondition = [&] {
-    if (is_diagonal)
-      scale_each(inverse_diagonal_, residual_, preconditioned);
-    else
-      solve_per_node(weight, local, residual_, preconditioned);
-    return dot(residual_, preconditioned);
-  };
+/// `product` holds a force for the guess.
+int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec3Field& position,
+                              Vec3Field& velocity, Vec3Field& product) {
+  const std::size_t size = velocity.size();
+  if (residual_.size() != size) residual_ = direction_ = Vec3Field(size);
+  const NodeMatrix matrix(*system_, weight, local, inverse_diagonal_);
+  OwnStrip own;
 
-  clear_pinned(*system_, velocity);
-  residual_ = rhs;
-  precondition();
-  const double goal = tolerance * tolerance * dot(rhs, preconditioned);
-  multiply(velocity, product_);
-  for (std::size_t k = 0; k < rhs.flat().size(); ++k) residual_.flat()[k] -= product_.flat()[k];
-  double slope = precondition();
-  direction_ = preconditioned;
+  double goal = 0;
+  for_each_strip(size, [&](std::size_t first, std::size_t count) {
+    const Strip<double> v = strip_of(velocity, first, count), r = strip_of(residual_, first, count),
+                        z = own.of(count);
+    right_hand_side(system_->mass.data() + first, weight, read(v), read_strip(position_force_, first, count),
+                    r);
+    matrix.solve(first, read(r), z);
+    goal += dot(read(r), z);
+    accelerate(weight, system_->inverse_mass.data() + first, read_strip(product, first, count), v);
+  });
+  goal *= tolerance * tolerance;
+
+  coupled_product(position, velocity, product);
+  double slope = 0, curvature = 0;
+  for_each_strip(size, [&](std::size_t first, std::size_t count) {
+    const Strip<double> r = strip_of(residual_, first, count), d = strip_of(direction_, first, count);
+    matrix.subtract_product(first, 1, weight, read_strip(velocity, first, count),
+                            read_strip(product, first, count), r);
+    matrix.solve(first, read(r), d);
+    slope += dot(read(r), d);
+    curvature += matrix.square(first, read(d));
+  });
 
   int iterations = 0;
   while (iterations < max_iterations && slope > goal) {
-    multiply(direction_, product_);
-    const double curvature = dot(direction_, product_);
+    curvature += weight * coupled_product(position, direction_, product);
     if (!(curvature > 0)) break;
-    advance(slope / curvature, direction_, product_, velocity, residual_);
-    const double next_slope = precondition();
-    turn(next_slope / slope, preconditioned, direction_);
+    const double length = slope / curvature;
+    double next_slope = 0;
+    for_each_strip(size, [&](std::size_t first, std::size_t count) {
+      const Strip<double> r = strip_of(residual_, first, count), z = own.of(count);
+      const auto d = read_strip(direction_, first, count);
+      advance(length, d, strip_of(velocity, first, count));
+      matrix.subtract_product(first, length, weight, d, read_strip(product, first, count), r);
+      matrix.solve(first, read(r), z);
+      next_slope += dot(read(r), z);
+    });
+    const double keep = next_slope / slope;
+    curvature = 0;
+    for_each_strip(size, [&](std::size_t first, std::size_t count) {
+      const Strip<double> d = strip_of(direction_, first, count), z = own.of(count);
+      matrix.solve(first, read_strip(residual_, first, count), z);
+      turn(keep, read(z), d);
+      curvature += matrix.square(first, read(d));
+    });
     slope = next_slope;
     ++iterations;
   }

@@ -6,7 +6,7 @@ namespace cloth {
 
 void ViscousDamping::update(const ClothSystem&, const Vec3Field&, double, Vec3Field&) {}
 
-void ViscousDamping::add_damping(const Vec3Field& velocity, Vec3Field& product) const {
+void ViscousDamping::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
   const auto v = velocity.flat();
   const auto out = product.flat();
   for (std::size_t k = 0; k < v.size(); ++k) out[k] += coefficient_ * v[k];
@@ -17,7 +17,7 @@ bool ViscousDamping::add_node_damping(NodeDamping& damping) const {
   return true;
 }
 
-void ViscousDamping::add_power(const Vec3Field& velocity, Work& power) const {
+void ViscousDamping::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
   power.damping_loss += coefficient_ * dot(velocity.flat(), velocity.flat());
 }
 

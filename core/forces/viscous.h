@@ -10,9 +10,9 @@ class ViscousDamping : public Force {
   explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
-  void add_damping(const Vec3Field& velocity, Vec3Field& product) const override;
+  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;
-  void add_power(const Vec3Field& velocity, Work& power) const override;
+  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
 

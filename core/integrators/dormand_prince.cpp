@@ -84,7 +84,7 @@ void DormandPrince::forget(Change change) {
 void DormandPrince::evaluate(const ClothSystem& system, ForceModel& forces, int stage, double time,
                              IntegratorReport& report) {
   forces.update(position_, time);
-  power_[stage] = forces.force_and_power(speed_[stage], force_);
+  power_[stage] = forces.force_and_power(position_, speed_[stage], force_);
   acceleration_[stage].fill(0);
   add_acceleration(system, 1, force_, acceleration_[stage]);
   ++report.force_evaluations;

@@ -7,7 +7,7 @@ void evaluate(ForceModel& forces, const StepTimes& times, const ClothState& stat
               Work& work) {
   if (force.size() != state.position.size()) force = Vec3Field(state.position.size());
   forces.update(state.position, times.begin);
-  work += times.step * forces.force_and_power(state.velocity, force);
+  work += times.step * forces.force_and_power(state.position, state.velocity, force);
 }
 
 IntegratorReport unseen(ForceModel& forces, double step, bool drift_first, std::span<double> speed_squares,

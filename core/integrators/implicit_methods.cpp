@@ -28,7 +28,7 @@ IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forc
                velocity_, position_, report);
   std::swap(state.position, position_);
   std::swap(state.velocity, velocity_);
-  if (forces.has_power()) work += times.step * forces.power(state.velocity);
+  if (forces.has_power()) work += times.step * forces.power(state.position, state.velocity);
   return report;
 }
 
@@ -41,7 +41,7 @@ IntegratorReport ImplicitMidpoint::step(const ClothSystem& system, ForceModel& f
       system, forces,
       {.weight = half, .time = times.begin + half, .position = &state.position, .velocity = &state.velocity},
       velocity_, position_, report);
-  if (forces.has_power()) work += times.step * forces.power(velocity_);
+  if (forces.has_power()) work += times.step * forces.power(position_, velocity_);
   add_scaled(times.step, velocity_, state.position);
   const auto v = state.velocity.flat();
   const auto middle = velocity_.flat();
@@ -90,7 +90,7 @@ IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, 
   state.position = position_;
   state.velocity = velocity_;
   work += (1.0 / 3) * work_before_;
-  if (forces.has_power()) work += weight * forces.power(state.velocity);
+  if (forces.has_power()) work += weight * forces.power(state.position, state.velocity);
   return report;
 }
 

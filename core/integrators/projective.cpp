@@ -120,7 +120,7 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
   add_scaled(h, state.velocity, state.position);
   for (int n = 0; n < iterations_ && !free_.empty(); ++n) {
     forces.update(state.position, times.end);
-    forces.force(state.velocity, force_);
+    forces.force(state.position, state.velocity, force_);
     report.residual = correct(system, start_velocity_, h, state.velocity);
     state.position = start_position_;
     add_scaled(h, state.velocity, state.position);
@@ -130,7 +130,7 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
   if (forces.has_power()) {
     forces.update(state.position, times.end);
     ++report.force_evaluations;
-    work += h * forces.power(state.velocity);
+    work += h * forces.power(state.position, state.velocity);
   }
   return report;
 }

@@ -27,7 +27,7 @@ IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const 
   for (std::size_t s = 0; s < kutta.size(); ++s) {
     const double time = kutta[s].node == 1 ? times.end : times.begin + kutta[s].node * h;
     forces.update(stage_position_, time);
-    work += h * kutta[s].weight * forces.force_and_power(stage_velocity_, force_);
+    work += h * kutta[s].weight * forces.force_and_power(stage_position_, stage_velocity_, force_);
     add_scaled(h * kutta[s].weight, stage_velocity_, next_position_);
     add_acceleration(system, h * kutta[s].weight, force_, next_velocity_);
     if (s + 1 == kutta.size()) break;

@@ -11,7 +11,7 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
     ++report.force_evaluations;
   }
   if (forces.steps_verlet()) {
-    if (!holds_position_force_ && forces.has_power()) power_ = forces.power(state.velocity);
+    if (!holds_position_force_ && forces.has_power()) power_ = forces.power(state.position, state.velocity);
     work += 0.5 * h * power_;
     report.speed_squares = forces.verlet_step(h, state, power_);
     work += 0.5 * h * power_;
@@ -20,48 +20,51 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
     return report;
   }
 
-  if (!holds_force_) evaluate(forces, state.velocity);
+  if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
-  add_acceleration(system, 0.5 * h, force_, state.velocity);
+  add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   forces.update(state.position, times.end);
   ++report.force_evaluations;
   report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
-  evaluate(forces, state.velocity);
+  evaluate(forces, state);
   work += 0.5 * h * power_;
   holds_position_force_ = true;
   return report;
 }
 
-/// f and its power, at the positions of the last update.
-void Verlet::evaluate(ForceModel& forces, const Vec3Field& velocity) {
-  if (force_.size() != velocity.size()) force_ = Vec3Field(velocity.size());
-  power_ = forces.force_and_power(velocity, force_);
+/// The force and its power; the positions are those of the last update.
+void Verlet::evaluate(ForceModel& forces, const ClothState& state) {
+  if (forces.has_damping()) {
+    if (force_.size() != state.velocity.size()) force_ = Vec3Field(state.velocity.size());
+    power_ = forces.force_and_power(state.position, state.velocity, force_);
+  } else if (forces.has_power()) {
+    power_ = forces.power(state.position, state.velocity);
+  }
   holds_force_ = true;
 }
 
-/// From the velocity at half the step; `force_` holds the force that led there. Returns the iterations.
+/// Where nothing damps it is known without being kept.
+const Vec3Field& Verlet::force(const ForceModel& forces) const {
+  return forces.has_damping() ? force_ : forces.position_force();
+}
+
+/// From the velocity at half the step; `force_` is the guess. Returns the iterations.
 int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step,
                             ClothState& state) {
   holds_force_ = false;
-  if (!forces.has_damping()) {
-    forces.force(state.velocity, force_);
-    add_acceleration(system, half_step, force_, state.velocity);
-    return 0;
-  }
-  half_velocity_ = state.velocity;
-  add_acceleration(system, half_step, force_, state.velocity);  // the guess: v + h a(x, v, t)
-  return forces.centred_velocity(half_step, half_velocity_, state.velocity);
+  if (forces.has_damping()) return forces.centred_velocity(half_step, state.position, state.velocity, force_);
+  add_acceleration(system, half_step, forces.position_force(), state.velocity);
+  return 0;
 }
 
 /// Else the cloth beside a contact would feel the springs of where contact let nobody go, and at rest keep a
 /// speed of some omega^2 h^3 g that no position follows.
 void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                               const Vec3Field& half_velocity, ClothState& state) {
-  if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   state.velocity = half_velocity;
   forces.update(state.position, times.end);
-  forces.force(state.velocity, force_);
+  evaluate(forces, state);
   finish_velocity(system, forces, 0.5 * times.step, state);
 }
 
@@ -69,10 +72,10 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
 /// keep a speed of some h^2 g times damping over mass.
 void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                const Vec3Field& half_velocity, ClothState& state) {
+  evaluate(forces, state);
   holds_force_ = false;
-  forces.force(state.velocity, force_);
   state.velocity = half_velocity;
-  add_acceleration(system, 0.5 * times.step, force_, state.velocity);
+  add_acceleration(system, 0.5 * times.step, force(forces), state.velocity);
 }
 
 /// The velocity at the end of a step and at the half of the next are made in one pass, so that the force need

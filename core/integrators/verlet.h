@@ -30,13 +30,14 @@ class Verlet : public Integrator {
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  private:
-  void evaluate(ForceModel& forces, const Vec3Field& velocity);
+  void evaluate(ForceModel& forces, const ClothState& state);
+  const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
 
-  Vec3Field force_, half_velocity_;
+  Vec3Field force_;                    ///< p - D v, N; only where something damps
   Work power_;                         ///< at the end of the last step
   bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
-  bool holds_force_ = false;           ///< and `force_` is the whole force there
+  bool holds_force_ = false;           ///< and `force_`, `power_` are those there
 };
 
 }  // namespace cloth

@@ -119,7 +119,7 @@ IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;
-      work += h * forces.power(state.velocity);
+      work += h * forces.power(state.position, state.velocity);
     }
   }
   return report;

@@ -66,8 +66,7 @@ DeformationLimiter::DeformationLimiter(const Deformation& deformation, const Clo
       pieces_(row_by_row(pieces_of(system, limited_runs(deformation, system), deformation.rate))),
       batches_(
           batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate), system.columns)),
-      elastic_(pieces_of(system, system.springs, deformation.rate)),
-      nearest_(system, limited_runs(deformation, system), deformation.rate) {}
+      elastic_(pieces_of(system, system.springs, deformation.rate)) {}
 
 bool DeformationLimiter::is_needed(const Deformation& deformation, const ClothSystem& system) {
   return std::any_of(system.springs.begin(), system.springs.end(),
@@ -122,7 +121,7 @@ double DeformationLimiter::excess(const Vec3Field& position) const {
 
 /// False when the direct solver is to do it instead; otherwise the tolerance is reached or the sweeps are
 /// used up.
-bool DeformationLimiter::sweep_all(LimiterReport& report, Vec3Field& position) {
+bool DeformationLimiter::sweep_all(const ClothSystem& system, LimiterReport& report, Vec3Field& position) {
   const bool may_give_up = deformation_.solver == "auto" && !unreachable_;
   direct_cost_ = 0;
   double at_last_guess = 0;
@@ -136,7 +135,7 @@ bool DeformationLimiter::sweep_all(LimiterReport& report, Vec3Field& position) {
       const double decay = std::log(at_last_guess / found) / sweeps_per_guess;
       const double remaining = decay > 0 ? std::log(found / deformation_.tolerance) / decay
                                          : std::numeric_limits<double>::infinity();
-      if (direct_is_cheaper(remaining, report.sweeps)) return false;
+      if (direct_is_cheaper(system, remaining, report.sweeps)) return false;
     }
     at_last_guess = found;
   }
@@ -144,14 +143,20 @@ bool DeformationLimiter::sweep_all(LimiterReport& report, Vec3Field& position) {
   return true;
 }
 
+/// Most cloths never ask for it, and its list of springs is as large as all else that the limiter holds.
+NearestShape& DeformationLimiter::nearest(const ClothSystem& system) {
+  if (!nearest_) nearest_.emplace(system, limited_runs(deformation_, system), deformation_.rate);
+  return *nearest_;
+}
+
 /// Also true where the sweeps left would not do, and where as many have gone by as the direct solver costs;
 /// never where that costs more than its budget.
-bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) {
+bool DeformationLimiter::direct_is_cheaper(const ClothSystem& system, double remaining_sweeps, int sweeps) {
   if (direct_cost_ == 0) {
     double springs = 0;
     for (const SpringBatch& piece : pieces_) springs += piece.row.count;
-    direct_cost_ =
-        direct_cost_factor * std::pow(static_cast<double>(nearest_.working_count(before_)), 1.5) / springs;
+    direct_cost_ = direct_cost_factor *
+                   std::pow(static_cast<double>(nearest(system).working_count(before_)), 1.5) / springs;
   }
   const double most = static_cast<double>(deformation_.max_sweeps);
   if (direct_cost_ > direct_budget * most) return false;
@@ -162,14 +167,14 @@ bool DeformationLimiter::direct_is_cheaper(double remaining_sweeps, int sweeps) 
 void DeformationLimiter::solve_directly(const ClothSystem& system, LimiterReport& report,
                                         Vec3Field& position) {
   report.direct_iterations =
-      nearest_.find(system, deformation_.tolerance, position, !unreachable_).iterations;
+      nearest(system).find(system, deformation_.tolerance, position, !unreachable_).iterations;
 }
 
 LimiterReport DeformationLimiter::apply(const ClothSystem& system, double time_step, ClothState& state) {
   LimiterReport report;
   before_ = state.position;
   begin_sweeps(system.rows);
-  swept_ = deformation_.solver != "direct" && sweep_all(report, state.position);
+  swept_ = deformation_.solver != "direct" && sweep_all(system, report, state.position);
   if (!swept_) {
     state.position = before_;
     solve_directly(system, report, state.position);

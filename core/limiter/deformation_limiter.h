@@ -58,8 +58,9 @@ class DeformationLimiter {
   bool has_changed(const SpringBatch& batch, std::int64_t since) const;
   double shorten(const SpringBatch& batch, double relaxation, Vec3Field& position) const;
   double sweep(double relaxation, Vec3Field& position);
-  bool sweep_all(LimiterReport& report, Vec3Field& position);
-  bool direct_is_cheaper(double remaining_sweeps, int sweeps);
+  bool sweep_all(const ClothSystem& system, LimiterReport& report, Vec3Field& position);
+  NearestShape& nearest(const ClothSystem& system);
+  bool direct_is_cheaper(const ClothSystem& system, double remaining_sweeps, int sweeps);
   void solve_directly(const ClothSystem& system, LimiterReport& report, Vec3Field& position);
   void change_velocity(const ClothSystem& system, double time_step, ClothState& state) const;
   bool has_moved(int row) const { return !swept_ || last_move_[static_cast<std::size_t>(row)] > 0; }
@@ -68,7 +69,7 @@ class DeformationLimiter {
   const SweepKernels* kernels_;
   std::vector<SpringBatch> pieces_, batches_;  ///< of the limited springs
   std::vector<SpringBatch> elastic_;           ///< pieces of all springs
-  NearestShape nearest_;
+  std::optional<NearestShape> nearest_;        ///< made when it is first asked for
   bool unreachable_ = false;
 
   // Of the present or last call.

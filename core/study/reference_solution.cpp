@@ -117,7 +117,7 @@ void ClothMotion::derivative(double time, const Eigen::VectorXd& y, Eigen::Vecto
   std::copy(from, from + 3 * n, forces_->position.flat().begin());
   std::copy(from + 3 * n, from + 6 * n, forces_->velocity.flat().begin());
   forces_->model.update(forces_->position, time);
-  forces_->model.force(forces_->velocity, forces_->force);
+  forces_->model.force(forces_->position, forces_->velocity, forces_->force);
   ++evaluations_;
   dy.resize(6 * n);
   dy.head(3 * n) = y.tail(3 * n);

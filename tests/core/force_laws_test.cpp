@@ -34,7 +34,7 @@ Vec3Field downhill(const Vec3Field& at, double shift, EnergyOf energy_of) {
 Vec3Field position_force(DirectRun& run) {
   Vec3Field force(run.state.position.size());
   run.forces.update(run.state.position, 0);
-  run.forces.force(Vec3Field(force.size()), force);
+  run.forces.force(run.state.position, Vec3Field(force.size()), force);
   return force;
 }
 
@@ -105,7 +105,7 @@ TEST(Damping, IsSymmetricAndTakesOnly) {
     run.state = crumpled_state(run.system, 0.05, 1, random);
     run.forces.update(run.state.position, 0.3);
     ASSERT_TRUE(run.forces.has_damping());
-    const Eigen::MatrixXd matrix = damping_matrix(run.forces, run.state.position.size());
+    const Eigen::MatrixXd matrix = damping_matrix(run.forces, run.state.position);
     const double scale = matrix.cwiseAbs().maxCoeff();
     EXPECT_LE((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 1e-12 * scale);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
@@ -119,10 +119,10 @@ TEST(Damping, IsWhatTheForceLosesByTheVelocity) {
     DirectRun run(scene, "verlet");
     run.state = crumpled_state(run.system, 0.05, 1, random);
     run.forces.update(run.state.position, 0.3);
-    const Eigen::MatrixXd matrix = damping_matrix(run.forces, run.state.position.size());
+    const Eigen::MatrixXd matrix = damping_matrix(run.forces, run.state.position);
     Vec3Field still(run.state.position.size()), moving(run.state.position.size());
-    run.forces.force(Vec3Field(still.size()), still);
-    run.forces.force(run.state.velocity, moving);
+    run.forces.force(run.state.position, Vec3Field(still.size()), still);
+    run.forces.force(run.state.position, run.state.velocity, moving);
     const Eigen::VectorXd lost = interleaved(still) - interleaved(moving);
     EXPECT_LE((lost - matrix * interleaved(run.state.velocity)).norm(), 1e-12 * lost.norm());
   }
@@ -136,14 +136,14 @@ TEST(Power, IsForceTimesVelocityWithoutTheConservativePart) {
     run.state = crumpled_state(run.system, 0.05, 1, random);
     run.forces.update(run.state.position, 0);
     Vec3Field all(run.state.position.size());
-    run.forces.force(run.state.velocity, all);
+    run.forces.force(run.state.position, run.state.velocity, all);
     Scene conservative = scene;
     conservative.damping.reset(), conservative.air.reset(), conservative.springs->damping = 0;
     DirectRun rest(conservative, "verlet");
     rest.state = run.state;
     const double expected =
         interleaved(run.state.velocity).dot(interleaved(all) - interleaved(position_force(rest)));
-    const Work power = run.forces.power(run.state.velocity);
+    const Work power = run.forces.power(run.state.position, run.state.velocity);
     EXPECT_NEAR(power.air + power.brush + power.pull - power.damping_loss, expected,
                 1e-12 * (1 + std::abs(expected)));
     EXPECT_GE(power.damping_loss, 0);
@@ -159,15 +159,16 @@ TEST(Power, OfTheDampingIsMinusVDv) {
     run.state = crumpled_state(run.system, 0.05, 1, random);
     run.forces.update(run.state.position, 0);
     const Eigen::VectorXd v = interleaved(run.state.velocity);
-    const double expected = v.dot(damping_matrix(run.forces, run.state.position.size()) * v);
-    EXPECT_NEAR(run.forces.power(run.state.velocity).damping_loss, expected, 1e-12 * expected);
+    const double expected = v.dot(damping_matrix(run.forces, run.state.position) * v);
+    EXPECT_NEAR(run.forces.power(run.state.position, run.state.velocity).damping_loss, expected,
+                1e-12 * expected);
   }
 }
 
 /// The largest residual of (m + weight D) v = m known + weight p over the free particles.
 double residual_of(DirectRun& run, double weight, const Vec3Field& known, const Vec3Field& velocity) {
   Vec3Field force(known.size());
-  run.forces.force(velocity, force);  // p - D v
+  run.forces.force(run.state.position, velocity, force);  // p - D v
   double largest = 0;
   for (std::size_t i = 0; i < known.size(); ++i)
     if (!run.system.pinned[i])
@@ -184,9 +185,9 @@ TEST(CentredVelocity, SolvesItsEquationForEveryCombinationWithPins) {
       run.state = crumpled_state(run.system, 0.05, 1, random);
       if (pulled) run.forces.set_pull(Pull{9, {1, 1, 1}}, 30, 0.8);
       run.forces.update(run.state.position, 0.3);
-      Vec3Field velocity = run.state.velocity;  // the guess
+      Vec3Field velocity = run.state.velocity, guess(velocity.size());
       const double weight = 0.02;
-      const int iterations = run.forces.centred_velocity(weight, run.state.velocity, velocity);
+      const int iterations = run.forces.centred_velocity(weight, run.state.position, velocity, guess);
       const double scale = run.system.mass.front() * largest_norm(run.state.velocity);
       EXPECT_LE(residual_of(run, weight, run.state.velocity, velocity), 1e-11 * scale);
       EXPECT_EQ(iterations > 0, scene.springs->damping > 0);

@@ -21,7 +21,7 @@ constexpr double spacing = 0.1;  // m
 Vec3Field force_in(DirectRun& run, double time = 0) {
   Vec3Field force(run.state.position.size());
   run.forces.update(run.state.position, time);
-  run.forces.force(run.state.velocity, force);
+  run.forces.force(run.state.position, run.state.velocity, force);
   return force;
 }
 
@@ -48,9 +48,9 @@ TEST(SpringDamping, ByRunsIsTheSumOverTheSprings) {
     SpringDamping damping(0.7);
     Vec3Field product(state.position.size()), none(state.position.size()), expected;
     damping.update(system, state.position, 0, none);
-    damping.add_damping(state.velocity, product);
+    damping.add_damping(state.position, state.velocity, product);
     Work power;
-    damping.add_power(state.velocity, power);
+    damping.add_power(state.position, state.velocity, power);
     const double loss = damper_product(system, 0.7, state, expected);
     EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected));
     EXPECT_NEAR(power.damping_loss, loss, 1e-13 * loss);

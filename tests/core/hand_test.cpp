@@ -50,7 +50,7 @@ TEST(BrushFalloff, IsZeroBehindTheEye) {
 Vec3Field force_in(DirectRun& run) {
   Vec3Field force(run.state.position.size());
   run.forces.update(run.state.position, 0);
-  run.forces.force(run.state.velocity, force);
+  run.forces.force(run.state.position, run.state.velocity, force);
   return force;
 }
 
@@ -84,7 +84,7 @@ TEST(Brush, WorksAsMuchAsItsForceTimesTheVelocity) {
   run.forces.set_brush(brush_from_above());
   run.state.velocity.set(0, {0, 3, 0});
   force_in(run);
-  const Work power = run.forces.power(run.state.velocity);
+  const Work power = run.forces.power(run.state.position, run.state.velocity);
   EXPECT_NEAR(power.brush, 0.02 * 5 * 3, 1e-15);
   EXPECT_NEAR(power.air, 0.02 * (1 - 3) * 3, 1e-15);
 }
@@ -101,7 +101,7 @@ TEST(Brush, TakenAwayLeavesTheWindAlone) {
   force_in(run);
   run.forces.set_brush(std::nullopt);
   EXPECT_NEAR(force_in(run)[0].y(), 0.02, 1e-17);
-  EXPECT_EQ(run.forces.power(run.state.velocity).brush, 0);
+  EXPECT_EQ(run.forces.power(run.state.position, run.state.velocity).brush, 0);
 }
 
 TEST(Pull, IsADampedSpringOfZeroLengthToItsTarget) {
@@ -111,7 +111,7 @@ TEST(Pull, IsADampedSpringOfZeroLengthToItsTarget) {
   const Vec3Field force = force_in(run);
   EXPECT_LE((force[3] - Vec3(0, 40 * 0.5 - 2 * 1, 0)).norm(), 1e-14);
   for (const std::size_t other : {0u, 1u, 2u}) EXPECT_EQ(force[other].norm(), 0);
-  EXPECT_NEAR(run.forces.power(run.state.velocity).pull, 18, 1e-13);
+  EXPECT_NEAR(run.forces.power(run.state.position, run.state.velocity).pull, 18, 1e-13);
 }
 
 TEST(Pull, OnAPinnedParticleDoesNothing) {

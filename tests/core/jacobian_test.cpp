@@ -18,7 +18,7 @@ constexpr double of_positions = 0.3, of_velocities = 0.7;  // weights of -df/dx 
 Vec3Field force_at(DirectRun& run, const Vec3Field& position, const Vec3Field& velocity) {
   Vec3Field force(position.size());
   run.forces.update(position, run.state.time);
-  run.forces.force(velocity, force);
+  run.forces.force(position, velocity, force);
   return force;
 }
 

@@ -1,6 +1,6 @@
 // Motions of whole cloths, rings and chains that are known in closed form: every method tends to them at its
-// order. numerics.md 2.5, A2 to A5 and A8; a flat sheet in gusts, which tells a wrong stage time; and A9, a motion
-// chosen freely and made exact by the load that it needs.
+// order. numerics.md 2.5, A2 to A5 and A8; a flat sheet in gusts, which tells a wrong stage time; and A9, a
+// motion chosen freely and made exact by the load that it needs.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -335,7 +335,8 @@ TEST_P(ExactMotion, OfAFlatSheetInGustsIsFollowed) {  // v' = -r v + b + d sin(w
   expect_followed(gusts, GetParam(), 1);
 }
 
-/// x*(t) = 1.03 X + A sin(W t) phi(X), phi = 0 on the upper edge: every spring is stretched, every normal turns.
+/// x*(t) = 1.03 X + A sin(W t) phi(X), phi = 0 on the upper edge: every spring is stretched, every normal
+/// turns.
 class ManufacturedMotion {
  public:
   explicit ManufacturedMotion(const ClothSystem& system) : system_(&system) {}
@@ -369,11 +370,11 @@ class ManufacturedLoad : public Force {
 
   void update(const ClothSystem& system, const Vec3Field&, double t, Vec3Field& force) override {
     Vec3Field needed(force.size());
-    own_.update(motion_.position(t), t);
-    own_.force(motion_.velocity(t), needed);
+    const Vec3Field position = motion_.position(t);
+    own_.update(position, t);
+    own_.force(position, motion_.velocity(t), needed);
     const Vec3Field acceleration = motion_.acceleration(t);
-    for (std::size_t i = 0; i < force.size(); ++i)
-      force.add(i, system.mass[i] * acceleration[i] - needed[i]);
+    for (std::size_t i = 0; i < force.size(); ++i) force.add(i, system.mass[i] * acceleration[i] - needed[i]);
   }
 
  private:

@@ -32,7 +32,7 @@ double equation_residual(DirectRun& run, const Vec3Field& before, double weight,
                          const Vec3Field& velocity, double time) {
   Vec3Field force(position.size());
   run.forces.update(position, time);
-  run.forces.force(velocity, force);
+  run.forces.force(position, velocity, force);
   double largest = 0;
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!run.system.pinned[i])

@@ -183,7 +183,7 @@ TEST(Projective, SolvesTheStepEquationsWithEveryForceAndTheHand) {
   run.advance(1, h);
   Vec3Field force(start.position.size());
   run.forces.update(run.state.position, h);
-  run.forces.force(run.state.velocity, force);
+  run.forces.force(run.state.position, run.state.velocity, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (run.system.pinned[i]) continue;
     const Vec3 gained = run.state.velocity[i] - start.velocity[i];

@@ -42,7 +42,7 @@ void DirectRun::advance(int steps, double step) {
 Vec3Field DirectRun::acceleration() {
   Vec3Field force(state.position.size()), result(state.position.size());
   forces.update(state.position, state.time);
-  forces.force(state.velocity, force);
+  forces.force(state.position, state.velocity, force);
   add_acceleration(system, 1, force, result);
   return result;
 }

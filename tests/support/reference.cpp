@@ -122,15 +122,16 @@ double largest_eigenfrequency(const ClothSystem& system, const Vec3Field& positi
   return std::sqrt(solver.eigenvalues().maxCoeff() / system.mass.front());
 }
 
-Eigen::MatrixXd damping_matrix(const ForceModel& forces, std::size_t particles) {
+Eigen::MatrixXd damping_matrix(const ForceModel& forces, const Vec3Field& position) {
+  const std::size_t particles = position.size();
   const auto size = 3 * static_cast<Eigen::Index>(particles);
   Eigen::MatrixXd matrix(size, size);
   Vec3Field velocity(particles), at_rest(particles), moving(particles);
-  forces.force(velocity, at_rest);
+  forces.force(position, velocity, at_rest);
   for (Eigen::Index column = 0; column < size; ++column) {
     velocity.fill(0);
     velocity.set(static_cast<std::size_t>(column / 3), Vec3::Unit(column % 3));
-    forces.force(velocity, moving);
+    forces.force(position, velocity, moving);
     matrix.col(column) = interleaved(at_rest) - interleaved(moving);
   }
   return matrix;

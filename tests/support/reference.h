@@ -37,8 +37,8 @@ Eigen::MatrixXd spring_hessian(const ClothSystem& system, const Vec3Field& posit
 /// The largest circular frequency of the free particles at this configuration, in 1/s.
 double largest_eigenfrequency(const ClothSystem& system, const Vec3Field& position);
 
-/// D of the forces at their last update, column by column.
-Eigen::MatrixXd damping_matrix(const ForceModel& forces, std::size_t particles);
+/// D of the forces at their last update, whose positions are `position`, column by column.
+Eigen::MatrixXd damping_matrix(const ForceModel& forces, const Vec3Field& position);
 
 Eigen::VectorXd interleaved(const Vec3Field& field);
 

@@ -58,7 +58,7 @@ void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, cons
   position = *equation.position;
   add_scaled(equation.weight, velocity, position);
   forces.update(position, equation.time);
-  forces.force(velocity, force_);
+  forces.force(position, velocity, force_);
   ++report.force_evaluations;
   const std::span<const double> v = velocity.flat(), v0 = equation.velocity->flat(), f = force_.flat();
   const auto r = residual_.flat();

@@ -16,7 +16,7 @@ IntegratorReport PrintedRk4::step(const ClothSystem& system, ForceModel& forces,
   stage_velocity_ = next_velocity_ = state.velocity;
   for (std::size_t s = 0; s < nodes.size(); ++s) {
     forces.update(stage_position_, times.begin + nodes[s] * h);
-    forces.force(stage_velocity_, force_);
+    forces.force(stage_position_, stage_velocity_, force_);
     add_scaled(h * weights[s], stage_velocity_, next_position_);
     add_acceleration(system, h * weights[s], force_, next_velocity_);
     if (s + 1 == nodes.size()) break;
@@ -36,7 +36,7 @@ IntegratorReport PrintedVerlet::step(const ClothSystem& system, ForceModel& forc
   const double h = times.step;
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   forces.update(state.position, times.begin);
-  forces.force(state.velocity, force_);
+  forces.force(state.position, state.velocity, force_);
   if (!previous_) {  // the start by Taylor's formula: x(t-h) = x - h v + h^2/2 a
     previous_ = state.position;
     add_scaled(-h, state.velocity, *previous_);

@@ -81,10 +81,10 @@ std::optional<int> run_silently(const std::filesystem::path& program,
 
 }  // namespace
 
-MemoryCost measure_memory(const std::string& method, int size) {
-  MemoryCost cost{.method = method, .size = size, .held = {}, .peak = {}};
+MemoryCost measure_memory(const std::string& method, const std::string& feature, int size) {
+  MemoryCost cost{.method = method, .feature = feature, .size = size, .held = {}, .peak = {}};
   const double particles = static_cast<double>(size) * size;
-  const Scene scene = hanging_cloth(size, method, bare_feature());
+  const Scene scene = hanging_cloth(size, method, feature_named(feature));
   const bool has_peak = begin_peak();
   const auto held_before = allocated_bytes(), resident_before = status_bytes("VmRSS");
   Simulation simulation(scene);

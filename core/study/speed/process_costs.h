@@ -12,14 +12,15 @@ namespace cloth::speed {
 
 /// Bytes per particle of a simulation after its first step.
 struct MemoryCost {
-  std::string method;
-  int size = 0;                ///< particles along an edge
-  std::optional<double> held;  ///< allocated and not given back; none where the C library does not count
+  std::string method, feature;  ///< of the scene, see speed_scenes.h
+  int size = 0;                 ///< particles along an edge
+  std::optional<double> held;   ///< allocated and not given back; none where the C library does not count
   std::optional<double> peak;  ///< most resident memory on the way there; none where the system does not tell
 };
 
-/// Of the hanging cloth, on one thread. Precondition: no other thread allocates meanwhile.
-MemoryCost measure_memory(const std::string& method, int size);
+/// Of the hanging cloth with the feature of this name, on one thread. Precondition: no other thread allocates
+/// meanwhile.
+MemoryCost measure_memory(const std::string& method, const std::string& feature, int size);
 
 struct StartCost {
   std::string what;

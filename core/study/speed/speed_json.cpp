@@ -111,6 +111,7 @@ json scene_json(const SceneSpeed& scene) {
 
 json memory_json(const MemoryCost& row) {
   return {{"method", row.method},
+          {"feature", row.feature},
           {"size", row.size},
           {"held_bytes_per_particle", row.held ? finite(*row.held) : json()},
           {"peak_bytes_per_particle", row.peak ? finite(*row.peak) : json()}};

@@ -60,6 +60,10 @@ class Study {
  private:
   bool has(const char* part) const { return options_.parts.empty() || holds(options_.parts, part); }
 
+  bool asks_for(const Feature& feature) const {
+    return options_.features.empty() || holds(options_.features, feature.name);
+  }
+
   /// A share of the whole, by what it usually takes.
   struct Share {
     double from = 0, to = 1;
@@ -76,7 +80,9 @@ class Study {
       if (!goes_on({0, 0.04}, done++ / static_cast<double>(methods.size()), "memory, " + method))
         return false;
       const int size = options_.quick ? 64 : is_explicit(method) ? 256 : largest_implicit;
-      report_.memory.push_back(measure_memory(method, size));
+      for (const Feature& feature : features())
+        if (feature.name == bare_feature().name || (is_explicit(method) && asks_for(feature)))
+          report_.memory.push_back(measure_memory(method, feature.name, size));
     }
     return true;
   }

@@ -173,13 +173,17 @@ TextTable scene_table(const std::vector<SceneSpeed>& scenes) {
 
 TextTable memory_table(const std::vector<MemoryCost>& memory) {
   TextTable table;
-  table.columns = {
-      {"Method"}, {"Size"}, {"Held (bytes per particle)", true}, {"Peak (bytes per particle)", true}};
+  table.columns = {{"Method"},
+                   {"With"},
+                   {"Size"},
+                   {"Held (bytes per particle)", true},
+                   {"Peak (bytes per particle)", true}};
   const auto bytes = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.0f}", *value) : "-";
   };
   for (const MemoryCost& row : memory)
-    table.rows.push_back({row.method, fmt::format("{0} x {0}", row.size), bytes(row.held), bytes(row.peak)});
+    table.rows.push_back({row.method, feature_named(row.feature).title, fmt::format("{0} x {0}", row.size),
+                          bytes(row.held), bytes(row.peak)});
   return table;
 }
 

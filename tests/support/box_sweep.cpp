@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace cloth::test {
 namespace {
@@ -23,11 +22,15 @@ std::size_t best_axis(const std::vector<Extent>& boxes) {
   return best;
 }
 
-std::vector<std::size_t> by_lower_end(const std::vector<Extent>& boxes, std::size_t axis) {
-  std::vector<std::size_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t i, std::size_t j) { return boxes[i].least[axis] < boxes[j].least[axis]; });
+/// Indices of the boxes that are not apart from `hull`, by where they begin.
+std::vector<std::size_t> by_lower_end(const std::vector<Extent>& boxes, std::size_t axis,
+                                      const Extent& hull) {
+  std::vector<std::pair<double, std::size_t>> begins;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (!apart(boxes[i], hull)) begins.emplace_back(boxes[i].least[axis], i);
+  std::sort(begins.begin(), begins.end());
+  std::vector<std::size_t> order;
+  for (const auto& begin : begins) order.push_back(begin.second);
   return order;
 }
 
@@ -36,7 +39,8 @@ std::vector<std::size_t> by_lower_end(const std::vector<Extent>& boxes, std::siz
 template <class Found>
 void sweep(const std::vector<Extent>& first, const std::vector<Extent>& second, std::size_t axis,
            bool ties_count, const Found& found) {
-  const std::vector<std::size_t> outer = by_lower_end(first, axis), inner = by_lower_end(second, axis);
+  const std::vector<std::size_t> outer = by_lower_end(first, axis, hull_of(second)),
+                                 inner = by_lower_end(second, axis, hull_of(first));
   std::size_t begin = 0;
   for (const std::size_t i : outer) {
     const double from = first[i].least[axis], to = first[i].most[axis];
@@ -50,6 +54,16 @@ void sweep(const std::vector<Extent>& first, const std::vector<Extent>& second, 
 }
 
 }  // namespace
+
+Extent hull_of(const std::vector<Extent>& boxes) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Extent hull{{none, none, none}, {-none, -none, -none}};
+  for (const Extent& box : boxes)
+    for (std::size_t k = 0; k < 3; ++k)
+      hull.least[k] = std::min(hull.least[k], box.least[k]),
+      hull.most[k] = std::max(hull.most[k], box.most[k]);
+  return hull;
+}
 
 std::vector<IndexPair> overlaps_by_sweep(const std::vector<Extent>& a, const std::vector<Extent>& b) {
   const std::size_t axis = best_axis(a.size() > b.size() ? a : b);

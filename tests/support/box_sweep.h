@@ -19,6 +19,9 @@ inline bool apart(const Extent& a, const Extent& b) {
   return false;
 }
 
+/// Around all of them; of none, an extent that is apart from every other.
+Extent hull_of(const std::vector<Extent>& boxes);
+
 /// Indices of a and b.
 using IndexPair = std::pair<std::size_t, std::size_t>;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "support/box_sweep.h"
@@ -28,13 +29,17 @@ Extent extent_of(const Points&... points) {
 
 using Edge = std::array<int, 2>;
 
-/// A mesh with all that the loops ask for again and again.
+/// A mesh with all that the loops ask for again and again; or of it what is not apart from `within`.
 struct Features {
-  explicit Features(const TriangleMesh& given) : mesh(given) {
-    for (const Triangle& t : mesh.triangles) {
-      triangle_extents.push_back(extent_of(at(t[0]), at(t[1]), at(t[2])));
-      for (std::size_t k = 0; k < 3; ++k)
-        edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  explicit Features(const TriangleMesh& given, const std::optional<Extent>& within = {}) : mesh(given) {
+    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+      const Triangle& t = mesh.triangles[k];
+      const Extent extent = extent_of(at(t[0]), at(t[1]), at(t[2]));
+      if (within && apart(extent, *within)) continue;
+      triangles.push_back(k);
+      triangle_extents.push_back(extent);
+      for (std::size_t i = 0; i < 3; ++i)
+        edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -48,6 +53,7 @@ struct Features {
   }
 
   const TriangleMesh& mesh;
+  std::vector<std::size_t> triangles;  ///< their indices in the mesh
   std::vector<Extent> triangle_extents;
   std::vector<Edge> edges;
   std::vector<Extent> edge_extents;
@@ -73,8 +79,9 @@ void count_edges_through(const Features& edges, const Features& triangles, const
                          const std::string& of_triangles, Search search, Count& count) {
   for (const auto& [e, t] : overlaps(search, edges.edge_extents, triangles.triangle_extents)) {
     const Edge& edge = edges.edges[e];
-    if (triangles.meets(edges.at(edge[0]), edges.at(edge[1]), triangles.mesh.triangles[t]))
-      add(count, edge_name(edge) + of_edges + " and " + triangle_name(t) + of_triangles);
+    const std::size_t triangle = triangles.triangles[t];
+    if (triangles.meets(edges.at(edge[0]), edges.at(edge[1]), triangles.mesh.triangles[triangle]))
+      add(count, edge_name(edge) + of_edges + " and " + triangle_name(triangle) + of_triangles);
   }
 }
 
@@ -201,7 +208,10 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const V
 }
 
 Count crossings(const TriangleMesh& cloth, const TriangleMesh& obstacle, Search search) {
-  const Features soft(cloth), hard(obstacle);
+  const Features soft(cloth);
+  std::optional<Extent> reach;
+  if (search == Search::sweep) reach = hull_of(soft.triangle_extents);
+  const Features hard(obstacle, reach);
   Count count;
   count_edges_through(soft, hard, " of the cloth", " of the obstacle", search, count);
   count_edges_through(hard, soft, " of the obstacle", " of the cloth", search, count);

@@ -16,7 +16,7 @@ namespace {
 /// Relative to the right-hand side; far below any method's error, so that the order of the step is not
 /// touched.
 constexpr double tolerance = 1e-13;
-constexpr int max_iterations = 200;
+constexpr int max_iterations = 1000;
 
 /// m v + weight p
 void right_hand_side(const double* mass, double weight, const Strip<const double>& v,

@@ -48,7 +48,7 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
   for (const auto& scene : json["scenes"]) EXPECT_GT(scene["simulated_per_wall"], 0) << scene.dump();
   EXPECT_EQ(json["memory"].size(), 7u) << "bare, and with each thing that a scene may have";
   for (const auto& row : json["memory"])
-    EXPECT_EQ(row["held_bytes_per_particle"].is_null() || row["held_bytes_per_particle"] > 48, true)
+    EXPECT_TRUE(row["held_bytes_per_particle"].is_null() || row["held_bytes_per_particle"] > 48)
         << row.dump();
   ASSERT_EQ(json["start"].size(), 3u);
   for (const auto& start : json["start"]) EXPECT_GT(start["ms"]["median"], 0) << start.dump();

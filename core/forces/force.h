@@ -56,8 +56,7 @@ class Force {
   /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
   virtual void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const;
 
-  /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx, to
-  /// `to`.
+  /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx.
   virtual void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                                  const LinearisationWeights& weights, Linearisation& to) const;
 

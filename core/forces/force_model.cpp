@@ -234,16 +234,28 @@ NodeDamping ForceModel::damping_parts() const {
   return parts;
 }
 
-/// Returns the power of the dampers along springs where a sweep computes them.
+bool ForceModel::is_swept(const Force& force) const {
+  return sweeps_dampers() && &force == spring_damping_;
+}
+
+/// product = D v of the dampers along springs where a sweep computes them, else 0. Returns what they take, in
+/// W.
+double ForceModel::swept_dampers(const Vec3Field& position, const Vec3Field& velocity,
+                                 Vec3Field& product) const {
+  if (sweeps_dampers()) {
+    if (product.size() != velocity.size()) product = Vec3Field(velocity.size());
+    return sweep_->damp(spring_damping_->damping(), position, velocity, product);
+  }
+  clear(product, velocity.size());
+  return 0;
+}
+
+/// product = D v. Returns the part of swept_dampers().
 double ForceModel::damping_product(const Vec3Field& position, const Vec3Field& velocity,
                                    Vec3Field& product) const {
-  double dampers = 0;
-  if (sweeps_dampers())
-    dampers = sweep_->damp(spring_damping_->damping(), position, velocity, product);
-  else
-    product.fill(0);
+  const double dampers = swept_dampers(position, velocity, product);
   for (const auto& force : forces_)
-    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_damping(position, velocity, product);
+    if (!is_swept(*force)) force->add_damping(position, velocity, product);
   if (pull_) pull_->add_damping(position, velocity, product);
   return dampers;
 }
@@ -271,10 +283,7 @@ Work ForceModel::force_and_power(const Vec3Field& position, const Vec3Field& vel
 
 Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) const {
   Work power;
-  if (sweeps_dampers()) {
-    if (damper_product_.size() != velocity.size()) damper_product_ = Vec3Field(velocity.size());
-    power.damping_loss = sweep_->damp(spring_damping_->damping(), position, velocity, damper_product_);
-  }
+  if (sweeps_dampers()) power.damping_loss = swept_dampers(position, velocity, product_);
   power += power_beside_dampers(position, velocity);
   return power;
 }
@@ -287,7 +296,7 @@ Work ForceModel::power_beside_dampers(const Vec3Field& position, const Vec3Field
     return power;
   }
   for (const auto& force : forces_)
-    if (!sweeps_dampers() || force.get() != spring_damping_) force->add_power(position, velocity, power);
+    if (!is_swept(*force)) force->add_power(position, velocity, power);
   if (pull_) pull_->add_power(position, velocity, power);
   return power;
 }

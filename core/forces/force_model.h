@@ -116,6 +116,8 @@ class ForceModel {
   bool can_step() const;
   bool sweeps_dampers() const { return sweep_ && spring_damping_; }
   SweepLoads sweep_loads() const;
+  bool is_swept(const Force& force) const;
+  double swept_dampers(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   double damping_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   double coupled_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   Work power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity) const;
@@ -136,11 +138,11 @@ class ForceModel {
   double viscous_ = 0;    ///< N s/m, of every particle
   WorkerTeam* team_ = nullptr;
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
-  std::vector<StageSums> stage_sums_;         ///< scratch
-  mutable Vec3Field damper_product_;          ///< scratch, sized when first needed
-  Vec3Field position_force_;                  ///< sized when first needed
-  std::vector<double> inverse_diagonal_;      ///< 1/kg, scratch
-  Vec3Field residual_, direction_, product_;  ///< scratch, sized when first needed
+  std::vector<StageSums> stage_sums_;     ///< scratch
+  Vec3Field position_force_;              ///< sized when first needed
+  std::vector<double> inverse_diagonal_;  ///< 1/kg, scratch
+  mutable Vec3Field product_;             ///< scratch, sized when first needed
+  Vec3Field residual_, direction_;        ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false;
   std::int64_t evaluations_ = 0;
 };

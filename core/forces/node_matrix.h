@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "cloth/cloth_system.h"
@@ -19,6 +20,10 @@ template <class Number>
 struct Strip {
   std::array<Number*, 3> axis;
   std::size_t count;
+
+  operator Strip<const Number>() const requires(!std::is_const_v<Number>) {
+    return {{axis[0], axis[1], axis[2]}, count};
+  }
 };
 
 inline Strip<double> strip_of(Vec3Field& field, std::size_t first, std::size_t count) {
@@ -128,9 +133,5 @@ class OwnStrip {
  private:
   std::array<std::array<double, strip_length>, 3> values_;
 };
-
-inline Strip<const double> read(const Strip<double>& strip) {
-  return {{strip.axis[0], strip.axis[1], strip.axis[2]}, strip.count};
-}
 
 }  // namespace cloth

@@ -7,8 +7,6 @@
 #include "cloth/sums.h"
 #include "forces/force_model.h"
 #include "forces/node_matrix.h"
-#include "forces/springs.h"
-#include "kernels/spring_sweep.h"
 
 namespace cloth {
 namespace {
@@ -78,9 +76,8 @@ void ForceModel::solve_per_node(double weight, const NodeDamping& damping, Vec3F
   OwnStrip own;
   for_each_strip(velocity.size(), [&](std::size_t first, std::size_t count) {
     const Strip<double> v = strip_of(velocity, first, count), rhs = own.of(count);
-    right_hand_side(system_->mass.data() + first, weight, read(v), read_strip(position_force_, first, count),
-                    rhs);
-    matrix.solve(first, read(rhs), v);
+    right_hand_side(system_->mass.data() + first, weight, v, read_strip(position_force_, first, count), rhs);
+    matrix.solve(first, rhs, v);
   });
   if (holds) {
     const Vec3 n = damping.normal ? (*damping.normal)[held] : Vec3::Zero();
@@ -93,20 +90,16 @@ void ForceModel::solve_per_node(double weight, const NodeDamping& damping, Vec3F
 /// product = the part of D v that couples particles, and the hand's. Returns what it takes, in W.
 double ForceModel::coupled_product(const Vec3Field& position, const Vec3Field& velocity,
                                    Vec3Field& product) const {
-  double taken = 0;
-  if (sweeps_dampers())
-    taken = sweep_->damp(spring_damping_->damping(), position, velocity, product);
-  else
-    product.fill(0);
+  const double dampers = swept_dampers(position, velocity, product);
   bool is_all = sweeps_dampers() && !pull_;
   for (const auto& force : forces_) {
     NodeDamping unused;
-    if ((sweeps_dampers() && force.get() == spring_damping_) || force->add_node_damping(unused)) continue;
+    if (is_swept(*force) || force->add_node_damping(unused)) continue;
     force->add_damping(position, velocity, product);
     is_all = false;
   }
   if (pull_) pull_->add_damping(position, velocity, product);
-  return is_all ? taken : cloth::dot(velocity.flat(), product.flat());
+  return is_all ? dampers : cloth::dot(velocity.flat(), product.flat());
 }
 
 /// `product` holds a force for the guess.
@@ -121,10 +114,9 @@ int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec
   for_each_strip(size, [&](std::size_t first, std::size_t count) {
     const Strip<double> v = strip_of(velocity, first, count), r = strip_of(residual_, first, count),
                         z = own.of(count);
-    right_hand_side(system_->mass.data() + first, weight, read(v), read_strip(position_force_, first, count),
-                    r);
-    matrix.solve(first, read(r), z);
-    goal += dot(read(r), z);
+    right_hand_side(system_->mass.data() + first, weight, v, read_strip(position_force_, first, count), r);
+    matrix.solve(first, r, z);
+    goal += dot(r, z);
     accelerate(weight, system_->inverse_mass.data() + first, read_strip(product, first, count), v);
   });
   goal *= tolerance * tolerance;
@@ -135,9 +127,9 @@ int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec
     const Strip<double> r = strip_of(residual_, first, count), d = strip_of(direction_, first, count);
     matrix.subtract_product(first, 1, weight, read_strip(velocity, first, count),
                             read_strip(product, first, count), r);
-    matrix.solve(first, read(r), d);
-    slope += dot(read(r), d);
-    curvature += matrix.square(first, read(d));
+    matrix.solve(first, r, d);
+    slope += dot(r, d);
+    curvature += matrix.square(first, d);
   });
 
   int iterations = 0;
@@ -151,16 +143,16 @@ int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec
       const auto d = read_strip(direction_, first, count);
       advance(length, d, strip_of(velocity, first, count));
       matrix.subtract_product(first, length, weight, d, read_strip(product, first, count), r);
-      matrix.solve(first, read(r), z);
-      next_slope += dot(read(r), z);
+      matrix.solve(first, r, z);
+      next_slope += dot(r, z);
     });
     const double keep = next_slope / slope;
     curvature = 0;
     for_each_strip(size, [&](std::size_t first, std::size_t count) {
       const Strip<double> d = strip_of(direction_, first, count), z = own.of(count);
       matrix.solve(first, read_strip(residual_, first, count), z);
-      turn(keep, read(z), d);
-      curvature += matrix.square(first, read(d));
+      turn(keep, z, d);
+      curvature += matrix.square(first, d);
     });
     slope = next_slope;
     ++iterations;

@@ -35,12 +35,10 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
 
 /// The force and its power; the positions are those of the last update.
 void Verlet::evaluate(ForceModel& forces, const ClothState& state) {
-  if (forces.has_damping()) {
-    if (force_.size() != state.velocity.size()) force_ = Vec3Field(state.velocity.size());
+  if (forces.has_damping())
     power_ = forces.force_and_power(state.position, state.velocity, force_);
-  } else if (forces.has_power()) {
+  else if (forces.has_power())
     power_ = forces.power(state.position, state.velocity);
-  }
   holds_force_ = true;
 }
 
@@ -64,7 +62,7 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
                               const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
   forces.update(state.position, times.end);
-  evaluate(forces, state);
+  if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   finish_velocity(system, forces, 0.5 * times.step, state);
 }
 
@@ -72,7 +70,7 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
 /// keep a speed of some h^2 g times damping over mass.
 void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                const Vec3Field& half_velocity, ClothState& state) {
-  evaluate(forces, state);
+  if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   holds_force_ = false;
   state.velocity = half_velocity;
   add_acceleration(system, 0.5 * times.step, force(forces), state.velocity);

@@ -15,6 +15,12 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// The bare cloth is always there: ratios need it.
+bool asks_for(const SpeedOptions& options, const Feature& feature) {
+  return options.features.empty() || holds(options.features, feature.name) ||
+         feature.name == bare_feature().name;
+}
+
 /// Methods whose step is a fixed number of force evaluations.
 bool is_explicit(const std::string& method) {
   return facts_of(method).evaluations_per_step > 0;
@@ -60,10 +66,6 @@ class Study {
  private:
   bool has(const char* part) const { return options_.parts.empty() || holds(options_.parts, part); }
 
-  bool asks_for(const Feature& feature) const {
-    return options_.features.empty() || holds(options_.features, feature.name);
-  }
-
   /// A share of the whole, by what it usually takes.
   struct Share {
     double from = 0, to = 1;
@@ -81,7 +83,7 @@ class Study {
         return false;
       const int size = options_.quick ? 64 : is_explicit(method) ? 256 : largest_implicit;
       for (const Feature& feature : features())
-        if (feature.name == bare_feature().name || (is_explicit(method) && asks_for(feature)))
+        if (asks_for(options_, feature) && (is_explicit(method) || feature.name == bare_feature().name))
           report_.memory.push_back(measure_memory(method, feature.name, size));
     }
     return true;
@@ -185,10 +187,8 @@ std::vector<Wanted> wanted_rows(const SpeedOptions& options, int size) {
   std::vector<Wanted> wanted;
   for (const int threads : threads_of(options)) {
     const auto add = [&](const std::string& method, const Feature& feature) {
-      const bool asked = options.features.empty() || holds(options.features, feature.name) ||
-                         feature.name == bare_feature().name;
       const bool worth = is_explicit(method) || (any_size && threads == 1);
-      if (asked && worth) wanted.push_back({method, feature.name, threads});
+      if (asks_for(options, feature) && worth) wanted.push_back({method, feature.name, threads});
     };
     for (const std::string& method : options.methods.empty() ? integrator_names() : options.methods)
       add(method, bare_feature());

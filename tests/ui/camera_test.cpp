@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace clothlab;
+#include "listed_test.h"
+
+namespace clothlab::test::camera_test {
 
 class CameraTest : public QObject {
   Q_OBJECT
@@ -67,5 +69,8 @@ class CameraTest : public QObject {
   }
 };
 
-QTEST_MAIN(CameraTest)
+const Listed listed{"camera_test", test_main<CameraTest>};
+
+}  // namespace clothlab::test::camera_test
+
 #include "camera_test.moc"

@@ -12,7 +12,7 @@
 #include "charts/chart_panel.h"
 #include "charts/live_chart.h"
 
-namespace clothlab::chart_test {
+namespace clothlab::test {
 
 using Panel = ChartPanel;
 
@@ -82,4 +82,4 @@ struct Bench {
   }
 };
 
-}  // namespace clothlab::chart_test
+}  // namespace clothlab::test

@@ -10,8 +10,9 @@
 #include "charts/nice_range.h"
 #include "charts/sample_series.h"
 #include "charts/time_view.h"
+#include "listed_test.h"
 
-using namespace clothlab;
+namespace clothlab::test::chart_data_test {
 
 namespace {
 
@@ -293,5 +294,8 @@ void ChartDataTest::the_last_minute_follows_and_the_whole_run_begins_at_its_star
   QVERIFY(view.shown({0, 500}).low <= 500);  // the run cannot be lost out of sight
 }
 
-QTEST_MAIN(ChartDataTest)
+const Listed listed{"chart_data_test", test_main<ChartDataTest>};
+
+}  // namespace clothlab::test::chart_data_test
+
 #include "chart_data_test.moc"

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "chart_bench.h"
+#include "listed_test.h"
 #include "theme/theme.h"
 
 #ifdef Q_OS_UNIX
@@ -19,8 +20,7 @@
 #include <csignal>
 #endif
 
-using namespace clothlab;
-using namespace clothlab::chart_test;
+namespace clothlab::test::chart_export_test {
 
 namespace {
 
@@ -198,5 +198,8 @@ void ChartExportTest::a_full_disk_leaves_the_old_file_alone() {
 #endif
 }
 
-QTEST_MAIN(ChartExportTest)
+const Listed listed{"chart_export_test", test_main<ChartExportTest>};
+
+}  // namespace clothlab::test::chart_export_test
+
 #include "chart_export_test.moc"

@@ -8,10 +8,10 @@
 #include <algorithm>
 
 #include "chart_bench.h"
+#include "listed_test.h"
 #include "theme/theme.h"
 
-using namespace clothlab;
-using namespace clothlab::chart_test;
+namespace clothlab::test::chart_test {
 
 namespace {
 
@@ -390,5 +390,8 @@ void ChartTest::a_tiny_panel_survives() {
   }
 }
 
-QTEST_MAIN(ChartTest)
+const Listed listed{"chart_test", test_main<ChartTest>};
+
+}  // namespace clothlab::test::chart_test
+
 #include "chart_test.moc"

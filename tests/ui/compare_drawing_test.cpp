@@ -4,12 +4,13 @@
 #include <map>
 
 #include "compare_bench.h"
+#include "listed_test.h"
 #include "support/timed_application.h"
 #include "theme/theme.h"
 #include "viewport/drawing_turns.h"
 #include "viewport/gl/gl_probe.h"
 
-namespace clothlab::test {
+namespace clothlab::test::compare_drawing_test {
 namespace {
 
 TimedApplication& application() {
@@ -150,12 +151,8 @@ class CompareDrawingTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"compare_drawing_test", test_main<CompareDrawingTest, TimedApplication>};
 
-int main(int argc, char** argv) {
-  TimedApplication application(argc, argv);
-  clothlab::test::CompareDrawingTest test;
-  return QTest::qExec(&test, argc, argv);
-}
+}  // namespace clothlab::test::compare_drawing_test
 
 #include "compare_drawing_test.moc"

@@ -13,11 +13,12 @@
 #include "compare_bench.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
+#include "listed_test.h"
 #include "main_window/main_window.h"
 #include "theme/theme.h"
 #include "viewport/picking.h"
 
-namespace clothlab::test {
+namespace clothlab::test::compare_test {
 namespace {
 
 std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path& path) {
@@ -328,7 +329,8 @@ class CompareTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"compare_test", test_main<CompareTest>};
 
-QTEST_MAIN(clothlab::test::CompareTest)
+}  // namespace clothlab::test::compare_test
+
 #include "compare_test.moc"

@@ -4,11 +4,12 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "listed_test.h"
 #include "scene/scene_edits.h"
 #include "viewport/obstacle_handle.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::contact_view_test {
 namespace {
 
 /// A small cloth hung by two corners; a ball beside it.
@@ -311,7 +312,8 @@ class ContactViewTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"contact_view_test", test_main<ContactViewTest>};
 
-QTEST_MAIN(clothlab::test::ContactViewTest)
+}  // namespace clothlab::test::contact_view_test
+
 #include "contact_view_test.moc"

@@ -5,8 +5,10 @@
 #include <limits>
 
 #include "document/lab_document.h"
+#include "listed_test.h"
 
-using namespace clothlab;
+namespace clothlab::test::document_test {
+
 using cloth::NamedPin;
 using cloth::Pin;
 using cloth::PinnedParticle;
@@ -330,5 +332,8 @@ class DocumentTest : public QObject {
   }
 };
 
-QTEST_MAIN(DocumentTest)
+const Listed listed{"document_test", test_main<DocumentTest>};
+
+}  // namespace clothlab::test::document_test
+
 #include "document_test.moc"

@@ -1,8 +1,8 @@
 // Which sections the parameter panel has, and what of it survives when they come and go.
 #include "form_fixture.h"
+#include "listed_test.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::form_sections_test {
 using cloth::Vec3;
 
 class FormSectionsTest : public FormFixture {
@@ -107,5 +107,8 @@ class FormSectionsTest : public FormFixture {
   }
 };
 
-QTEST_MAIN(FormSectionsTest)
+const Listed listed{"form_sections_test", test_main<FormSectionsTest>};
+
+}  // namespace clothlab::test::form_sections_test
+
 #include "form_sections_test.moc"

@@ -1,8 +1,8 @@
 // The parameter panel's editors, driven by real keys and mouse events.
 #include "form_fixture.h"
+#include "listed_test.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::form_test {
 using cloth::Vec3;
 
 class FormTest : public FormFixture {
@@ -305,5 +305,8 @@ class FormTest : public FormFixture {
   }
 };
 
-QTEST_MAIN(FormTest)
+const Listed listed{"form_test", test_main<FormTest>};
+
+}  // namespace clothlab::test::form_test
+
 #include "form_test.moc"

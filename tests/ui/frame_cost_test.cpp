@@ -5,12 +5,12 @@
 #include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
 
+#include "listed_test.h"
 #include "support/count_allocations.h"
 #include "view_fixture.h"
 #include "viewport/gl/cloth_renderer.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::frame_cost_test {
 
 namespace {
 
@@ -177,5 +177,8 @@ class FrameCostTest : public ViewFixture {
   }
 };
 
-QTEST_MAIN(FrameCostTest)
+const Listed listed{"frame_cost_test", test_main<FrameCostTest>};
+
+}  // namespace clothlab::test::frame_cost_test
+
 #include "frame_cost_test.moc"

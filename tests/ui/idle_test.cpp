@@ -1,9 +1,10 @@
 // A window in which nothing moves does nothing.
 #include <QElapsedTimer>
 
+#include "listed_test.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::idle_test {
 namespace {
 
 /// Since when no timer has fired and nothing has been painted, in any widget of the program.
@@ -75,7 +76,8 @@ class IdleTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"idle_test", test_main<IdleTest>};
 
-QTEST_MAIN(clothlab::test::IdleTest)
+}  // namespace clothlab::test::idle_test
+
 #include "idle_test.moc"

@@ -9,10 +9,11 @@
 #include <QTimer>
 #include <fstream>
 
+#include "listed_test.h"
 #include "params/mesh_button.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::mesh_form_test {
 namespace {
 
 /// A tetrahedron, the same without a face, the same with a face turned round and one of no area, and no mesh.
@@ -244,7 +245,8 @@ class MeshFormTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"mesh_form_test", test_main<MeshFormTest>};
 
-QTEST_MAIN(clothlab::test::MeshFormTest)
+}  // namespace clothlab::test::mesh_form_test
+
 #include "mesh_form_test.moc"

@@ -1,9 +1,9 @@
 // A cloth from a mesh and obstacles of any shape in the 3-D view: drawn, picked, in every look.
 #include "geometry/mesh_repair.h"
+#include "listed_test.h"
 #include "view_fixture.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::mesh_view_test {
 
 namespace {
 
@@ -134,5 +134,8 @@ class MeshViewTest : public ViewFixture {
   }
 };
 
-QTEST_MAIN(MeshViewTest)
+const Listed listed{"mesh_view_test", test_main<MeshViewTest>};
+
+}  // namespace clothlab::test::mesh_view_test
+
 #include "mesh_view_test.moc"

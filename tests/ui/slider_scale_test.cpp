@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "listed_test.h"
 #include "params/number_text.h"
 #include "scene/scene_parameters.h"
 
-using namespace clothlab;
+namespace clothlab::test::slider_scale_test {
 
 namespace {
 
@@ -88,5 +89,8 @@ class SliderScaleTest : public QObject {
   }
 };
 
-QTEST_MAIN(SliderScaleTest)
+const Listed listed{"slider_scale_test", test_main<SliderScaleTest>};
+
+}  // namespace clothlab::test::slider_scale_test
+
 #include "slider_scale_test.moc"

@@ -8,11 +8,12 @@
 #include <QToolTip>
 
 #include "compare_bench.h"
+#include "listed_test.h"
 #include "params/panel_parts.h"
 #include "theme/theme.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::small_window_test {
 namespace {
 
 constexpr QSize small_windows[] = {{1000, 650}, {1100, 700}};
@@ -184,7 +185,8 @@ class SmallWindowTest : public QObject {
   }
 };
 
-}  // namespace clothlab::test
+const Listed listed{"small_window_test", test_main<SmallWindowTest>};
 
-QTEST_MAIN(clothlab::test::SmallWindowTest)
+}  // namespace clothlab::test::small_window_test
+
 #include "small_window_test.moc"

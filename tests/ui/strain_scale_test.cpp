@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace clothlab;
+#include "listed_test.h"
+
+namespace clothlab::test::strain_scale_test {
 
 class StrainScaleTest : public QObject {
   Q_OBJECT
@@ -45,5 +47,8 @@ class StrainScaleTest : public QObject {
   }
 };
 
-QTEST_MAIN(StrainScaleTest)
+const Listed listed{"strain_scale_test", test_main<StrainScaleTest>};
+
+}  // namespace clothlab::test::strain_scale_test
+
 #include "strain_scale_test.moc"

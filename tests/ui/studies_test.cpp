@@ -12,11 +12,12 @@
 #include <QSpinBox>
 #include <QTimer>
 
+#include "listed_test.h"
 #include "studies/studies_panel.h"
 #include "study/study_runs.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::studies_test {
 namespace {
 
 QByteArray content_of(const QString& path) {
@@ -268,7 +269,8 @@ class StudiesTest : public QObject {
   QTemporaryDir folder_;
 };
 
-}  // namespace clothlab::test
+const Listed listed{"studies_test", test_main<StudiesTest>};
 
-QTEST_MAIN(clothlab::test::StudiesTest)
+}  // namespace clothlab::test::studies_test
+
 #include "studies_test.moc"

@@ -17,9 +17,10 @@
 #include <cmath>
 #include <vector>
 
+#include "listed_test.h"
 #include "theme/style_sheet.h"
 
-namespace clothlab {
+namespace clothlab::test::theme_test {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -301,7 +302,8 @@ class ThemeTest : public QObject {
   }
 };
 
-}  // namespace clothlab
+const Listed listed{"theme_test", test_main<ThemeTest>};
 
-QTEST_MAIN(clothlab::ThemeTest)
+}  // namespace clothlab::test::theme_test
+
 #include "theme_test.moc"

@@ -10,11 +10,12 @@
 #include <QTimer>
 
 #include "io/obj_reader.h"
+#include "listed_test.h"
 #include "main_window/cloth_file.h"
 #include "simulation/session_json.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::timeline_test {
 namespace {
 
 void drag_along(TimelineTrack& track, double from, double to) {
@@ -258,7 +259,8 @@ class TimelineTest : public QObject {
   QTemporaryDir folder;
 };
 
-}  // namespace clothlab::test
+const Listed listed{"timeline_test", test_main<TimelineTest>};
 
-QTEST_MAIN(clothlab::test::TimelineTest)
+}  // namespace clothlab::test::timeline_test
+
 #include "timeline_test.moc"

@@ -1,8 +1,8 @@
 // What the mouse means in the 3-D view: pulling, the brush, picking, tools.
+#include "listed_test.h"
 #include "view_fixture.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::view_hand_test {
 
 class ViewHandTest : public ViewFixture {
   Q_OBJECT
@@ -117,5 +117,8 @@ class ViewHandTest : public ViewFixture {
   // ------------------------------------------------------------------------------------------------------
 };
 
-QTEST_MAIN(ViewHandTest)
+const Listed listed{"view_hand_test", test_main<ViewHandTest>};
+
+}  // namespace clothlab::test::view_hand_test
+
 #include "view_hand_test.moc"

@@ -1,9 +1,9 @@
 // Laws of the 3-D view: what is drawn where, and where the camera looks from. Runs on a real display (Xvfb
 // with GLX will do).
+#include "listed_test.h"
 #include "view_fixture.h"
 
-using namespace clothlab;
-using namespace clothlab::test;
+namespace clothlab::test::view_test {
 
 class ViewTest : public ViewFixture {
   Q_OBJECT
@@ -273,5 +273,8 @@ class ViewTest : public ViewFixture {
   }
 };
 
-QTEST_MAIN(ViewTest)
+const Listed listed{"view_test", test_main<ViewTest>};
+
+}  // namespace clothlab::test::view_test
+
 #include "view_test.moc"

@@ -10,12 +10,13 @@
 #include <QPushButton>
 
 #include "io/csv.h"
+#include "listed_test.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_json.h"
 #include "simulation/recorder.h"
 #include "window_bench.h"
 
-namespace clothlab::test {
+namespace clothlab::test::window_test {
 namespace {
 
 QByteArray content_of(const QString& path) {
@@ -358,7 +359,8 @@ class WindowTest : public QObject {
   QTemporaryDir folder;
 };
 
-}  // namespace clothlab::test
+const Listed listed{"window_test", test_main<WindowTest>};
 
-QTEST_MAIN(clothlab::test::WindowTest)
+}  // namespace clothlab::test::window_test
+
 #include "window_test.moc"

@@ -20,6 +20,13 @@ endfunction()
 set(clothlab_common_headers <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <limits> <map> <memory>
   <optional> <set> <span> <string> <utility> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h>)
 
+# For a target of one room, which reads its headers but once where rooms are united.
+function(clothlab_precompile_unless_united target)
+  if(NOT CMAKE_UNITY_BUILD)
+    target_precompile_headers(${target} PRIVATE ${clothlab_common_headers} ${ARGN})
+  endif()
+endfunction()
+
 # Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled as one, so that a new file changes its own room alone.
 # To be called when the target has all its sources.
 function(clothlab_unite_rooms target)

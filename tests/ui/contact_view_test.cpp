@@ -31,6 +31,8 @@ void move(QWidget* on, QPointF at, Qt::MouseButtons buttons = Qt::LeftButton) {
   QApplication::sendEvent(on, &event);
 }
 
+}  // namespace
+
 class Bench : public WindowBench {
  public:
   explicit Bench(bool continuous, const QByteArray& motion = {})
@@ -72,8 +74,6 @@ class Bench : public WindowBench {
     return path;
   }
 };
-
-}  // namespace
 
 class ContactViewTest : public QObject {
   Q_OBJECT

@@ -25,6 +25,8 @@ QByteArray content_of(const QString& path) {
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
 
+}  // namespace
+
 /// The window with the dock open, and the hands that work it.
 class StudiesBench : public WindowBench {
  public:
@@ -83,8 +85,6 @@ class StudiesBench : public WindowBench {
     type("studyFolder", folder);
   }
 };
-
-}  // namespace
 
 class StudiesTest : public QObject {
   Q_OBJECT

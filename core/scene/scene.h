@@ -130,7 +130,7 @@ struct IntegratorChoice {
   std::string method = "verlet";
   std::optional<double> time_step = {};  ///< s; absent: "auto", 80 % of the method's stability limit
   double tolerance = 1e-6;  ///< dormand-prince: of a step's error; Newton's method: of its last change
-  std::int64_t newton_iterations = 200;     ///< most of a step
+  std::int64_t newton_iterations = 500;     ///< most of a step
   std::int64_t projective_iterations = 10;  ///< local and global, of a step
   std::int64_t xpbd_iterations = 1;         ///< over all springs, of a substep
   std::int64_t substeps = 10;               ///< xpbd

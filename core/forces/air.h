@@ -15,6 +15,8 @@ class AirForce : public Force {
   explicit AirForce(const Air& air) : air_(air) {}
 
   void set_brush(const std::optional<BrushGust>& brush) { brush_ = brush; }
+  bool has_brush() const { return brush_.has_value(); }
+  const Air& air() const { return air_; }
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;

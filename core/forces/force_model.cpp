@@ -113,10 +113,24 @@ void ForceModel::update_load(const Vec3Field& position, double time) {
   if (pull_) pull_->update(*system_, position, time, position_force_);
 }
 
-/// What acts beside the elasticity of springs in a whole step.
-SweepLoads ForceModel::sweep_loads() const {
-  return {weight_, viscous_, has_load() ? &position_force_ : nullptr,
-          spring_damping_ ? spring_damping_->damping() : 0};
+/// Whether whole steps of Euler's and Kutta's compute the air on their way, so that nothing is a load.
+bool ForceModel::sweeps_air() const {
+  return air_ && !air_->has_brush() && !pull_ && beside_sweep_.size() == 1 && can_step() &&
+         sweep_->takes_air();
+}
+
+SweptAir ForceModel::swept_air(std::span<const double> times) const {
+  SweptAir air;
+  if (!sweeps_air()) return air;
+  air.drag = air_->air().drag;
+  for (std::size_t k = 0; k < times.size(); ++k) air.wind[k] = wind_at(air_->air(), times[k]);
+  return air;
+}
+
+/// What acts beside the elasticity of springs in a whole step whose forces are taken at `times`.
+SweepLoads ForceModel::sweep_loads(std::span<const double> times) const {
+  return {weight_, viscous_, steps_with_load() ? &position_force_ : nullptr,
+          spring_damping_ ? spring_damping_->damping() : 0, swept_air(times)};
 }
 
 bool ForceModel::can_step() const {
@@ -128,7 +142,7 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
   if (!can_step()) return std::nullopt;
   ++evaluations_;
   Work power;
-  if (has_load()) {
+  if (steps_with_load()) {
     update_load(state.position, time);
     clear(product_, state.position.size());
     for (const Force* force : beside_sweep_) {
@@ -144,14 +158,16 @@ std::optional<double> ForceModel::euler_step(double time, double step, bool drif
     for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
   }
   StepSums sums;
-  sweep_->euler(step, drift_first, sweep_loads(), {&sums, 1}, state);
+  sweep_->euler(step, drift_first, sweep_loads({&time, 1}), {&sums, 1}, state);
   power.damping_loss += viscous_ * sums.before + sums.dampers;
+  power.air += sums.air;
   if (has_power_) work += step * power;
   return sums.after;
 }
 
 bool ForceModel::gains_steps_at_once() const {
-  return can_step() && !has_load() && sweep_->gains_steps_at_once();
+  const bool is_steady = !air_ || !air_->air().gust;
+  return can_step() && !steps_with_load() && is_steady && sweep_->gains_steps_at_once();
 }
 
 void ForceModel::euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state,
@@ -159,17 +175,20 @@ void ForceModel::euler_steps(double step, bool drift_first, std::span<double> sq
   assert(gains_steps_at_once());
   evaluations_ += static_cast<std::int64_t>(squares.size());
   std::vector<StepSums> of_steps(squares.size());
-  sweep_->euler(step, drift_first, sweep_loads(), of_steps, state);
+  constexpr std::array any_time{0.0};
+  sweep_->euler(step, drift_first, sweep_loads(any_time), of_steps, state);
   for (std::size_t k = 0; k < squares.size(); ++k) {
-    squares[k] = of_steps[k].after;
-    if (has_power_) work += step * Work{.damping_loss = viscous_ * of_steps[k].before + of_steps[k].dampers};
+    const StepSums& sums = of_steps[k];
+    squares[k] = sums.after;
+    if (has_power_)
+      work += step * Work{.damping_loss = viscous_ * sums.before + sums.dampers, .air = sums.air};
   }
 }
 
 std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
   if (!steps_verlet()) return std::nullopt;
   ++evaluations_;
-  const double squares = sweep_->verlet(step, sweep_loads(), position_force_, state);
+  const double squares = sweep_->verlet(step, sweep_loads({}), position_force_, state);
   power = power_after(squares);
   return squares;
 }
@@ -177,28 +196,38 @@ std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Wo
 void ForceModel::verlet_steps(double step, std::span<double> squares, ClothState& state) {
   assert(steps_verlet());
   evaluations_ += static_cast<std::int64_t>(squares.size());
-  sweep_->verlet_steps(step, sweep_loads(), squares, position_force_, state);
+  sweep_->verlet_steps(step, sweep_loads({}), squares, position_force_, state);
 }
 
-std::optional<double> ForceModel::runge_kutta_step(double step, ClothState& state, Work& work) {
-  if (!can_step() || has_load()) return std::nullopt;
+std::optional<double> ForceModel::runge_kutta_step(const std::array<double, 4>& times, double step,
+                                                   ClothState& state, Work& work) {
+  if (!can_step() || steps_with_load()) return std::nullopt;
   double squares = 0;
-  runge_kutta_steps(step, {&squares, 1}, state, work);
+  sweep_runge_kutta(times, step, {&squares, 1}, state, work);
   return squares;
 }
 
 void ForceModel::runge_kutta_steps(double step, std::span<double> squares, ClothState& state, Work& work) {
-  assert(can_step() && !has_load());
+  assert(gains_steps_at_once());
+  constexpr std::array<double, 4> any_times{};
+  sweep_runge_kutta(any_times, step, squares, state, work);
+}
+
+void ForceModel::sweep_runge_kutta(const std::array<double, 4>& times, double step, std::span<double> squares,
+                                   ClothState& state, Work& work) {
   evaluations_ += 4 * static_cast<std::int64_t>(squares.size());
   constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   stage_sums_.resize(squares.size());
-  sweep_->runge_kutta(step, sweep_loads(), stage_sums_, state);
+  sweep_->runge_kutta(step, sweep_loads(times), stage_sums_, state);
   for (std::size_t k = 0; k < squares.size(); ++k) {
     const StageSums& sums = stage_sums_[k];
-    double loss = 0;
-    for (std::size_t s = 0; s < weights.size(); ++s)
+    double loss = 0, given = 0;
+    for (std::size_t s = 0; s < weights.size(); ++s) {
       loss += weights[s] * (viscous_ * sums.squares[s] + sums.dampers[s]);
+      given += weights[s] * sums.air[s];
+    }
     work.damping_loss += step * loss;
+    work.air += step * given;
     squares[k] = sums.after;
   }
 }

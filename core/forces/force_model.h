@@ -1,6 +1,7 @@
 // The forces that a scene has, as one f(x, v, t) = p(x, t) - D(x) v. What integrators see.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 namespace cloth {
 
 struct SweepLoads;
+struct SweptAir;
 class AirForce;
 class SpringDamping;
 class SpringSweep;
@@ -95,8 +97,9 @@ class ForceModel {
   void verlet_steps(double step, std::span<double> squares, ClothState& state);
   bool steps_verlet() const { return can_step() && !has_load() && !spring_damping_; }
   Work power_after(double squares) const { return Work{.damping_loss = viscous_ * squares}; }
-  /// Kutta's method of order four. Adds the work.
-  std::optional<double> runge_kutta_step(double step, ClothState& state, Work& work);
+  /// Kutta's method of order four, whose evaluations of the force stand at `times`. Adds the work.
+  std::optional<double> runge_kutta_step(const std::array<double, 4>& times, double step, ClothState& state,
+                                         Work& work);
 
   /// Threads to share whole steps and evaluations among; null: one. Must outlive its use.
   void set_team(WorkerTeam* team, ThreadUse use = ThreadUse::where_they_gain);
@@ -113,9 +116,14 @@ class ForceModel {
   void note_kinds();
   bool has_load() const { return pull_ || !beside_sweep_.empty(); }
   void update_load(const Vec3Field& position, double time);
+  bool sweeps_air() const;
+  bool steps_with_load() const { return has_load() && !sweeps_air(); }
+  SweptAir swept_air(std::span<const double> times) const;
+  void sweep_runge_kutta(const std::array<double, 4>& times, double step, std::span<double> squares,
+                         ClothState& state, Work& work);
   bool can_step() const;
   bool sweeps_dampers() const { return sweep_ && spring_damping_; }
-  SweepLoads sweep_loads() const;
+  SweepLoads sweep_loads(std::span<const double> times) const;
   bool is_swept(const Force& force) const;
   double swept_dampers(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   double damping_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;

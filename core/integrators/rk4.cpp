@@ -16,7 +16,10 @@ constexpr std::array<Stage, 4> kutta{{{0, 1.0 / 6}, {0.5, 1.0 / 3}, {0.5, 1.0 / 
 IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                            ClothState& state, Work& work) {
   const double h = times.step;
-  if (const auto squares = forces.runge_kutta_step(h, state, work))
+  std::array<double, kutta.size()> at;
+  for (std::size_t s = 0; s < kutta.size(); ++s)
+    at[s] = kutta[s].node == 1 ? times.end : times.begin + kutta[s].node * h;
+  if (const auto squares = forces.runge_kutta_step(at, h, state, work))
     return {.force_evaluations = 4, .speed_squares = squares};
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   stage_position_ = state.position;
@@ -25,8 +28,7 @@ IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const 
   next_velocity_ = state.velocity;
 
   for (std::size_t s = 0; s < kutta.size(); ++s) {
-    const double time = kutta[s].node == 1 ? times.end : times.begin + kutta[s].node * h;
-    forces.update(stage_position_, time);
+    forces.update(stage_position_, at[s]);
     work += h * kutta[s].weight * forces.force_and_power(stage_position_, stage_velocity_, force_);
     add_scaled(h * kutta[s].weight, stage_velocity_, next_position_);
     add_acceleration(system, h * kutta[s].weight, force_, next_velocity_);

@@ -50,7 +50,8 @@ constexpr int pitch_of(int columns) {
   return (columns + 7) / 8 * 8 + 8;
 }
 /// Doubles of scratch that a pass needs, for each double of pitch.
-inline constexpr int step_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2);
+inline constexpr int step_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2),
+                     air_scratch_rows = 6;  ///< more, for each evaluation of the force
 
 /// One pass over a band of rows [first, last) of the grid. Everything beyond those is only read.
 struct Pass {
@@ -63,17 +64,25 @@ struct Pass {
   double weight[3] = {0, 0, 0};                         ///< N, of every particle
   double damping = 0;                                   ///< N s/m, viscous
   double spring_damping = 0;                            ///< N s/m, along every spring
+  double air_drag = 0;                                  ///< N s/m, of every particle along its normal
+  double wind[4][3] = {};                               ///< m/s, at every evaluation of the force in a step
   double mass_of_free = 1;                              ///< kg
   double step = 0;                                      ///< s
   bool drift_first = false;   ///< explicit Euler: the position follows the old velocity
   double* scratch = nullptr;  ///< 64-byte aligned
   /// Sums over each row, one array of `rows` after the other: |v|^2 before the step and after it, and what
-  /// the dampers along the springs take before it, in W; of Runge-Kutta |v|^2 at its four stages and after
-  /// the step, and what the dampers take at the stages.
+  /// the dampers along the springs take before it and the air gives, in W; of Runge-Kutta |v|^2 at its four
+  /// stages and after the step, and the powers at the stages.
   double* sums = nullptr;
 };
-enum StepSum { squares_before, squares_after, dampers_before, step_sums };
-enum StageSum { stage_squares = 0, squares_of_result = 4, stage_dampers = 5, stage_sums = 9 };
+enum StepSum { squares_before, squares_after, dampers_before, air_before, step_sums };
+enum StageSum {
+  stage_squares = 0,
+  squares_of_result = 4,
+  stage_dampers = 5,
+  stage_air = 9,
+  stage_sums = 13,
+};
 
 /// The passes of one instruction set.
 struct GridKernels {

@@ -2,6 +2,7 @@
 // Lanes.
 #pragma once
 
+#include "kernels/grid_air.h"
 #include "kernels/grid_rows.h"
 #include "kernels/step_updates.h"
 
@@ -31,11 +32,23 @@ inline Row scratch_row(const Pass& pass, int n) {
   return {x, x + pitch, x + 2 * pitch};
 }
 
-/// The two row buffers of one chain of rows, and the rows' order.
+/// Lane by lane: what a row's dampers take, and what the air gives it.
+struct Powers {
+  V dampers, air;
+};
+
+/// Where a chain keeps its rows of scratch: two for the springs, two for the air if there is any.
+struct ChainPlace {
+  int buffer, air_buffer;
+  int evaluation = 0;  ///< of the step, for the wind
+};
+
+/// The row buffers of one chain of rows, and the rows' order.
 template <Law law>
 class RowChain {
  public:
-  RowChain(const Pass& pass, const Springs& springs, int buffer, int first_row) : pass_(pass) {
+  RowChain(const Pass& pass, const Springs& springs, const ChainPlace& place, int first_row) : pass_(pass) {
+    const int buffer = place.buffer;
     work_.columns = pass.grid.columns;
     work_.a = scratch_row(pass, buffer);
     work_.b = scratch_row(pass, buffer + 1);
@@ -45,29 +58,43 @@ class RowChain {
     has_all_ = pass.grid.springs == (structural_springs | shear_springs | flexion_springs);
     begin(work_.a, load_of(pass, first_row));
     if (first_row + 1 < pass.grid.rows) begin(work_.b, load_of(pass, first_row + 1));
+    if (pass.air_drag > 0)
+      air_.begin(pass, pass.wind[place.evaluation], scratch_row(pass, place.air_buffer),
+                 scratch_row(pass, place.air_buffer + 1));
   }
 
   /// `particles(row)` gives a row's particles; rows must come one after the other. The last two before row
-  /// `first` only add to the buffers what their springs do to the rows from there on. Returns what the row's
-  /// dampers take.
+  /// `first` only add to the buffers what their springs do to the rows from there on.
   template <class ParticlesOf, class Update>
-  CLOTHLAB_INLINE V run(int row, int first, const ParticlesOf& particles, Update& update) {
+  CLOTHLAB_INLINE Powers run(int row, int first, const ParticlesOf& particles, Update& update) {
     const bool own = row >= first;
     const int below = pass_.grid.rows - 1 - row;
     work_.here = particles(row);
     if (below >= 1) work_.below = particles(row + 1), work_.load_below = load_of(pass_, row + 1);
     if (below >= 2) work_.second = particles(row + 2), work_.load_second = load_of(pass_, row + 2);
-    if (has_all_ && own && below >= 2) return row_pass<law, true>(work_, true, update);
+    Powers powers{Lanes::zero(), Lanes::zero()};
+    if (pass_.air_drag > 0) powers.air = push(own, below >= 1);
+    if (has_all_ && own && below >= 2) {
+      powers.dampers = row_pass<law, true>(work_, true, update);
+      return powers;
+    }
     work_.has_below = below >= 1, work_.has_second = below >= 2;
     work_.present = pass_.grid.springs;
     if (below < 2) work_.present &= ~unsigned{down_two};
     if (below < 1) work_.present &= ~unsigned{down_one | shear_springs};
     if (row < first) work_.present &= ~unsigned{right_one | right_two};
     if (row + 1 < first) work_.present &= unsigned{down_two};
-    return row_pass<law, false>(work_, own, update);
+    powers.dampers = row_pass<law, false>(work_, own, update);
+    return powers;
   }
 
  private:
+  V push(bool own, bool has_below) {
+    const Row force = own ? work_.a : Row{};
+    const ConstRow& x = work_.here.position;
+    if (has_below) return air_.run<true>(x, work_.below.position, work_.here.velocity, force);
+    return air_.run<false>(x, {}, work_.here.velocity, force);
+  }
   void begin(const Row& buffer, const ConstRow& load_row) const {
     for (int j = 0; j < work_.columns; j += Lanes::width)
       store(buffer, j, initial<true>(load_row, work_.weight, j, work_.columns - j));
@@ -75,6 +102,7 @@ class RowChain {
 
   const Pass& pass_;
   RowWork work_{};
+  AirRows air_;
   bool has_all_ = false;
 };
 
@@ -89,21 +117,20 @@ inline void store_sum(const Pass& pass, int which, int row, V sum) {
     pass.sums[static_cast<long>(which) * pass.grid.rows + row] = Lanes::sum(sum);
 }
 
-/// before(row), for the band's own rows, then the row's force and `update`, then after(row, what its dampers
-/// take).
+/// before(row), for the band's own rows, then the row's force and `update`, then after(row, powers).
 template <Law law, class Update, class Before, class After>
 void band_pass(const Pass& pass, Update& update, const Before& before, const After& after) {
   const Springs springs(pass);
   const int start = first_row_of_springs(pass.first);
-  RowChain<law> chain(pass, springs, 0, start);
+  RowChain<law> chain(pass, springs, {0, 2}, start);
+  const bool needs_velocity = law != Law::elastic || pass.air_drag > 0;
   const auto particles = [&](int row) -> ParticleRow {
-    if constexpr (law == Law::elastic) return {row_of(pass, pass.position, row), {}};
+    if (!needs_velocity) return {row_of(pass, pass.position, row), {}};
     return {row_of(pass, pass.position, row), row_of(pass, pass.velocity, row)};
   };
   for (int row = start; row < pass.last; ++row) {
     before(row, row >= pass.first);
-    const V loss = chain.run(row, pass.first, particles, update);
-    after(row, loss);
+    after(row, chain.run(row, pass.first, particles, update));
   }
 }
 
@@ -127,10 +154,11 @@ void euler_rows(const Pass& pass) {
         stand_at(pass, row, update);
         update.before = update.after = Lanes::zero();
       },
-      [&](int row, V loss) {
+      [&](int row, const Powers& powers) {
         store_sum(pass, squares_before, row, update.before);
         store_sum(pass, squares_after, row, update.after);
-        if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, loss);
+        if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, powers.dampers);
+        if (pass.air_drag > 0) store_sum(pass, air_before, row, powers.air);
       });
 }
 
@@ -178,7 +206,7 @@ void verlet_band(const Pass& pass) {
         update.inverse_mass = inverse_masses(pass, row);
         update.after = Lanes::zero();
       },
-      [&](int row, V) { store_sum(pass, squares_after, row, update.after); });
+      [&](int row, const Powers&) { store_sum(pass, squares_after, row, update.after); });
 }
 
 void verlet_open_band(const Pass& pass) {
@@ -196,7 +224,7 @@ void verlet_between_band(const Pass& pass) {
         stand_at(pass, row, update);
         update.after = Lanes::zero();
       },
-      [&](int row, V) { store_sum(pass, squares_after, row, update.after); });
+      [&](int row, const Powers&) { store_sum(pass, squares_after, row, update.after); });
 }
 
 void evaluate_band(const Pass& pass) {
@@ -206,7 +234,7 @@ void evaluate_band(const Pass& pass) {
       [&](int row, bool own) {
         if (own) update.force = row_of(pass, pass.force, row);
       },
-      [](int, V) {});
+      [](int, const Powers&) {});
 }
 
 void damp_band(const Pass& pass) {
@@ -216,7 +244,7 @@ void damp_band(const Pass& pass) {
       [&](int row, bool own) {
         if (own) update.product = row_of(pass, pass.force, row);
       },
-      [&](int row, V loss) { store_sum(pass, dampers_before, row, loss); });
+      [&](int row, const Powers& powers) { store_sum(pass, dampers_before, row, powers.dampers); });
 }
 
 void sum_squares_band(const Pass& pass) {
@@ -240,11 +268,13 @@ void runge_kutta_rows(const Pass& pass) {
   const Springs springs(pass);
   const int rows = pass.grid.rows;
   constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * stage_count;
+  constexpr int first_sum_row = first_ring_row + 3 * stage_ring * 2,
+                first_air_row = first_sum_row + sum_ring * 2;
   const auto stage_row = [&](int stage, int row, int field) {  // of stages 1, 2, 3
     return scratch_row(pass, first_ring_row + ((stage - 1) * stage_ring + row % stage_ring) * 2 + field);
   };
   const auto sum_row = [&](int row, int field) {
-    return scratch_row(pass, first_ring_row + 3 * stage_ring * 2 + (row % sum_ring) * 2 + field);
+    return scratch_row(pass, first_sum_row + (row % sum_ring) * 2 + field);
   };
   const auto state_row = [&](int row, int field) {
     return row_of(pass, field == 0 ? pass.position : pass.velocity, row);
@@ -257,10 +287,10 @@ void runge_kutta_rows(const Pass& pass) {
     start[s] = first_row_of_springs(begin[s]);
     end[s] = pass.last + reach > rows ? rows : pass.last + reach;
   }
-  RowChain<law> chains[stage_count] = {{pass, springs, 0, start[0]},
-                                       {pass, springs, 2, start[1]},
-                                       {pass, springs, 4, start[2]},
-                                       {pass, springs, 6, start[3]}};
+  const auto chain = [&](int s) {
+    return RowChain<law>(pass, springs, {2 * s, first_air_row + 2 * s, s}, start[s]);
+  };
+  RowChain<law> chains[stage_count] = {chain(0), chain(1), chain(2), chain(3)};
 
   for (int front = start[0]; front < pass.last + 2 * (stage_count - 1); ++front)
     for (int s = 0; s < stage_count; ++s) {
@@ -287,21 +317,22 @@ void runge_kutta_rows(const Pass& pass) {
           update.next_velocity = stage_row(s + 1, row, 1);
         }
       }
-      const V loss = s == 0 ? chains[s].run(
-                                  row, begin[s],
-                                  [&](int r) {
-                                    return ParticleRow{state_row(r, 0), state_row(r, 1)};
-                                  },
-                                  update)
-                            : chains[s].run(
-                                  row, begin[s],
-                                  [&](int r) {
-                                    return ParticleRow{stage_row(s, r, 0), stage_row(s, r, 1)};
-                                  },
-                                  update);
+      const Powers powers = s == 0 ? chains[s].run(
+                                         row, begin[s],
+                                         [&](int r) {
+                                           return ParticleRow{state_row(r, 0), state_row(r, 1)};
+                                         },
+                                         update)
+                                   : chains[s].run(
+                                         row, begin[s],
+                                         [&](int r) {
+                                           return ParticleRow{stage_row(s, r, 0), stage_row(s, r, 1)};
+                                         },
+                                         update);
       if (!own) continue;
       store_sum(pass, stage_squares + s, row, update.squares);
-      if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, loss);
+      if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, powers.dampers);
+      if (pass.air_drag > 0) store_sum(pass, stage_air + s, row, powers.air);
       if (s + 1 == stage_count) store_sum(pass, squares_of_result, row, update.after);
     }
 }

@@ -19,14 +19,6 @@
 namespace cloth::kernels {
 namespace {
 
-CLOTHLAB_INLINE Vector moved_one(const Vector& before, const Vector& now) {
-  return {Lanes::shift_one(before.x, now.x), Lanes::shift_one(before.y, now.y),
-          Lanes::shift_one(before.z, now.z)};
-}
-CLOTHLAB_INLINE Vector moved_two(const Vector& before, const Vector& now) {
-  return {Lanes::shift_two(before.x, now.x), Lanes::shift_two(before.y, now.y),
-          Lanes::shift_two(before.z, now.z)};
-}
 struct Springs {
   Lanes::Spring kind[spring_kinds];
   V damping;

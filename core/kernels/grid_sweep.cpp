@@ -120,7 +120,8 @@ int GridSweep::threads() const {
 void GridSweep::make_room(const Plan& plan, std::size_t passes, std::size_t bands) {
   const auto rows = static_cast<std::size_t>(grid_.rows);
   const auto pitch = static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
-  const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows) * pitch;
+  const int air_rows = plan.loads.air.drag > 0 ? plan.evaluations * kernels::air_scratch_rows : 0;
+  const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows + air_rows) * pitch;
   std::size_t edges = 0;
   for (const Attached& attached : plan.fields) edges += sides * rows_size(attached.halo_rows, grid_.columns);
   if (bands == 1) edges = 0;
@@ -151,6 +152,9 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = plan.loads.weight[axis];
   pass.damping = plan.loads.damping;
   pass.spring_damping = plan.loads.spring_damping;
+  pass.air_drag = plan.loads.air.drag;
+  for (std::size_t k = 0; k < plan.loads.air.wind.size(); ++k)
+    for (int axis = 0; axis < 3; ++axis) pass.wind[k][axis] = plan.loads.air.wind[k][axis];
   pass.mass_of_free = has_common_mass() ? mass() : 1;
   pass.step = plan.step;
   pass.drift_first = plan.drift_first;
@@ -252,6 +256,7 @@ void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, st
       StepSums& of_step = sums[first + k];
       of_step = {sum_of(plan, k, kernels::squares_before), sum_of(plan, k, kernels::squares_after)};
       if (loads.spring_damping > 0) of_step.dampers = sum_of(plan, k, kernels::dampers_before);
+      if (loads.air.drag > 0) of_step.air = sum_of(plan, k, kernels::air_before);
     }
   });
 }
@@ -294,7 +299,8 @@ void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
                   .fields = {{{&Pass::position, &state.position, kernels::runge_kutta_halo},
                               {&Pass::velocity, &state.velocity, kernels::runge_kutta_halo}}},
                   .sums = kernels::stage_sums,
-                  .scratch_rows = kernels::runge_kutta_scratch_rows};
+                  .scratch_rows = kernels::runge_kutta_scratch_rows,
+                  .evaluations = 4};
   in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     run(plan, count, threads);
     for (std::size_t k = 0; k < count; ++k) {
@@ -303,6 +309,7 @@ void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
         const auto s = static_cast<std::size_t>(stage);
         of_step.squares[s] = sum_of(plan, k, kernels::stage_squares + stage);
         of_step.dampers[s] = loads.spring_damping > 0 ? sum_of(plan, k, kernels::stage_dampers + stage) : 0;
+        of_step.air[s] = loads.air.drag > 0 ? sum_of(plan, k, kernels::stage_air + stage) : 0;
       }
       of_step.after = sum_of(plan, k, kernels::squares_of_result);
     }

@@ -38,6 +38,7 @@ class GridSweep : public SpringSweep {
                     ClothState& state) override;
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
+  bool takes_air() const override { return true; }
   /// Threads that step on need not be called for every step.
   bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
@@ -64,6 +65,7 @@ class GridSweep : public SpringSweep {
     std::array<Attached, 3> fields{};  ///< those without values are none
     int sums = kernels::step_sums;
     int scratch_rows = kernels::step_scratch_rows;
+    int evaluations = 1;  ///< of the force, in a step
 
     bool has_edges() const {
       return std::any_of(fields.begin(), fields.end(),

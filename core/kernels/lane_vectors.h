@@ -76,6 +76,15 @@ CLOTHLAB_INLINE V squared(const Vector& a) {
 CLOTHLAB_INLINE V plus_square(V sum, const Vector& a) {
   return Lanes::fma(a.z, a.z, Lanes::fma(a.y, a.y, Lanes::fma(a.x, a.x, sum)));
 }
+/// Every lane one or two columns to the right; the last ones of `before` come in first.
+CLOTHLAB_INLINE Vector moved_one(const Vector& before, const Vector& now) {
+  return {Lanes::shift_one(before.x, now.x), Lanes::shift_one(before.y, now.y),
+          Lanes::shift_one(before.z, now.z)};
+}
+CLOTHLAB_INLINE Vector moved_two(const Vector& before, const Vector& now) {
+  return {Lanes::shift_two(before.x, now.x), Lanes::shift_two(before.y, now.y),
+          Lanes::shift_two(before.z, now.z)};
+}
 CLOTHLAB_INLINE Vector vector_of(const double* a) {
   return {Lanes::set(a[0]), Lanes::set(a[1]), Lanes::set(a[2])};
 }

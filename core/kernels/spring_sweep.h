@@ -18,13 +18,20 @@ namespace cloth {
 /// The mass of every free particle, if all particles have the same.
 std::optional<double> common_mass(const ClothSystem& system);
 
-/// What acts beside the springs' elasticity: f = springs + weight + load - damping v - D v, where D are
+/// F_i = drag (n . (wind - v_i)) n, with the wind of each of a step's evaluations of the force.
+struct SweptAir {
+  double drag = 0;                ///< N s/m
+  std::array<Vec3, 4> wind = {};  ///< m/s
+};
+
+/// What acts beside the springs' elasticity: f = springs + weight + load + air - damping v - D v, where D are
 /// dampers along the springs: F_i = spring_damping ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0.
 struct SweepLoads {
   Vec3 weight{0, 0, 0};             ///< N, on every particle
   double damping = 0;               ///< N s/m
   const Vec3Field* load = nullptr;  ///< N, or none
   double spring_damping = 0;        ///< N s/m
+  SweptAir air{};                   ///< only in steps of Euler's and Kutta's, where takes_air()
 };
 
 class SpringSweep {
@@ -54,6 +61,7 @@ class SpringSweep {
   /// Kutta's method of order four; as many steps as there are `sums`. No load.
   virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                            ClothState& state) = 0;
+  virtual bool takes_air() const { return false; }
   /// Whether several steps of euler() or runge_kutta() in one call cost less than one by one.
   virtual bool gains_steps_at_once() const = 0;
 

@@ -152,9 +152,11 @@ TEST_P(EveryInstructionSet, StepsAsTheGeneralWayDoes) {
   Random random;
   for (const char* method : fused_methods)
     for (const auto& [rows, columns] : odd_sizes)
-      for (int families = 1; families < 16; ++families) {
-        Scene scene = sheet_of(rows, columns, families % 8);
-        if (families > 8) scene.springs->damping = 0.02;
+      for (int features = 1; features < 32; ++features) {
+        const int families = features % 8;
+        Scene scene = sheet_of(rows, columns, families);
+        if (features & 8) scene.springs->damping = 0.02;
+        if (features & 16) scene.air = Air{.drag = 0.02, .wind = {0.3, -1, 2}, .gust = Gust{0.5, 30}};
         DirectRun whole(scene, method);
         if (whole.system.springs.empty()) continue;
 
@@ -167,10 +169,12 @@ TEST_P(EveryInstructionSet, StepsAsTheGeneralWayDoes) {
         whole.advance(10, 1e-3);
         parts.advance(10, 1e-3);
         EXPECT_LE(largest_distance(whole.state.position, parts.state.position), 1e-14)
-            << method << ", " << rows << " x " << columns << ", families " << families;
+            << method << ", " << rows << " x " << columns << ", features " << features;
         EXPECT_LE(largest_distance(whole.state.velocity, parts.state.velocity), 1e-11) << method;
         EXPECT_NEAR(whole.work.damping_loss, parts.work.damping_loss, 1e-12 * parts.work.damping_loss)
             << method;
+        EXPECT_NEAR(whole.work.air, parts.work.air, 1e-11 * std::abs(parts.work.air)) << method;
+        EXPECT_EQ(parts.work.air != 0, (features & 16) != 0) << method;
       }
 }
 

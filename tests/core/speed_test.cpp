@@ -183,11 +183,10 @@ TEST(Memory, OfASimulationIsAtLeastItsState) {
   EXPECT_GT(*cost.held, 6 * 8) << "six numbers of eight bytes";
 }
 
-/// On a grid, whatever the scene has; but Runge-Kutta's general way keeps five more fields, which air needs.
+/// On a grid, whatever the scene has.
 TEST(Memory, OfAnExplicitMethodIsAtMostTwoHundredBytesForEachParticle) {
   for (const char* method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"})
     for (const Feature& feature : features()) {
-      if (method == std::string("rk4") && feature.name == "air") continue;
       const MemoryCost cost = measure_memory(method, feature.name, 128);
       if (!cost.held) GTEST_SKIP() << "this C library does not count";
       EXPECT_LE(*cost.held, 200) << method << " with " << feature.name;

@@ -152,9 +152,11 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = plan.loads.weight[axis];
   pass.damping = plan.loads.damping;
   pass.spring_damping = plan.loads.spring_damping;
-  pass.air_drag = plan.loads.air.drag;
-  for (std::size_t k = 0; k < plan.loads.air.wind.size(); ++k)
-    for (int axis = 0; axis < 3; ++axis) pass.wind[k][axis] = plan.loads.air.wind[k][axis];
+  if (const SweptAir& air = plan.loads.air; air.drag > 0) {
+    pass.air_drag = air.drag;
+    for (int k = 0; k < plan.evaluations; ++k)
+      for (int axis = 0; axis < 3; ++axis) pass.wind[k][axis] = air.wind[static_cast<std::size_t>(k)][axis];
+  }
   pass.mass_of_free = has_common_mass() ? mass() : 1;
   pass.step = plan.step;
   pass.drift_first = plan.drift_first;

@@ -20,8 +20,8 @@ std::optional<double> common_mass(const ClothSystem& system);
 
 /// F_i = drag (n . (wind - v_i)) n, with the wind of each of a step's evaluations of the force.
 struct SweptAir {
-  double drag = 0;                ///< N s/m
-  std::array<Vec3, 4> wind = {};  ///< m/s
+  double drag = 0;           ///< N s/m
+  std::array<Vec3, 4> wind;  ///< m/s, only of those there are, and where there is drag
 };
 
 /// What acts beside the springs' elasticity: f = springs + weight + load + air - damping v - D v, where D are

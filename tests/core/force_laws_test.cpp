@@ -177,14 +177,18 @@ double residual_of(DirectRun& run, double weight, const Vec3Field& known, const 
   return largest;
 }
 
+void crumple(DirectRun& run, bool pulled, Random& random) {
+  run.state = crumpled_state(run.system, 0.05, 1, random);
+  if (pulled) run.forces.set_pull(Pull{9, {1, 1, 1}}, 30, 0.8);
+  run.forces.update(run.state.position, 0.3);
+}
+
 TEST(CentredVelocity, SolvesItsEquationForEveryCombinationWithPins) {
   Random random;
   for (const bool pulled : {false, true}) {
     for (const Scene& scene : damped_scenes()) {
       DirectRun run(scene, "verlet");
-      run.state = crumpled_state(run.system, 0.05, 1, random);
-      if (pulled) run.forces.set_pull(Pull{9, {1, 1, 1}}, 30, 0.8);
-      run.forces.update(run.state.position, 0.3);
+      crumple(run, pulled, random);
       Vec3Field velocity = run.state.velocity, guess(velocity.size());
       const double weight = 0.02;
       const int iterations = run.forces.centred_velocity(weight, run.state.position, velocity, guess);
@@ -207,9 +211,7 @@ TEST(CentredVelocity, SolvesItsEquationOverManyStripsAndWithStiffDampers) {
     for (Scene scene : damped_scenes()) {
       scene.cloth.rows = 23, scene.cloth.columns = 27;
       DirectRun run(scene, "verlet");
-      run.state = crumpled_state(run.system, 0.05, 1, random);
-      if (pulled) run.forces.set_pull(Pull{9, {1, 1, 1}}, 30, 0.8);
-      run.forces.update(run.state.position, 0.3);
+      crumple(run, pulled, random);
       Vec3Field velocity = run.state.velocity, guess(velocity.size());
       const double weight = 0.02;
       run.forces.centred_velocity(weight, run.state.position, velocity, guess);

@@ -9,29 +9,10 @@
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_body.h"
 #include "geometry/box_tree.h"
+#include "geometry/triangle_meeting.h"
 
 namespace cloth {
 namespace {
-
-double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return (b - a).cross(c - a).dot(d - a);
-}
-
-/// Whether a segment passes through a triangle; touching counts, lying in its plane does not.
-bool meets(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
-  const double before = volume(t[0], t[1], t[2], p), after = volume(t[0], t[1], t[2], q);
-  if (before * after > 0 || (before == 0 && after == 0)) return false;
-  const double u = volume(p, q, t[0], t[1]), v = volume(p, q, t[1], t[2]), w = volume(p, q, t[2], t[0]);
-  return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
-}
-
-using Corners = std::array<Vec3, 3>;
-
-bool cross(const Corners& a, const Corners& b) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (meets(a[k], a[(k + 1) % 3], b) || meets(b[k], b[(k + 1) % 3], a)) return true;
-  return false;
-}
 
 /// The solid box |x| <= half and a triangle in its frame: a corner or an edge of the triangle in the box, or
 /// an edge of the box through the triangle.
@@ -52,7 +33,7 @@ bool meets_box(const Corners& triangle, const OrientedBox& box) {
   }
   const std::array<Vec3, 8> corner = corners(box);
   return std::any_of(box_edges.begin(), box_edges.end(), [&](const auto& edge) {
-    return meets(corner[at(edge[0])], corner[at(edge[1])], triangle);
+    return meeting_of(corner[at(edge[0])], corner[at(edge[1])], triangle) != Meeting::apart;
   });
 }
 
@@ -88,23 +69,39 @@ class TouchSearch {
     return std::nullopt;
   }
 
-  std::optional<int> first_in_itself() const {
+  /// The first place where the cloth passes through itself; where it does not, the first where it touches
+  /// itself.
+  std::optional<OwnMeeting> own_meeting() const {
     std::vector<BoxPair> overlaps;
-    const std::vector<Bounds> faces = boxes();
-    BoxTree(faces).collect(faces, overlaps);
+    BoxTree(boxes()).collect_own(overlaps);
+    std::optional<OwnMeeting> first;
     for (const BoxPair& both : overlaps) {
-      const Triangle &a = cloth_.triangles[at(both.query)], &b = cloth_.triangles[at(both.index)];
-      const bool apart = std::none_of(
-          a.begin(), a.end(), [&](int vertex) { return std::find(b.begin(), b.end(), vertex) != b.end(); });
-      if (apart && cross(corners_of(cloth_.vertices, a), corners_of(cloth_.vertices, b))) return both.query;
+      const Meeting meeting = own_meeting_of(both);
+      if (meeting == Meeting::passing) return OwnMeeting{true, cloth_.triangles[at(both.query)][0]};
+      if (meeting == Meeting::touching && !first)
+        first = OwnMeeting{false, cloth_.triangles[at(both.query)][0]};
     }
-    return std::nullopt;
+    return first;
   }
 
  private:
   static Corners corners_of(const std::vector<Vec3>& vertices, const Triangle& t) {
     return {vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])]};
   }
+  /// Of two faces; what they share is no meeting.
+  Meeting own_meeting_of(const BoxPair& both) const {
+    Triangle a = cloth_.triangles[at(both.query)], b = cloth_.triangles[at(both.index)];
+    const auto is_shared_by = [](const Triangle& other) {
+      return [&other](int vertex) { return std::find(other.begin(), other.end(), vertex) != other.end(); };
+    };
+    const auto shared = std::partition(a.begin(), a.end(), is_shared_by(b)) - a.begin();
+    std::partition(b.begin(), b.end(), is_shared_by(a));
+    const Corners of_a = corners_of(cloth_.vertices, a), of_b = corners_of(cloth_.vertices, b);
+    if (shared == 0) return meeting_of(of_a, of_b);
+    if (shared == 1) return meeting_beyond_corner(of_a, of_b);
+    return shared == 2 ? meeting_beyond_edge(of_a[0], of_a[1], of_a[2], of_b[2]) : Meeting::apart;
+  }
+
   static Bounds box_of(const Corners& t) { return bounds_of(t[0], t[1], t[2]); }
 
   template <class Test>
@@ -123,8 +120,8 @@ class TouchSearch {
     std::vector<BoxPair> overlaps;
     BoxTree(boxes).collect(this->boxes(), overlaps);
     for (const BoxPair& both : overlaps)
-      if (cross(corners_of(cloth_.vertices, cloth_.triangles[at(both.query)]),
-                corners_of(vertices, body.surface.triangles[at(both.index)])))
+      if (meeting_of(corners_of(cloth_.vertices, cloth_.triangles[at(both.query)]),
+                     corners_of(vertices, body.surface.triangles[at(both.index)])) != Meeting::apart)
         return both.query;
     return std::nullopt;
   }
@@ -149,12 +146,16 @@ class StartCheck {
     for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
       const Obstacle& obstacle = scene_.obstacles[k];
       const std::optional<int> face = search.first_in(obstacle, pose_of(obstacle, 0));
-      if (face) add(fmt::format("obstacles.{}", k), "the cloth starts in this obstacle or touches it", *face);
+      if (face)
+        add(fmt::format("obstacles.{}", k), "the cloth starts in this obstacle or touches it",
+            cloth_.triangles[at(*face)][0]);
     }
     if (scene_.self_contact) {
-      const std::optional<int> face = search.first_in_itself();
-      if (face)
-        add("self_contact", "the cloth starts passing through itself", *face);
+      const std::optional<OwnMeeting> meeting = search.own_meeting();
+      if (meeting)
+        add("self_contact",
+            meeting->passes ? "the cloth starts passing through itself" : "the cloth starts touching itself",
+            meeting->particle);
       else
         check_own_distance();
     }
@@ -184,8 +185,7 @@ class StartCheck {
            0});
   }
 
-  void add(const std::string& path, const char* rule, int face) {
-    const int particle = cloth_.triangles[at(face)][0];
+  void add(const std::string& path, const char* rule, int particle) {
     const Vec3& place = cloth_.vertices[at(particle)];
     problems_.push_back({path, "",
                          fmt::format("{}, first near particle {} at ({:.4g}, {:.4g}, {:.4g}) m", rule,
@@ -215,8 +215,8 @@ bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& po
   return TouchSearch(cloth).first_in(obstacle, pose).has_value();
 }
 
-bool passes_through_itself(const TriangleMesh& cloth) {
-  return TouchSearch(cloth).first_in_itself().has_value();
+std::optional<OwnMeeting> find_own_meeting(const TriangleMesh& cloth) {
+  return TouchSearch(cloth).own_meeting();
 }
 
 }  // namespace cloth

@@ -2,19 +2,27 @@
 // find.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "contact/rigid_motion.h"
+#include "geometry/triangle_mesh.h"
 
 namespace cloth {
 
 /// A problem for each obstacle that the cloth touches at t = 0, with the first place found, and one where the
-/// cloth passes through itself although self_contact forbids it. Nothing where contact is not continuous.
+/// cloth passes through itself or touches itself although self_contact forbids it. Nothing where contact is not continuous.
 /// Precondition: the scene has no other problems.
 std::vector<Problem> find_start_problems(const Scene& scene);
 
 /// Whether a cloth touches an obstacle in a pose, or is in it where that is solid (a mesh is not).
 bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose);
-bool passes_through_itself(const TriangleMesh& cloth);
+
+/// Where a cloth has points in common with itself. Signs are exact: a flat cloth has none, however it lies.
+struct OwnMeeting {
+  bool passes = false;  ///< through itself; else it only touches itself
+  int particle = 0;     ///< of a face that does
+};
+std::optional<OwnMeeting> find_own_meeting(const TriangleMesh& cloth);
 
 }  // namespace cloth

@@ -24,14 +24,25 @@ std::vector<Problem> new_start_needed(const ClothSheet& before, const ClothSheet
   return problems;
 }
 
+/// Contact keeps apart what it finds apart.
+std::vector<Problem> own_meeting_now(const Simulation& simulation) {
+  const std::optional<OwnMeeting> meeting = find_own_meeting(simulation.cloth_mesh());
+  if (!meeting) return {};
+  const Vec3 place = simulation.state().position[static_cast<std::size_t>(meeting->particle)];
+  return {{"self_contact", "",
+           fmt::format("the cloth {} itself now, first near particle {} at ({:.4g}, {:.4g}, {:.4g}) m",
+                       meeting->passes ? "passes through" : "touches", meeting->particle, place.x(),
+                       place.y(), place.z()),
+           "", 0, 0}};
+}
+
 std::vector<Problem> carry_out_edits(const Edits& edits, Simulation& simulation) {
   SceneReading edited = edited_scene(simulation.scene(), edits);
   if (edited.scene) edited.problems = new_start_needed(simulation.scene().cloth, edited.scene->cloth);
   if (edited.problems.empty() && !resolved_time_step(*edited.scene))
     edited.problems.push_back({"integrator.time_step", "auto", no_stable_step_text(*edited.scene), "", 0, 0});
-  if (edited.problems.empty() && edited.scene->self_contact && !simulation.scene().self_contact &&
-      passes_through_itself(simulation.cloth_mesh()))
-    edited.problems.push_back({"self_contact", "", "the cloth passes through itself now", "", 0, 0});
+  if (edited.problems.empty() && edited.scene->self_contact && !simulation.scene().self_contact)
+    edited.problems = own_meeting_now(simulation);
   for (Problem& problem : edited.problems) problem.path = "set." + problem.path;
   if (edited.problems.empty()) simulation.edit(*edited.scene);
   return std::move(edited.problems);

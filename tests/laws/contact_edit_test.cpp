@@ -244,7 +244,9 @@ TEST(AnEditThatTurnsSelfContactOn, IsRefusedWhereTheClothPassesThroughItself) {
   scene.obstacles.clear();
   Simulation simulation(scene, [](ClothSystem&, ClothState& state) {
     state.position.set(0, state.position[40] + Vec3(0.01, 0.005, 0.05));
+    state.position.set(1, state.position[40] + Vec3(0.012, 0.005, -0.05));
   });
+  ASSERT_GT(self_crossings(simulation.cloth_mesh()).number, 0);
   const auto problems = carry_out(Edits{{"self_contact", "{}"}}, simulation);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_NE(problems[0].text().find("the cloth passes through itself now"), std::string::npos);

@@ -5,6 +5,7 @@
 
 #include "scene/scene_json.h"
 #include "support/contact_scenes.h"
+#include "support/random.h"
 
 namespace cloth::test::start_check_test {
 namespace {
@@ -97,6 +98,68 @@ TEST(StartCheck, AsksForAThicknessThatTheClothKeepsAtItsStart) {
   const std::string text = start_problem(scene);
   EXPECT_EQ(text.find("self_contact.thickness = 0.02 m: must be at most 0.0"), 0u) << text;
   EXPECT_NE(text.find("so near parts of the cloth are at the start"), std::string::npos) << text;
+}
+
+/// Where rounding has put particles beside the plane of a flat grid, faces that lie in it do not meet.
+TEST(StartCheck, LetsFlatGridsStartHoweverTheyLie) {
+  Random random;
+  for (int round = 0; round < 40; ++round) {
+    Scene scene = sheet_over(0, 17);
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(random.uniform(0, 3.1), random.vector(1).normalized()).toRotationMatrix();
+    scene.cloth.origin = random.vector(10);
+    scene.cloth.across = turn.col(0);
+    scene.cloth.down = (turn.col(1) + (round % 2 == 0 ? 0 : 0.4) * turn.col(0)).normalized();
+    scene.self_contact = SelfContact{.thickness = 0.001};
+    const std::vector<Problem> problems = find_start_problems(scene);
+    ASSERT_TRUE(problems.empty()) << "round " << round << ": " << problems[0].text();
+  }
+}
+
+/// Two sheets of 4 x 4 cells of 0.1 m, one lying in y = 0, one standing in x = `place`, down to y = `bottom`.
+TriangleMesh two_sheets(double place, double bottom) {
+  TriangleMesh mesh;
+  for (int sheet = 0; sheet < 2; ++sheet) {
+    Vec3Field position(25);
+    for (int row = 0; row < 5; ++row)
+      for (int column = 0; column < 5; ++column)
+        position.set(static_cast<std::size_t>(5 * row + column),
+                     sheet == 0 ? Vec3(0.1 * row, 0, 0.1 * column) : Vec3(place, bottom + 0.1 * row, 0.1 * column));
+    const TriangleMesh one = grid_triangles(5, 5, position);
+    mesh.vertices.insert(mesh.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const Triangle& t : one.triangles)
+      mesh.triangles.push_back({t[0] + 25 * sheet, t[1] + 25 * sheet, t[2] + 25 * sheet});
+  }
+  return mesh;
+}
+
+TEST(OwnMeeting, TellsPassingFromTouchingByTheLastBit) {
+  constexpr double cell = 0.1, place = 0.17;
+  EXPECT_FALSE(find_own_meeting(two_sheets(place, 1e-9 * cell)));
+  EXPECT_FALSE(find_own_meeting(two_sheets(place, 1e-300)));
+  const auto touching = find_own_meeting(two_sheets(place, 0));
+  ASSERT_TRUE(touching);
+  EXPECT_FALSE(touching->passes);
+  for (const double bottom : {-1e-18, -1e-9 * cell, -0.1 * cell, -0.15}) {
+    const auto passing = find_own_meeting(two_sheets(place, bottom));
+    ASSERT_TRUE(passing) << bottom;
+    EXPECT_TRUE(passing->passes) << bottom;
+  }
+  EXPECT_TRUE(find_own_meeting(two_sheets(0.2, -0.2))) << "edges cross in a vertex, nowhere within a face";
+}
+
+TEST(OwnMeeting, IsThereWhereACellIsFoldedOntoItsNeighbourAndNowhereElse) {
+  Vec3Field position(9);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      position.set(static_cast<std::size_t>(3 * row + column), {0.1 * column, 0, 0.1 * row});
+  EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
+  for (int row = 0; row < 3; ++row) position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 1e-9, 0.1 * row});
+  EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
+  for (int row = 0; row < 3; ++row) position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 0, 0.1 * row});
+  const auto folded = find_own_meeting(grid_triangles(3, 3, position));
+  ASSERT_TRUE(folded);
+  EXPECT_FALSE(folded->passes);
 }
 
 TEST(StartCheck, IsNotAskedWhereObstaclesAreTestedParticleByParticle) {

@@ -1,0 +1,18 @@
+// On which side points lie, without any error: the sign of a determinant of coordinate differences, in
+// doubles where its error bound allows, else by expansions, sums of doubles that are exact (Shewchuk,
+// "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997). Exact as long
+// as no product of coordinate differences leaves the range of doubles.
+#pragma once
+
+#include "cloth/vec3_field.h"
+
+namespace cloth {
+
+/// 1 where `point` lies on the side to which (b - a) x (c - a) points, -1 on the other, 0 in the plane (and
+/// always where a, b, c lie on a line).
+int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point);
+
+/// 1 where a, b, c turn anticlockwise, seen against `axis`, -1 clockwise, 0 where they are seen on a line.
+int turn_around(int axis, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace cloth

@@ -1,0 +1,30 @@
+// Whether triangles pass through each other, only touch, or are apart: exactly, for the points as they are
+// given (geometry/exact_signs.h).
+#pragma once
+
+#include <array>
+
+#include "cloth/vec3_field.h"
+
+namespace cloth {
+
+using Corners = std::array<Vec3, 3>;
+
+/// In this order of severity. Passing: an edge of the one has its ends on both sides of the other's plane and
+/// crosses it within the other, not on its boundary. Touching: all other common points, also those of
+/// triangles that overlap in one plane.
+enum class Meeting { apart, touching, passing };
+
+/// Of the segment from p to q and a triangle; one without area is what its edges are.
+Meeting meeting_of(const Vec3& p, const Vec3& q, const Corners& triangle);
+
+/// Of two triangles that share no corner.
+Meeting meeting_of(const Corners& a, const Corners& b);
+
+/// Of two that share their first corner and nothing else that counts.
+Meeting meeting_beyond_corner(const Corners& a, const Corners& b);
+
+/// Of the triangles (a, b, c) and (a, b, d): touching where they lie upon each other, folded flat.
+Meeting meeting_beyond_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+}  // namespace cloth

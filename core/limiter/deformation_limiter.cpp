@@ -9,6 +9,7 @@
 
 #include "cloth/grid.h"
 #include "cloth/sums.h"
+#include "limiter/tension_springs.h"
 
 namespace cloth {
 namespace {
@@ -23,11 +24,6 @@ constexpr double direct_budget = 15;
 
 /// With over-relaxation the excess falls in waves: how many more sweeps are needed is told from this many.
 constexpr int sweeps_per_guess = 10;
-
-bool limits(const Deformation& deformation, SpringFamily family) {
-  return std::find(deformation.springs.begin(), deformation.springs.end(), name_of(family)) !=
-         deformation.springs.end();
-}
 
 /// Shortens springs of which one end is pinned; otherwise as SweepKernels::shorten.
 double shorten_pinned(const SpringBatch& batch, double relaxation, Points p) {
@@ -50,13 +46,6 @@ double excess_of(const SpringBatch& batch, double squared_length) {
   return (std::sqrt(squared_length) - batch.limit) / batch.rest_length;
 }
 
-std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothSystem& system) {
-  std::vector<SpringRun> limited;
-  for (const SpringRun& run : system.springs)
-    if (limits(deformation, run.family) && run.rest_length > 0) limited.push_back(run);
-  return limited;
-}
-
 }  // namespace
 
 DeformationLimiter::DeformationLimiter(const Deformation& deformation, const ClothSystem& system,
@@ -70,7 +59,7 @@ DeformationLimiter::DeformationLimiter(const Deformation& deformation, const Clo
 
 bool DeformationLimiter::is_needed(const Deformation& deformation, const ClothSystem& system) {
   return std::any_of(system.springs.begin(), system.springs.end(),
-                     [&](const SpringRun& run) { return limits(deformation, run.family); });
+                     [&](const SpringRun& run) { return is_limited(deformation, run.family); });
 }
 
 void DeformationLimiter::begin_sweeps(int rows) {
@@ -290,8 +279,8 @@ std::optional<UnreachableRate> find_unreachable_rate(const Scene& scene, const C
                                                      const Vec3Field& position) {
   if (!scene.deformation || !scene.springs) return std::nullopt;
   const Deformation& deformation = *scene.deformation;
-  const Links links{limits(deformation, SpringFamily::structural) && scene.springs->structural > 0,
-                    limits(deformation, SpringFamily::shear) && scene.springs->shear > 0};
+  const Links links{is_limited(deformation, SpringFamily::structural) && scene.springs->structural > 0,
+                    is_limited(deformation, SpringFamily::shear) && scene.springs->shear > 0};
   if (!links.structural && !links.shear) return std::nullopt;
   const bool is_mesh = system.is_mesh();
   const GridCell cell = is_mesh ? GridCell{} : cell_of(scene.cloth);

@@ -1,8 +1,8 @@
 #include "limiter/interior_point.h"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace cloth {
@@ -22,7 +22,7 @@ constexpr double beyond_need = 1e6;
 /// The part of the way to the boundary that a step may take.
 constexpr double to_boundary = 0.995;
 
-constexpr Eigen::Index none = -1;
+constexpr int none = -1;
 
 }  // namespace
 
@@ -34,48 +34,37 @@ InteriorPoint::InteriorPoint(const ClothSystem& system, std::vector<LimitedSprin
     rest_.push_back(start[spring.j] - start[spring.i]);
     shortest_ = std::min(shortest_, spring.rest_length);
   }
-  order_particles(system);
+  number_particles(system);
 }
 
-/// Eliminates particles, not components, in the order of approximate minimum degree: a graph of a ninth of
-/// the entries.
-void InteriorPoint::order_particles(const ClothSystem& system) {
-  std::vector<int> unknown(system.pinned.size(), static_cast<int>(none));
-  std::vector<std::size_t> found;
-  for (const LimitedSpring& spring : springs_) {
-    for (const std::size_t end : {spring.i, spring.j}) {
-      if (system.pinned[end] || unknown[end] != none) continue;
-      unknown[end] = static_cast<int>(found.size());
-      found.push_back(end);
-    }
-  }
-  const int count = static_cast<int>(found.size());
-  std::vector<Eigen::Triplet<double, int>> entries;
-  for (int k = 0; k < count; ++k) entries.emplace_back(k, k, 1.0);
-  for (const LimitedSpring& spring : springs_) {
-    const int a = unknown[spring.i], b = unknown[spring.j];
-    if (a == none || b == none) continue;
-    entries.emplace_back(a, b, 1.0);
-    entries.emplace_back(b, a, 1.0);
-  }
-  Matrix graph(count, count);
-  graph.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int>()(graph, order);
-
-  particle_.resize(found.size());
-  weight_.resize(count);
+/// In the order of elimination of the whole cloth, of which these particles are a part.
+void InteriorPoint::number_particles(const ClothSystem& system) {
+  std::vector<std::uint8_t> needed(system.pinned.size(), 0);
+  for (const LimitedSpring& spring : springs_) needed[spring.i] = needed[spring.j] = 1;
+  std::vector<int> unknown(system.pinned.size(), none);
   const double mean_mass = system.total_mass() / system.size();
-  for (int k = 0; k < count; ++k) {
-    const std::size_t particle = found[static_cast<std::size_t>(order.indices()[k])];
-    particle_[static_cast<std::size_t>(k)] = particle;
-    unknown[particle] = k;
-    weight_[k] = system.mass[particle] / mean_mass;
+  for (const int i : elimination_order(system)) {
+    const auto particle = static_cast<std::size_t>(i);
+    if (!needed[particle]) continue;
+    unknown[particle] = static_cast<int>(particle_.size());
+    particle_.push_back(particle);
   }
+  weight_.resize(static_cast<Eigen::Index>(particle_.size()));
+  for (std::size_t k = 0; k < particle_.size(); ++k)
+    weight_[static_cast<Eigen::Index>(k)] = system.mass[particle_[k]] / mean_mass;
+
+  std::vector<Coupling> couplings;
   for (const LimitedSpring& spring : springs_) {
-    first_.push_back(unknown[spring.i]);
-    second_.push_back(unknown[spring.j]);
+    const int i = unknown[spring.i], j = unknown[spring.j];
+    first_.push_back(i);
+    second_.push_back(j);
+    if (i != none && j != none) couplings.emplace_back(i, j);
   }
+  std::vector<int> order(particle_.size());
+  std::iota(order.begin(), order.end(), 0);
+  factors_.analyse(couplings, order);
+  diagonal_.resize(9 * particle_.size());
+  coupling_.resize(9 * couplings.size());
 }
 
 Vec3 InteriorPoint::difference(const Vector& of, std::size_t s) const {
@@ -136,14 +125,10 @@ bool InteriorPoint::is_minimum(double tolerance) const {
 /// w I + sum of (stiffness a a^T + multiplier/|d| (I - a a^T)) over the springs: positive definite whatever
 /// the springs say.
 bool InteriorPoint::factorise() {
-  std::vector<Eigen::Triplet<double, int>> entries;
-  entries.reserve(static_cast<std::size_t>(6 * weight_.size()) + 21 * springs_.size());
-  const auto add = [&](int row, int column, const Eigen::Matrix3d& block) {
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c)
-        if (3 * row + r >= 3 * column + c) entries.emplace_back(3 * row + r, 3 * column + c, block(r, c));
-  };
-  for (int k = 0; k < weight_.size(); ++k) add(k, k, weight_[k] * Eigen::Matrix3d::Identity());
+  using Block = Eigen::Map<Eigen::Matrix3d>;
+  for (std::size_t k = 0; k < particle_.size(); ++k)
+    Block(diagonal_.data() + 9 * k) = weight_[static_cast<Eigen::Index>(k)] * Eigen::Matrix3d::Identity();
+  double* coupling = coupling_.data();
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const auto k = static_cast<Eigen::Index>(s);
     stiffness_[k] = 1 / (slack_[k] / multiplier_[k] + 1 / rho_);
@@ -152,16 +137,13 @@ bool InteriorPoint::factorise() {
     const Eigen::Matrix3d block =
         across * Eigen::Matrix3d::Identity() + (stiffness_[k] - across) * a * a.transpose();
     const int i = first_[s], j = second_[s];
-    if (i != none) add(i, i, block);
-    if (j != none) add(j, j, block);
-    if (i != none && j != none) add(std::max(i, j), std::min(i, j), -block);
+    if (i != none) Block(diagonal_.data() + 9 * i) += block;
+    if (j != none) Block(diagonal_.data() + 9 * j) += block;
+    if (i == none || j == none) continue;
+    Block{coupling} = -block;
+    coupling += 9;
   }
-  Matrix matrix(displacement_.size(), displacement_.size());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  if (!analysed_) solver_.analyzePattern(matrix);
-  analysed_ = true;
-  solver_.factorize(matrix);
-  return solver_.info() == Eigen::Success;
+  return factors_.factorise(diagonal_, coupling_);
 }
 
 /// The Newton step toward multiplier * slack reduced by `complementarity`.
@@ -172,7 +154,8 @@ void InteriorPoint::find_direction(const Vector& complementarity) {
     const auto k = static_cast<Eigen::Index>(s);
     add_pair(right, s, -stiffness_[k] * target[k] * direction_[s]);
   }
-  step_ = solver_.solve(right);
+  step_ = right;
+  factors_.solve({step_.data(), static_cast<std::size_t>(step_.size())}, 1);
   multiplier_step_.resize(slack_.size());
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const auto k = static_cast<Eigen::Index>(s);

@@ -1,10 +1,8 @@
 // The interior point method of NearestShape, on the springs that one round works on.
 #pragma once
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
-
 #include "limiter/nearest_shape.h"
+#include "sparse/block_cholesky.h"
 
 namespace cloth {
 
@@ -22,9 +20,8 @@ class InteriorPoint {
 
  private:
   using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::SparseMatrix<double>;
 
-  void order_particles(const ClothSystem& system);
+  void number_particles(const ClothSystem& system);
   void start();
   void evaluate();
   bool is_minimum(double tolerance) const;
@@ -40,7 +37,7 @@ class InteriorPoint {
   std::vector<LimitedSpring> springs_;
   std::vector<Vec3> rest_;             ///< x0_j - x0_i of each spring
   std::vector<int> first_, second_;    ///< unknown of each spring's ends, -1 where pinned
-  std::vector<std::size_t> particle_;  ///< of each unknown, in the order of elimination
+  std::vector<std::size_t> particle_;  ///< of each unknown
   Vector weight_;                      ///< of each unknown
   double shortest_ = 0;                ///< rest length, m
   double largest_violation_ = 0;       ///< |d| - limit at the start, m
@@ -55,8 +52,8 @@ class InteriorPoint {
   double excess_ = 0;            ///< relative
   Vector stiffness_;             ///< what the eliminated slack and multiplier leave on each spring
   Vector step_, slack_step_, multiplier_step_;
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::NaturalOrdering<int>> solver_;
-  bool analysed_ = false;
+  BlockCholesky factors_{3};
+  std::vector<double> diagonal_, coupling_;  ///< blocks of the matrix
 };
 
 }  // namespace cloth

@@ -1,0 +1,52 @@
+// The rounds in which TensionSolver finds tensions: line sweeps and conjugate gradients on the springs that
+// are over their limit or have a tension.
+//
+// Legend: x positions, d = x_second - x_first of a spring, a = d/|d|, C = |d| - limit, w inverse masses (0
+// where pinned), h time step, J the rows (.. -a .. +a ..) of the springs. A tension t (N) pulls the two ends
+// together for one step: it moves them by h^2 w t a, toward each other.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "limiter/tension_springs.h"
+
+namespace cloth {
+
+/// How far positions and tensions are from what is asked for, in rest lengths.
+struct TensionResidual {
+  double excess = 0;  ///< largest C of all springs, 0 if none is over
+  double slack = 0;   ///< largest -C of springs that have a tension
+  bool within(double tolerance) const { return excess <= tolerance && slack <= tolerance; }
+};
+
+/// Of a solve.
+struct TensionTask {
+  double time_step = 0;  ///< s
+  double tolerance = 0;  ///< of the residual
+  /// Springs are not rigid: C = h^2 softness (w_first + w_second) t where there is a tension. The residual is
+  /// that of this rule. A softness above 0 can be obeyed wherever the pins are.
+  double softness = 0;
+};
+
+class TensionRounds {
+ public:
+  virtual ~TensionRounds() = default;
+
+  virtual void begin(const TensionTask& task, const std::vector<double>& inverse_mass,
+                     const std::vector<double>& tension, const Vec3Field& position) = 0;
+  virtual TensionResidual evaluate() = 0;
+  /// Every line in turn: its tensions are solved for together, those below 0 are clipped, its particles
+  /// moved at once.
+  virtual void sweep_lines(bool backwards) = 0;
+  /// One Newton step for all tensions at the last evaluated positions, by conjugate gradients with the lines
+  /// as preconditioner. Returns the iterations.
+  virtual int solve_together() = 0;
+  virtual void end(std::vector<double>& tension, Vec3Field& position) const = 0;
+};
+
+/// For any springs.
+std::unique_ptr<TensionRounds> make_line_rounds(const std::vector<TensionSpring>& springs,
+                                                const ClothSystem& system);
+
+}  // namespace cloth

@@ -1,0 +1,140 @@
+#include "limiter/tension_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace cloth {
+namespace {
+
+constexpr int most_tension_rounds = 100;
+
+/// kappa: of m l/h^2, at which a held tension turns its spring by an angle of 1 within a step.
+constexpr double held_share = 0.5;
+
+/// Where the pins make the rate unreachable.
+constexpr double soft_springs = 3e-2;
+
+bool is_finite(const Vec3Field& field) {
+  return std::all_of(field.flat().begin(), field.flat().end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& system)
+    : deformation_(deformation), springs_(tension_springs(deformation, system)) {
+  hold_.reserve(springs_.size());
+  for (const TensionSpring& spring : springs_) {
+    const double lighter = std::max(system.inverse_mass[spring.first], system.inverse_mass[spring.second]);
+    hold_.push_back(lighter > 0 ? held_share * spring.limit / lighter : 0);
+  }
+  rounds_ = make_line_rounds(springs_, system);
+}
+
+TensionSolver::~TensionSolver() = default;
+TensionSolver::TensionSolver(TensionSolver&&) noexcept = default;
+TensionSolver& TensionSolver::operator=(TensionSolver&&) noexcept = default;
+
+bool TensionSolver::is_needed(const Deformation& deformation, const ClothSystem& system) {
+  return !tension_springs(deformation, system).empty();
+}
+
+double TensionSolver::excess(const Vec3Field& position) const {
+  double largest = 0;
+  for (const TensionSpring& spring : springs_) {
+    const double over = (position[spring.second] - position[spring.first]).norm() - spring.limit;
+    largest = std::max(largest, over / spring.rest_length);
+  }
+  return largest;
+}
+
+void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Field& position,
+                              Vec3Field& force) const {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    if (!(tension[s] > 0)) continue;
+    const std::size_t i = springs_[s].first, j = springs_[s].second;
+    const Vec3 d = position[j] - position[i];
+    const double length = d.norm();
+    if (!(length > 0)) continue;
+    const Vec3 pull = (tension[s] / length) * d;
+    force.add(i, pull);
+    force.add(j, -pull);
+  }
+}
+
+std::vector<double> TensionSolver::held(const std::vector<double>& tension, double time_step) const {
+  std::vector<double> result(tension.size(), 0.0);
+  if (unreachable_) return result;
+  const double per_square = 1 / (time_step * time_step);
+  for (std::size_t s = 0; s < tension.size(); ++s) result[s] = std::min(tension[s], hold_[s] * per_square);
+  return result;
+}
+
+/// Rounds until the residual is within the tolerance or there were as many as are worth it.
+void TensionSolver::go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
+                          Vec3Field& position, TensionReport& report) {
+  rounds_->begin(task, system.inverse_mass, tension, position);
+  TensionResidual residual = rounds_->evaluate();
+  int rounds = 0;
+  while (!residual.within(task.tolerance) && rounds < most_tension_rounds) {
+    rounds_->sweep_lines(rounds % 2 == 1);
+    ++rounds, ++report.line_sweeps;
+    residual = rounds_->evaluate();
+    if (residual.within(task.tolerance)) break;
+    report.cg_iterations += rounds_->solve_together();
+    residual = rounds_->evaluate();
+  }
+  report.rounds += rounds;
+  report.excess = residual.excess, report.slack = residual.slack;
+  report.converged = residual.within(task.tolerance);
+  if (rounds > 0) rounds_->end(tension, position);
+}
+
+/// The nearest shape to what the positions would be without tensions, and its tensions but for those of
+/// springs that are slack in it.
+void TensionSolver::find_nearest(const TensionTask& task, const ClothSystem& system,
+                                 std::vector<double>& tension, Vec3Field& position, TensionReport& report) {
+  if (!nearest_) nearest_.emplace(system, limited_runs(deformation_, system), deformation_.rate);
+  const double square = task.time_step * task.time_step;
+  Vec3Field pull(position.size());
+  add_force(tension, position, pull);
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (system.inverse_mass[i] > 0) position.add(i, -square * system.inverse_mass[i] * pull[i]);
+  report.factorisations = nearest_->find(system, task.tolerance, position, !unreachable_).iterations;
+
+  const double unit = system.total_mass() / system.size() / square;  // of a multiplier, N/m
+  std::fill(tension.begin(), tension.end(), 0.0);
+  std::size_t found = 0;
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const TensionSpring& spring = springs_[s];
+    if (system.pinned[spring.first] && system.pinned[spring.second]) continue;
+    const double slack = spring.limit - (position[spring.second] - position[spring.first]).norm();
+    if (slack <= 0.5 * task.tolerance * spring.rest_length)
+      tension[s] = unit * nearest_->multipliers()[found];
+    ++found;
+  }
+}
+
+TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
+                                   Vec3Field& position) {
+  TensionReport report;
+  if (!is_finite(position)) {
+    report.excess = std::nan("");
+    return report;
+  }
+  const TensionTask task{.time_step = time_step,
+                         .tolerance = deformation_.tolerance,
+                         .softness = unreachable_ ? soft_springs : 0};
+  const Vec3Field start = position;
+  const std::vector<double> first = tension;
+  go_on(task, system, tension, position, report);
+  if (!report.converged && !unreachable_) {
+    position = start, tension = first;
+    find_nearest(task, system, tension, position, report);
+    go_on(task, system, tension, position, report);
+  }
+  if (unreachable_) report.excess = excess(position);
+  return report;
+}
+
+}  // namespace cloth

@@ -1,0 +1,36 @@
+// The springs that a deformation rate limits, and the lines that they form: springs joined end to end, each
+// going on as straight as it can. On a grid these are rows, columns and diagonals. Along a line the equations
+// of the tensions are tridiagonal.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "cloth/cloth_system.h"
+#include "scene/scene.h"
+
+namespace cloth {
+
+struct TensionSpring {
+  std::size_t first = 0, second = 0;  ///< particles
+  double rest_length = 0;             ///< m
+  double limit = 0;                   ///< m, (1 + rate) times the rest length
+};
+
+/// Whether the deformation rate is for this kind of springs.
+bool is_limited(const Deformation& deformation, SpringFamily family);
+std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothSystem& system);
+
+/// In the order of the system's springs; those between two pins are among them.
+std::vector<TensionSpring> tension_springs(const Deformation& deformation, const ClothSystem& system);
+
+/// Every spring stands in exactly one line, and no line meets a particle twice.
+struct SpringLines {
+  std::vector<std::size_t> springs;  ///< line by line, each in the order along it
+  std::vector<std::size_t> begin;    ///< of each line in `springs`, and the end of the last one
+  std::size_t count() const { return begin.size() - 1; }
+};
+
+SpringLines spring_lines(const std::vector<TensionSpring>& springs, const ClothSystem& system);
+
+}  // namespace cloth

@@ -125,18 +125,4 @@ Spectrum measure_spectrum(const ClothSystem& system, const Vec3Field& position, 
   return spectrum;
 }
 
-double guaranteed_frequency(const ClothSystem& system) {
-  std::vector<double> stiffness(static_cast<std::size_t>(system.size()), 0.0);
-  for (const SpringRun& run : system.springs)
-    for (int s = run.first; s < run.first + run.count; ++s) {
-      const auto i = static_cast<std::size_t>(s), j = static_cast<std::size_t>(s + run.offset);
-      stiffness[i] += (system.pinned[j] ? 1 : 2) * run.stiffness;
-      stiffness[j] += (system.pinned[i] ? 1 : 2) * run.stiffness;
-    }
-  double largest = 0;
-  for (std::size_t i = 0; i < stiffness.size(); ++i)
-    largest = std::max(largest, system.inverse_mass[i] * stiffness[i]);
-  return std::sqrt(largest);
-}
-
 }  // namespace cloth

@@ -35,10 +35,11 @@ struct LanczosLimits {
 Spectrum measure_spectrum(const ClothSystem& system, const Vec3Field& position,
                           const LanczosLimits& limits = {});
 
-/// An upper bound in 1/s of this system's largest frequency in any configuration, any stretch: omega^2 <=
-/// max_i (1/m_i) sum_j b_ij, b = 2 k for a spring to a free particle and k for one to a pin. For k |u_i -
-/// u_j|^2 <= 2 k
-/// (|u_i|^2 + |u_j|^2), and no spring is stiffer than k in any direction.
+/// An upper bound in 1/s of this system's frequencies in any configuration, any stretch. No spring is stiffer
+/// than k in any direction, so that the bound is the root of the largest eigenvalue of M^-1/2 L M^-1/2, L the
+/// scalar graph Laplacian of the springs: by Lanczos iteration, its residual added, and never above what
+/// Gershgorin's theorem gives, max_i (1/m_i) sum_j b_ij, b = 2 k for a spring to a free particle and k to a
+/// pin. Cost: at most 160 passes over the springs.
 double guaranteed_frequency(const ClothSystem& system);
 
 }  // namespace cloth

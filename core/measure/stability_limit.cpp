@@ -71,6 +71,32 @@ bool is_square(const GridCell& cell) {
          std::abs(cell.across.dot(cell.down)) <= 1e-12 * across * down;
 }
 
+/// The eigenvalue of the grid's graph Laplacian for the plane wave whose phases across and down have the
+/// cosines c and d. N/m
+double laplacian_wave(const SpringMaterial& material, double c, double d) {
+  return 2 * material.structural * (2 - c - d) + 4 * material.shear * (1 - c * d) +
+         4 * material.flexion * (2 - c * c - d * d);
+}
+
+/// The largest of them over all waves: at a corner of [-1, 1] x [-1, 1], on its diagonal or on an edge.
+double laplacian_stiffness(const SpringMaterial& material) {
+  const double s = material.structural, h = material.shear, f = material.flexion;
+  const auto clamped = [](double cosine) { return std::clamp(cosine, -1.0, 1.0); };
+  double largest = std::max(laplacian_wave(material, -1, -1), laplacian_wave(material, -1, 1));
+  const auto consider = [&](double c, double d) {
+    largest = std::max(largest, laplacian_wave(material, c, d));
+  };
+  if (h + 2 * f > 0) {
+    const double diagonal = clamped(-s / (2 * h + 4 * f));
+    consider(diagonal, diagonal);
+  }
+  if (f > 0) {
+    consider(-1, clamped((2 * h - s) / (4 * f)));
+    consider(1, clamped(-(s + 2 * h) / (4 * f)));
+  }
+  return largest;
+}
+
 /// Whether `method` chooses its own steps in this scene, so that none that is given is too long: the
 /// one place that decides it.
 bool adapts_its_steps(const std::string& method, const Scene& scene) {
@@ -88,14 +114,33 @@ double largest_frequency(const ClothSheet& sheet, const SpringMaterial& material
 
 double guaranteed_frequency(const ClothSheet& sheet, const SpringMaterial& material) {
   if (sheet.is_mesh()) return guaranteed_frequency(make_cloth(sheet, material));
-  // Inside the grid every particle has four springs of each family.
-  const double stiffness = 8 * (material.structural + material.shear + material.flexion);
-  return std::sqrt(stiffness / particle_mass(sheet));
+  return std::sqrt(laplacian_stiffness(material) / particle_mass(sheet));
+}
+
+double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& material, double omega) {
+  const double most = particle_mass(sheet) * omega * omega;
+  const double largest = particle_mass(sheet) * std::pow(guaranteed_frequency(sheet, material), 2);
+  if (!(most > largest)) return 0;
+  if (sheet.is_mesh()) return most - largest;
+  // L + k e e^T has the largest eigenvalue at which k e^T (most - L)^-1 e = 1; over the waves of the grid.
+  constexpr int waves = 64;
+  double compliance = 0;
+  for (int i = 0; i < waves; ++i)
+    for (int j = 0; j < waves; ++j)
+      compliance += 1 / (most - laplacian_wave(material, std::cos(pi * (i + 0.5) / waves),
+                                               std::cos(pi * (j + 0.5) / waves)));
+  return waves * waves / compliance;
 }
 
 namespace {
 
 using FrequencyOf = double (*)(const ClothSheet&, const SpringMaterial&);
+
+/// The dampers as springs of stiffness k_d, in the families that exist.
+SpringMaterial dampers_of(const SpringMaterial& springs) {
+  const auto weight = [&](double stiffness) { return stiffness > 0 ? springs.damping : 0.0; };
+  return {weight(springs.structural), weight(springs.shear), weight(springs.flexion), 0};
+}
 
 DampingRates rates_of(const Scene& scene, FrequencyOf frequency) {
   DampingRates rates;
@@ -103,13 +148,8 @@ DampingRates rates_of(const Scene& scene, FrequencyOf frequency) {
   rates.least = rates.most = scene.damping.value_or(0) / mass;
   if (scene.air) rates.most += scene.air->drag / mass;
   if (scene.springs && scene.springs->damping > 0) {
-    // Spring damping is the stiffness matrix of springs without rest length: each family that exists, weight
-    // k_d.
-    const double damping = scene.springs->damping;
-    const auto weight = [&](double stiffness) { return stiffness > 0 ? damping : 0.0; };
-    const SpringMaterial dampers{weight(scene.springs->structural), weight(scene.springs->shear),
-                                 weight(scene.springs->flexion), 0};
-    rates.most += std::pow(frequency(scene.cloth, dampers), 2);
+    // Spring damping is the stiffness matrix of springs without rest length.
+    rates.most += std::pow(frequency(scene.cloth, dampers_of(*scene.springs)), 2);
   }
   return rates;
 }
@@ -120,6 +160,28 @@ std::optional<double> step_below(const std::string& method, const Scene& scene, 
   return stable_step(method, omega, rates_of(scene, frequency));
 }
 
+/// Semi-implicit Euler on x'' = -(K x + C x')/m does not grow while h^2 K + 2 h C < 4 m. Springs and dampers
+/// are bounded together here: the wave that is largest for the one need not be so for the other. s
+double joint_euler_step(const Scene& scene) {
+  const double mass = particle_mass(scene.cloth);
+  const SpringMaterial& springs = *scene.springs;
+  const SpringMaterial dampers = dampers_of(springs);
+  const double drag = scene.damping.value_or(0) + (scene.air ? scene.air->drag : 0);
+  const auto is_stable = [&](double h) {
+    const SpringMaterial both{h * h * springs.structural + 2 * h * dampers.structural,
+                              h * h * springs.shear + 2 * h * dampers.shear,
+                              h * h * springs.flexion + 2 * h * dampers.flexion, 0};
+    return laplacian_stiffness(both) + 2 * h * drag <= 4 * mass;
+  };
+  double stable = 0, unstable = 2 / guaranteed_frequency(scene.cloth, springs);
+  if (is_stable(unstable)) return unstable;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (stable + unstable);
+    (is_stable(middle) ? stable : unstable) = middle;
+  }
+  return stable;
+}
+
 }  // namespace
 
 DampingRates damping_rates(const Scene& scene) {
@@ -127,8 +189,8 @@ DampingRates damping_rates(const Scene& scene) {
 }
 
 bool stable_at_every_step(const std::string& method) {
-  static constexpr std::array<std::string_view, 5> methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
-                                                            "xpbd"};
+  static constexpr std::array<std::string_view, 5> methods{"implicit-euler", "implicit-midpoint", "bdf2",
+                                                           "projective", "xpbd"};
   return std::find(methods.begin(), methods.end(), method) != methods.end();
 }
 
@@ -167,7 +229,11 @@ std::optional<double> stable_step(const std::string& method, const Scene& scene)
 }
 
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene) {
-  return step_below(method, scene, guaranteed_frequency);
+  const auto apart = step_below(method, scene, guaranteed_frequency);
+  if (method != "semi-implicit-euler" || scene.cloth.is_mesh() || !scene.springs ||
+      !(scene.springs->damping > 0))
+    return apart;
+  return joint_euler_step(scene);
 }
 
 double provot_step(const Scene& scene) {

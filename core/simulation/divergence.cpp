@@ -99,10 +99,9 @@ Divergence Simulation::stop_at_fastest(const std::string& cause) const {
   return stop_at(fastest, cause);
 }
 
-/// The longest stable step in s, 0 if there is none. Of a prepared cloth only the bound for any shape is
-/// known.
+/// The longest step in s that is stable in every shape, 0 if there is none.
 double Simulation::method_limit() const {
-  const auto of_scene = stable_step(scene_.integrator.method, scene_);
+  const auto of_scene = guaranteed_step(scene_.integrator.method, scene_);
   if (!of_scene || !prepare_ || std::isinf(*of_scene)) return of_scene.value_or(0);
   const auto of_system =
       stable_step(scene_.integrator.method, guaranteed_frequency(system_), damping_rates(scene_));

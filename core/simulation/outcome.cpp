@@ -45,8 +45,8 @@ std::string describe(const Divergence& d) {
   else if (d.stable_step <= 0)
     advice = "this method has no stable time step for this scene";
   else
-    advice = fmt::format("the time step is {:.4g} s, stable for this scene is up to {:.4g} s", d.time_step,
-                         d.stable_step);
+    advice = fmt::format("the time step is {:.4g} s, stable in every shape of this cloth is up to {:.4g} s",
+                         d.time_step, d.stable_step);
   return fmt::format("{} in step {} (t = {:.6g} s) at particle {}{}: {}; {}",
                      d.solver_failed ? "stopped" : "diverged", d.step, d.time, d.particle, where, d.cause,
                      advice);

@@ -30,7 +30,7 @@ struct Divergence {
   std::string cause;     ///< "position is not finite", ...
   double time_step = 0;  ///< s, as run
   double stable_step =
-      0;  ///< s, the method's limit for the scene; 0 if there is none, infinity if any will do
+      0;  ///< s, the method's limit in every shape; 0 if there is none, infinity if any will do
   bool solver_failed = false;  ///< the equations of the step could not be solved: nothing has run away
   bool pinched = false;        ///< an obstacle met cloth that cannot give way: nothing has run away
 };

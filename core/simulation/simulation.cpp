@@ -92,18 +92,23 @@ void Simulation::assemble() {
   apply_hand();
 }
 
-/// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit. A
-/// method without a limit takes the strongest hand.
+/// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit, in
+/// any shape of the cloth. Half of that leaves room for the hand's own damping. A method without a limit
+/// takes the strongest hand.
 PullStrength Simulation::find_strongest_pull() const {
   const double mass = *std::min_element(system_.mass.begin(), system_.mass.end());
   const SpringMaterial material = material_of(scene_);
-  const double omega = largest_frequency(scene_.cloth, material);
-  const double limit = stable_step(scene_.integrator.method, scene_).value_or(0);
+  const double omega = guaranteed_frequency(scene_.cloth, material);
+  const double limit = guaranteed_step(scene_.integrator.method, scene_).value_or(0);
   const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / time_step_ : 1 / time_step_;
   const double strongest =
       std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
-  if (stable_at_every_step(scene_.integrator.method)) return {strongest, std::sqrt(strongest * mass)};
-  const double stiffness = std::clamp(0.5 * mass * (allowed * allowed - omega * omega), 0.0, strongest);
+  const bool unlimited = omega > 0 && std::isinf(limit);  // the method divides its steps by itself
+  if (unlimited || stable_at_every_step(scene_.integrator.method))
+    return {strongest, std::sqrt(strongest * mass)};
+  const double of_scene = scene_.cloth.mass / static_cast<double>(system_.size());
+  const double held = mass / of_scene * strongest_held_spring(scene_.cloth, material, allowed);
+  const double stiffness = std::clamp(0.5 * held, 0.0, strongest);
   return {stiffness, std::min(std::sqrt(stiffness * mass), 0.1 * mass / time_step_)};
 }
 

@@ -17,7 +17,9 @@ std::optional<double> resolved_time_step(const Scene& scene) {
   if (scene.integrator.time_step) return scene.integrator.time_step;
   const auto limit = stable_step(scene.integrator.method, scene);
   if (!limit) return std::nullopt;
-  const double longest = auto_fraction * *limit;
+  const double guaranteed = guaranteed_step(scene.integrator.method, scene).value_or(0);
+  if (!(guaranteed > 0)) return std::nullopt;
+  const double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
   const double interval = scene.record.interval;
   if (longest >= interval) return interval;
   return interval / std::ceil(interval / longest);

@@ -9,11 +9,12 @@
 
 namespace cloth {
 
-/// "auto" stays at this part of the method's stability limit.
-inline constexpr double auto_fraction = 0.8;
+/// "auto" stays at these parts of the method's limits: for the flat cloth, and for every shape of it.
+inline constexpr double auto_flat_fraction = 0.8, auto_guaranteed_fraction = 0.95;
 
-/// The scene's step in s, or the one that "auto" means: the largest one not above 80 % of the limit that
-/// divides the record interval into whole steps. nullopt where the method has no stable step for the scene.
+/// The scene's step in s, or the one that "auto" means: the largest one that divides the record interval
+/// into whole steps and is not above 80 % of the flat cloth's limit nor 95 % of the guaranteed one. nullopt
+/// where the method has no stable step for the scene.
 std::optional<double> resolved_time_step(const Scene& scene);
 
 /// `time_step` where it divides `interval` into whole steps; else the longest shorter one that does. s

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "contact/obstacle_contact.h"
+#include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "simulation/simulation.h"
 #include "support/scenes.h"
@@ -61,8 +62,8 @@ TEST(AStopOfAPreparedCloth, NamesTheLimitOfItsMasses) {
   std::optional<Divergence> divergence;
   for (int step = 0; step < 200 && !divergence; ++step) divergence = simulation.step();
   ASSERT_TRUE(divergence);
-  EXPECT_LT(divergence->stable_step, 0.01 * *stable_step("verlet", scene) * (1 + 1e-9));
-  EXPECT_GT(divergence->stable_step, 0);
+  EXPECT_NEAR(divergence->stable_step, 2 / guaranteed_frequency(simulation.system()), 1e-12);
+  EXPECT_LT(divergence->stable_step, 0.02 * *guaranteed_step("verlet", scene));
 }
 
 TEST(Tunnelling, IsPossibleWhereAParticleMovesFurtherThanTheThinnestObstacle) {

@@ -46,7 +46,7 @@ StabilityReading read_stability(const cloth::Scene& scene) {
   StabilityReading reading;
   reading.automatic = !scene.integrator.time_step.has_value();
   reading.time_step = cloth::resolved_time_step(scene).value_or(0);
-  const auto limit = cloth::stable_step(scene.integrator.method, scene);
+  const auto limit = cloth::guaranteed_step(scene.integrator.method, scene);
   if (!limit) {
     reading.level = Level::impossible;
   } else if (std::isinf(*limit)) {
@@ -54,8 +54,10 @@ StabilityReading read_stability(const cloth::Scene& scene) {
     reading.by_method = scene.springs.has_value();
   } else {
     reading.stable_step = *limit;
-    const double fraction = reading.fraction();
-    reading.level = fraction >= 1 ? Level::unstable : fraction >= near_limit ? Level::near : Level::stable;
+    reading.flat_step = cloth::stable_step(scene.integrator.method, scene).value_or(0);
+    reading.level = reading.time_step < reading.stable_step ? Level::stable
+                    : reading.time_step < reading.flat_step ? Level::near
+                                                            : Level::unstable;
   }
   return reading;
 }
@@ -116,16 +118,17 @@ QString StabilityGauge::explanation() const {
                                  : tr("Nothing in this scene limits the step.");
       break;
     case Level::stable:
-      text += tr("The method is stable for this scene up to %1.").arg(step_text(reading_.stable_step));
-      break;
-    case Level::near:
-      text += tr("The limit of the method for this scene is %1. Stretching the cloth lowers it by a few "
-                 "percent, so this "
-                 "step may diverge.")
+      text += tr("The method is stable up to %1 in every shape of this cloth, however stretched.")
                   .arg(step_text(reading_.stable_step));
       break;
+    case Level::near:
+      text += tr("The method is stable up to %1 in every shape of this cloth, and up to %2 while it is flat "
+                 "and at rest: stretched, sheared or crumpled it may diverge at this step.")
+                  .arg(step_text(reading_.stable_step), step_text(reading_.flat_step));
+      break;
     case Level::unstable:
-      text += tr("The limit of the method for this scene is %1: the run will diverge.")
+      text += tr("The method is stable up to %1 in every shape of this cloth: at this step the run will "
+                 "diverge.")
                   .arg(step_text(reading_.stable_step));
       break;
   }

@@ -1,4 +1,5 @@
-// The gauge that says how near the time step is to the method's stability limit for the scene.
+// The gauge that says how near the time step is to the longest one that is stable in every shape of the
+// cloth.
 #pragma once
 
 #include <QWidget>
@@ -12,14 +13,12 @@ namespace clothlab {
 struct StabilityReading {
   enum class Level { unlimited, stable, near, unstable, impossible } level = Level::stable;
   double time_step = 0;    ///< s; 0 where there is none
-  double stable_step = 0;  ///< s; 0 where there is none
+  double stable_step = 0;  ///< s, in every shape; 0 where there is none
+  double flat_step = 0;    ///< s, the limit of the flat cloth; between the two some shapes diverge
   bool by_method = false;  ///< unlimited: the method's doing, not for want of springs
   bool automatic = false;  ///< the step was chosen by "auto"
   double fraction() const { return stable_step > 0 ? time_step / stable_step : 0; }
 };
-
-/// Above this part of the limit the gauge warns.
-inline constexpr double near_limit = 0.9;
 
 StabilityReading read_stability(const cloth::Scene& scene);
 

@@ -1,0 +1,111 @@
+// The bound on a cloth's frequencies that holds in every shape: the scalar graph Laplacian of its springs.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "measure/spectrum.h"
+
+namespace cloth {
+namespace {
+
+/// u -> M^-1/2 L M^-1/2 u with one number for each particle; pinned ones do not move.
+class ScaledLaplacian {
+ public:
+  explicit ScaledLaplacian(const ClothSystem& system) : system_(system), scale_(system.size()) {
+    for (int i = 0; i < system.size(); ++i)
+      scale_[i] = std::sqrt(system.inverse_mass[static_cast<std::size_t>(i)]);
+  }
+
+  Eigen::VectorXd operator*(const Eigen::VectorXd& vector) const {
+    const Eigen::VectorXd u = scale_.cwiseProduct(vector);
+    Eigen::VectorXd product = Eigen::VectorXd::Zero(u.size());
+    for (const SpringRun& run : system_.springs)
+      for (int i = run.first; i < run.first + run.count; ++i) {
+        const double force = run.stiffness * (u[i] - u[i + run.offset]);
+        product[i] += force;
+        product[i + run.offset] -= force;
+      }
+    return scale_.cwiseProduct(product);
+  }
+
+  /// Gershgorin's bound of each row: twice the diagonal, springs to pins once. 1/s^2
+  Eigen::VectorXd row_bounds() const {
+    Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(scale_.size());
+    for (const SpringRun& run : system_.springs)
+      for (int i = run.first; i < run.first + run.count; ++i) {
+        const int j = i + run.offset;
+        stiffness[i] += (scale_[j] > 0 ? 2 : 1) * run.stiffness;
+        stiffness[j] += (scale_[i] > 0 ? 2 : 1) * run.stiffness;
+      }
+    return scale_.cwiseProduct(scale_).cwiseProduct(stiffness);
+  }
+
+ private:
+  const ClothSystem& system_;
+  Eigen::VectorXd scale_;  ///< 1/sqrt(kg); 0 where pinned
+};
+
+/// Signs that are the same everywhere (splitmix64, Steele et al. 2014), larger where springs are: a few stiff
+/// particles among many soft ones are found soon.
+Eigen::VectorXd laplacian_start(const Eigen::VectorXd& row_bounds) {
+  std::uint64_t state = 1;
+  Eigen::VectorXd start = row_bounds.cwiseProduct(row_bounds) / std::pow(row_bounds.maxCoeff(), 2);
+  for (double& value : start) {
+    std::uint64_t bits = (state += 0x9e3779b97f4a7c15u);
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    value *= static_cast<double>(bits >> 11) * 0x1p-52 - 1;
+  }
+  return start.normalized();
+}
+
+/// The largest Ritz value with its residual added. 1/s^2
+struct RitzBound {
+  double value, residual;
+};
+
+RitzBound largest_ritz(const std::vector<double>& diagonal, const std::vector<double>& coupling) {
+  const auto size = static_cast<Eigen::Index>(diagonal.size());
+  const Eigen::Map<const Eigen::VectorXd> main(diagonal.data(), size), beside(coupling.data(), size - 1);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(main, beside);
+  return {solver.eigenvalues()[size - 1],
+          coupling.back() * std::abs(solver.eigenvectors()(size - 1, size - 1))};
+}
+
+}  // namespace
+
+/// Lanczos iteration without reorthogonalisation: copies of found eigenvalues do no harm where only the
+/// largest is asked for (Paige 1971). That its residual may be added to bound it from above: Zhou & Li 2011.
+double guaranteed_frequency(const ClothSystem& system) {
+  constexpr std::array<std::size_t, 4> looks{20, 40, 80, 160};  // how often the Ritz values are looked at
+  constexpr double close_enough = 1e-4, exhausted = 1e-12;      // relative
+  const ScaledLaplacian laplacian(system);
+  const Eigen::VectorXd rows = laplacian.row_bounds();
+  const double most = rows.size() > 0 ? rows.maxCoeff() : 0;
+  if (!(most > 0) || !std::isfinite(most)) return std::sqrt(std::max(0.0, most));
+
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(rows.size()), present = laplacian_start(rows);
+  std::vector<double> diagonal, coupling;
+  for (std::size_t look = 0; look < looks.size();) {
+    Eigen::VectorXd next = laplacian * present;
+    diagonal.push_back(present.dot(next));
+    next -= diagonal.back() * present;
+    if (!coupling.empty()) next -= coupling.back() * before;
+    coupling.push_back(next.norm());
+    const bool ends = coupling.back() <= exhausted * most;
+    if (ends || diagonal.size() == looks[look]) {
+      const RitzBound bound = largest_ritz(diagonal, coupling);
+      if (ends || ++look == looks.size() || bound.residual <= close_enough * bound.value)
+        return std::sqrt(std::min(most, bound.value + bound.residual));
+    }
+    before = std::move(present);
+    present = next / coupling.back();
+  }
+  return std::sqrt(most);
+}
+
+}  // namespace cloth

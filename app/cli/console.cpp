@@ -36,9 +36,10 @@ int print(const std::string& text) {
 std::string summary_text(const cloth::RunSummary& s, const std::string& folder) {
   std::string text = fmt::format(
       "{}: {}, {} steps of {:.6g} s, {:.6g} s simulated in {:.3g} s ({:.3g} ns per particle and step)\n"
-      "largest strain {:.4g} %, energy error {:.3g} J\n",
+      "largest strain {:.4g} %, energy error {:.3g} J at the end, at most {:.2g} % of the energy exchanged\n",
       cloth::name_of(s.status), s.method, s.count.steps, s.time_step, s.simulated, s.wall,
-      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy_drift);
+      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy.error(),
+      100 * s.energy.share());
   if (!folder.empty()) text += fmt::format("results in {}\n", folder);
   return text;
 }

@@ -42,7 +42,8 @@ std::string note_of(const PaneResult& pane) {
   std::string note;
   if (pane.divergence) note = describe(*pane.divergence);
   if (pane.below_floor) note = "its difference is less than the reference's from its check";
-  if (!pane.notice.empty()) note += (note.empty() ? "" : "; ") + pane.notice;
+  for (const std::string& sentence : {pane.notice, describe(pane.energy)})
+    if (!sentence.empty()) note += (note.empty() ? "" : "; ") + sentence;
   return note;
 }
 
@@ -75,7 +76,9 @@ json pane_json(const PaneResult& pane) {
              {"steps", pane.count.steps},
              {"force_evaluations", pane.count.force_evaluations},
              {"max_strain", finite(pane.max_strain)},
-             {"energy_error_J", finite(pane.energy_error)},
+             {"energy_error_J", finite(pane.energy.error())},
+             {"energy_exchanged_J", finite(pane.energy.exchanged())},
+             {"energy_error_share", finite(pane.energy.share())},
              {"is_reference", pane.is_reference},
              {"rms_difference_m", optional_number(pane.rms)},
              {"largest_difference_m", optional_number(pane.largest)},

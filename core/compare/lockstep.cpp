@@ -106,6 +106,7 @@ void LockStep::arrive(Lane& lane, std::int64_t index) {
   lane.measurement = lane.simulation->measure();
   lane.max_strain = std::max(lane.max_strain, lane.measurement.strain.maximum());
   lane.limiter_excess = std::max(lane.limiter_excess, lane.measurement.limiter_excess);
+  lane.energy.add(lane.measurement);
   lane.step_time = lane.steps_since_ > 0 ? lane.wall_since_ / static_cast<double>(lane.steps_since_) : 0;
   lane.wall += lane.wall_since_;
   lane.steps_since_ = 0;
@@ -193,6 +194,7 @@ std::unique_ptr<Lane> LockStep::copy_of(const Lane& from) {
   lane->wall = from.wall;
   lane->max_strain = from.max_strain;
   lane->limiter_excess = from.limiter_excess;
+  lane->energy = from.energy;
   lane->divergence = from.divergence;
   lane->first_index_ = from.first_index_;
   lane->first_step_ = from.first_step_;

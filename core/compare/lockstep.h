@@ -21,6 +21,7 @@
 
 #include "compare/comparison.h"
 #include "compare/difference.h"
+#include "simulation/energy_account.h"
 #include "simulation/simulation.h"
 
 namespace cloth {
@@ -39,6 +40,7 @@ struct Lane {
   double wall = 0;        ///< s, of stepping alone, since the start
   double max_strain = 0;  ///< largest of all common times
   double limiter_excess = 0;
+  EnergyAccount energy;                  ///< of all common times
   std::optional<Divergence> divergence;  ///< why it stopped
 
   bool going() const { return !divergence; }

@@ -40,7 +40,7 @@ PaneResult result_of(const LockStep& lockstep, std::size_t pane) {
                     .wall = lane.wall,
                     .count = lane.simulation->count(),
                     .max_strain = lane.max_strain,
-                    .energy_error = lane.measurement.energy_error(),
+                    .energy = lane.energy,
                     .rms = {},
                     .largest = {},
                     .rms_over_time = lockstep.rms_over_time(pane)};

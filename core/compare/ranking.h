@@ -20,7 +20,7 @@ struct PaneResult {
   double wall = 0;       ///< s, of stepping alone
   StepCount count;
   double max_strain = 0;                ///< largest of all common times
-  double energy_error = 0;              ///< J, at the last common time
+  EnergyAccount energy;                 ///< up to the last common time
   std::optional<double> rms, largest;   ///< m, from the reference at the last common time
   int particle = 0;                     ///< that has the largest
   bool below_floor = false;             ///< `rms` is less than the reference's own from its check

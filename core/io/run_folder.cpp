@@ -138,7 +138,10 @@ std::string summary_json(const RunSummary& s) {
             {"wall_s", s.wall},
             {"ns_per_particle_step", s.nanoseconds_per_particle_step()},
             {"max_strain", finite_or_word(s.max_strain)},
-            {"energy_drift_J", finite_or_word(s.energy_drift)},
+            {"energy_drift_J", finite_or_word(s.energy.error())},
+            {"largest_energy_error_J", finite_or_word(s.energy.largest_error())},
+            {"energy_exchanged_J", finite_or_word(s.energy.exchanged())},
+            {"energy_error_share", finite_or_word(s.energy.share())},
             {"limiter_excess", finite_or_word(s.limiter_excess)},
             {"status", name_of(s.status)}};
   if (json solver = solver_json(s.count); !solver.empty()) root["solver"] = std::move(solver);

@@ -7,6 +7,7 @@
 
 #include "cloth/cloth_system.h"
 #include "io/csv.h"
+#include "simulation/energy_account.h"
 #include "simulation/outcome.h"
 
 namespace cloth {
@@ -33,7 +34,7 @@ struct RunSummary {
   double simulated = 0;       ///< s
   double wall = 0;            ///< s, of stepping alone
   double max_strain = 0;      ///< largest of all rows
-  double energy_drift = 0;    ///< J, the energy error at the end
+  EnergyAccount energy;       ///< of all rows
   double limiter_excess = 0;  ///< largest of all rows
   Status status = Status::finished;
   std::optional<Divergence> divergence;

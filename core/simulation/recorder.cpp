@@ -98,9 +98,7 @@ class Run {
     simulation_.set_threads(options_.threads);
     summary.threads = simulation_.threads();
     summary.notice = fmt::format("{}", fmt::join(mesh_notices(scene), "; "));
-    if (simulation_.unreachable_rate())
-      summary.notice += (summary.notice.empty() ? "" : "; ") +
-                        describe(*simulation_.unreachable_rate(), simulation_.system());
+    if (simulation_.unreachable_rate()) note(describe(*simulation_.unreachable_rate(), simulation_.system()));
   }
 
   RunResult to_end() {
@@ -128,6 +126,11 @@ class Run {
   std::size_t carried_out() const { return next_; }  ///< commands
 
  private:
+  void note(const std::string& sentence) {
+    std::string& notice = result_.summary.notice;
+    if (!sentence.empty()) notice += (notice.empty() ? "" : "; ") + sentence;
+  }
+
   bool keep(std::optional<IoError> error) {
     if (error && !result_.io_error) result_.io_error = std::move(error);
     return !result_.io_error;
@@ -172,7 +175,7 @@ class Run {
     RunSummary& summary = result_.summary;
     summary.max_strain = std::max(summary.max_strain, measurement.strain.maximum());
     summary.limiter_excess = std::max(summary.limiter_excess, measurement.limiter_excess);
-    summary.energy_drift = measurement.energy_error();
+    summary.energy.add(measurement);
     const double mean = steps_since_row_ > 0 ? wall_since_row_ / static_cast<double>(steps_since_row_) : 0;
     steps_since_row_ = 0;
     wall_since_row_ = 0;
@@ -197,6 +200,7 @@ class Run {
     summary.status = summary.divergence              ? Status::diverged
                      : !ended_ || !problems_.empty() ? Status::stopped
                                                      : Status::finished;
+    if (!summary.divergence) note(describe(summary.energy));
     if (options_.folder.empty()) return;
     keep(record_.close());
     keep(write_text_file(options_.folder / "final_state.csv", state_csv(result_.final_state)));

@@ -254,6 +254,26 @@ class WindowTest : public QObject {
     QCOMPARE(bench.window.notice().cause(), QString("recording"));
   }
 
+  void a_run_whose_energy_is_not_accounted_for_says_so_until_it_is_restarted() {
+    cloth::Scene scene = cloth::builtin_scene("pendulum");
+    scene.integrator.method = "implicit-euler";  // it damps what its long steps cannot follow
+    scene.integrator.time_step = scene.record.interval = 0.05;
+    const QString file = folder.filePath("losing.scene.json");
+    QFile out(file);
+    QVERIFY(out.open(QIODevice::WriteOnly));
+    out.write(QByteArray::fromStdString(cloth::write_scene(scene)));
+    out.close();
+    WindowBench bench(file);
+    QVERIFY(bench.window.notice().text().isEmpty());
+    bench.play_until(1);
+    bench.pause();
+    QVERIFY2(bench.window.notice().text().contains("energy is not accounted for"),
+             qPrintable(bench.window.notice().text()));
+    bench.action("reset")->trigger();
+    bench.settle();
+    QVERIFY2(bench.window.notice().text().isEmpty(), qPrintable(bench.window.notice().text()));
+  }
+
   void changing_the_scene_replaces_cloth_and_forms() {
     WindowBench bench;
     bench.play_until(0.02);

@@ -10,7 +10,8 @@ std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& 
                                                    const cloth::Simulation& simulation) {
   folder_ = folder;
   rows_ = 0;
-  wall_ = max_strain_ = limiter_excess_ = energy_error_ = 0;
+  wall_ = max_strain_ = limiter_excess_ = 0;
+  energy_ = {};
   first_step_ = simulation.state().step;
   first_count_ = simulation.count();
   first_time_ = simulation.time();
@@ -37,7 +38,7 @@ std::optional<cloth::IoError> LiveRecording::add_row(const cloth::Simulation& si
   wall_ += wall;
   max_strain_ = std::max(max_strain_, measurement.strain.maximum());
   limiter_excess_ = std::max(limiter_excess_, measurement.limiter_excess);
-  energy_error_ = measurement.energy_error();
+  energy_.add(measurement);
   return record_.add(measurement, simulation.quantities(), steps > 0 ? wall / static_cast<double>(steps) : 0);
 }
 
@@ -71,7 +72,8 @@ std::optional<cloth::IoError> LiveRecording::end(const cloth::Simulation& simula
   summary.count.steps = last_good.step - first_step_;  // without one that diverged
   summary.max_strain = max_strain_;
   summary.limiter_excess = limiter_excess_;
-  summary.energy_drift = energy_error_;
+  summary.energy = energy_;
+  if (!divergence) summary.notice = describe(energy_);
   summary.divergence = divergence;
   summary.status = divergence ? cloth::Status::diverged : cloth::Status::stopped;
 

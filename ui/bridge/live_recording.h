@@ -52,7 +52,8 @@ class LiveRecording {
   bool active_ = false;
   std::int64_t rows_ = 0, first_step_ = 0;
   cloth::StepCount first_count_;
-  double first_time_ = 0, wall_ = 0, max_strain_ = 0, limiter_excess_ = 0, energy_error_ = 0;
+  double first_time_ = 0, wall_ = 0, max_strain_ = 0, limiter_excess_ = 0;
+  cloth::EnergyAccount energy_;
   std::chrono::steady_clock::time_point last_flush_;
 };
 

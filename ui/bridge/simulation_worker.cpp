@@ -92,6 +92,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   status_.session_agrees.reset();
   rows_ = cloth::RowClock::of(*simulation_);
   status_.divergence.reset();
+  energy_ = {};
   wall_since_row_ = 0;
   steps_since_row_ = 0;
   meter_.restart(0, Clock::now());
@@ -133,6 +134,7 @@ void SimulationWorker::drop_later_samples() {
   const std::int64_t step = simulation_->state().step;
   if (last_sampled_step_ <= step) return;
   last_sampled_step_ = step;
+  energy_.cut(step);
   deliver({.time_s = simulation_->time(), .is_cut = true});
 }
 
@@ -238,6 +240,7 @@ void SimulationWorker::take_sample() {
 
   if (m.step <= last_sampled_step_) return;  // on the way through the history
   last_sampled_step_ = m.step;
+  energy_.add(m);
   if (m.step == 0) {
     first_sample_ = sample;
     return;
@@ -295,7 +298,9 @@ void SimulationWorker::publish_status() {
     status_.notice.clear();
     for (const std::string& notice : cloth::mesh_notices(simulation_->scene()))
       status_.notice += notice + '\n';
-    if (unreachable) status_.notice += cloth::describe(*unreachable, simulation_->system());
+    if (unreachable) status_.notice += cloth::describe(*unreachable, simulation_->system()) + '\n';
+    status_.notice += energy_.notice();
+    if (status_.notice.ends_with('\n')) status_.notice.pop_back();
     if (!status_.scene || *status_.scene != simulation_->scene())
       status_.scene = std::make_shared<cloth::Scene>(simulation_->scene());
     status_.history = {.last_step = history_.last_step(),

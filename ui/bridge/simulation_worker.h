@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bridge/chart_sample.h"
+#include "bridge/energy_watch.h"
 #include "bridge/fill_contact.h"
 #include "bridge/frame_exchange.h"
 #include "bridge/live_recording.h"
@@ -137,6 +138,7 @@ class SimulationWorker {
   std::int64_t last_sampled_step_ = -1;  ///< samples up to here have been given
   cloth::RowClock rows_;
   LiveRecording recording_;
+  EnergyWatch energy_;
   WorkerStatus status_;
   WorkerPace pace_;
   RateMeter meter_;

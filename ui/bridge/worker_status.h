@@ -27,7 +27,7 @@ struct WorkerStatus : RecordingStatus {
   double speed = 1;      ///< simulated seconds per second asked for
   double steps_per_second = 0, real_time_factor = 0;
   std::optional<cloth::Divergence> divergence;
-  std::string notice;             ///< e.g. a rate that the pins make unreachable
+  std::string notice;             ///< e.g. a rate that the pins make unreachable, or an energy that is not accounted for
   std::string refusal;            ///< why the last scene or edit is not in force
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
 

@@ -34,13 +34,20 @@ QString millimetres(double metres) {
   return QString::number(1e3 * metres, 'g', 3);
 }
 
-QString difference_text(const cloth::PaneResult& result, bool has_reference) {
+QString difference_from_reference(const cloth::PaneResult& result, bool has_reference) {
   if (result.is_reference) return PaneView::tr("Reference");
   if (!has_reference) return PaneView::tr("No reference");
   if (!result.rms) return PaneView::tr("No difference measured");
   const QString text =
       PaneView::tr("RMS %1 mm, largest %2 mm").arg(millimetres(*result.rms), millimetres(*result.largest));
   return result.below_floor ? PaneView::tr("%1 (as close as the reference can tell)").arg(text) : text;
+}
+
+/// And whether its energy closes: what a pane's motion is worth without any reference.
+QString difference_text(const cloth::PaneResult& result, bool has_reference) {
+  const QString text = difference_from_reference(result, has_reference);
+  if (!result.energy.is_doubtful_so_far()) return text;
+  return PaneView::tr("%1; energy error %2 % of the exchanged").arg(text).arg(100 * result.energy.share(), 0, 'g', 2);
 }
 
 }  // namespace
@@ -179,8 +186,10 @@ void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, b
 void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
   cost_->setText(result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
   set_text(*difference_, difference_text(result, has_reference));
-  difference_->setToolTip(result.notice.empty() ? difference_->text()
-                                                : QString::fromStdString(result.notice));
+  QStringList notices;
+  if (!result.notice.empty()) notices << QString::fromStdString(result.notice);
+  if (result.energy.is_doubtful_so_far()) notices << QString::fromStdString(describe(result.energy));
+  difference_->setToolTip(notices.isEmpty() ? difference_->text() : notices.join('\n'));
   const QString why =
       result.divergence
           ? tr("Stopped: it %1.").arg(QString::fromStdString(cloth::describe(*result.divergence)))

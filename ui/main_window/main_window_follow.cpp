@@ -24,9 +24,9 @@ void MainWindow::followStatus(const WorkerStatus& status) {
     notice_->withdraw("refusal");
   if (status.notice != shown_status_.notice) {
     if (status.notice.empty())
-      notice_->withdraw("unreachable");
+      notice_->withdraw("quality");
     else
-      notice_->show("unreachable", NoticeBar::Level::warning, QString::fromStdString(status.notice));
+      notice_->show("quality", NoticeBar::Level::warning, QString::fromStdString(status.notice));
   }
   followDivergence(status);
   follow_recording(*record_, *notice_, shown_status_, status);

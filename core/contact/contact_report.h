@@ -18,6 +18,7 @@ struct ContactReport {
   bool acted = false;  ///< the state is another one than without contact
   int contacts = 0;    ///< particles that were touched; particle by particle, once for each obstacle
   int held_back = 0;   ///< particles that did not get where they should: something was in the way to the end
+  double work = 0;        ///< J, given to the cloth by contact's impulses
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only continuous contact says it
   int rounds = 0;         ///< of continuous contact
   std::size_t pairs = 0;  ///< of features near each other, of the last round

@@ -16,12 +16,8 @@ namespace {
 constexpr double margin_part = 0.1, aside_part = 0.1;
 constexpr std::size_t least_separated = 500;  ///< pairs that are worth a thread of their own
 constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
-/// Of the thickness: what is left of a way that counts as none.
-constexpr double arrived_part = 1e-3;
 constexpr double solver_tolerance_part = 1e-5;
-/// Two faces of the cloth that rest on one corner are nearly the same contact: their velocities take long.
-constexpr int solver_sweeps = 20, velocity_sweeps = 100;
-constexpr double velocity_tolerance = 1e-7;  ///< m/s
+constexpr int solver_sweeps = 20;
 constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
 /// Rounds without a shorter way left, after which the few that are still on their way are held back.
 constexpr int most_rounds_idle = 6;
@@ -254,7 +250,7 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   bool moved = false;
   int stuck = 0, rounds_at_rest = 0, idle = 0;
   double least_left = infinity;
-  const double arrived = arrived_part * thickness_;
+  const double arrived = arrived_length();
   while (true) {
     ++report.rounds;
     if (!is_separated_) separate_all();
@@ -285,10 +281,10 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   report.acted = true;
   report.pairs = pairs_.size();
   report.contacts = count_touched();
+  wished_ = state.position;
   state.position = safe_;
   if (settling.positions) settling.positions();
-  report.impulse = answer_velocities(system, times.step, settling, state);
-  report.held_back = note_held_back(from, times.step, state);
+  answer_velocities(system, {from, times.step}, settling, state, report);
   return report;
 }
 
@@ -316,59 +312,6 @@ void ContinuousContact::append_marks(const Vec3Field& position, std::vector<Cont
         mark.point += weight * position[at(touch.contact.particle[at(k)])];
     marks.push_back(mark);
   }
-}
-
-/// The touching pairs, with what their velocities must answer.
-void ContinuousContact::take_touches(double step, const ClothState& state) {
-  const double least_bounce = 2 * gravity_ * step;  // slower, and a cloth at rest would dance
-  constraints_.clear();
-  for (const Touch& touch : touches_) {
-    if (!(touch.contact.push > 0)) continue;
-    ContactConstraint contact = touch.contact;
-    const double coming = contact.normal.dot(contact.point(state.velocity) - touch.velocity);
-    double restitution = 0;
-    if (touch.obstacle != FeaturePair::cloth_itself) {
-      const ObstacleBody& body = bodies_[at(touch.obstacle)];
-      restitution = body.reflects ? body.friction : body.restitution;
-    }
-    contact.bound = contact.normal.dot(touch.velocity) + (coming < -least_bounce ? -restitution * coming : 0);
-    contact.rest = touch.velocity;
-    contact.pressed = contact.push / step;  // what held the position rubs, even if nothing approaches
-    contact.push = 0, contact.rub.setZero();
-    constraints_.push_back(contact);
-  }
-}
-
-/// Impulses over the touching pairs; returns their sum in N s.
-Vec3 ContinuousContact::answer_velocities(const ClothSystem& system, double step, const Settling& settling,
-                                          ClothState& state) {
-  take_touches(step, state);
-  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
-  if (settling.velocities) {
-    settling.velocities();
-    for (const ContactConstraint& contact : constraints_)
-      apply_pushes(contact, system.inverse_mass, state.velocity);
-    solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
-  }
-  Vec3 impulse = Vec3::Zero();
-  for (const ContactConstraint& contact : constraints_) {
-    double weight = 0;
-    for (int k = 0; k < contact.count; ++k)
-      if (!system.pinned[at(contact.particle[at(k)])]) weight += contact.weight[at(k)];
-    impulse += weight * (contact.push * contact.normal + contact.rub);
-  }
-  return impulse;
-}
-
-int ContinuousContact::note_held_back(const Vec3Field& from, double step, ClothState& state) const {
-  int held = 0;
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    if ((wish_[i] - safe_[i]).norm() <= arrived_part * thickness_) continue;
-    ++held;
-    const Vec3 gone = (safe_[i] - from[i]) / step;
-    if (gone.norm() < state.velocity[i].norm()) state.velocity.set(i, gone);
-  }
-  return held;
 }
 
 }  // namespace cloth

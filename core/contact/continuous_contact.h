@@ -8,7 +8,7 @@
 //
 // Where the particles should go is solved for in each round: as near as possible to where the integrator has
 // put them, in the norm of their masses, with every near pair a thickness apart and Coulomb friction against
-// the slip of the step. Velocities follow by impulses over the same pairs.
+// the slip of the step. Velocities follow by impulses over the same pairs (velocity_answer.cpp).
 #pragma once
 
 #include <functional>
@@ -16,6 +16,7 @@
 #include "cloth/cloth_system.h"
 #include "contact/close_pairs.h"
 #include "contact/contact_mark.h"
+#include "contact/contact_memory.h"
 #include "contact/contact_report.h"
 #include "contact/contact_solver.h"
 #include "contact/obstacle_carry.h"
@@ -34,8 +35,11 @@ struct ContactTimes {
   double begin = 0, end = 0, step = 0;
 };
 
-/// How the integrator's velocities follow contact; none where they need not.
+/// What the velocities' answer refers to, and how the integrator's velocities follow contact; no function
+/// where they need not.
 struct Settling {
+  const Vec3Field& velocity_before;  ///< m/s, as the step began
+  ContactMemory& memory;             ///< of the last step, and then of this one
   std::function<void()> positions;   ///< called once the positions are in the state, before velocities answer
   std::function<void()> velocities;  ///< called once they have answered; they answer once more
 };
@@ -113,10 +117,26 @@ class ContinuousContact {
   double reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const;
   Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
   Pinch pinch(const ClothSystem& system) const;
-  int note_held_back(const Vec3Field& from, double step, ClothState& state) const;
   int count_touched() const;
-  void take_touches(double step, const ClothState& state);
-  Vec3 answer_velocities(const ClothSystem& system, double step, const Settling& settling, ClothState& state);
+  /// m: what is left of a way that counts as none.
+  double arrived_length() const { return 1e-3 * thickness_; }
+
+  struct Begin {
+    const Vec3Field& position;  ///< m, as the step began
+    double step = 0;            ///< s
+  };
+  void take_touches(const Begin& begin, const Settling& settling);
+  double approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const;
+  void answer_velocities(const ClothSystem& system, const Begin& begin, const Settling& settling,
+                         ClothState& state, ContactReport& report);
+  Vec3 impulse_of_pushes(const ClothSystem& system) const;
+  void find_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
+                 const ClothState& state);
+  void add_half_steps_work(const ClothSystem& system, double step, const Settling& settling,
+                           const ClothState& state);
+  void bounce(const ClothSystem& system, double step, bool follows, ClothState& state);
+  void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
+  int note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state);
 
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
@@ -139,6 +159,7 @@ class ContinuousContact {
   Vec3Field base_;   ///< m, wished, before contact in this round
   Vec3Field wish_;   ///< m, wished with contact
   Vec3Field safe_;   ///< m, reached
+  Vec3Field wished_;  ///< m, where the integrator put the particles
   std::vector<double> share_;
   std::vector<double> room_;  ///< of each particle's way, more each time that it was stopped by it
   Ways ways_;                 ///< where the particles may go until pairs are found anew
@@ -152,6 +173,12 @@ class ContinuousContact {
   bool outgrown_ = false;          ///< a particle was stopped by its way
   bool is_separated_ = false;      ///< the separations are of where all is now
   bool was_rebased_ = false;       ///< contacts of earlier rounds are part of what is wished
+
+  // of the velocities' answer
+  Vec3Field free_velocity_;            ///< m/s, before the answer
+  std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
+  std::vector<double> work_;           ///< J, of each particle
+  std::vector<std::uint8_t> bounced_;  ///< of each particle
 };
 
 }  // namespace cloth

@@ -5,8 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/contact_work.h"
+
 namespace cloth {
 namespace {
+
+/// J, of the impulse `change` times the mass on a particle.
+double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds, const Vec3& change) {
+  ContactConstraint contact;
+  contact.normal = normal;
+  contact.mobility = 1 / mass;
+  contact.push = std::max(0.0, mass * change.dot(normal));
+  contact.rub = mass * (change - change.dot(normal) * normal);
+  return work_of(contact, speeds);
+}
 
 std::optional<SurfacePoint> sphere_penetration(const Obstacle& sphere, const Vec3& position) {
   const Vec3 out = position - sphere.center;
@@ -53,14 +65,18 @@ std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& po
 }
 
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity) {
+  return contact_velocity(obstacle, normal, velocity, -velocity.dot(normal));
+}
+
+Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach) {
   const double inward = velocity.dot(normal);
   if (!(inward < 0)) return velocity;
   if (obstacle.response == "reflect") return obstacle.friction * (velocity - 2 * inward * normal);
   const Vec3 tangential = velocity - inward * normal;
-  const double change = (1 + obstacle.restitution) * -inward;
+  const double rebound = obstacle.restitution * approach, change = rebound - inward;
   const double speed = tangential.norm();
   const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * change / speed) : 0;
-  return kept * tangential - obstacle.restitution * inward * normal;
+  return kept * tangential + rebound * normal;
 }
 
 std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obstacles,
@@ -88,21 +104,61 @@ std::string describe(const TunnellingRisk& risk) {
       risk.particle, risk.travel, risk.obstacle, risk.thickness);
 }
 
-ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)) {}
+ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity)
+    : obstacles_(std::move(obstacles)), gravity_(gravity) {}
 
-ContactReport ObstacleContact::apply(const ClothSystem& system, ClothState& state) const {
+/// m/s, what a bounce gives back: of a particle that nothing held its mean speed in this step, of one that was
+/// held the speed with which the step began. What the step adds to that is load.
+double ObstacleContact::approach_of(std::size_t i, const Vec3& normal, const ContactBegin& begin,
+                                    const Vec3& wished) const {
+  const Vec3 speed = begin.memory.held[i] ? begin.velocity[i] : Vec3((wished - begin.position[i]) / begin.step);
+  const double approach = -speed.dot(normal), least = 2 * gravity_ * begin.step;
+  return approach > least ? approach : 0;  // slower, and a cloth at rest would dance
+}
+
+ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBegin& begin,
+                                     ClothState& state) const {
   ContactReport report;
-  for (const Obstacle& obstacle : obstacles_) {
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-      if (system.pinned[i]) continue;
-      const auto surface = penetration(obstacle, state.position[i]);
-      if (!surface) continue;
-      state.position.set(i, surface->point);
-      state.velocity.set(i, contact_velocity(obstacle, surface->normal, state.velocity[i]));
-      ++report.contacts;
-    }
+  begin.memory.resize(state.position.size());
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    if (system.pinned[i]) continue;
+    const bool touched = touch(system, i, begin, state, report);
+    if (!touched) begin.memory.held[i] = 0;
   }
   return report;
+}
+
+/// One particle and all obstacles, in their order.
+bool ObstacleContact::touch(const ClothSystem& system, std::size_t i, const ContactBegin& begin,
+                            ClothState& state, ContactReport& report) const {
+  const Vec3 wished = state.position[i];
+  Vec3 before = begin.velocity[i];
+  bool touched = false, bounced = false;
+  for (const Obstacle& obstacle : obstacles_) {
+    const auto surface = penetration(obstacle, state.position[i]);
+    if (!surface) continue;
+    const Vec3 speed = state.velocity[i];
+    const double approach = approach_of(i, surface->normal, begin, wished);
+    const Vec3 stopped = contact_velocity(obstacle, surface->normal, speed, 0);
+    Vec3 answer = contact_velocity(obstacle, surface->normal, speed, approach);
+    const double work =
+        stopping_work(system.mass[i], surface->normal,
+                      {before, stopped, (surface->point - begin.position[i]) / begin.step}, stopped - speed);
+    const double square = 0.5 * system.mass[i] * (answer - stopped).squaredNorm();
+    if (square > 0) {  // gives back no more than was taken
+      const double linear = system.mass[i] * stopped.dot(answer - stopped);
+      answer = stopped + part_within(square, linear, std::max(-work, 0.0)) * (answer - stopped);
+    }
+    state.position.set(i, surface->point);
+    state.velocity.set(i, answer);
+    report.work += work + 0.5 * system.mass[i] * (answer.squaredNorm() - stopped.squaredNorm());
+    before = answer;
+    bounced = bounced || answer != stopped;
+    touched = true;
+    ++report.contacts;
+  }
+  if (touched) begin.memory.held[i] = !bounced;
+  return touched;
 }
 
 bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state) const {

@@ -9,6 +9,7 @@
 
 #include "cloth/cloth_system.h"
 #include "contact/contact_mark.h"
+#include "contact/contact_memory.h"
 #include "contact/contact_report.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,18 @@ std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& po
 /// tangential part loses up to friction |change of v_n|. reflect (report, Eq. (17)): v -> friction (v - 2 v_n
 /// n).
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
+
+/// The same, where contact was come to with `approach` in m/s: the rest of the inward speed is no blow but the
+/// load of a step, which restitution does not give back. With 0 nothing bounces.
+Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach);
+
+/// Of the step that contact follows.
+struct ContactBegin {
+  const Vec3Field& position;  ///< m, as it began
+  const Vec3Field& velocity;  ///< m/s
+  double step = 0;            ///< s
+  ContactMemory& memory;      ///< of the last step, and then of this one
+};
 
 /// A particle that moves further in a step than an obstacle is thick: it can pass between two steps unseen.
 struct TunnellingRisk {
@@ -47,9 +60,10 @@ std::string describe(const TunnellingRisk& risk);
 
 class ObstacleContact {
  public:
-  explicit ObstacleContact(std::vector<Obstacle> obstacles);
+  /// `gravity` in m/s^2.
+  ObstacleContact(std::vector<Obstacle> obstacles, double gravity);
 
-  ContactReport apply(const ClothSystem& system, ClothState& state) const;
+  ContactReport apply(const ClothSystem& system, const ContactBegin& begin, ClothState& state) const;
 
   /// Particles that `apply` would move.
   bool touches(const ClothSystem& system, const ClothState& state) const;
@@ -58,7 +72,13 @@ class ObstacleContact {
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
 
  private:
+  bool touch(const ClothSystem& system, std::size_t particle, const ContactBegin& begin, ClothState& state,
+             ContactReport& report) const;
+  double approach_of(std::size_t particle, const Vec3& normal, const ContactBegin& begin,
+                     const Vec3& wished) const;
+
   std::vector<Obstacle> obstacles_;
+  double gravity_ = 0;  ///< m/s^2
 };
 
 }  // namespace cloth

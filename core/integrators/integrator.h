@@ -81,6 +81,13 @@ class Integrator {
   virtual void follow_velocities(const ClothSystem&, ForceModel&, const StepTimes&,
                                  const Vec3Field& /*half_velocity*/, ClothState&) {}
 
+  /// The state at the end of the last step is another one by contact. Returns what that changes of the work
+  /// which the step has added with the velocity that never happened.
+  virtual Work follow_contact(ForceModel&, const StepTimes&, const ClothState&) {
+    forget(Change::state);
+    return {};
+  }
+
   /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
   /// choice. Most methods need nothing.
   virtual IntegratorMemory remember() const { return {}; }

@@ -76,6 +76,21 @@ void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, co
   add_acceleration(system, 0.5 * times.step, force(forces), state.velocity);
 }
 
+/// The next step would begin with this evaluation.
+Work Verlet::follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  forget(Change::state);
+  if (!forces.has_power()) return {};
+  Work correction = -0.5 * times.step * power_;
+  forces.update(state.position, times.end);
+  holds_position_force_ = true;
+  if (forces.steps_verlet())
+    power_ = forces.power(state.position, state.velocity);
+  else
+    evaluate(forces, state);
+  correction += 0.5 * times.step * power_;
+  return correction;
+}
+
 /// The velocity at the end of a step and at the half of the next are made in one pass, so that the force need
 /// not be kept: a third less to bring from memory.
 IntegratorReport Verlet::unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,

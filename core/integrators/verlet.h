@@ -27,6 +27,7 @@ class Verlet : public Integrator {
                          const Vec3Field& half_velocity, ClothState& state) override;
   void follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         const Vec3Field& half_velocity, ClothState& state) override;
+  Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  private:

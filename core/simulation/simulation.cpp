@@ -65,7 +65,7 @@ void Simulation::assemble() {
     continuous_contact_ =
         std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_carry_, state_.time);
   else if (!scene_.obstacles.empty())
-    contact_.emplace(scene_.obstacles);
+    contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
   unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
   elastic_scale_ = elastic_scale_of(system_);
@@ -133,10 +133,10 @@ std::optional<Divergence> Simulation::step() {
   const std::int64_t next = state_.step + 1;
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
-  if (continuous_contact_) position_before_ = state_.position;
+  if (contact_ || continuous_contact_) position_before_ = state_.position, velocity_before_ = state_.velocity;
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
-  if (contact_ && !report.failure) resolve_contact();
+  if (contact_ && !report.failure) resolve_contact(times);
   if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
   if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
   state_.time = times.end;
@@ -181,47 +181,6 @@ void Simulation::limit_deformation() {
   integrator_->forget(Change::state);
 }
 
-void Simulation::resolve_contact() {
-  last_contact_ = {};
-  if (!contact_->touches(system_, state_)) return;
-  const double before = total_energy();
-  last_contact_ = contact_->apply(system_, state_);
-  ledger_.contact += total_energy() - before;
-  integrator_->forget(Change::state);
-}
-
-/// What has run away is not followed: it stays where it was, and the run stops.
-void Simulation::resolve_continuous_contact(const StepTimes& times) {
-  last_contact_ = {};
-  if (has_run_away(kinetic_energy(system_, state_.velocity))) {
-    state_.position = position_before_;
-    return;
-  }
-  const ContactTimes contact_times{times.begin, times.end, times.step};
-  if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return;
-  const double before = total_energy();
-  const bool follows = integrator_->velocity_follows_positions() && !limiter_;
-  if (follows) {
-    if (half_velocity_.size() != system_.start.size()) half_velocity_ = Vec3Field(system_.start.size());
-    for (std::size_t i = 0; i < half_velocity_.size(); ++i)
-      half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
-  }
-  Settling settling;
-  if (follows)
-    settling.positions = [&] {
-      integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
-    };
-  if (follows && forces_->has_damping())
-    settling.velocities = [&] {
-      integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
-    };
-  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
-  if (!last_contact_.acted) return;
-  ledger_.contact += total_energy() - before;
-  contact_impulse_ += last_contact_.impulse;
-  integrator_->forget(Change::state);
-}
-
 TriangleMesh Simulation::cloth_mesh() const {
   TriangleMesh mesh{{}, triangles_of(system_)};
   for (std::size_t i = 0; i < state_.position.size(); ++i) mesh.vertices.push_back(state_.position[i]);
@@ -262,6 +221,7 @@ void Simulation::edit(const Scene& scene) {
   }
   if (new_method) integrator_ = make_integrator(scene_.integrator);
   assemble();
+  if (new_method || !(contact_ || continuous_contact_)) end_contact();
   integrator_->forget(Change::state);
   ledger_.initial += total_energy() - before;
 }
@@ -269,7 +229,8 @@ void Simulation::edit(const Scene& scene) {
 std::size_t Checkpoint::bytes() const {
   std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
-  return sizeof(Checkpoint) + sizeof(double) * numbers + sizeof(Pose) * obstacle_poses.size() +
+  numbers += contact_memory.lent.size();
+  return sizeof(Checkpoint) + sizeof(double) * numbers + contact_memory.held.size() + sizeof(Pose) * obstacle_poses.size() +
          sizeof(ObstacleCarry) * carries.size();
 }
 
@@ -291,7 +252,8 @@ Checkpoint Simulation::checkpoint() const {
           .carries = carries_,
           .thickness_carry = thickness_carry_,
           .obstacle_speed = obstacle_speed_,
-          .contact_impulse = contact_impulse_};
+          .contact_impulse = contact_impulse_,
+          .contact_memory = contact_memory_};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -313,6 +275,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   thickness_carry_ = checkpoint.thickness_carry;
   obstacle_speed_ = checkpoint.obstacle_speed;
   contact_impulse_ = checkpoint.contact_impulse;
+  contact_memory_ = checkpoint.contact_memory;
+  if (checkpoint.method != scene_.integrator.method) end_contact();
   if (continuous_contact_) {
     continuous_contact_->set_carries(carries_, thickness_carry_);
     restore_obstacles(checkpoint.obstacle_poses);

@@ -88,6 +88,7 @@ struct Checkpoint {
   ThicknessCarry thickness_carry;
   double obstacle_speed = 0;      ///< m/s, the highest so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
+  ContactMemory contact_memory;
 
   std::size_t bytes() const;
 };
@@ -182,7 +183,9 @@ class Simulation {
   void apply_hand();
   void limit_start();
   void limit_deformation();
-  void resolve_contact();
+  void resolve_contact(const StepTimes& times);
+  void book_contact(const StepTimes& times);
+  void end_contact();
   ObstacleCarries find_carries(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
@@ -205,7 +208,8 @@ class Simulation {
   std::optional<DeformationLimiter> limiter_;
   std::optional<ObstacleContact> contact_;                 ///< particle by particle
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
-  Vec3Field position_before_;                              ///< m, at the step's start, for the latter
+  Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact
+  ContactMemory contact_memory_;
   Vec3Field half_velocity_;  ///< m/s, from there to where the step ended before contact
 
   double time_step_ = 0;

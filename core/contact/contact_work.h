@@ -1,0 +1,46 @@
+// The work of one contact's impulses in a step whose velocities are not made with where contact let the
+// particles go.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact_solver.h"
+
+namespace cloth {
+
+/// Of a contact's point, in m/s: as the step began, with contact's answer at its end, and the mean of the way
+/// that it went.
+struct PointSpeeds {
+  Vec3 before{0, 0, 0}, after{0, 0, 0}, gone{0, 0, 0};
+};
+
+/// J. An impulse that changes the point's speed acts in a moment: its work is that with the mean of the
+/// speeds before and after. What it has beyond that carries a load that acted all the step long: its work is
+/// that along the way the point went. So a cloth that lies still gets none, whatever speed the integrator had
+/// given it in a step.
+inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
+  const Vec3 mean = 0.5 * (speeds.before + speeds.after), change = speeds.after - speeds.before;
+  const double along = contact.normal.dot(change);
+  const double blow = std::clamp(along / contact.mobility, 0.0, contact.push);
+  double work =
+      blow * contact.normal.dot(mean) + (contact.push - blow) * contact.normal.dot(speeds.gone);
+
+  const auto across = [&](const Vec3& v) -> Vec3 { return v - contact.normal.dot(v) * contact.normal; };
+  const Vec3 turned = across(change);
+  const bool slows = across(speeds.after - contact.rest).squaredNorm() <
+                     across(speeds.before - contact.rest).squaredNorm();
+  Vec3 stopping = Vec3::Zero();
+  if (slows && turned.squaredNorm() > 0)
+    stopping = std::clamp(contact.rub.dot(turned) / turned.squaredNorm(), 0.0, 1 / contact.mobility) * turned;
+  work += stopping.dot(mean) + (contact.rub - stopping).dot(speeds.gone);
+  return work;
+}
+
+/// The largest part s of a change of velocities, at most 1, with a s^2 + b s <= most, which is >= 0; a > 0.
+inline double part_within(double a, double b, double most) {
+  if (a + b <= most) return 1;
+  return std::clamp((std::sqrt(b * b + 4 * a * most) - b) / (2 * a), 0.0, 1.0);
+}
+
+}  // namespace cloth

@@ -1,0 +1,45 @@
+// Which particles contacts tie together, directly or through others.
+#pragma once
+
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "contact/at.h"
+#include "contact/contact_solver.h"
+
+namespace cloth {
+
+class Islands {
+ public:
+  /// Particles that cannot move tie nothing together.
+  Islands(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass)
+      : parent_(inverse_mass.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (const ContactConstraint& contact : contacts) {
+      const int first = first_free(contact, inverse_mass);
+      for (int k = 0; k < contact.count; ++k)
+        if (const int i = contact.particle[at(k)]; inverse_mass[at(i)] > 0 && contact.weight[at(k)] != 0)
+          parent_[at(of(i))] = of(first);
+    }
+  }
+
+  /// The particle that stands for the island of `i`.
+  int of(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+
+  /// A particle that the contact can move, or -1.
+  static int first_free(const ContactConstraint& contact, const std::vector<double>& inverse_mass) {
+    for (int k = 0; k < contact.count; ++k)
+      if (const int i = contact.particle[at(k)]; inverse_mass[at(i)] > 0 && contact.weight[at(k)] != 0)
+        return i;
+    return -1;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace cloth

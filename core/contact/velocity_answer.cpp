@@ -1,0 +1,211 @@
+// How velocities answer the contacts of a step, and the work that this is. First all contacts stop what
+// approaches; then those with restitution give speed back, no more in any island than their contacts have
+// taken from it: Newton's law for many contacts at once, and with friction, could make energy (Stronge,
+// "Rigid body collisions with friction", 1990).
+#include <algorithm>
+#include <cmath>
+
+#include "contact/at.h"
+#include "contact/contact_work.h"
+#include "contact/continuous_contact.h"
+#include "contact/islands.h"
+
+namespace cloth {
+namespace {
+
+/// Two faces of the cloth that rest on one corner are nearly the same contact: their velocities take long.
+constexpr int velocity_sweeps = 100;
+constexpr double velocity_tolerance = 1e-7;  ///< m/s
+
+/// J, at another velocity less now.
+double kinetic_change(double mass, const Vec3& now, const Vec3& then) {
+  return 0.5 * mass * (then - now).dot(then + now);
+}
+
+}  // namespace
+
+/// m/s, of the touch's two sides, negative where they come nearer. What nothing held before comes as fast as
+/// the integrator lets it go in this step. What was held comes as fast as it went when the step began: what
+/// the step adds to that is load.
+double ContinuousContact::approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const {
+  const ContactConstraint& contact = touch.contact;
+  bool was_held = false;
+  for (int k = 0; k < contact.count; ++k)
+    was_held = was_held || (contact.weight[at(k)] != 0 && settling.memory.held[at(contact.particle[at(k)])]);
+  if (was_held) return contact.normal.dot(contact.point(settling.velocity_before) - touch.velocity);
+  return contact.normal.dot(contact.point(wished_) - contact.rest) / begin.step;
+}
+
+/// The touching pairs, with what their velocities must answer without restitution, and with it.
+void ContinuousContact::take_touches(const Begin& begin, const Settling& settling) {
+  const double least_bounce = 2 * gravity_ * begin.step;  // slower, and a cloth at rest would dance
+  constraints_.clear();
+  bounce_bound_.clear();
+  for (const Touch& touch : touches_) {
+    if (!(touch.contact.push > 0) || !(touch.contact.mobility > 0)) continue;
+    ContactConstraint contact = touch.contact;
+    double restitution = 0;
+    if (touch.obstacle != FeaturePair::cloth_itself) {
+      const ObstacleBody& body = bodies_[at(touch.obstacle)];
+      restitution = body.reflects ? body.friction : body.restitution;
+    }
+    contact.bound = contact.normal.dot(touch.velocity);
+    const double coming = restitution > 0 ? approach_of(touch, begin, settling) : 0;
+    bounce_bound_.push_back(contact.bound + (coming < -least_bounce ? -restitution * coming : 0));
+    contact.rest = touch.velocity;
+    contact.push = 0, contact.rub.setZero();
+    constraints_.push_back(contact);
+  }
+}
+
+void ContinuousContact::answer_velocities(const ClothSystem& system, const Begin& begin,
+                                          const Settling& settling, ClothState& state,
+                                          ContactReport& report) {
+  const bool follows = static_cast<bool>(settling.positions);
+  settling.memory.resize(safe_.size());
+  take_touches(begin, settling);
+  free_velocity_ = state.velocity;
+  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  if (settling.velocities) {
+    settling.velocities();
+    free_velocity_ = state.velocity;
+    for (const ContactConstraint& contact : constraints_)
+      apply_pushes(contact, system.inverse_mass, state.velocity);
+    solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+  }
+  work_.assign(safe_.size(), 0.0);
+  if (follows)
+    add_half_steps_work(system, begin.step, settling, state);
+  else
+    find_work(system, begin, settling, state);
+  bounce(system, begin.step, follows, state);
+  report.impulse = impulse_of_pushes(system);
+  if (follows)
+    for (std::size_t i = 0; i < safe_.size(); ++i)
+      if (!system.pinned[i]) report.impulse += system.mass[i] / begin.step * (safe_[i] - wished_[i]);
+  report.held_back = note_held_back(system, begin, state);
+  remember(system, state, follows, settling.memory);
+  for (const double work : work_) report.work += work;
+}
+
+/// N s.
+Vec3 ContinuousContact::impulse_of_pushes(const ClothSystem& system) const {
+  Vec3 impulse = Vec3::Zero();
+  for (const ContactConstraint& contact : constraints_) {
+    double weight = 0;
+    for (int k = 0; k < contact.count; ++k)
+      if (!system.pinned[at(contact.particle[at(k)])]) weight += contact.weight[at(k)];
+    impulse += weight * (contact.push * contact.normal + contact.rub);
+  }
+  return impulse;
+}
+
+/// Of contacts that act on a velocity which the integrator has finished.
+void ContinuousContact::find_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
+                                  const ClothState& state) {
+  for (const ContactConstraint& contact : constraints_) {
+    const PointSpeeds speeds{contact.point(settling.velocity_before), contact.point(state.velocity),
+                             (contact.point(safe_) - contact.point(begin.position)) / begin.step};
+    work_[at(Islands::first_free(contact, system.inverse_mass))] += work_of(contact, speeds);
+  }
+}
+
+/// Of contacts that act at the begin of the step, on the velocity which leads through it, and at its end, each
+/// as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet in one
+/// state this is the impulse times the mean of the velocities of the steps before and after, under which the
+/// energy of a leapfrog closes; m |c|^2/2, which c took and the next o gives back, is lent meanwhile.
+void ContinuousContact::add_half_steps_work(const ClothSystem& system, double step, const Settling& settling,
+                                            const ClothState& state) {
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if (system.pinned[i]) continue;
+    const double mass = system.mass[i];
+    const Vec3 opening = (safe_[i] - wished_[i]) / step;
+    work_[i] = mass * opening.dot(settling.velocity_before[i] + 0.5 * opening) +
+               kinetic_change(mass, free_velocity_[i], state.velocity[i]) - settling.memory.lent[i];
+  }
+}
+
+/// Restitution, as far as it gives no more than was taken. Any part of the change between two answers of the
+/// contacts is an answer too: bounds and cones of friction are convex. Speeds are those relative to the
+/// obstacles.
+void ContinuousContact::bounce(const ClothSystem& system, double step, bool follows, ClothState& state) {
+  bounced_.assign(safe_.size(), 0);
+  bool any = false;
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    any = any || bounce_bound_[c] > constraints_[c].bound;
+  if (!any) return;
+  const std::vector<ContactConstraint> still = constraints_;
+  const Vec3Field stopped = state.velocity;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) constraints_[c].bound = bounce_bound_[c];
+  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
+
+  Islands islands(constraints_, system.inverse_mass);
+  std::vector<Vec3> carried(safe_.size(), Vec3::Zero());
+  std::vector<std::uint8_t> touched(safe_.size(), 0);
+  for (const ContactConstraint& contact : constraints_)
+    for (int k = 0; k < contact.count; ++k) {
+      const auto i = at(contact.particle[at(k)]);
+      if (contact.weight[at(k)] == 0 || !(system.inverse_mass[i] > 0)) continue;
+      touched[i] = 1;
+      carried[i] = contact.rest;
+    }
+  struct Share {
+    double taken = 0, square = 0, linear = 0;  ///< J
+    double part = 1;
+  };
+  std::vector<Share> shares(safe_.size());
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if (!touched[i]) continue;
+    const double mass = system.mass[i];
+    const Vec3 change = state.velocity[i] - stopped[i];
+    Vec3 impulse = stopped[i] - free_velocity_[i];
+    if (follows) impulse += (safe_[i] - wished_[i]) / step;
+    Share& share = shares[at(islands.of(static_cast<int>(i)))];
+    share.taken -= work_[i] - mass * impulse.dot(carried[i]);
+    share.square += 0.5 * mass * change.squaredNorm();
+    share.linear += mass * change.dot(stopped[i] - carried[i]);
+  }
+  for (Share& share : shares)
+    if (share.square > 0) share.part = part_within(share.square, share.linear, std::max(share.taken, 0.0));
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if (!touched[i]) continue;
+    const Share& share = shares[at(islands.of(static_cast<int>(i)))];
+    bounced_[i] = share.square > 0;
+    if (share.part < 1)
+      state.velocity.set(i, stopped[i] + share.part * (state.velocity[i] - stopped[i]));
+    work_[i] += kinetic_change(system.mass[i], stopped[i], state.velocity[i]);
+  }
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const int first = Islands::first_free(constraints_[c], system.inverse_mass);
+    const double part = shares[at(islands.of(first))].part;
+    constraints_[c].push = still[c].push + part * (constraints_[c].push - still[c].push);
+    constraints_[c].rub = still[c].rub + part * (constraints_[c].rub - still[c].rub);
+  }
+}
+
+/// A bounce is no load that the next step could give back.
+void ContinuousContact::remember(const ClothSystem& system, const ClothState& state, bool follows,
+                                 ContactMemory& memory) {
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    const Vec3 impulse = state.velocity[i] - free_velocity_[i];
+    memory.held[i] = !bounced_[i] && !impulse.isZero(0);
+    memory.lent[i] =
+        follows && memory.held[i] && !system.pinned[i] ? 0.5 * system.mass[i] * impulse.squaredNorm() : 0;
+    work_[i] += memory.lent[i];
+  }
+}
+
+int ContinuousContact::note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state) {
+  int held = 0;
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    if ((wish_[i] - safe_[i]).norm() <= arrived_length()) continue;
+    ++held;
+    const Vec3 gone = (safe_[i] - begin.position[i]) / begin.step, speed = state.velocity[i];
+    if (!(gone.norm() < speed.norm())) continue;
+    state.velocity.set(i, gone);
+    if (!system.pinned[i]) work_[i] += kinetic_change(system.mass[i], speed, gone);
+  }
+  return held;
+}
+
+}  // namespace cloth

@@ -1,0 +1,54 @@
+// Contact at the end of a step, and its part of the ledger.
+#include "contact/continuous_contact.h"
+#include "measure/energy.h"
+#include "simulation/simulation.h"
+
+namespace cloth {
+
+void Simulation::resolve_contact(const StepTimes& times) {
+  last_contact_ = {};
+  if (!contact_->touches(system_, state_)) return end_contact();
+  last_contact_ =
+      contact_->apply(system_, {position_before_, velocity_before_, times.step, contact_memory_}, state_);
+  book_contact(times);
+}
+
+/// What has run away is not followed: it stays where it was, and the run stops.
+void Simulation::resolve_continuous_contact(const StepTimes& times) {
+  last_contact_ = {};
+  if (has_run_away(kinetic_energy(system_, state_.velocity))) {
+    state_.position = position_before_;
+    return;
+  }
+  const ContactTimes contact_times{times.begin, times.end, times.step};
+  if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return end_contact();
+  Settling settling{velocity_before_, contact_memory_, {}, {}};
+  const bool follows = integrator_->velocity_follows_positions() && !limiter_;
+  if (follows)
+    settling.positions = [&] {
+      if (half_velocity_.size() != system_.start.size()) half_velocity_ = Vec3Field(system_.start.size());
+      for (std::size_t i = 0; i < half_velocity_.size(); ++i)
+        half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
+      integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
+    };
+  if (follows && forces_->has_damping())
+    settling.velocities = [&] {
+      integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
+    };
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
+  if (!last_contact_.acted) return end_contact();
+  book_contact(times);
+}
+
+void Simulation::book_contact(const StepTimes& times) {
+  ledger_.contact += last_contact_.work;
+  contact_impulse_ += last_contact_.impulse;
+  ledger_.forces += integrator_->follow_contact(*forces_, times, state_);
+}
+
+/// What was lent to impulses of which none came back.
+void Simulation::end_contact() {
+  ledger_.contact -= contact_memory_.clear();
+}
+
+}  // namespace cloth

@@ -45,7 +45,10 @@ class TensionRounds {
   virtual void end(std::vector<double>& tension, Vec3Field& position) const = 0;
 };
 
-/// For any springs.
+/// Of a grid whole families of lines side by side, of anything else line by line. They agree to the
+/// tolerance.
+std::unique_ptr<TensionRounds> make_tension_rounds(const std::vector<TensionSpring>& springs,
+                                                   const ClothSystem& system);
 std::unique_ptr<TensionRounds> make_line_rounds(const std::vector<TensionSpring>& springs,
                                                 const ClothSystem& system);
 

@@ -28,7 +28,7 @@ TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& 
     const double lighter = std::max(system.inverse_mass[spring.first], system.inverse_mass[spring.second]);
     hold_.push_back(lighter > 0 ? held_share * spring.limit / lighter : 0);
   }
-  rounds_ = make_line_rounds(springs_, system);
+  rounds_ = make_tension_rounds(springs_, system);
 }
 
 TensionSolver::~TensionSolver() = default;

@@ -15,6 +15,7 @@ struct TensionSpring {
   std::size_t first = 0, second = 0;  ///< particles
   double rest_length = 0;             ///< m
   double limit = 0;                   ///< m, (1 + rate) times the rest length
+  bool operator==(const TensionSpring&) const = default;
 };
 
 /// Whether the deformation rate is for this kind of springs.

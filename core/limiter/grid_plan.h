@@ -1,0 +1,42 @@
+// The limited springs of a grid as families of one direction each, in arrays with room around them so that no
+// spring needs to know where the grid ends.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "limiter/tension_springs.h"
+
+namespace cloth {
+
+struct GridFamily {
+  int down = 0, across = 0;           ///< rows and columns from a spring's first end to its second
+  int rows = 0;                       ///< in which springs begin, from the first one on
+  int begin = 0, end = 0;             ///< columns in which they begin
+  std::size_t first_spring = 0;       ///< in the order of the springs, row by row
+  double rest_length = 0, limit = 0;  ///< m
+  int width() const { return end - begin; }
+};
+
+struct GridPlan {
+  int rows = 0, columns = 0;
+  int reach = 0;   ///< rows and columns of room on every side
+  int stride = 0;  ///< numbers in a row, room included
+  std::vector<GridFamily> families;
+
+  std::ptrdiff_t index(int row, int column) const {
+    return static_cast<std::ptrdiff_t>(row + reach) * stride + column + reach;
+  }
+  std::size_t size() const {
+    return static_cast<std::size_t>(rows + 2 * reach) * static_cast<std::size_t>(stride);
+  }
+  std::ptrdiff_t offset(const GridFamily& family) const {
+    return static_cast<std::ptrdiff_t>(family.down) * stride + family.across;
+  }
+};
+
+/// None where these are not whole directions of a grid of at least five rows and columns.
+std::optional<GridPlan> plan_grid(const std::vector<TensionSpring>& springs, const ClothSystem& system);
+
+}  // namespace cloth

@@ -15,6 +15,7 @@ class ImplicitEuler : public Integrator {
   ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool drifts_with_end_velocity() const override { return true; }
 
  private:
   ImplicitStage stage_;
@@ -44,6 +45,8 @@ class Bdf2 : public Integrator {
         euler_(tolerance, most_iterations) {}
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  /// After the limiter has acted, as a step of implicit Euler does.
+  bool drifts_with_end_velocity() const override { return true; }
   void forget(Change change) override;
   IntegratorMemory remember() const override;
   void recall(const IntegratorMemory& memory) override;

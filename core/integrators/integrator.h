@@ -46,6 +46,18 @@ struct IntegratorMemory {
   std::vector<double> numbers;
 };
 
+/// What the positions must obey whatever the forces say, as a method with a drift between two kicks asks for
+/// it. Nothing of it is a force of the model.
+class DriftConstraint {
+ public:
+  virtual ~DriftConstraint() = default;
+  /// At the step's begin, before the first kick.
+  virtual void before_kick(const ClothState& state) = 0;
+  /// After the drift: moves positions to where they may be, and changes the velocity, which led there, by
+  /// displacement/h.
+  virtual void after_drift(ClothState& state) = 0;
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -63,6 +75,13 @@ class Integrator {
                                         ClothState&, Work&) {
     return {};
   }
+
+  /// Has every step keep `constraint`, null for none, which must outlive its use. False: this method has no
+  /// drift between two kicks, and what is to hold must be made to hold after the step.
+  virtual bool set_drift_constraint(DriftConstraint* /*constraint*/) { return false; }
+
+  /// Whether a step goes from where it began with the velocity at its end, x' = x + h v'.
+  virtual bool drifts_with_end_velocity() const { return false; }
 
   /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
   virtual void forget(Change) {}

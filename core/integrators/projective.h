@@ -29,6 +29,7 @@ class Projective : public Integrator {
 
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  bool drifts_with_end_velocity() const override { return true; }
 
  private:
   /// All that A consists of.

@@ -10,7 +10,7 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
     forces.update(state.position, times.begin);
     ++report.force_evaluations;
   }
-  if (forces.steps_verlet()) {
+  if (forces.steps_verlet() && !constraint_) {
     if (!holds_position_force_ && forces.has_power()) power_ = forces.power(state.position, state.velocity);
     work += 0.5 * h * power_;
     report.speed_squares = forces.verlet_step(h, state, power_);
@@ -22,8 +22,10 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
 
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
+  if (constraint_) constraint_->before_kick(state);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
+  if (constraint_) constraint_->after_drift(state);
   forces.update(state.position, times.end);
   ++report.force_evaluations;
   report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);

@@ -5,6 +5,8 @@
 //     x'     = x + h v_half
 //     v'     = v_half + h/2 a(x', v', t+h)      solved for v', a is affine in it
 //
+// A constraint of the positions acts between drift and closing kick, on x' and v_half.
+//
 // Order 2 with damping, drag and wind, one force evaluation a step, stable to omega h = 2 for every damping
 // ratio.
 #pragma once
@@ -18,10 +20,14 @@ class Verlet : public Integrator {
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
   bool gains_unseen(const ForceModel& forces) const override {
-    return holds_position_force_ && forces.steps_verlet();
+    return holds_position_force_ && forces.steps_verlet() && !constraint_;
   }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
+  bool set_drift_constraint(DriftConstraint* constraint) override {
+    constraint_ = constraint;
+    return true;
+  }
   bool velocity_follows_positions() const override { return true; }
   void follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                          const Vec3Field& half_velocity, ClothState& state) override;
@@ -35,6 +41,7 @@ class Verlet : public Integrator {
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
 
+  DriftConstraint* constraint_ = nullptr;
   Vec3Field force_;                    ///< p - D v, N; only where something damps
   Work power_;                         ///< at the end of the last step
   bool holds_position_force_ = false;  ///< the force model stands at the state's position and time

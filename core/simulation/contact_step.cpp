@@ -23,7 +23,7 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   const ContactTimes contact_times{times.begin, times.end, times.step};
   if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return end_contact();
   Settling settling{velocity_before_, contact_memory_, {}, {}};
-  const bool follows = integrator_->velocity_follows_positions() && !limiter_;
+  const bool follows = integrator_->velocity_follows_positions();
   if (follows)
     settling.positions = [&] {
       if (half_velocity_.size() != system_.start.size()) half_velocity_ = Vec3Field(system_.start.size());

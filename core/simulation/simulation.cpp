@@ -59,6 +59,7 @@ void Simulation::assemble() {
   limiter_.reset();
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
     limiter_.emplace(*scene_.deformation, system_);
+  limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
   contact_.reset();
   continuous_contact_.reset();
   if (has_continuous_contact(scene_))
@@ -67,7 +68,7 @@ void Simulation::assemble() {
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
-  unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
+  find_unreachable();
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
   obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_, state_.position));
@@ -134,6 +135,7 @@ std::optional<Divergence> Simulation::step() {
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
   if (contact_ || continuous_contact_) position_before_ = state_.position, velocity_before_ = state_.velocity;
+  if (limiter_) limiter_->begin_step(time_step_, state_, integrator_->drifts_with_end_velocity());
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
@@ -163,22 +165,23 @@ void Simulation::count_step(const IntegratorReport& report) {
   count_.largest_residual = std::max(count_.largest_residual, report.residual);
 }
 
-/// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.
-void Simulation::limit_start() {
-  if (!prepare_ || !limiter_ || limiter_->accepts(limiter_->excess(state_.position))) return;
-  const Vec3Field velocity = state_.velocity;
-  limiter_->set_unreachable(unreachable_.has_value());
-  limiter_->apply(system_, time_step_, state_);
-  state_.velocity = velocity;
+/// Only of pins, which do not move between edits.
+void Simulation::find_unreachable() {
+  unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
+  if (limiter_) limiter_->set_unreachable(unreachable_.has_value());
 }
 
+/// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.
+void Simulation::limit_start() {
+  if (prepare_ && limiter_) limiter_->limit_start(time_step_, state_);
+}
+
+/// Where the method has not had it done within the step.
 void Simulation::limit_deformation() {
-  last_limit_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_->excess(state_.position)};
-  if (limiter_->accepts(last_limit_.excess)) return;
-  limiter_->set_unreachable(unreachable_.has_value());
-  last_limit_ = limiter_->apply(system_, time_step_, state_);
-  ledger_.limiter += limiter_->work(system_, gravity_of(scene_), time_step_, state_);
-  integrator_->forget(Change::state);
+  if (!limits_drift_ && limiter_->after_step(gravity_of(scene_), state_))
+    integrator_->forget(Change::state);
+  last_limit_ = limiter_->report();
+  ledger_.limiter += limiter_->work();
 }
 
 TriangleMesh Simulation::cloth_mesh() const {
@@ -282,7 +285,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     restore_obstacles(checkpoint.obstacle_poses);
     continuous_contact_->forget_touches();
   }
-  unreachable_ = find_unreachable_rate(scene_, system_, state_.position);
+  find_unreachable();
   if (checkpoint.method == scene_.integrator.method)
     integrator_->recall(checkpoint.memory);
   else

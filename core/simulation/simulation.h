@@ -15,7 +15,7 @@
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"
-#include "limiter/deformation_limiter.h"
+#include "limiter/step_limiter.h"
 #include "measure/energy.h"
 #include "measure/strain.h"
 #include "simulation/outcome.h"
@@ -146,7 +146,8 @@ class Simulation {
   double time_step() const { return time_step_; }
   const Quantities& quantities() const { return quantities_; }
   const StepCount& count() const { return count_; }
-  const LimiterReport& last_limit() const { return last_limit_; }      ///< of the last step
+  /// Of the last step.
+  const LimiterReport& last_limit() const { return last_limit_; }
   const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
@@ -181,6 +182,7 @@ class Simulation {
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
   void apply_hand();
+  void find_unreachable();
   void limit_start();
   void limit_deformation();
   void resolve_contact(const StepTimes& times);
@@ -205,7 +207,8 @@ class Simulation {
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
-  std::optional<DeformationLimiter> limiter_;
+  std::optional<StepLimiter> limiter_;
+  bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::optional<ObstacleContact> contact_;                 ///< particle by particle
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
   Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact

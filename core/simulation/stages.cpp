@@ -7,6 +7,7 @@
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
 #include "contact/continuous_contact.h"
+#include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
 
@@ -90,8 +91,9 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
   const ClothSystem system = make_cloth(scene.cloth, material);
   const MethodFacts& method = facts_of(scene.integrator.method);
-  const bool moved_later =
-      contact_stage(scene).present || scene.self_contact || limiter_stage(scene, system).present;
+  const bool limits_within = make_integrator(scene.integrator)->set_drift_constraint(nullptr);
+  const bool moved_later = contact_stage(scene).present || scene.self_contact ||
+                           (!limits_within && limiter_stage(scene, system).present);
   std::vector<StageInfo> stages;
   for (const SpringFamily family : spring_families) stages.push_back(spring_stage(scene, system, family));
   stages.push_back(positive_stage("spring damping", scene.springs.has_value(), "springs", material.damping,

@@ -1,0 +1,105 @@
+// The deformation rate takes energy, as an impact without bounce does, and no method makes any by it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "scene/builtin_scenes.h"
+#include "simulation/simulation.h"
+#include "simulation/time_step.h"
+
+namespace cloth::test::limited_energy_test {
+namespace {
+
+/// What became of the energy in a run.
+struct Account {
+  double rise = 0;         ///< J: the most that total energy less all works but the limiter's ever rose
+  double exchanged = 0;    ///< J: the largest of the air's work, kinetic and gravity energy
+  double worst_error = 0;  ///< J, of the ledger
+};
+
+Account account_of(const Scene& scene) {
+  Simulation simulation(scene);
+  Account account;
+  double lowest = 0;
+  while (simulation.time() < scene.duration) {
+    const auto divergence = simulation.step();
+    EXPECT_FALSE(divergence) << describe(*divergence);
+    if (divergence) break;
+    const Measurement m = simulation.measure();
+    const EnergyLedger& ledger = m.ledger;
+    const double unexplained = m.energy.total() - ledger.initial - (ledger.entered() - ledger.limiter);
+    lowest = std::min(lowest, unexplained);
+    account.rise = std::max(account.rise, unexplained - lowest);
+    account.worst_error = std::max(account.worst_error, std::abs(m.energy_error()));
+    account.exchanged = std::max(
+        {account.exchanged, std::abs(ledger.forces.air), m.energy.kinetic, std::abs(m.energy.gravity)});
+  }
+  return account;
+}
+
+/// The built-in `wind` on a coarse grid, at a part of the method's longest stable step, or of Verlet's for
+/// methods without one.
+Scene gusty(const std::string& method, int side, double rate, double part) {
+  Scene scene = builtin_scene("wind");
+  scene.cloth.rows = scene.cloth.columns = side;
+  scene.deformation->rate = rate;
+  scene.integrator.method = method;
+  const double limit = stable_step(method, scene).value();
+  scene.integrator.time_step = part * (std::isfinite(limit) ? limit : stable_step("verlet", scene).value());
+  scene.duration = 0.25;
+  return scene;
+}
+
+std::vector<std::string> methods() {
+  std::vector<std::string> names = integrator_names();
+  names.erase(std::remove(names.begin(), names.end(), "explicit-euler"), names.end());  // makes its own
+  return names;
+}
+
+class EveryMethodWithARate : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryMethodWithARate, MakesNoEnergyByTheRateUpToItsLongestStep) {
+  double worst = 0;
+  for (const double rate : {0.1, 0.01, 0.001})
+    for (const double part : {0.3, 0.8, 0.95}) {
+      const Account account = account_of(gusty(GetParam(), 13, rate, part));
+      EXPECT_GT(account.exchanged, 0.05);
+      EXPECT_LE(account.rise, 0.05 * account.exchanged) << "rate " << rate << ", " << part << " of the limit";
+      worst = std::max(worst, account.rise / account.exchanged);
+    }
+  std::printf("%s: at most %.2g %% of the energy exchanged\n", GetParam().c_str(), 100 * worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, EveryMethodWithARate, ::testing::ValuesIn(methods()), [](const auto& method) {
+  std::string name = method.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(VerletWithARate, MakesNoEnergyOnAFinerClothEither) {
+  for (const double rate : {0.1, 0.01}) {
+    const Account account = account_of(gusty("verlet", 33, rate, 0.8));
+    EXPECT_LE(account.rise, 0.01 * account.exchanged) << rate;
+  }
+}
+
+/// The limiter's impulses act on the velocity with which the step began: so booked, what is left is the
+/// bounded swing of Verlet's own energy.
+TEST(VerletWithARate, AccountsForItsEnergyAtTheLongestAutomaticStep) {
+  for (const char* name : {"wind", "corners-shear"})
+    for (const double rate : {0.1, 0.01}) {
+      Scene scene = builtin_scene(name);
+      scene.deformation->rate = rate;
+      scene.integrator.time_step.reset();
+      scene.integrator.time_step = resolved_time_step(scene).value();
+      scene.duration = 0.5;
+      const Account account = account_of(scene);
+      EXPECT_LE(account.worst_error, 0.02 * account.exchanged) << name << " at " << rate;
+    }
+}
+
+}  // namespace
+}  // namespace cloth::test::limited_energy_test

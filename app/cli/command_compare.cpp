@@ -94,6 +94,7 @@ LoadedComparison load(const CompareArguments& arguments) {
   if (!loaded.comparison) return loaded;
   if (!arguments.reference.empty()) loaded.comparison->reference = arguments.reference;
   std::vector<cloth::Problem> problems = cloth::find_problems(*loaded.comparison);
+  if (problems.empty()) problems = cloth::find_start_problems(*loaded.comparison);
   for (cloth::Problem& problem : problems)
     problem.place = problem.path == "reference" ? "--reference" : arguments.file + arguments.scene;
   if (!problems.empty()) return {std::nullopt, report(problems)};

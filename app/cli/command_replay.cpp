@@ -53,6 +53,7 @@ int exit_code_of(const cloth::ReplayResult& result) {
 void say_what_went_wrong(const cloth::Session& session, const cloth::ReplayResult& result) {
   const cloth::RunSummary& summary = result.run.summary;
   if (!summary.notice.empty()) say(summary.notice);
+  if (!summary.step_changes.empty()) say(cloth::describe(summary.step_changes));
   if (summary.divergence) say(cloth::describe(*summary.divergence));
   if (result.agrees == false)
     say(fmt::format(

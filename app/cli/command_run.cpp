@@ -75,6 +75,7 @@ int run(const RunArguments& arguments) {
   }
   const cloth::RunSummary& summary = result.summary;
   if (!summary.notice.empty()) say(summary.notice);
+  if (!summary.step_changes.empty()) say(cloth::describe(summary.step_changes));
   if (summary.divergence) say(cloth::describe(*summary.divergence));
   if (result.io_error) return report(*result.io_error);
   if (!arguments.obj.empty())

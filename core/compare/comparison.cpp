@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "contact/start_check.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
@@ -239,6 +240,26 @@ std::vector<Problem> find_problems(const Comparison& comparison) {
   for (std::size_t i = 0; i < comparison.panes.size(); ++i) {
     check_own_paths(comparison, i, problems);
     check_pane_scene(comparison, i, shared, problems);
+  }
+  return problems;
+}
+
+std::vector<Problem> find_start_problems(const Comparison& comparison) {
+  const auto starts_alike = [](const Scene& a, const Scene& b) {
+    return a.cloth == b.cloth && a.obstacles == b.obstacles && a.contact == b.contact &&
+           a.self_contact == b.self_contact;
+  };
+  std::vector<Problem> problems;
+  bool shared_is_checked = false;
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i) {
+    const Scene scene = scene_of(comparison, i);
+    const bool shared = starts_alike(scene, comparison.scene);
+    if (shared && shared_is_checked) continue;
+    shared_is_checked = shared_is_checked || shared;
+    for (Problem& problem : find_start_problems(scene)) {
+      problem.path = shared ? "scene." + problem.path : place_of(i, problem.path);
+      problems.push_back(std::move(problem));
+    }
   }
   return problems;
 }

@@ -106,6 +106,10 @@ void remove_pane(Comparison& comparison, std::size_t pane);
 /// "panes.1.own.integrator.method".
 std::vector<Problem> find_problems(const Comparison& comparison);
 
+/// Of panes whose cloth starts where contact cannot begin; see start_check.h. Precondition: find_problems()
+/// is empty.
+std::vector<Problem> find_start_problems(const Comparison& comparison);
+
 /// Whether a running comparison can go on as `after` (see LockStep::edit), or must start anew: where a
 /// parameter needs it, a new pane is no copy of the one before it, or the reference is one that has not run
 /// so far.

@@ -186,6 +186,7 @@ ComparisonReading read_comparison(const std::string& text, const std::string& pl
     reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
   Comparison comparison = reader.read(json::parse(text));
   if (reader.problems.empty()) reader.problems = find_problems(comparison);
+  if (reader.problems.empty()) reader.problems = find_start_problems(comparison);
   if (reader.problems.empty()) return {std::move(comparison), {}};
 
   for (Problem& problem : reader.problems) {

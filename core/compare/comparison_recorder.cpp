@@ -153,7 +153,8 @@ std::optional<IoError> ComparisonRecorder::close_rows() {
 Comparison as_run(const LockStep& lockstep) {
   Comparison comparison = lockstep.comparison();
   for (std::size_t i = 0; i < lockstep.pane_count(); ++i)
-    set_own(comparison.panes[i], "integrator.time_step", lockstep.lane(i).simulation->time_step());
+    if (lockstep.lane(i).simulation->step_changes().empty())  // else no one step repeats it, and "auto" does
+      set_own(comparison.panes[i], "integrator.time_step", lockstep.lane(i).simulation->time_step());
   return comparison;
 }
 

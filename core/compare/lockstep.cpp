@@ -46,6 +46,8 @@ std::string controlled_title(const Scene& scene) {
 }  // namespace
 
 Scene in_lock_step(const Scene& scene) {
+  if (!scene.integrator.time_step)
+    return scene;  // "auto" divides the interval, also where it shortens the step
   Scene resolved = scene;
   resolved.integrator.time_step = step_dividing(scene.record.interval, resolved_time_step(scene).value());
   return resolved;
@@ -75,7 +77,6 @@ void LockStep::add_lane(const std::string& name, const std::string& title, const
   lane->title = title;
   lane->start_ = in_lock_step(scene);
   lane->simulation = std::make_unique<Simulation>(lane->start_);
-  lane->steps_each_ = steps_per_row(interval_, lane->simulation->time_step());
   lane->notice = notice_of(scene, *lane->simulation);
   arrive(*lane, 0);
   lanes_.push_back(std::move(lane));
@@ -116,9 +117,10 @@ void LockStep::arrive(Lane& lane, std::int64_t index) {
 bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::function<bool()>& may_go_on) {
   Lane& lane = *lanes_[number];
   while (lane.going() && lane.index < index) {
-    const std::int64_t next = lane.first_step_ + (lane.index + 1 - lane.first_index_) * lane.steps_each_;
+    const double next = time_of(lane.index + 1);
+    const auto is_there = [&] { return lane.simulation->time() > next - 0.5 * lane.simulation->time_step(); };
     const Clock::time_point start = Clock::now();
-    while (!lane.divergence && lane.simulation->state().step < next) {
+    while (!lane.divergence && !is_there()) {
       if (may_go_on && !may_go_on()) break;
       lane.divergence = lane.simulation->step();
       ++lane.steps_since_;
@@ -126,7 +128,7 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
     lane.wall_since_ += seconds_since(start);
     if (lane.divergence)
       lane.wall += lane.wall_since_;
-    else if (lane.simulation->state().step < next)
+    else if (!is_there())
       return false;
     else
       arrive(lane, lane.index + 1);
@@ -196,9 +198,6 @@ std::unique_ptr<Lane> LockStep::copy_of(const Lane& from) {
   lane->limiter_excess = from.limiter_excess;
   lane->energy = from.energy;
   lane->divergence = from.divergence;
-  lane->first_index_ = from.first_index_;
-  lane->first_step_ = from.first_step_;
-  lane->steps_each_ = from.steps_each_;
   lane->start_ = from.start_;
   return lane;
 }
@@ -229,9 +228,6 @@ void LockStep::edit_lane(Lane& lane, const Scene& scene) {
   const Scene resolved = in_lock_step(scene);
   if (resolved == lane.simulation->scene()) return;
   lane.simulation->edit(resolved);
-  lane.first_index_ = lane.index;
-  lane.first_step_ = lane.simulation->state().step;
-  lane.steps_each_ = steps_per_row(interval_, lane.simulation->time_step());
   lane.notice = notice_of(scene, *lane.simulation);
   lane.measurement = lane.simulation->measure();
 }

@@ -49,10 +49,8 @@ struct Lane {
 
  private:
   friend class LockStep;
-  std::int64_t first_index_ = 0, first_step_ = 0;  ///< when the present time step came in force
-  std::int64_t steps_each_ = 1;                    ///< between two common times
-  Scene start_;                                    ///< as it was run at first
-  std::int64_t steps_since_ = 0;                   ///< the last common time
+  Scene start_;                   ///< as it was run at first
+  std::int64_t steps_since_ = 0;  ///< the last common time
   double wall_since_ = 0;
 };
 

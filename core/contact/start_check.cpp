@@ -8,6 +8,7 @@
 #include "contact/at.h"
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_body.h"
+#include "contact/obstacle_contact.h"
 #include "geometry/box_tree.h"
 #include "geometry/triangle_meeting.h"
 
@@ -139,9 +140,15 @@ class TouchSearch {
 class StartCheck {
  public:
   explicit StartCheck(const Scene& scene)
-      : scene_(scene), cloth_(mesh_of(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})))) {}
+      : scene_(scene),
+        system_(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
+        cloth_(mesh_of(system_)) {}
 
   std::vector<Problem> problems() {
+    if (!has_continuous_contact(scene_)) {
+      check_particles();
+      return std::move(problems_);
+    }
     const TouchSearch search(cloth_);
     for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
       const Obstacle& obstacle = scene_.obstacles[k];
@@ -163,6 +170,20 @@ class StartCheck {
   }
 
  private:
+  /// Contact particle by particle would put on the surface in the first step what starts inside, however
+  /// deep: a stretch from nowhere. What lies on the surface starts as it should; pins stay where they are.
+  void check_particles() {
+    const double rounding = 1e-9 * system_.diagonal;
+    for (std::size_t k = 0; k < scene_.obstacles.size(); ++k)
+      for (std::size_t i = 0; i < system_.start.size(); ++i) {
+        if (system_.pinned[i]) continue;
+        const auto surface = penetration(scene_.obstacles[k], system_.start[i]);
+        if (!surface || (surface->point - system_.start[i]).norm() <= rounding) continue;
+        add(fmt::format("obstacles.{}", k), "the cloth starts in this obstacle", static_cast<int>(i));
+        break;
+      }
+  }
+
   /// Features that share no particle must be apart at the start, or contact would tear at a cloth at rest.
   void check_own_distance() {
     const double thickness = scene_.self_contact->thickness;
@@ -200,6 +221,7 @@ class StartCheck {
   }
 
   const Scene& scene_;
+  ClothSystem system_;
   TriangleMesh cloth_;
   std::vector<Problem> problems_;
 };
@@ -207,7 +229,7 @@ class StartCheck {
 }  // namespace
 
 std::vector<Problem> find_start_problems(const Scene& scene) {
-  if (!has_continuous_contact(scene)) return {};
+  if (!has_continuous_contact(scene) && scene.obstacles.empty()) return {};
   return StartCheck(scene).problems();
 }
 

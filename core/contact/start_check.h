@@ -1,5 +1,5 @@
-// Whether a scene starts free of crossings, and an edit leaves it so: what continuous contact keeps it must
-// find.
+// Whether a scene starts outside of its obstacles and free of crossings, and an edit leaves it so: what
+// contact keeps it must find.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 namespace cloth {
 
 /// A problem for each obstacle that the cloth touches at t = 0, with the first place found, and one where the
-/// cloth passes through itself or touches itself although self_contact forbids it. Nothing where contact is not continuous.
+/// cloth passes through itself or touches itself although self_contact forbids it. Where contact is not
+/// continuous, one for each obstacle that a free particle starts in; it may touch.
 /// Precondition: the scene has no other problems.
 std::vector<Problem> find_start_problems(const Scene& scene);
 

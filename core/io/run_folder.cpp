@@ -146,6 +146,9 @@ std::string summary_json(const RunSummary& s) {
             {"status", name_of(s.status)}};
   if (json solver = solver_json(s.count); !solver.empty()) root["solver"] = std::move(solver);
   if (s.divergence) root["diverged"] = divergence_json(*s.divergence);
+  for (const StepChange& change : s.step_changes)
+    root["time_step_changes"].push_back(
+        {{"step", change.step}, {"time_s", change.time}, {"time_step_s", change.time_step}});
   if (!s.notice.empty()) root["notice"] = s.notice;
   root["threads"] = s.threads;
   root["host"] = {{"name", host_name()},

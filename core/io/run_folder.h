@@ -29,7 +29,7 @@ struct RunSummary {
   std::string title;
   std::string method;
   double time_step = 0;  ///< s
-  StepCount count;  ///< steps, force evaluations and what else they took
+  StepCount count;       ///< steps, force evaluations and what else they took
   int particles = 0;
   double simulated = 0;       ///< s
   double wall = 0;            ///< s, of stepping alone
@@ -38,7 +38,8 @@ struct RunSummary {
   double limiter_excess = 0;  ///< largest of all rows
   Status status = Status::finished;
   std::optional<Divergence> divergence;
-  std::string notice;  ///< e.g. a rate that the pins make unreachable
+  std::vector<StepChange> step_changes;  ///< where "auto" has shortened the step
+  std::string notice;                    ///< e.g. a rate that the pins make unreachable
   int threads = 1;
 
   double nanoseconds_per_particle_step() const;

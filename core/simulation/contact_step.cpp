@@ -16,7 +16,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
 /// What has run away is not followed: it stays where it was, and the run stops.
 void Simulation::resolve_continuous_contact(const StepTimes& times) {
   last_contact_ = {};
-  if (has_run_away(kinetic_energy(system_, state_.velocity))) {
+  if (is_fast(kinetic_energy(system_, state_.velocity)) && has_run_away()) {
     state_.position = position_before_;
     return;
   }

@@ -16,7 +16,7 @@
 namespace cloth {
 namespace {
 
-/// A kinetic energy this many times all that the scene can give is a run that has run away.
+/// Unexplained energy this many times all that the scene can give is a run that has run away.
 constexpr double runaway_factor = 10;
 
 /// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
@@ -42,8 +42,8 @@ std::string obstacle_in_words(const Scene& scene, int obstacle) {
 
 }  // namespace
 
-/// The kinetic energy that the scene can give: the fall so far (or over the cloth's own length), the full
-/// wind, moving obstacles, what the hand did, what there was at the start.
+/// The energy that the scene can put into motion: the fall so far (or over the cloth's own length), the full
+/// wind, moving obstacles, what the hand did and what entered elsewhere, what there was at the start.
 double Simulation::energy_scale_after(double fallen) const {
   const double mass = total_mass_;
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
@@ -51,18 +51,25 @@ double Simulation::energy_scale_after(double fallen) const {
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
   const double struck = 2 * obstacle_speed_;  // at most, off an obstacle that gives all speed back
   return std::max(drop, fallen) + 0.5 * mass * (wind * wind + struck * struck) +
-         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.initial) +
-         rounding_floor * elastic_scale_;
+         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.limiter) +
+         std::abs(ledger_.contact) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
 }
 
 double Simulation::energy_scale() const {
   return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
 }
 
-bool Simulation::has_run_away(double kinetic) const {
-  if (!std::isfinite(kinetic)) return true;
-  if (kinetic <= runaway_factor * energy_scale_after(0)) return false;
-  return !(kinetic <= runaway_factor * energy_scale());
+/// Faster than the scene explains at a glance. Not yet run away: contact may have given all of it.
+bool Simulation::is_fast(double kinetic) const {
+  return !(kinetic <= runaway_factor * energy_scale_after(0));
+}
+
+/// By the ledger: whether more energy has come or gone, kinetic, elastic or of height, than works and losses
+/// and ten times what the scene could give explain.
+bool Simulation::has_run_away() const {
+  const Energy energy = measure_energy(system_, gravity_of(scene_), state_);
+  const double unexplained = std::abs(energy.total() - ledger_.initial - ledger_.entered());
+  return !(unexplained <= runaway_factor * energy_scale_after(-energy.gravity));
 }
 
 /// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2.
@@ -71,9 +78,11 @@ bool Simulation::is_surely_slow(double speed_squares) const {
 }
 
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
-/// all does not make the speeds too much, nothing has run away. Only else the state is looked at.
+/// all does not make the speeds too much, nothing has run away. Only else, and where a method without a limit
+/// or "auto" asks for it every few steps, the ledger is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
-  if (report.speed_squares && was_finite_ && !limiter_ && !contact_ && !continuous_contact_ &&
+  const bool looks = watches_ledger_ && state_.step % ledger_interval == 0;
+  if (!looks && report.speed_squares && was_finite_ && !limiter_ && !contact_ && !continuous_contact_ &&
       is_surely_slow(*report.speed_squares))
     return std::nullopt;
   const auto x = state_.position.flat();
@@ -81,8 +90,9 @@ std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& re
   const double sum = ordered_sum(x.size(), [p = x.data()](std::size_t k) { return p[k]; });
   const bool lost = !std::isfinite(sum) && first_not_finite(state_.position);
   was_finite_ = !lost;
-  if (!lost && !has_run_away(kinetic_energy(system_, state_.velocity))) return std::nullopt;
-  return stop_at_fastest("its speed has run away");
+  if (!lost && !looks && !is_fast(kinetic_energy(system_, state_.velocity))) return std::nullopt;
+  if (!lost && !has_run_away()) return std::nullopt;
+  return stop_at_fastest("its energy has run away");
 }
 
 Divergence Simulation::stop_at_fastest(const std::string& cause) const {

@@ -32,6 +32,7 @@ void History::start_over(const Simulation& simulation) {
   interval_ = 1;
   last_step_ = 0;
   last_time_ = 0;
+  step_changes_.clear();
   expected_hash_.clear();
   state_bytes_ = command_bytes_ = 0;
 }
@@ -48,6 +49,7 @@ std::vector<Problem> History::begin(Simulation& simulation, const Session& sessi
   for (const SessionCommand& command : commands_) command_bytes_ += bytes_of(command);
   last_step_ = session.steps;
   last_time_ = session.time;
+  step_changes_ = session.step_changes;
   expected_hash_ = session.final_state_hash;
   return carry_out_logged(0, simulation);
 }
@@ -57,6 +59,7 @@ void History::extend(const Simulation& simulation) {
   if (simulation.state().step > last_step_) expected_hash_.clear();
   last_step_ = simulation.state().step;
   last_time_ = simulation.time();
+  step_changes_ = simulation.step_changes();
 }
 
 void History::pop_state() {
@@ -119,6 +122,7 @@ bool History::cut(const Simulation& simulation) {
     commands_.pop_back();
   }
   while (states_.size() > 1 && states_.back().step() > step) pop_state();
+  while (!step_changes_.empty() && step_changes_.back().step > step) step_changes_.pop_back();
   last_step_ = step;
   last_time_ = simulation.time();
   expected_hash_.clear();
@@ -190,7 +194,8 @@ Session History::session(const Simulation& simulation) const {
                   .steps = last_step_,
                   .time = last_time_,
                   .final_state_hash = expected_hash_,
-                  .version = version()};
+                  .version = version(),
+                  .step_changes = step_changes_};
   if (simulation.state().step == last_step_)
     session.final_state_hash = state_hash(simulation.state());
   else if (states_.back().step() == last_step_)

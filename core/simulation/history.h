@@ -103,6 +103,7 @@ class History {
   std::vector<SessionCommand> commands_;
   std::int64_t last_step_ = 0;
   double last_time_ = 0;
+  std::vector<StepChange> step_changes_;  ///< up to last_step_
   std::string expected_hash_;
   std::size_t state_bytes_ = 0, command_bytes_ = 0;
 };

@@ -52,4 +52,13 @@ std::string describe(const Divergence& d) {
                      advice);
 }
 
+std::string describe(const std::vector<StepChange>& changes) {
+  if (changes.empty()) return "";
+  std::string text = "the ledger found energy that nothing explains, and auto shortened the step to ";
+  for (const StepChange& change : changes)
+    text += fmt::format("{}{:.6g} s at t = {:.6g} s", &change == changes.data() ? "" : ", ", change.time_step,
+                        change.time);
+  return text;
+}
+
 }  // namespace cloth

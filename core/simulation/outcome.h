@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace cloth {
 
@@ -35,7 +36,18 @@ struct Divergence {
   bool pinched = false;        ///< an obstacle met cloth that cannot give way: nothing has run away
 };
 
+/// A shorter step that came in force by itself.
+struct StepChange {
+  std::int64_t step = 0;  ///< after which
+  double time = 0;        ///< s, then
+  double time_step = 0;   ///< s
+  bool operator==(const StepChange&) const = default;
+};
+
 /// One sentence: what, where, when, and what would help.
 std::string describe(const Divergence& divergence);
+
+/// One sentence: how often and where the step became shorter. Empty: never.
+std::string describe(const std::vector<StepChange>& changes);
 
 }  // namespace cloth

@@ -88,7 +88,7 @@ class Run {
         script_(script),
         simulation_(scene),
         clock_(RowClock::of(simulation_)) {
-    if (!script_.commands) script_.steps = steps_to_cover(scene_.duration, simulation_.time_step());
+    find_end();
     RunSummary& summary = result_.summary;
     summary.scene_hash = scene_hash(scene);
     summary.title = scene.title;
@@ -114,6 +114,8 @@ class Run {
       result_.summary.wall += taken;
       if (result_.summary.divergence) break;
       steps_since_row_ += simulation_.state().step - begin;
+      clock_.follow(simulation_);
+      find_end();
       note_end();
       if (clock_.due(simulation_.state().step) || ended_) going = add_row();
       going = going && carry_out_due();
@@ -136,12 +138,15 @@ class Run {
     return !result_.io_error;
   }
 
+  std::optional<IoError> write_scene_file(const Scene& scene) const {
+    return write_text_file(options_.folder / "scene.json",
+                           write_scene(moved_to_folder(scene, options_.folder.string())));
+  }
+
   bool begin_folder() {
     Scene resolved = scene_;
     resolved.integrator.time_step = simulation_.time_step();
-    return keep(make_folder(options_.folder)) &&
-           keep(write_text_file(options_.folder / "scene.json",
-                                write_scene(moved_to_folder(resolved, options_.folder.string())))) &&
+    return keep(make_folder(options_.folder)) && keep(write_scene_file(resolved)) &&
            keep(record_.open(options_.folder, simulation_.quantities()));
   }
 
@@ -150,6 +155,13 @@ class Run {
     if (script_.commands) return 1;
     const std::int64_t step = simulation_.state().step;
     return std::min({most_steps_unseen, clock_.until_due(step), script_.steps - step});
+  }
+
+  /// A scene runs to its duration, a session for its steps.
+  void find_end() {
+    if (script_.commands) return;
+    script_.steps = simulation_.first_step() +
+                    steps_to_cover(scene_.duration - simulation_.first_time(), simulation_.time_step());
   }
 
   void note_end() {
@@ -196,6 +208,7 @@ class Run {
     RunSummary& summary = result_.summary;
     if (ended_ && !summary.divergence) result_.final_state = simulation_.state();  // after the last commands
     summary.count = simulation_.count();
+    summary.step_changes = simulation_.step_changes();
     summary.simulated = result_.final_state.time;
     summary.status = summary.divergence              ? Status::diverged
                      : !ended_ || !problems_.empty() ? Status::stopped
@@ -203,6 +216,7 @@ class Run {
     if (!summary.divergence) note(describe(summary.energy));
     if (options_.folder.empty()) return;
     keep(record_.close());
+    if (!summary.step_changes.empty()) keep(write_scene_file(scene_));  // no one step repeats this run
     keep(write_text_file(options_.folder / "final_state.csv", state_csv(result_.final_state)));
     keep(write_text_file(options_.folder / "summary.json", summary_json(summary)));
   }
@@ -243,11 +257,18 @@ std::vector<std::string> record_row(const Measurement& measurement, const Quanti
 }
 
 RowClock RowClock::of(const Simulation& simulation) {
-  return {simulation.state().step, steps_per_row(simulation.scene().record.interval, simulation.time_step())};
+  return {.origin = simulation.state().step,
+          .stride = simulation.steps_to_row(),
+          .first_step = simulation.first_step(),
+          .within_interval = false};
 }
 
 void RowClock::follow(const Simulation& simulation) {
-  if (const RowClock now = of(simulation); now.stride != stride) *this = now;
+  RowClock now = of(simulation);
+  if (now.stride == stride && now.first_step == first_step) return;
+  now.origin = now.first_step;
+  now.within_interval = simulation.is_within_interval();
+  *this = now;
 }
 
 std::filesystem::path RecordFile::part_path(int part) const {

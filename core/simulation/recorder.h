@@ -21,11 +21,15 @@ std::vector<std::string> record_row(const Measurement& measurement, const Quanti
 /// When a row is due: every `stride` steps from `origin`.
 struct RowClock {
   std::int64_t origin = 0, stride = 1;
+  std::int64_t first_step = 0;   ///< at which the time step that the stride is of came in force
+  bool within_interval = false;  ///< it did so between two rows
   static RowClock of(const Simulation& simulation);
-  bool due(std::int64_t step) const { return until_due(step) == stride; }
+  bool due(std::int64_t step) const {
+    return until_due(step) == stride && !(within_interval && step == origin);
+  }
   /// Steps from `step` to the next row, at least 1.
   std::int64_t until_due(std::int64_t step) const { return stride - (step - origin) % stride; }
-  /// After an edit: counts from the present step on where the stride is another one.
+  /// After an edit, or where "auto" has shortened the step: counts from where that was.
   void follow(const Simulation& simulation);
 };
 

@@ -36,6 +36,7 @@ struct Session {
   double time = 0;                    ///< s, at the end; for people
   std::string final_state_hash = {};  ///< state_hash at the end, after its last commands; empty: not known
   std::string version = {};           ///< of the program that wrote it
+  std::vector<StepChange> step_changes = {};  ///< where "auto" shortened the step; a replay finds the same
 };
 
 /// Of positions, velocities, time and step: equal where every bit is, and 16 hexadecimal digits.

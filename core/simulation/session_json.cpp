@@ -73,7 +73,9 @@ class SessionReader {
   Session read(const json& root) {
     Session session;
     if (!object(root, "")) return session;
-    known_keys(root, "", {"format", "version", "scene", "steps", "time_s", "commands", "final_state_hash"});
+    known_keys(
+        root, "",
+        {"format", "version", "scene", "steps", "time_s", "commands", "step_changes", "final_state_hash"});
     if (const auto format = root.find("format"); format != root.end() && *format != session_format)
       problem("format", *format, fmt::format("must be \"{}\"", session_format));
     read_scene_part(root, session);
@@ -82,6 +84,8 @@ class SessionReader {
     session.version = optional_text(root, "version");
     session.final_state_hash = optional_text(root, "final_state_hash");
     if (const json* commands = member(root, "", "commands")) read_commands(*commands, session);
+    if (const auto changes = root.find("step_changes"); changes != root.end())
+      read_step_changes(*changes, session);
     return session;
   }
 
@@ -186,6 +190,18 @@ class SessionReader {
     }
   }
 
+  void read_step_changes(const json& changes, Session& session) {
+    if (!changes.is_array()) return problem("step_changes", changes, "must be a list");
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const std::string path = fmt::format("step_changes.{}", i);
+      if (!object(changes[i], path)) continue;
+      known_keys(changes[i], path, {"step", "time_s", "time_step_s"});
+      session.step_changes.push_back({.step = step(changes[i], path, "step").value_or(0),
+                                      .time = optional_number(changes[i], path, "time_s"),
+                                      .time_step = optional_number(changes[i], path, "time_step_s")});
+    }
+  }
+
   void read_action(const json& command, const std::string& path, SessionAction& action) {
     const auto set = command.find("set"), brush = command.find("brush"), pull = command.find("pull");
     const auto end = command.end();
@@ -273,6 +289,12 @@ std::string write_session(const Session& session) {
   for (std::size_t i = 0; i < session.commands.size(); ++i)
     out += fmt::format("{}\n    {}", i > 0 ? "," : "", command_json(session.commands[i]).dump());
   out += session.commands.empty() ? "]" : "\n  ]";
+  if (!session.step_changes.empty()) out += ",\n  \"step_changes\": [";
+  for (const StepChange& change : session.step_changes)
+    out += fmt::format(
+        "{}\n    {}", &change == session.step_changes.data() ? "" : ",",
+        json{{"step", change.step}, {"time_s", change.time}, {"time_step_s", change.time_step}}.dump());
+  if (!session.step_changes.empty()) out += "\n  ]";
   if (!session.final_state_hash.empty())
     out += fmt::format(",\n  \"final_state_hash\": \"{}\"", session.final_state_hash);
   return out + "\n}\n";

@@ -44,11 +44,12 @@ Simulation::Simulation(const Scene& scene, Preparation prepare)
   system_ = make_cloth(scene_.cloth, material_of(scene_));
   state_ = starting_state(system_);
   if (prepare_) prepare_(system_, state_);
-  time_step_ = resolved_time_step(scene_).value();
+  take_step_of_scene();
   integrator_ = make_integrator(scene_.integrator);
   assemble();
   limit_start();
   ledger_.initial = total_energy();
+  automatic_.least_error = 0;
 }
 
 Simulation::~Simulation() = default;
@@ -101,7 +102,8 @@ PullStrength Simulation::find_strongest_pull() const {
   const SpringMaterial material = material_of(scene_);
   const double omega = guaranteed_frequency(scene_.cloth, material);
   const double limit = guaranteed_step(scene_.integrator.method, scene_).value_or(0);
-  const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / time_step_ : 1 / time_step_;
+  const double step = automatic_.longest;
+  const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / step : 1 / step;
   const double strongest =
       std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
   const bool unlimited = omega > 0 && std::isinf(limit);  // the method divides its steps by itself
@@ -110,7 +112,7 @@ PullStrength Simulation::find_strongest_pull() const {
   const double of_scene = scene_.cloth.mass / static_cast<double>(system_.size());
   const double held = mass / of_scene * strongest_held_spring(scene_.cloth, material, allowed);
   const double stiffness = std::clamp(0.5 * held, 0.0, strongest);
-  return {stiffness, std::min(std::sqrt(stiffness * mass), 0.1 * mass / time_step_)};
+  return {stiffness, std::min(std::sqrt(stiffness * mass), 0.1 * mass / step)};
 }
 
 void Simulation::limit_pull(const std::optional<PullStrength>& most) {
@@ -131,6 +133,7 @@ void Simulation::apply_hand() {
 }
 
 std::optional<Divergence> Simulation::step() {
+  begin_step_length();
   const std::int64_t next = state_.step + 1;
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
@@ -146,7 +149,11 @@ std::optional<Divergence> Simulation::step() {
   count_step(report);
 
   if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
-  if (!report.failure) return find_divergence(report);
+  if (!report.failure) {
+    auto divergence = find_divergence(report);
+    if (!divergence) watch_step();
+    return divergence;
+  }
   Divergence stop = stop_at(report.failure->particle, report.failure->cause);
   stop.solver_failed = true;
   return stop;
@@ -216,12 +223,7 @@ void Simulation::edit(const Scene& scene) {
   for (std::size_t i = 0; i < state_.velocity.size(); ++i)
     if (system_.pinned[i]) state_.velocity.set(i, Vec3::Zero());
 
-  const double time_step = resolved_time_step(scene_).value();
-  if (time_step != time_step_) {
-    first_time_ = state_.time;
-    first_step_ = state_.step;
-    time_step_ = time_step;
-  }
+  take_step_of_scene();
   if (new_method) integrator_ = make_integrator(scene_.integrator);
   assemble();
   if (new_method || !(contact_ || continuous_contact_)) end_contact();
@@ -233,7 +235,8 @@ std::size_t Checkpoint::bytes() const {
   std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
   numbers += contact_memory.lent.size();
-  return sizeof(Checkpoint) + sizeof(double) * numbers + contact_memory.held.size() + sizeof(Pose) * obstacle_poses.size() +
+  return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
+         contact_memory.held.size() + sizeof(Pose) * obstacle_poses.size() +
          sizeof(ObstacleCarry) * carries.size();
 }
 
@@ -245,6 +248,7 @@ Checkpoint Simulation::checkpoint() const {
           .time_step = time_step_,
           .first_time = first_time_,
           .first_step = first_step_,
+          .automatic = automatic_,
           .brush = brush_,
           .pull = pull_,
           .quantities = quantities_,
@@ -268,9 +272,11 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   set_pull(checkpoint.pull);
   quantities_.brush = checkpoint.quantities.brush;
   quantities_.pull = checkpoint.quantities.pull;
-  const bool same_step = checkpoint.time_step == time_step_;
+  const bool same_step = checkpoint.automatic.longest == automatic_.longest;
   first_time_ = same_step ? checkpoint.first_time : state_.time;
   first_step_ = same_step ? checkpoint.first_step : state_.step;
+  if (same_step && watches_step_) time_step_ = checkpoint.time_step;
+  if (same_step && watches_step_) automatic_ = checkpoint.automatic;
   last_limit_ = checkpoint.last_limit;
   last_contact_ = checkpoint.last_contact;
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();

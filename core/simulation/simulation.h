@@ -18,6 +18,7 @@
 #include "limiter/step_limiter.h"
 #include "measure/energy.h"
 #include "measure/strain.h"
+#include "simulation/automatic_step.h"
 #include "simulation/outcome.h"
 
 namespace cloth {
@@ -77,6 +78,7 @@ struct Checkpoint {
   double time_step = 0;   ///< s, in force since `first_step`, which began at `first_time`
   double first_time = 0;  ///< s
   std::int64_t first_step = 0;
+  AutomaticStep automatic;
   std::optional<BrushGust> brush;
   std::optional<Pull> pull;
   Quantities quantities;
@@ -144,6 +146,15 @@ class Simulation {
   const ClothState& state() const { return state_; }
   double time() const { return state_.time; }
   double time_step() const { return time_step_; }
+  /// The step after which the present time step came in force.
+  std::int64_t first_step() const { return first_step_; }
+  /// The time then, s.
+  double first_time() const { return first_time_; }
+  /// Steps of the present length in a record interval, or in what was left of one at first_step().
+  std::int64_t steps_to_row() const;
+  bool is_within_interval() const { return automatic_.next_change >= 0; }
+  /// Where "auto" has shortened the step since t = 0.
+  const std::vector<StepChange>& step_changes() const { return automatic_.changes; }
   const Quantities& quantities() const { return quantities_; }
   const StepCount& count() const { return count_; }
   /// Of the last step.
@@ -169,7 +180,8 @@ class Simulation {
 
   Measurement measure() const;
 
-  /// The most kinetic energy in J that the scene could have given so far; what divergence is judged by.
+  /// The most energy in J that the scene could have put into motion so far. A run whose ledger leaves ten
+  /// times as much unexplained has diverged.
   double energy_scale() const;
 
   /// What a stop here would say of the particle that is not finite or else the fastest.
@@ -178,6 +190,10 @@ class Simulation {
  private:
   void assemble();
   std::int64_t advance_unseen(std::int64_t most);
+  void begin_step_length();
+  void watch_step();
+  void shorten_step();
+  void take_step_of_scene();
   bool is_surely_slow(double speed_squares) const;
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
@@ -197,7 +213,8 @@ class Simulation {
   Divergence stop_at_pinch(const Pinch& pinch) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
-  bool has_run_away(double kinetic) const;
+  bool is_fast(double kinetic) const;
+  bool has_run_away() const;
 
   Scene scene_;
   Preparation prepare_;
@@ -218,6 +235,8 @@ class Simulation {
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force
   std::int64_t first_step_ = 0;
+  AutomaticStep automatic_;
+  bool watches_step_ = false, watches_ledger_ = false;  ///< by the ledger: every few steps
   EnergyLedger ledger_;
   Quantities quantities_;
   StepCount count_;

@@ -107,7 +107,9 @@ void CompareWorker::handle(const compare_command::Restart&) {
 void CompareWorker::start(const cloth::Comparison& comparison) {
   end_recording();
   status_.refusal.clear();
-  if (const auto problems = cloth::find_problems(comparison); !problems.empty()) {
+  auto problems = cloth::find_problems(comparison);
+  if (problems.empty()) problems = cloth::find_start_problems(comparison);
+  if (!problems.empty()) {
     status_.refusal = problems.front().text();
     status_.playing = false;
     return;

@@ -75,6 +75,7 @@ std::optional<cloth::IoError> LiveRecording::end(const cloth::Simulation& simula
   summary.energy = energy_;
   if (!divergence) summary.notice = describe(energy_);
   summary.divergence = divergence;
+  summary.step_changes = simulation.step_changes();
   summary.status = divergence ? cloth::Status::diverged : cloth::Status::stopped;
 
   std::optional<cloth::IoError> first = record_.close();

@@ -219,6 +219,7 @@ bool SimulationWorker::advance() {
   }
   history_.extend(*simulation_);
   ++steps_since_row_;
+  rows_.follow(*simulation_);
   if (rows_.due(simulation_->state().step)) take_sample();
   return true;
 }

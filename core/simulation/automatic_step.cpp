@@ -1,0 +1,38 @@
+#include "simulation/automatic_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "measure/stability_limit.h"
+
+namespace cloth {
+namespace {
+
+constexpr double most_heating = 0.1;  // in energy scales, since the last change
+constexpr int most_shortenings = 4;
+
+}  // namespace
+
+bool is_step_watched(const Scene& scene) {
+  const std::string& method = scene.integrator.method;
+  if (scene.integrator.time_step || (method != "verlet" && method != "semi-implicit-euler")) return false;
+  return std::isfinite(guaranteed_step(method, scene).value_or(infinity));
+}
+
+bool asks_for_shorter(AutomaticStep& automatic, double error) {
+  if (error - automatic.least_error > most_heating && automatic.shortened < most_shortenings) {
+    automatic.least_error = error;
+    ++automatic.shortened;
+    return true;
+  }
+  automatic.least_error = std::min(automatic.least_error, error);
+  return false;
+}
+
+std::int64_t steps_after_shortening(double interval, double longest, int shortened) {
+  constexpr double slack = 1e-9;  // quotients this close to a whole number are that number
+  const double steps = std::round(interval / longest) * std::pow(2.0, 0.5 * shortened);
+  return static_cast<std::int64_t>(std::ceil(steps * (1 - slack)));
+}
+
+}  // namespace cloth

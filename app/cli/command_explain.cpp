@@ -89,7 +89,7 @@ std::string to_text(const Explanation& e) {
   std::string text = fmt::format("{}\n{} particles ({}), {} pinned\n", e.scene.title,
                                  e.scene.cloth.rows * e.scene.cloth.columns, shape_text(e.scene.cloth),
                                  cloth::pinned_particles(e.scene.cloth).size());
-  for (const std::string& notice : cloth::mesh_notices(e.scene)) text += notice + '\n';
+  for (const std::string& notice : cloth::scene_notices(e.scene)) text += notice + '\n';
   text += "\nStages of a step\n";
   for (const cloth::StageInfo& stage : e.stages)
     text += fmt::format("  {:<9} {:<19} {}\n", stage.present ? "in" : "left out", stage.name, stage.reason);
@@ -137,7 +137,7 @@ std::string to_json(const Explanation& e) {
             {"springs", json::object()},
             {"methods", json::array()},
             {"linear_solves", json::array()}};
-  if (const std::vector<std::string> notices = cloth::mesh_notices(e.scene); !notices.empty())
+  if (const std::vector<std::string> notices = cloth::scene_notices(e.scene); !notices.empty())
     root["notices"] = notices;
   for (const cloth::StageInfo& stage : e.stages)
     root["stages"].push_back({{"name", stage.name}, {"in", stage.present}, {"reason", stage.reason}});

@@ -123,6 +123,7 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
     while (!lane.divergence && !is_there()) {
       if (may_go_on && !may_go_on()) break;
       lane.divergence = lane.simulation->step();
+      if (lane.simulation->interrupted()) break;
       ++lane.steps_since_;
     }
     lane.wall_since_ += seconds_since(start);
@@ -153,6 +154,10 @@ void LockStep::compare() {
   if (!against) return;
   for (std::size_t i = 0; i < errors_.size(); ++i) measure(errors_[i], i, *against);
   if (*against == pane_count()) measure(floor_, pane_count() + 1, pane_count());
+}
+
+void LockStep::set_stop_test(const std::function<bool()>& test) {
+  for (const auto& lane : lanes_) lane->simulation->set_stop_test(test);
 }
 
 bool LockStep::advance(std::int64_t index, const std::function<bool()>& may_go_on, int threads) {

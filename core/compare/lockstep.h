@@ -86,6 +86,10 @@ class LockStep {
   /// False if it was ended before.
   bool advance(std::int64_t index, const std::function<bool()>& may_go_on = {}, int threads = 1);
 
+  /// Asked within steps that take long, by all threads: true interrupts them, see Simulation. Not for lanes
+  /// that an edit adds later.
+  void set_stop_test(const std::function<bool()>& test);
+
   /// From the reference, at the last compare(); nullptr for the reference itself, for a pane that stopped,
   /// and where there is no reference or it has stopped.
   const Difference* difference(std::size_t pane) const;

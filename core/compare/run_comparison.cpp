@@ -58,6 +58,7 @@ bool ComparisonRun::has_result() const {
 
 ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptions& options) {
   LockStep lockstep(comparison);
+  if (options.may_go_on) lockstep.set_stop_test([&] { return !options.may_go_on(); });
   ComparisonRun run;
   run.comparison = as_run(lockstep);
   run.threads = options.threads;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/at.h"
+#include "contact/obstacle_substeps.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {
@@ -15,15 +16,6 @@ constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and for wha
 
 double furthest_reach(const Ways& ways) {
   return std::max(ways.reach, ways.own_reach);
-}
-
-/// m, at most, of any point.
-double way_of(const ObstacleBody& body, const Passage& passage) {
-  if (passage.rests()) return 0;
-  const double way = (passage.pivot(1) - passage.pivot(0)).norm() + passage.growth() * body.reach;
-  if (body.shape == Shape::sphere || passage.angle() == 0) return way;
-  return body.shape == Shape::plane ? Bounds::infinity
-                                    : way + passage.angle() * passage.largest_stretch() * body.reach;
 }
 
 /// Where a body is, as far as a turn of a sphere does not matter.
@@ -57,7 +49,7 @@ void ClosePairs::measure(const Situation& now) {
   }
   obstacle_ways_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    obstacle_ways_.push_back(way_of(bodies_[k], now.passages[k]));
+    obstacle_ways_.push_back(longest_way(bodies_[k], now.passages[k]));
 }
 
 bool ClosePairs::all_stand(const Situation& now) const {

@@ -12,6 +12,9 @@ struct Pinch {
   int obstacle = 0;
   int particle = 0;
   Vec3 place{0, 0, 0};  ///< m
+  /// What the cloth is held by there, as far as it is known; another obstacle is `holding_obstacle`.
+  enum class Holder { unknown, pin, obstacle, itself } holder = Holder::unknown;
+  int holding_obstacle = -1;
 };
 
 struct ContactReport {
@@ -23,6 +26,8 @@ struct ContactReport {
   int rounds = 0;         ///< of continuous contact
   std::size_t pairs = 0;  ///< of features near each other, of the last round
   std::optional<Pinch> pinch;
+  bool exhausted = false;    ///< the obstacles' ways were too much work: like a pinch, at the same place
+  bool interrupted = false;  ///< the stop test ended it: the positions are of no use
 };
 
 }  // namespace cloth

@@ -6,6 +6,7 @@
 
 #include "cloth/mesh_cloth.h"
 #include "contact/at.h"
+#include "contact/obstacle_substeps.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {
@@ -18,10 +19,17 @@ constexpr std::size_t least_separated = 500;  ///< pairs that are worth a thread
 constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
 constexpr double solver_tolerance_part = 1e-5;
 constexpr int solver_sweeps = 20;
-constexpr int most_rounds_at_rest = 100, most_rounds_moving = 5000, most_rounds_stuck = 15;
+constexpr int most_rounds_at_rest = 100, most_rounds_stuck = 15;
 /// Rounds without a shorter way left, after which the few that are still on their way are held back.
 constexpr int most_rounds_idle = 6;
 constexpr double progress_part = 0.7;
+
+/// Pairs and particles that the rounds of one step may look at, for a cloth of so many particles: some
+/// seconds of work. Counted, so that a run does not depend on the machine.
+double most_work_of(std::size_t particles) {
+  constexpr double least = 2e6, for_a_particle = 2e3;
+  return least + for_a_particle * static_cast<double>(particles);
+}
 
 bool all_finite(const Vec3Field& field) {
   const auto values = field.flat();
@@ -76,6 +84,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       carries_(std::move(carries)),
       close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
+      mean_edge_(mean_edge(surface_, system.start)),
       thickness_carry_(thickness),
       full_thickness_(scene.contact.value_or(ContactSettings{}).thickness),
       gravity_(gravity_of(scene).norm()),
@@ -92,8 +101,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
   const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
                                     [](const Obstacle& o) { return o.shape == Shape::mesh; });
   set_thickness(time);
-  longest_way_ =
-      scene.self_contact || has_mesh ? edges_of_a_search * mean_edge(surface_, system.start) : infinity;
+  longest_way_ = scene.self_contact || has_mesh ? edges_of_a_search * mean_edge_ : infinity;
 }
 
 void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
@@ -113,6 +121,7 @@ void ContinuousContact::set_thickness(double time) {
 
 void ContinuousContact::begin(const ContactTimes& times) {
   set_thickness(times.end);
+  starts_before_ = starts_;
   passages_.clear();
   bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -128,6 +137,41 @@ void ContinuousContact::begin(const ContactTimes& times) {
   was_rebased_ = false;
   room_.assign(safe_.size(), 1.0);
   touches_.clear();
+  substep_ = 0, looked_at_ = 0, has_moved_ = false;
+  substeps_ = substeps_for(bodies_, passages_, mean_edge_);
+  if (substeps_ > 1) whole_passages_ = passages_;
+}
+
+/// All that can meet in a step of several substeps, roughly.
+bool ContinuousContact::may_come_near() const {
+  if (full_self_thickness_ > 0) return true;
+  Bounds cloth;
+  for (std::size_t i = 0; i < safe_.size(); ++i) cloth.add(bounds_of(Vec3(safe_[i]), Vec3(wish_[i])));
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    if (comes_near(bodies_[k], whole_passages_[k], cloth, thickness_)) return true;
+  return false;
+}
+
+/// Particles go an even share of the way that the integrator has led them, from where the last substep has
+/// put them.
+void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& wished) {
+  substep_ = substep;
+  const double share = 1 / static_cast<double>(substeps_);
+  if (substep == 0) wish_ = from;
+  for (std::size_t i = 0; i < safe_.size(); ++i) wish_.add(i, share * (wished[i] - from[i]));
+  base_ = wish_;
+  was_rebased_ = was_rebased_ || substep > 0;
+  substep_from_ = safe_;
+  room_.assign(safe_.size(), 1.0);
+  bool all_rest = true;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    end_poses_[k] =
+        whole_passages_[k].at(substep + 1 == substeps_ ? 1 : share * static_cast<double>(substep + 1));
+    passages_[k] = Passage(bodies_[k].pivot, poses_[k], end_poses_[k]);
+    all_rest = all_rest && passages_[k].rests();
+  }
+  part_ = all_rest ? 1 : 0;
+  find_pairs();
 }
 
 /// Whether there are any, or may be some further on a way than one search goes. Forgets what was pushed in
@@ -225,6 +269,7 @@ void ContinuousContact::keep_touches(double step) {
     }
     Touch& touch = touches_[at(memory.touch)];
     touch.contact = contact;
+    touch.substep = substep_;
     touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
     touch.velocity.setZero();
     if (touch.obstacle == FeaturePair::cloth_itself) continue;
@@ -240,44 +285,29 @@ bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times
   base_ = wish_ = state.position;
   safe_ = from;
   begin(times);
-  return find_pairs();
+  return substeps_ == 1 ? find_pairs() : may_come_near();
 }
 
 ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
                                        const ContactTimes& times, ClothState& state,
                                        const Settling& settling) {
   ContactReport report;
-  bool moved = false;
-  int stuck = 0, rounds_at_rest = 0, idle = 0;
-  double least_left = infinity;
-  const double arrived = arrived_length();
-  while (true) {
-    ++report.rounds;
-    if (!is_separated_) separate_all();
-    is_separated_ = false;
-    solve_wish(system, from);
-    keep_touches(times.step);
-    const Vec3Field before = safe_;
-    const double left = move_cloth();
-    moved = moved || left > 0;
-    if (part_ < 1) {
-      const double advance = advance_obstacles();
-      if (part_ < 1) base_ = wish_, was_rebased_ = true;
-      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
-      if (stuck > most_rounds_stuck || report.rounds > most_rounds_moving) {
-        report.pinch = pinch(system);
-        break;
-      }
-    }
-    if (part_ == 1) {
-      if (left <= arrived || ++rounds_at_rest > most_rounds_at_rest) break;
-      idle = left < progress_part * least_left ? 0 : idle + 1;
-      least_left = std::min(least_left, left);
-      if (idle > most_rounds_idle) break;
-    }
-    if (outgrown_) find_pairs();
+  RoundsEnd end = RoundsEnd::arrived;
+  if (substeps_ == 1) end = go_rounds(system, from, times.step, report);
+  const double substep_time = times.step / static_cast<double>(substeps_);
+  for (std::int64_t k = 0; substeps_ > 1 && k < substeps_ && end == RoundsEnd::arrived; ++k) {
+    begin_substep(k, from, state.position);
+    end = go_rounds(system, substep_from_, substep_time, report);
   }
-  if (!moved && touches_.empty()) return report;
+  if (end == RoundsEnd::interrupted) {
+    starts_ = starts_before_;
+    report.interrupted = true;
+    return report;
+  }
+  if (end != RoundsEnd::arrived) report.pinch = pinch(system);
+  report.exhausted = end == RoundsEnd::exhausted;
+  if (substeps_ > 1) forget_overtaken_touches(from, times.step);
+  if (!has_moved_ && touches_.empty()) return report;
   report.acted = true;
   report.pairs = pairs_.size();
   report.contacts = count_touched();
@@ -286,6 +316,63 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   if (settling.positions) settling.positions();
   answer_velocities(system, {from, times.step}, settling, state, report);
   return report;
+}
+
+/// Leads cloth and obstacles to the end of a substep, `step` seconds long, that has begun at `from`.
+ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& system, const Vec3Field& from,
+                                                          double step, ContactReport& report) {
+  int stuck = 0, rounds_at_rest = 0, idle = 0;
+  double least_left = infinity;
+  const double arrived = arrived_length();
+  while (true) {
+    if (stop_test_ && stop_test_()) return RoundsEnd::interrupted;
+    ++report.rounds;
+    looked_at_ += static_cast<double>(pairs_.size() + safe_.size());
+    if (!is_separated_) separate_all();
+    is_separated_ = false;
+    solve_wish(system, from);
+    keep_touches(step);
+    const Vec3Field before = safe_;
+    const double left = move_cloth();
+    has_moved_ = has_moved_ || left > 0;
+    const bool is_exhausted = looked_at_ > most_work_of(safe_.size());
+    if (part_ < 1) {
+      const double advance = advance_obstacles();
+      if (part_ < 1) base_ = wish_, was_rebased_ = true;
+      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
+      if (stuck > most_rounds_stuck) return RoundsEnd::pinched;
+      if (part_ < 1 && is_exhausted) return RoundsEnd::exhausted;
+    }
+    if (part_ == 1) {
+      if (left <= arrived || ++rounds_at_rest > most_rounds_at_rest || is_exhausted) break;
+      idle = left < progress_part * least_left ? 0 : idle + 1;
+      least_left = std::min(least_left, left);
+      if (idle > most_rounds_idle) break;
+    }
+    if (outgrown_) find_pairs();
+  }
+  const bool is_last = substeps_ == 1 || substep_ + 1 == substeps_;
+  return looked_at_ > most_work_of(safe_.size()) && !is_last ? RoundsEnd::exhausted : RoundsEnd::arrived;
+}
+
+/// Of several substeps: a particle's velocity follows from the last in which something pushed it, with what
+/// touched it as fast as then.
+void ContinuousContact::forget_overtaken_touches(const Vec3Field& from, double step) {
+  std::vector<std::int64_t> last(safe_.size(), -1);
+  const auto any_of = [](const ContactConstraint& contact, const auto& test) {
+    for (int k = 0; k < contact.count; ++k)
+      if (contact.weight[at(k)] != 0 && test(at(contact.particle[at(k)]))) return true;
+    return false;
+  };
+  for (const Touch& touch : touches_)
+    any_of(touch.contact, [&](std::size_t i) {
+      if (touch.contact.push > 0) last[i] = std::max(last[i], touch.substep);
+      return false;
+    });
+  std::erase_if(touches_, [&](const Touch& touch) {
+    return !any_of(touch.contact, [&](std::size_t i) { return last[i] == touch.substep; });
+  });
+  for (Touch& touch : touches_) touch.contact.rest = touch.contact.point(from) + step * touch.velocity;
 }
 
 double ContinuousContact::furthest_move(const Vec3Field& before) const {

@@ -67,6 +67,9 @@ class ContinuousContact {
   /// The same to the bit for any team; none: one thread.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
 
+  /// Asked in every round; where it says so the step is not carried out.
+  void set_stop_test(std::function<bool()> test) { stop_test_ = std::move(test); }
+
   /// From the next step on.
   void set_carries(ObstacleCarries carries, const ThicknessCarry& thickness) {
     carries_ = std::move(carries), thickness_carry_ = thickness;
@@ -96,12 +99,18 @@ class ContinuousContact {
   struct Touch {
     ContactConstraint contact;
     int obstacle = FeaturePair::cloth_itself;
-    Vec3 velocity{0, 0, 0};  ///< m/s, of the obstacle there
+    Vec3 velocity{0, 0, 0};    ///< m/s, of the obstacle there
+    std::int64_t substep = 0;  ///< in which it pushed
   };
+  enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
   void begin(const ContactTimes& times);
   void set_thickness(double time);
   bool find_pairs();
+  bool may_come_near() const;
+  void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& wished);
+  RoundsEnd go_rounds(const ClothSystem& system, const Vec3Field& from, double step, ContactReport& report);
+  void forget_overtaken_touches(const Vec3Field& from, double step);
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
@@ -116,6 +125,7 @@ class ContinuousContact {
   double furthest_move(const Vec3Field& before) const;
   double reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const;
   Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
+  std::optional<std::size_t> blocking_pair() const;
   Pinch pinch(const ClothSystem& system) const;
   int count_touched() const;
   /// m: what is left of a way that counts as none.
@@ -144,6 +154,8 @@ class ContinuousContact {
   ObstacleCarries carries_;
   ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
+  std::function<bool()> stop_test_;
+  double mean_edge_ = 0;  ///< m, of the cloth at its start
   ThicknessCarry thickness_carry_;
   double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
   double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step
@@ -153,12 +165,19 @@ class ContinuousContact {
   std::vector<Pose> starts_;  ///< of the next step
 
   // of the step in progress
+  std::vector<Passage> whole_passages_;
+  std::vector<Pose> starts_before_;
+  std::int64_t substeps_ = 1, substep_ = 0;
+  double looked_at_ = 0;  ///< pairs and particles, of all rounds so far
+  bool has_moved_ = false;
+  Vec3Field substep_from_;
+  // of the substep in progress
   std::vector<Passage> passages_;
   std::vector<Pose> poses_, next_poses_, end_poses_;
-  double part_ = 0;  ///< of the obstacles' way that is behind them
-  Vec3Field base_;   ///< m, wished, before contact in this round
-  Vec3Field wish_;   ///< m, wished with contact
-  Vec3Field safe_;   ///< m, reached
+  double part_ = 0;   ///< of the obstacles' way that is behind them
+  Vec3Field base_;    ///< m, wished, before contact in this round
+  Vec3Field wish_;    ///< m, wished with contact
+  Vec3Field safe_;    ///< m, reached
   Vec3Field wished_;  ///< m, where the integrator put the particles
   std::vector<double> share_;
   std::vector<double> room_;  ///< of each particle's way, more each time that it was stopped by it
@@ -169,10 +188,10 @@ class ContinuousContact {
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
-  std::size_t blocking_pair_ = 0;  ///< that stopped an obstacle last
-  bool outgrown_ = false;          ///< a particle was stopped by its way
-  bool is_separated_ = false;      ///< the separations are of where all is now
-  bool was_rebased_ = false;       ///< contacts of earlier rounds are part of what is wished
+  std::optional<std::size_t> blocking_pair_;  ///< that stopped an obstacle in this round
+  bool outgrown_ = false;                     ///< a particle was stopped by its way
+  bool is_separated_ = false;                 ///< the separations are of where all is now
+  bool was_rebased_ = false;                  ///< contacts of earlier rounds are part of what is wished
 
   // of the velocities' answer
   Vec3Field free_velocity_;            ///< m/s, before the answer

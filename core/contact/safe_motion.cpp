@@ -200,6 +200,7 @@ double ContinuousContact::shrink_to_planes() {
 /// step.
 double ContinuousContact::advance_obstacles() {
   double advance = 1 - part_;
+  blocking_pair_.reset();
   for (std::size_t k = 0; k < passages_.size(); ++k) advance = std::min(advance, turn_limit(k));
   while (advance > least_advance) {
     const bool to_end = advance >= 1 - part_;
@@ -216,12 +217,47 @@ double ContinuousContact::advance_obstacles() {
   return 0;
 }
 
-/// The pair that an obstacle could not pass, at a pinned particle if it has one.
+/// The pair that an obstacle that moves could not pass: the nearest, unless the planes have said which.
+std::optional<std::size_t> ContinuousContact::blocking_pair() const {
+  if (blocking_pair_) return blocking_pair_;
+  std::optional<std::size_t> nearest;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (pairs_[k].obstacle == FeaturePair::cloth_itself || passages_[at(pairs_[k].obstacle)].rests())
+      continue;
+    if (!nearest || separations_[k].distance < separations_[*nearest].distance) nearest = k;
+  }
+  return nearest;
+}
+
+/// Where an obstacle could not go on, at a pinned particle if the pair has one; else by what is on the other
+/// side of the cloth there.
 Pinch ContinuousContact::pinch(const ClothSystem& system) const {
-  const Separation& s = separations_[blocking_pair_];
-  Pinch pinch{pairs_[blocking_pair_].obstacle, s.particle[0], s.far_point};
-  for (int j = 0; j < s.near_count; ++j)
-    if (system.pinned[at(s.particle[at(j)])]) pinch.particle = s.particle[at(j)];
+  const std::optional<std::size_t> blocking = blocking_pair();
+  if (!blocking) return {};
+  const Separation& s = separations_[*blocking];
+  Pinch pinch{pairs_[*blocking].obstacle, s.particle[0], s.far_point};
+  for (int j = 0; j < s.near_count; ++j) {
+    if (!system.pinned[at(s.particle[at(j)])]) continue;
+    pinch.particle = s.particle[at(j)];
+    pinch.holder = Pinch::Holder::pin;
+    return pinch;
+  }
+  double most_against = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const Separation& other = separations_[k];
+    const bool holds = other.distance < near_factor * memory_[k].thickness &&
+                       std::any_of(other.particle.begin(), other.particle.begin() + other.count, [&](int i) {
+                         return std::find(s.particle.begin(), s.particle.begin() + s.near_count, i) !=
+                                s.particle.begin() + s.near_count;
+                       });
+    const double against = -other.normal.dot(s.normal);
+    if (!holds || pairs_[k].obstacle == pinch.obstacle) continue;
+    const bool is_own = pairs_[k].obstacle == FeaturePair::cloth_itself;
+    if ((is_own ? std::abs(against) : against) <= most_against) continue;
+    most_against = against;
+    pinch.holder = is_own ? Pinch::Holder::itself : Pinch::Holder::obstacle;
+    pinch.holding_obstacle = pairs_[k].obstacle;
+  }
   return pinch;
 }
 

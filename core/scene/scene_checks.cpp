@@ -99,6 +99,17 @@ void check_self_contact(const Scene& scene, std::vector<Problem>& problems) {
                       "", 0, 0});
 }
 
+/// m, of a cell's side, of a mesh the mean of its edges.
+double cell_size(const ClothSheet& cloth) {
+  if (!cloth.is_mesh()) return shortest_edge(cloth);
+  if (!cloth.mesh.is_loaded() || cloth.mesh.loaded->edges.empty()) return 0;
+  const std::vector<Vec3>& vertices = cloth.mesh.loaded->surface.vertices;
+  double sum = 0;
+  for (const auto& [a, b] : cloth.mesh.loaded->edges)
+    sum += (vertices[static_cast<std::size_t>(a)] - vertices[static_cast<std::size_t>(b)]).norm();
+  return sum / static_cast<double>(cloth.mesh.loaded->edges.size());
+}
+
 }  // namespace
 
 std::string Problem::text() const {
@@ -117,6 +128,22 @@ std::vector<Problem> find_problems(const Scene& scene) {
   check_keyframes(scene, problems);
   check_self_contact(scene, problems);
   return problems;
+}
+
+std::vector<std::string> scene_notices(const Scene& scene) {
+  constexpr double least_part = 0.01;
+  std::vector<std::string> notices = mesh_notices(scene);
+  const double cell = cell_size(scene.cloth);
+  const auto look_at = [&](const char* path, double thickness) {
+    if (thickness >= least_part * cell) return;
+    notices.push_back(
+        fmt::format("{} = {:.4g} m is less than a hundredth of a cell, {:.4g} m: it is kept, but by small steps of "
+                    "contact, which are slow, and the cloth's faces bend by more than that",
+                    path, thickness, cell));
+  };
+  if (scene.contact) look_at("contact.thickness", scene.contact->thickness);
+  if (scene.self_contact) look_at("self_contact.thickness", scene.self_contact->thickness);
+  return notices;
 }
 
 }  // namespace cloth

@@ -25,8 +25,10 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
     const std::int64_t taken = advance_unseen(part);
     steps -= taken;
     if (taken > 0) watch_step();
-    for (std::int64_t n = taken; n < part; ++n, --steps)
+    for (std::int64_t n = taken; n < part; ++n, --steps) {
       if (auto divergence = step()) return divergence;
+      if (interrupted_) return std::nullopt;
+    }
   }
   return std::nullopt;
 }

@@ -36,6 +36,7 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
       integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
     };
   last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
+  if (last_contact_.interrupted) return;
   if (!last_contact_.acted) return end_contact();
   book_contact(times);
 }

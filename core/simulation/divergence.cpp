@@ -40,6 +40,20 @@ std::string obstacle_in_words(const Scene& scene, int obstacle) {
   return path;
 }
 
+std::string holder_in_words(const Scene& scene, const Pinch& pinch) {
+  switch (pinch.holder) {
+    case Pinch::Holder::pin:
+      return " by a pin";
+    case Pinch::Holder::obstacle:
+      return " by " + obstacle_in_words(scene, pinch.holding_obstacle);
+    case Pinch::Holder::itself:
+      return " by other parts of it";
+    case Pinch::Holder::unknown:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
 /// The energy that the scene can put into motion: the fall so far (or over the cloth's own length), the full
@@ -120,11 +134,22 @@ double Simulation::method_limit() const {
 
 Divergence Simulation::stop_at_pinch(const Pinch& pinch) const {
   Divergence stop = stop_at(
-      pinch.particle, fmt::format("{} cannot go on without passing through the cloth, which is held at "
+      pinch.particle, fmt::format("{} cannot go on without passing through the cloth, which is held{} at "
                                   "({:.4g}, {:.4g}, {:.4g}) m",
-                                  obstacle_in_words(scene_, pinch.obstacle), pinch.place.x(), pinch.place.y(),
-                                  pinch.place.z()));
+                                  obstacle_in_words(scene_, pinch.obstacle), holder_in_words(scene_, pinch),
+                                  pinch.place.x(), pinch.place.y(), pinch.place.z()));
   stop.pinched = true;
+  return stop;
+}
+
+Divergence Simulation::stop_at_exhaustion(const Pinch& pinch) const {
+  Divergence stop = stop_at(
+      pinch.particle,
+      fmt::format(
+          "{} goes so far in a step that contact has not followed it within the work that a step may be, "
+          "last at ({:.4g}, {:.4g}, {:.4g}) m",
+          obstacle_in_words(scene_, pinch.obstacle), pinch.place.x(), pinch.place.y(), pinch.place.z()));
+  stop.solver_failed = true;
   return stop;
 }
 

@@ -158,6 +158,7 @@ HistoryArrival History::step(Simulation& simulation) const {
   const auto first = commands_until(simulation.state().step);
   if (auto divergence = simulation.step())
     return {.arrived = false, .divergence = divergence, .problems = {}};
+  if (simulation.interrupted()) return {};
   auto problems = carry_out_logged(first, simulation);
   const bool arrived = problems.empty();
   return {.arrived = arrived, .divergence = {}, .problems = std::move(problems)};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "simulation/session.h"
 #include "simulation/time_step.h"
@@ -20,6 +21,7 @@ double seconds_since(Clock::time_point start) {
 
 /// So that whoever wants to stop a run need not wait.
 constexpr std::int64_t most_steps_unseen = 32, steps_between_looks = 16;
+constexpr double look_interval = 0.1;  ///< s
 
 struct Column {
   const char* name;
@@ -96,8 +98,9 @@ class Run {
     summary.time_step = simulation_.time_step();
     summary.particles = simulation_.system().size();
     simulation_.set_threads(options_.threads);
+    if (options_.progress) simulation_.set_stop_test([this] { return !may_finish_step(); });
     summary.threads = simulation_.threads();
-    summary.notice = fmt::format("{}", fmt::join(mesh_notices(scene), "; "));
+    summary.notice = fmt::format("{}", fmt::join(scene_notices(scene), "; "));
     if (simulation_.unreachable_rate()) note(describe(*simulation_.unreachable_rate(), simulation_.system()));
   }
 
@@ -112,7 +115,7 @@ class Run {
       const double taken = seconds_since(start);
       wall_since_row_ += taken;
       result_.summary.wall += taken;
-      if (result_.summary.divergence) break;
+      if (result_.summary.divergence || simulation_.interrupted()) break;
       steps_since_row_ += simulation_.state().step - begin;
       clock_.follow(simulation_);
       find_end();
@@ -194,9 +197,16 @@ class Run {
     return !record_.is_open() || keep(record_.add(measurement, simulation_.quantities(), mean));
   }
 
+  /// Asked within steps that take long.
+  bool may_finish_step() {
+    if (seconds_since(last_look_) < look_interval) return true;
+    last_look_ = Clock::now();
+    return options_.progress(simulation_.time());
+  }
+
   bool may_go_on() {
-    constexpr double interval = 0.1;
-    if (!options_.progress || simulation_.state().step < next_look_ || seconds_since(last_look_) < interval)
+    if (!options_.progress || simulation_.state().step < next_look_ ||
+        seconds_since(last_look_) < look_interval)
       return true;
     next_look_ = simulation_.state().step + steps_between_looks;
     last_look_ = Clock::now();

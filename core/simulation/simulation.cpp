@@ -69,6 +69,7 @@ void Simulation::assemble() {
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
+  if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
   find_unreachable();
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
@@ -137,17 +138,24 @@ std::optional<Divergence> Simulation::step() {
   const std::int64_t next = state_.step + 1;
   const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
                         time_step_};
+  interrupted_ = false;
   if (contact_ || continuous_contact_) position_before_ = state_.position, velocity_before_ = state_.velocity;
   if (limiter_) limiter_->begin_step(time_step_, state_, integrator_->drifts_with_end_velocity());
+  if (continuous_contact_ && stop_test_) ledger_before_ = ledger_;
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
   if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
+  if (last_contact_.interrupted && !report.failure) {
+    take_back_step();
+    return std::nullopt;
+  }
   if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
   state_.time = times.end;
   state_.step = next;
   count_step(report);
 
+  if (last_contact_.exhausted && !report.failure) return stop_at_exhaustion(*last_contact_.pinch);
   if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
   if (!report.failure) {
     auto divergence = find_divergence(report);
@@ -157,6 +165,20 @@ std::optional<Divergence> Simulation::step() {
   Divergence stop = stop_at(report.failure->particle, report.failure->cause);
   stop.solver_failed = true;
   return stop;
+}
+
+void Simulation::take_back_step() {
+  state_.position = position_before_;
+  state_.velocity = velocity_before_;
+  ledger_ = ledger_before_;
+  last_contact_ = {};
+  integrator_->forget(Change::state);
+  interrupted_ = true;
+}
+
+void Simulation::set_stop_test(std::function<bool()> test) {
+  stop_test_ = std::move(test);
+  if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
 }
 
 void Simulation::count_step(const IntegratorReport& report) {

@@ -111,8 +111,14 @@ class Simulation {
   std::optional<Divergence> step();
 
   /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit,
-  /// but the states in between are not to be seen, which makes some methods cheaper.
+  /// but the states in between are not to be seen, which makes some methods cheaper. Fewer also where the
+  /// stop test interrupted one.
   std::optional<Divergence> advance(std::int64_t steps);
+
+  /// Asked within a step that takes long, where contact is continuous; once it says so the step is not taken:
+  /// the state stays the one before it, and interrupted() is true until the next step.
+  void set_stop_test(std::function<bool()> test);
+  bool interrupted() const { return interrupted_; }
 
   /// Puts an edited scene in force from the next step on, keeping the state. Precondition: as for the
   /// constructor, and only parameters of EditCost::live differ (and pins). The ledger takes up the jump in
@@ -207,10 +213,12 @@ class Simulation {
   ObstacleCarries find_carries(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
+  void take_back_step();
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;
   Divergence stop_at_pinch(const Pinch& pinch) const;
+  Divergence stop_at_exhaustion(const Pinch& pinch) const;
   double method_limit() const;
   double energy_scale_after(double fallen) const;
   bool is_fast(double kinetic) const;
@@ -232,12 +240,15 @@ class Simulation {
   ContactMemory contact_memory_;
   Vec3Field half_velocity_;  ///< m/s, from there to where the step ended before contact
 
+  std::function<bool()> stop_test_;
+  bool interrupted_ = false;
+
   double time_step_ = 0;
   double first_time_ = 0;  ///< time and step at which the present time step came in force
   std::int64_t first_step_ = 0;
   AutomaticStep automatic_;
   bool watches_step_ = false, watches_ledger_ = false;  ///< by the ledger: every few steps
-  EnergyLedger ledger_;
+  EnergyLedger ledger_, ledger_before_;
   Quantities quantities_;
   StepCount count_;
   LimiterReport last_limit_;

@@ -31,11 +31,12 @@ class CellRun {
 
   ExtremeCell to_end(ExtremeCell cell, const std::function<bool()>& keep_going) {
     record();
+    if (keep_going) simulation_.set_stop_test([&] { return !keep_going(); });
     while (!divergence_ && simulation_.state().step < last_ &&
            simulation_.count().force_evaluations < most_evaluations_) {
       look_for_tunnelling();
       divergence_ = simulation_.step();
-      if (divergence_) break;
+      if (divergence_ || simulation_.interrupted()) break;
       cell.steps = simulation_.state().step;
       if (cell.steps % stride_ == 0 || cell.steps == last_) record();
       if (keep_going && !keep_going()) break;

@@ -85,10 +85,12 @@ TEST(TurnAround, IsThatOfRationalArithmeticOnAndBesideTheLine) {
     const Whole3 a = random_whole(random, most), b = random_whole(random, most);
     Whole3 c = a;
     const std::int64_t i = random.integer(-9, 9);
-    for (std::size_t k = 0; k < 3; ++k) c[k] += i * (b[k] - a[k]) + (random.coin() ? random.integer(-1, 1) : 0);
+    for (std::size_t k = 0; k < 3; ++k)
+      c[k] += i * (b[k] - a[k]) + (random.coin() ? random.integer(-1, 1) : 0);
     for (const std::size_t axis : {0u, 1u, 2u})
-      ASSERT_EQ(cloth::turn_around(static_cast<int>(axis), in_doubles(a, 1), in_doubles(b, 1), in_doubles(c, 1)),
-                rational_turn(axis, a, b, c))
+      ASSERT_EQ(
+          cloth::turn_around(static_cast<int>(axis), in_doubles(a, 1), in_doubles(b, 1), in_doubles(c, 1)),
+          rational_turn(axis, a, b, c))
           << "round " << round;
   }
 }
@@ -107,10 +109,13 @@ TEST(TrianglesMeet, WhereTheCheckerOfCrossingsFindsACommonPoint) {
   Random random;
   int met = 0, passing = 0;
   for (int round = 0; round < 40000; ++round) {
-    const auto corner = [&] { return Vec3(random.integer(0, 3), random.integer(0, 3), random.integer(0, 2)); };
+    const auto corner = [&] {
+      return Vec3(random.integer(0, 3), random.integer(0, 3), random.integer(0, 2));
+    };
     Corners a{corner(), corner(), corner()}, b{corner(), corner(), corner()};
     if (random.coin()) {
-      const Eigen::Matrix3d tilt = Eigen::AngleAxisd(random.uniform(0, 3), random.vector(1).normalized()).matrix();
+      const Eigen::Matrix3d tilt =
+          Eigen::AngleAxisd(random.uniform(0, 3), random.vector(1).normalized()).matrix();
       for (std::size_t k = 0; k < 3; ++k) a[k] = tilt * a[k], b[k] = tilt * b[k];
     }
     const Meeting meeting = meeting_of(a, b);

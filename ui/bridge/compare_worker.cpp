@@ -216,6 +216,7 @@ void CompareWorker::play_for_a_moment() {
   }
   const std::stop_token stop = thread_.get_stop_token();
   const auto may_go_on = [this, &stop] { return !channel_.has_mail() && !stop.stop_requested(); };
+  lockstep_->set_stop_test([stop] { return stop.stop_requested(); });
   if (!lockstep_->advance(*under_way_, may_go_on, threads_)) return;
   under_way_.reset();
   arrive();

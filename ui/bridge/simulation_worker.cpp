@@ -85,6 +85,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
       status_.refusal = problems.front().text();
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
+  simulation_->set_stop_test([this] { return thread_.get_stop_token().stop_requested(); });
   history_.begin(*simulation_);
   playing_again_ = false;
   last_sampled_step_ = -1;
@@ -217,6 +218,7 @@ bool SimulationWorker::advance() {
     diverge(*divergence);
     return false;
   }
+  if (simulation_->interrupted()) return false;
   history_.extend(*simulation_);
   ++steps_since_row_;
   rows_.follow(*simulation_);
@@ -297,7 +299,7 @@ void SimulationWorker::publish_status() {
     status_.time_step = simulation_->time_step();
     const auto& unreachable = simulation_->unreachable_rate();
     status_.notice.clear();
-    for (const std::string& notice : cloth::mesh_notices(simulation_->scene()))
+    for (const std::string& notice : cloth::scene_notices(simulation_->scene()))
       status_.notice += notice + '\n';
     if (unreachable) status_.notice += cloth::describe(*unreachable, simulation_->system()) + '\n';
     status_.notice += energy_.notice();

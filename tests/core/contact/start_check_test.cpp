@@ -123,8 +123,9 @@ TriangleMesh two_sheets(double place, double bottom) {
     Vec3Field position(25);
     for (int row = 0; row < 5; ++row)
       for (int column = 0; column < 5; ++column)
-        position.set(static_cast<std::size_t>(5 * row + column),
-                     sheet == 0 ? Vec3(0.1 * row, 0, 0.1 * column) : Vec3(place, bottom + 0.1 * row, 0.1 * column));
+        position.set(
+            static_cast<std::size_t>(5 * row + column),
+            sheet == 0 ? Vec3(0.1 * row, 0, 0.1 * column) : Vec3(place, bottom + 0.1 * row, 0.1 * column));
     const TriangleMesh one = grid_triangles(5, 5, position);
     mesh.vertices.insert(mesh.vertices.end(), one.vertices.begin(), one.vertices.end());
     for (const Triangle& t : one.triangles)
@@ -154,7 +155,8 @@ TEST(OwnMeeting, IsThereWhereACellIsFoldedOntoItsNeighbourAndNowhereElse) {
     for (int column = 0; column < 3; ++column)
       position.set(static_cast<std::size_t>(3 * row + column), {0.1 * column, 0, 0.1 * row});
   EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
-  for (int row = 0; row < 3; ++row) position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 1e-9, 0.1 * row});
+  for (int row = 0; row < 3; ++row)
+    position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 1e-9, 0.1 * row});
   EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
   for (int row = 0; row < 3; ++row) position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 0, 0.1 * row});
   const auto folded = find_own_meeting(grid_triangles(3, 3, position));

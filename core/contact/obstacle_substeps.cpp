@@ -1,0 +1,43 @@
+#include "contact/obstacle_substeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+/// rad, that an obstacle may turn in a substep.
+constexpr double most_turn = 0.2;
+/// Of a mean edge of the cloth: how far a point of a mesh may go in a substep, since the pairs of small faces
+/// with all that lies on their way are many.
+constexpr double most_way_part = 0.5;
+constexpr double most_substeps = 1e6;
+
+}  // namespace
+
+double longest_way(const ObstacleBody& body, const Passage& passage) {
+  if (passage.rests()) return 0;
+  const double way = (passage.pivot(1) - passage.pivot(0)).norm() + passage.growth() * body.reach;
+  if (body.shape == Shape::sphere || passage.angle() == 0) return way;
+  return body.shape == Shape::plane ? Bounds::infinity
+                                    : way + passage.angle() * passage.largest_stretch() * body.reach;
+}
+
+std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies, const std::vector<Passage>& passages,
+                          double edge) {
+  double substeps = 1;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (bodies[k].shape != Shape::sphere) substeps = std::max(substeps, passages[k].angle() / most_turn);
+    if (bodies[k].shape == Shape::mesh)
+      substeps = std::max(substeps, longest_way(bodies[k], passages[k]) / (most_way_part * edge));
+  }
+  return static_cast<std::int64_t>(std::ceil(std::min(substeps, most_substeps)));
+}
+
+bool comes_near(const ObstacleBody& body, const Passage& passage, const Bounds& cloth, double reach) {
+  if (body.shape == Shape::plane) return true;
+  const Bounds way = bounds_of(passage.pivot(0), passage.pivot(1));
+  return overlap(way.grown(passage.largest_stretch() * body.reach + reach), cloth);
+}
+
+}  // namespace cloth

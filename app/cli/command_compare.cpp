@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
+#include "compare/comparison_recorder.h"
 #include "compare/comparison_report.h"
 #include "console.h"
 #include "integrators/registry.h"
@@ -113,20 +114,20 @@ std::string command_of(const CompareArguments& arguments) {
   return text + " --out DIR";
 }
 
-std::optional<cloth::IoError> write_reports(const CompareArguments& arguments,
-                                            const cloth::ComparisonRun& run) {
-  const std::filesystem::path folder = arguments.folder;
-  if (auto error = cloth::write_text_file(folder / "summary.json", cloth::comparison_summary(run)))
+/// The summary, which describes the other files, comes last.
+std::optional<cloth::IoError> write_reports(const CompareArguments& arguments, cloth::ResultFolder& folder,
+                                            cloth::ComparisonRun& run) {
+  if (auto error = folder.write("compare.svg", cloth::to_svg(cloth::main_plot(run)))) return error;
+  if (auto error = folder.write("report.html", cloth::comparison_page(run, command_of(arguments))))
     return error;
-  if (auto error = cloth::write_text_file(folder / "compare.svg", cloth::to_svg(cloth::main_plot(run))))
-    return error;
-  return cloth::write_text_file(folder / "report.html", cloth::comparison_page(run, command_of(arguments)));
+  run.files = folder.digests();
+  return folder.finish("summary.json", cloth::comparison_summary(run));
 }
 
-int finish(const CompareArguments& arguments, const cloth::ComparisonRun& run) {
+int finish(const CompareArguments& arguments, cloth::ResultFolder& folder, cloth::ComparisonRun& run) {
   if (run.io_error) return report(*run.io_error);
-  if (!arguments.folder.empty())
-    if (const auto error = write_reports(arguments, run)) return report(*error);
+  if (folder.is_open())
+    if (const auto error = write_reports(arguments, folder, run)) return report(*error);
   if (!run.reference_failure.empty()) say("the reference stopped: " + run.reference_failure);
   std::string text = arguments.json ? cloth::comparison_summary(run) : cloth::comparison_text(run);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
@@ -144,19 +145,26 @@ int compare(const CompareArguments& arguments) {
   const cloth::Comparison& comparison = *loaded.comparison;
 
   listen_for_stop();
+  cloth::ResultFolder folder;
+  if (!arguments.folder.empty()) {
+    cloth::FolderUse use = cloth::comparison_use(comparison);
+    use.inputs.emplace_back(arguments.file.empty() ? arguments.scene : arguments.file);
+    if (const auto error = folder.claim(arguments.folder, use)) return report(*error);
+  }
   cloth::ComparisonRun run;
   {
     Progress bar;
-    run = cloth::run_comparison(comparison, {.folder = arguments.folder,
+    run = cloth::run_comparison(comparison, {.folder = {},
                                              .threads = arguments.threads,
                                              .progress =
                                                  [&](double time) {
                                                    bar.show(time / comparison.scene.duration,
                                                             fmt::format("t = {:.2f} s", time));
                                                  },
-                                             .may_go_on = [] { return !stop_is_requested(); }});
+                                             .may_go_on = [] { return !stop_is_requested(); },
+                                             .results = folder.is_open() ? &folder : nullptr});
   }
-  return finish(arguments, run);
+  return finish(arguments, folder, run);
 }
 
 }  // namespace clothlab::cli

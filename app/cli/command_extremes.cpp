@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 
 #include "commands.h"
 #include "console.h"
 #include "integrators/registry.h"
-#include "io/csv.h"
-#include "io/run_folder.h"
 #include "progress.h"
+#include "studies.h"
 #include "study/extremes_report.h"
-#include "study/study_folder.h"
+#include "study/study_recorder.h"
 
 namespace clothlab::cli {
 namespace {
@@ -73,19 +71,17 @@ int extremes(const ExtremesArguments& arguments) {
   if (!read_options(arguments, options)) return bad_input;
   listen_for_stop();
 
-  const std::filesystem::path folder = arguments.folder;
-  const std::string command = command_of(arguments);
-  cloth::CsvFile csv;
+  cloth::StudyRecorder recorder;
   std::optional<cloth::IoError> failure;
-  if (!folder.empty()) {
-    if (const auto error = cloth::make_folder(folder)) return report(*error);
-    if (const auto error = cloth::write_study_json(folder, cloth::empty_table(options), command, 0))
-      return report(*error);
-    if (const auto error = csv.open(folder / "extremes.csv", cloth::extremes_columns()))
-      return report(*error);
+  if (!arguments.folder.empty()) {
+    cloth::StudyStart start{.command = command_of(arguments), .overwrite = arguments.overwrite};
+    if (!arguments.scene.empty()) start.inputs = {arguments.scene};
+    failure = recorder.begin(arguments.folder, cloth::empty_table(options), start);
+    if (failure) return report(*failure);
+    say_what_goes_on(recorder);
+    if (recorder.earlier()) options.earlier = &std::get<cloth::ExtremesTable>(*recorder.earlier());
     options.partial = [&](const cloth::ExtremesTable& table) {  // on disk before the next begins
-      if (!failure) failure = csv.add(cloth::extremes_row(table.cells.back()));
-      if (!failure) failure = csv.flush();
+      if (!failure) failure = recorder.keep(table);
     };
   }
   const auto start = std::chrono::steady_clock::now();
@@ -99,12 +95,9 @@ int extremes(const ExtremesArguments& arguments) {
     options.keep_going = [] { return !stop_is_requested(); };
     table = cloth::run_extremes(options);
   }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  if (!failure && recorder.is_open()) failure = recorder.end(table, wall.count());
   if (failure) return report(*failure);
-  if (!folder.empty()) {
-    if (const auto error = csv.close()) return report(*error);
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    if (const auto error = cloth::write_study(folder, table, command, wall.count())) return report(*error);
-  }
   const int printed = print(arguments.json       ? cloth::extremes_json(table)
                             : arguments.markdown ? cloth::extremes_markdown(table)
                                                  : cloth::extremes_text(table));

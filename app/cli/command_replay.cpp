@@ -77,7 +77,8 @@ int replay(const ReplayArguments& arguments) {
   }
 
   listen_for_stop();
-  cloth::ReplayOptions options{.folder = arguments.folder, .until = arguments.until, .progress = {}};
+  cloth::ReplayOptions options{
+      .folder = arguments.folder, .until = arguments.until, .progress = {}, .inputs = {arguments.session}};
   cloth::ReplayResult result;
   {
     Progress bar;

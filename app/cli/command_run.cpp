@@ -10,6 +10,7 @@
 #include "io/cloth_obj.h"
 #include "io/run_folder.h"
 #include "progress.h"
+#include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -40,6 +41,22 @@ std::optional<cloth::IoError> missing_folder_of(const std::filesystem::path& fil
   return cloth::IoError{file, "there is no folder " + folder.string()};
 }
 
+/// Where the OBJ file would replace what is read, or be replaced by the run's own files.
+std::optional<cloth::IoError> misplaced_obj(const RunArguments& arguments, const cloth::Scene& scene) {
+  if (arguments.obj.empty()) return std::nullopt;
+  const std::filesystem::path obj = arguments.obj;
+  std::vector<std::filesystem::path> inputs{arguments.scene};
+  for (const std::string& mesh : cloth::mesh_files(scene)) inputs.emplace_back(mesh);
+  if (auto error = cloth::overwritten_input(obj, inputs)) return error;
+  std::error_code ignored;
+  const auto folder = std::filesystem::weakly_canonical(arguments.folder, ignored);
+  if (arguments.folder.empty() || std::filesystem::weakly_canonical(obj, ignored).parent_path() != folder)
+    return std::nullopt;
+  const auto& names = cloth::run_files();
+  if (std::find(names.begin(), names.end(), obj.filename()) == names.end()) return std::nullopt;
+  return cloth::IoError{obj, "is one of the files that --out leaves: give the OBJ file another name", true};
+}
+
 std::optional<cloth::IoError> write_cloth(const cloth::Scene& scene, const cloth::ClothState& state,
                                           const std::string& path) {
   const cloth::ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
@@ -53,6 +70,7 @@ int run(const RunArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   const cloth::Scene& scene = *loaded.scene;
+  if (const auto error = misplaced_obj(arguments, scene)) return report(*error);
   const auto time_step = cloth::resolved_time_step(scene);
   if (!time_step) {
     say(cloth::no_stable_step_text(scene));
@@ -66,6 +84,7 @@ int run(const RunArguments& arguments) {
     Progress bar;
     cloth::RunOptions options;
     options.folder = arguments.folder;
+    options.inputs = {arguments.scene};
     options.threads = threads_for(arguments);
     options.progress = [&](double time) {
       bar.show(time / scene.duration, fmt::format("t = {:.2f} s", time));

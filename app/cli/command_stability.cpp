@@ -8,8 +8,9 @@
 #include "integrators/registry.h"
 #include "io/run_folder.h"
 #include "progress.h"
+#include "studies.h"
 #include "study/stability_report.h"
-#include "study/study_folder.h"
+#include "study/study_recorder.h"
 
 namespace clothlab::cli {
 namespace {
@@ -74,23 +75,34 @@ int stability(const StabilityArguments& arguments) {
   cloth::StabilityOptions options;
   const auto problems = read_options(arguments, *loaded.scene, options);
   if (!problems.empty()) return report(problems);
-  if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
 
   listen_for_stop();
+  cloth::StudyRecorder recorder;
+  const cloth::StudyTable plan = cloth::plan_stability_map(*loaded.scene, options);
+  const std::string command = command_text(arguments);
+  if (const auto error =
+          recorder.begin(arguments.folder, plan, {command, {arguments.scene}, arguments.overwrite}))
+    return report(*error);
+  say_what_goes_on(recorder);
 
   const auto start = std::chrono::steady_clock::now();
   cloth::StabilityMap map;
+  std::optional<cloth::IoError> failure;
   {
     Progress progress;
+    if (recorder.earlier()) options.earlier = &std::get<cloth::StabilityMap>(*recorder.earlier());
+    options.partial = [&](const cloth::StabilityMap& so_far) {
+      if (!failure) failure = recorder.keep(so_far);
+    };
     options.progress = [&](double part) {
       progress.show(part, "stability map");
-      return !stop_is_requested();
+      return !failure && !stop_is_requested();
     };
     map = cloth::run_stability_map(*loaded.scene, options);
   }
   const double wall = seconds_since(start);
-  if (const auto error = cloth::write_study(arguments.folder, map, command_text(arguments), wall))
-    return report(*error);
+  if (!failure) failure = recorder.end(map, wall);
+  if (failure) return report(*failure);
   const int printed =
       print(arguments.json ? cloth::stability_json(map)
                            : cloth::stability_text(map) +

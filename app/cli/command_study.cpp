@@ -10,8 +10,7 @@ int study(const StudyArguments& arguments) {
   const cloth::StudyReading reading = cloth::read_study(arguments.folder);
   if (!reading.study) {
     say(reading.problem);
-    return std::filesystem::exists(std::filesystem::path(arguments.folder) / "study.json") ? bad_input
-                                                                                           : io_failed;
+    return reading.is_lost ? io_failed : bad_input;
   }
   const cloth::StudyTable& table = reading.study->table;
   if (arguments.json) return print(cloth::study_json_text(table));

@@ -8,7 +8,8 @@
 #include "integrators/registry.h"
 #include "io/run_folder.h"
 #include "progress.h"
-#include "study/study_folder.h"
+#include "studies.h"
+#include "study/study_recorder.h"
 #include "study/work_precision_tables.h"
 
 namespace clothlab::cli {
@@ -41,27 +42,38 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   if (!are_known(arguments.methods)) return bad_input;
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
-  if (!arguments.folder.empty())
-    if (const auto error = cloth::make_folder(arguments.folder)) return report(*error);
 
   listen_for_stop();
+  cloth::WorkPrecisionOptions options;
+  options.methods = arguments.methods;
+  options.horizon = arguments.horizon;
+  options.repeats = arguments.repeats;
+  cloth::StudyRecorder recorder;
+  std::optional<cloth::IoError> failure;
+  if (!arguments.folder.empty()) {
+    const cloth::StudyTable plan = cloth::plan_work_precision(*loaded.scene, options);
+    failure = recorder.begin(arguments.folder, plan,
+                             {command_of(arguments), {arguments.scene}, arguments.overwrite});
+    if (failure) return report(*failure);
+    say_what_goes_on(recorder);
+    if (recorder.earlier()) options.earlier = &std::get<cloth::WorkPrecision>(*recorder.earlier());
+    options.partial = [&](const cloth::WorkPrecision& so_far) {
+      if (!failure) failure = recorder.keep(so_far);
+    };
+  }
   const auto start = std::chrono::steady_clock::now();
   cloth::WorkPrecision study;
   {
     Progress bar;
-    study =
-        cloth::study_work_precision(*loaded.scene, {.methods = arguments.methods,
-                                                    .horizon = arguments.horizon,
-                                                    .repeats = arguments.repeats,
-                                                    .progress = [&](const cloth::StudyProgress& progress) {
-                                                      bar.show(progress.fraction, progress.text);
-                                                      return !stop_is_requested();
-                                                    }});
+    options.progress = [&](const cloth::StudyProgress& progress) {
+      bar.show(progress.fraction, progress.text);
+      return !failure && !stop_is_requested();
+    };
+    study = cloth::study_work_precision(*loaded.scene, options);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (!arguments.folder.empty())
-    if (const auto error = cloth::write_study(arguments.folder, study, command_of(arguments), wall.count()))
-      return report(*error);
+  if (!failure && recorder.is_open()) failure = recorder.end(study, wall.count());
+  if (failure) return report(*failure);
   const bool has_reference = study.reference.failure.empty();
   if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
   std::string text = arguments.json ? cloth::work_precision_json(study) : cloth::work_precision_text(study);

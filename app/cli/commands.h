@@ -66,6 +66,7 @@ struct StabilityArguments {
   int most_steps = 20000;
   bool full_size = false;
   std::string folder;
+  bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
 int stability(const StabilityArguments& arguments);
@@ -75,6 +76,7 @@ struct ExtremesArguments {
   std::vector<std::string> settings;
   std::string methods, cases;  ///< names between commas; empty: all
   std::string folder;
+  bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false, markdown = false;
 };
 int extremes(const ExtremesArguments& arguments);
@@ -99,6 +101,7 @@ struct WorkPrecisionArguments {
   std::optional<double> horizon;     ///< s
   int repeats = 5;
   std::string folder;
+  bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
 int work_precision(const WorkPrecisionArguments& arguments);

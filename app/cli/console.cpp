@@ -23,7 +23,7 @@ int report(const std::vector<cloth::Problem>& problems) {
 
 int report(const cloth::IoError& error) {
   say(error.text());
-  return io_failed;
+  return error.refused ? bad_input : io_failed;
 }
 
 int print(const std::string& text) {

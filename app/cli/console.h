@@ -27,6 +27,7 @@ LoadedScene load_scene(const std::string& name, const std::vector<std::string>& 
 std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std::string>& settings);
 
 int report(const std::vector<cloth::Problem>& problems);
+/// What would destroy something is bad usage, all else a failure to read or write.
 int report(const cloth::IoError& error);
 
 /// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe.

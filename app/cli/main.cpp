@@ -19,6 +19,10 @@ const char* const scene_help = "A scene file or the name of a built-in scene";
 const char* const set_help =
     "Set a parameter, PATH=VALUE, e.g. springs.structural=500; null takes a block out, e.g. air=null; may be "
     "repeated";
+const char* const overwrite_help =
+    "Begin anew where the folder holds an unfinished study; without it that goes on if it has the same "
+    "inputs, "
+    "and is left alone if not";
 const char* const json_help = "Give the result as one JSON object";
 
 const char* const footer =
@@ -57,6 +61,7 @@ void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
   study->add_option("--out", arguments.folder,
                     "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg, "
                     "study.json and report.html; made if missing");
+  study->add_flag("--overwrite", arguments.overwrite, overwrite_help);
   study->add_flag("--json", arguments.json, json_help);
 }
 
@@ -124,6 +129,7 @@ void add_stability(CLI::App& app, cli::StabilityArguments& arguments) {
       ->add_option("--out", arguments.folder,
                    "Folder for stability.csv, stability.svg, study.json and report.html; made if missing")
       ->required();
+  stability->add_flag("--overwrite", arguments.overwrite, overwrite_help);
   stability->add_flag("--json", arguments.json, json_help);
 }
 
@@ -137,6 +143,7 @@ void add_extremes(CLI::App& app, cli::ExtremesArguments& arguments) {
   extremes->add_option("--cases", arguments.cases, "Cases, between commas; all without");
   extremes->add_option("--out", arguments.folder,
                        "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
+  extremes->add_flag("--overwrite", arguments.overwrite, overwrite_help);
   CLI::Option* extremes_json = extremes->add_flag("--json", arguments.json, json_help);
   extremes->add_flag("--markdown", arguments.markdown, "Print the table as Markdown")
       ->excludes(extremes_json)

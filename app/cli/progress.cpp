@@ -51,6 +51,8 @@ void Progress::show(double fraction, const std::string& text) {
 void listen_for_stop() {
   std::signal(SIGINT, note_stop);
   std::signal(SIGTERM, note_stop);
+  // Under nohup a closed terminal is to be ignored, and stays so.
+  if (std::signal(SIGHUP, note_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
 }
 

@@ -23,7 +23,7 @@ class Progress {
   Clock::time_point start_, last_;
 };
 
-/// From now on Ctrl+C and SIGTERM only ask for a stop.
+/// From now on Ctrl+C, SIGTERM and a closed terminal (SIGHUP) only ask for a stop.
 void listen_for_stop();
 bool stop_is_requested();
 

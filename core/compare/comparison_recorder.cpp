@@ -4,6 +4,7 @@
 
 #include "compare/comparison_json.h"
 #include "io/run_folder.h"
+#include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 
 namespace cloth {
@@ -74,13 +75,24 @@ std::vector<std::string> comparison_row(const LockStep& lockstep) {
   return row;
 }
 
+FolderUse comparison_use(const Comparison& comparison) {
+  FolderUse use{.kind = "comparison",
+                .files = {"comparison.json", "compare.csv", "compare.svg", "report.html", "summary.json"}};
+  for (const std::string& name : names_of(comparison)) use.files.push_back(name + ".csv");
+  for (const std::string& mesh : mesh_files(comparison.scene)) use.inputs.emplace_back(mesh);
+  return use;
+}
+
 std::optional<IoError> ComparisonRecorder::open(const std::filesystem::path& folder,
                                                 const LockStep& lockstep) {
-  folder_ = folder;
+  if (auto error = own_folder_.claim(folder, comparison_use(lockstep.comparison()))) return error;
+  return open(own_folder_, lockstep);
+}
+
+std::optional<IoError> ComparisonRecorder::open(ResultFolder& folder, const LockStep& lockstep) {
+  folder_ = &folder;
   part_ = 0;
-  if (auto error = make_folder(folder)) return error;
-  if (auto error = write_text_file(folder / "comparison.json", write_comparison(as_run(lockstep))))
-    return error;
+  if (auto error = folder.write("comparison.json", write_comparison(as_run(lockstep)))) return error;
   return open_part(lockstep);
 }
 
@@ -90,17 +102,18 @@ std::optional<IoError> ComparisonRecorder::open_part(const LockStep& lockstep) {
   names_ = names_of(lockstep.comparison());
   quantities_ = quantities_of(lockstep);
   reference_ = lockstep.comparison().reference;
-  const auto path = [&](const std::string& name) {
-    return folder_ / (part_ == 1 ? name + ".csv" : fmt::format("{}-{}.csv", name, part_));
+  const auto begin = [&](CsvFile& file, const std::string& name, const std::vector<std::string>& columns) {
+    const std::string part = part_ == 1 ? name + ".csv" : fmt::format("{}-{}.csv", name, part_);
+    auto error = folder_->add(part);
+    return error ? error : file.open(*folder_ / part, columns);
   };
   panes_.clear();
   for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
     panes_.push_back(std::make_unique<CsvFile>());
-    if (auto error = panes_[i]->open(path(lockstep.lane(i).name), record_columns(quantities_[i])))
-      return error;
+    if (auto error = begin(*panes_[i], lockstep.lane(i).name, record_columns(quantities_[i]))) return error;
   }
   compare_ = std::make_unique<CsvFile>();
-  return compare_->open(path("compare"), comparison_columns(lockstep));
+  return begin(*compare_, "compare", comparison_columns(lockstep));
 }
 
 std::optional<IoError> ComparisonRecorder::add_row(const LockStep& lockstep) {
@@ -118,8 +131,10 @@ std::optional<IoError> ComparisonRecorder::add_row(const LockStep& lockstep) {
 
 std::optional<IoError> ComparisonRecorder::log(const std::vector<std::string>& lines) {
   if (lines.empty()) return std::nullopt;
-  if (!edits_.is_open())
-    if (auto error = edits_.open(folder_ / "edits.jsonl")) return error;
+  if (!edits_.is_open()) {
+    if (auto error = folder_->add("edits.jsonl")) return error;
+    if (auto error = edits_.open(*folder_ / "edits.jsonl")) return error;
+  }
   for (const std::string& line : lines)
     if (auto error = edits_.add(line)) return error;
   return std::nullopt;
@@ -142,7 +157,9 @@ std::optional<IoError> ComparisonRecorder::close() {
 std::optional<IoError> ComparisonRecorder::close_rows() {
   std::optional<IoError> first;
   const auto end = [&](CsvFile& file) {
-    auto error = file.is_open() ? file.close() : std::nullopt;
+    if (!file.is_open()) return;
+    auto error = file.close();
+    if (!error) folder_->note(file.digest());
     if (error && !first) first = std::move(error);
   };
   for (const auto& pane : panes_) end(*pane);

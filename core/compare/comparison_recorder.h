@@ -9,6 +9,7 @@
 
 #include "compare/lockstep.h"
 #include "io/csv.h"
+#include "io/result_folder.h"
 
 namespace cloth {
 
@@ -23,8 +24,11 @@ std::vector<std::string> comparison_row(const LockStep& lockstep);
 
 class ComparisonRecorder {
  public:
-  /// Makes the folder, writes comparison.json and begins the files; `lockstep` stands at a common time.
+  /// Claims the folder, writes comparison.json and begins the files; `lockstep` stands at a common time.
   std::optional<IoError> open(const std::filesystem::path& folder, const LockStep& lockstep);
+
+  /// In a folder that is claimed and outlives the recorder.
+  std::optional<IoError> open(ResultFolder& folder, const LockStep& lockstep);
 
   /// A row of each pane that is going, and one of compare.csv. Where an edit gave a pane other quantities, or
   /// other panes, all files go on in a next part (A-2.csv, ..., compare-2.csv).
@@ -40,7 +44,8 @@ class ComparisonRecorder {
   std::optional<IoError> open_part(const LockStep& lockstep);
   std::optional<IoError> close_rows();
 
-  std::filesystem::path folder_;
+  ResultFolder own_folder_;
+  ResultFolder* folder_ = &own_folder_;
   int part_ = 0;
   std::string reference_;
   std::vector<std::string> names_;      ///< of the panes
@@ -49,6 +54,9 @@ class ComparisonRecorder {
   std::unique_ptr<CsvFile> compare_;
   LineFile edits_;  ///< open once there is a line
 };
+
+/// What a comparison's folder is used for; its reports come after the recording.
+FolderUse comparison_use(const Comparison& comparison);
 
 /// The comparison as it is run: steps resolved, so that running it again gives the same rows.
 Comparison as_run(const LockStep& lockstep);

@@ -204,6 +204,7 @@ std::string comparison_text(const ComparisonRun& run) {
 std::string comparison_summary(const ComparisonRun& run) {
   json root{{"program", "clothlab"},
             {"version", version()},
+            {"kind", "comparison"},
             {"title", title_of(run)},
             {"scene_hash", scene_hash(run.comparison.scene)},
             {"status", run.stopped        ? "stopped"
@@ -225,6 +226,7 @@ std::string comparison_summary(const ComparisonRun& run) {
   for (const std::size_t i : ranked(run.panes)) root["ranking"].push_back(run.panes[i].name);
   root["panes"] = json::array();
   for (const PaneResult& pane : run.panes) root["panes"].push_back(pane_json(pane));
+  if (!run.files.empty()) root["files"] = digests_json(run.files);
   root["threads"] = run.threads;
   root["machine"] = json::object();
   for (const auto& [name, value] : fact_rows(machine_facts())) root["machine"][name] = value;

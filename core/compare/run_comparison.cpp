@@ -68,13 +68,17 @@ ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptio
     if (error && !run.io_error) run.io_error = std::move(error);
     return !run.io_error;
   };
-  const bool on_disk = !options.folder.empty();
+  const bool on_disk = options.results || !options.folder.empty();
+  const auto open = [&] {
+    return options.results ? recorder.open(*options.results, lockstep)
+                           : recorder.open(options.folder, lockstep);
+  };
   const auto add_row = [&] {
     gather(lockstep, run);
     return !on_disk || keep(recorder.add_row(lockstep));
   };
 
-  bool going = (!on_disk || keep(recorder.open(options.folder, lockstep))) && add_row();
+  bool going = (!on_disk || keep(open())) && add_row();
   Clock::time_point flushed = Clock::now();
   for (std::int64_t k = 1; going && k <= lockstep.last_index() && !lockstep.all_stopped(); ++k) {
     if (!lockstep.advance(k, options.may_go_on, options.threads)) {

@@ -9,6 +9,7 @@
 
 #include "compare/ranking.h"
 #include "io/csv.h"
+#include "io/result_folder.h"
 
 namespace cloth {
 
@@ -19,6 +20,7 @@ struct ComparisonOptions {
   /// false stops the run.
   std::function<void(double time)> progress;
   std::function<bool()> may_go_on;
+  ResultFolder* results = nullptr;  ///< claimed already; else `folder` is
 };
 
 /// What charts draw: a value for each common time that the pane reached.
@@ -44,6 +46,7 @@ struct ComparisonRun {
   int threads = 1;
   bool stopped = false;
   std::optional<IoError> io_error;  ///< what was written before it is valid
+  std::vector<FileDigest> files{};  ///< that lie beside summary.json
 
   /// Whether there is what was asked for: a pane that reached the end, and a reference if one was wanted.
   bool has_result() const;

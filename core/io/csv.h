@@ -13,12 +13,16 @@ class CsvFile {
   /// Makes or empties the file and writes the header row.
   std::optional<IoError> open(const std::filesystem::path& path, const std::vector<std::string>& header);
 
+  /// Goes on at the end of a table that is there.
+  std::optional<IoError> open_at_end(const std::filesystem::path& path) { return lines_.open_at_end(path); }
+
   /// Keeps one row until the next flush, or until enough have gathered.
   std::optional<IoError> add(const std::vector<std::string>& fields);
 
   std::optional<IoError> flush() { return lines_.flush(); }
   std::optional<IoError> close() { return lines_.close(); }
   bool is_open() const { return lines_.is_open(); }
+  FileDigest digest() const { return lines_.digest(); }
 
  private:
   LineFile lines_;

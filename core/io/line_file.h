@@ -7,12 +7,16 @@
 #include <optional>
 #include <string>
 
+#include "io/file_digest.h"
+#include "io/fnv_hash.h"
+
 namespace cloth {
 
 /// A file that could not be read or written: which, and what the system said.
 struct IoError {
   std::filesystem::path path;
   std::string message;
+  bool refused = false;  ///< not the system's fault: what was asked for would destroy something
   std::string text() const { return path.string() + ": " + message; }
 };
 
@@ -26,19 +30,30 @@ class LineFile {
   /// Makes or empties the file.
   std::optional<IoError> open(const std::filesystem::path& path);
 
+  /// Goes on at the end of a file of whole lines; the digest is then of what is added.
+  std::optional<IoError> open_at_end(const std::filesystem::path& path);
+
   /// Keeps one line (without its end) until the next flush, or until enough have gathered.
   std::optional<IoError> add(const std::string& line);
 
+  /// Hands what has gathered to the system: it outlives this process.
   std::optional<IoError> flush();
+  /// Also waits until it is on the disk: it outlives a loss of power.
   std::optional<IoError> close();
   bool is_open() const { return descriptor_ >= 0; }
 
+  /// Of the whole lines that were written; `rows` counts all but the first, the header.
+  FileDigest digest() const;
+
  private:
+  std::optional<IoError> open(const std::filesystem::path& path, int flags);
   std::optional<IoError> failure() const;
 
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::int64_t written_ = 0;  ///< bytes, whole lines only
+  std::int64_t lines_ = 0, pending_lines_ = 0;
+  FnvHash hash_;  ///< of what is written
   std::string pending_;
 };
 

@@ -1,5 +1,6 @@
 #include "io/run_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -66,6 +67,23 @@ json solver_json(const StepCount& count) {
   return solver;
 }
 
+/// On the disk when it returns, so that a rename never shows a file that is not there yet.
+std::optional<IoError> write_draft(const fs::path& draft, const std::string& text) {
+  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) return IoError{draft, std::strerror(errno)};
+  std::optional<IoError> failure;
+  for (std::size_t done = 0; done < text.size() && !failure;) {
+    const ssize_t part = ::write(descriptor, text.data() + done, text.size() - done);
+    if (part > 0)
+      done += static_cast<std::size_t>(part);
+    else if (part == 0 || errno != EINTR)
+      failure = IoError{draft, part == 0 ? "could not be written" : std::strerror(errno)};
+  }
+  if (!failure && ::fsync(descriptor) != 0 && errno != EINVAL) failure = IoError{draft, std::strerror(errno)};
+  if (::close(descriptor) != 0 && !failure) failure = IoError{draft, std::strerror(errno)};
+  return failure;
+}
+
 }  // namespace
 
 std::optional<IoError> make_folder(const fs::path& folder) {
@@ -76,21 +94,28 @@ std::optional<IoError> make_folder(const fs::path& folder) {
   return std::nullopt;
 }
 
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 std::optional<IoError> write_text_file(const fs::path& path, const std::string& text) {
   fs::path draft = path;
   draft += ".part";
-  errno = 0;
-  std::ofstream file(draft, std::ios::binary | std::ios::trunc);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  std::error_code error;
-  if (!file) {
-    const std::string reason = errno != 0 ? std::strerror(errno) : "could not be written";
-    fs::remove(draft, error);
-    return IoError{path, reason};
+  if (auto error = write_draft(draft, text)) {
+    error->path = path;
+    ::unlink(draft.c_str());
+    return error;
   }
+  std::error_code error;
   fs::rename(draft, path, error);
-  if (error) return IoError{path, error.message()};
+  if (error) {
+    ::unlink(draft.c_str());
+    return IoError{path, error.message()};
+  }
+  sync_folder(path.parent_path());
   return std::nullopt;
 }
 
@@ -127,6 +152,7 @@ std::string version() {
 std::string summary_json(const RunSummary& s) {
   json root{{"program", "clothlab"},
             {"version", version()},
+            {"kind", "run"},
             {"scene_hash", s.scene_hash},
             {"title", s.title},
             {"method", s.method},
@@ -150,6 +176,7 @@ std::string summary_json(const RunSummary& s) {
     root["time_step_changes"].push_back(
         {{"step", change.step}, {"time_s", change.time}, {"time_step_s", change.time_step}});
   if (!s.notice.empty()) root["notice"] = s.notice;
+  if (!s.files.empty()) root["files"] = digests_json(s.files);
   root["threads"] = s.threads;
   root["host"] = {{"name", host_name()},
                   {"processor", processor()},

@@ -15,8 +15,12 @@ namespace cloth {
 /// Makes the folder and those above it.
 std::optional<IoError> make_folder(const std::filesystem::path& folder);
 
-/// Writes to a file beside it first, then renames: the file is old or new, never half.
+/// Writes to a file beside it first, then renames: the file is old or new, never half, after a loss of power
+/// too.
 std::optional<IoError> write_text_file(const std::filesystem::path& path, const std::string& text);
+
+/// Waits until the disk has what was renamed, made or removed in the folder, where the system can tell.
+void sync_folder(const std::filesystem::path& folder);
 
 /// The whole file, or why not.
 std::optional<IoError> read_text_file(const std::filesystem::path& path, std::string& text);
@@ -41,6 +45,7 @@ struct RunSummary {
   std::vector<StepChange> step_changes;  ///< where "auto" has shortened the step
   std::string notice;                    ///< e.g. a rate that the pins make unreachable
   int threads = 1;
+  std::vector<FileDigest> files{};  ///< that lie beside summary.json
 
   double nanoseconds_per_particle_step() const;
 };

@@ -180,6 +180,15 @@ std::vector<std::string> mesh_notices(const Scene& scene) {
   return notices;
 }
 
+std::vector<std::string> mesh_files(const Scene& scene) {
+  std::vector<std::string> files;
+  for_each_mesh(scene, [&](const std::string&, const MeshChoice& mesh) {
+    if (mesh.is_loaded() && !mesh.loaded->built_in)
+      files.push_back((fs::path(scene.folder.path) / mesh.file).string());
+  });
+  return files;
+}
+
 Scene moved_to_folder(const Scene& scene, const std::string& folder) {
   Scene moved = scene;
   moved.folder = {folder};

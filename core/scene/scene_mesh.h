@@ -55,6 +55,9 @@ std::vector<Problem> load_meshes(Scene& scene, const Scene* known = nullptr);
 /// "bunny.obj": ...`
 std::vector<std::string> mesh_notices(const Scene& scene);
 
+/// The files that the scene's meshes were read from; built-in ones have none.
+std::vector<std::string> mesh_files(const Scene& scene);
+
 /// The same scene for a file in another folder: files are named as seen from there.
 Scene moved_to_folder(const Scene& scene, const std::string& folder);
 

@@ -7,6 +7,7 @@
 
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
+#include "scene/scene_mesh.h"
 #include "simulation/session.h"
 #include "simulation/time_step.h"
 
@@ -141,16 +142,17 @@ class Run {
     return !result_.io_error;
   }
 
-  std::optional<IoError> write_scene_file(const Scene& scene) const {
-    return write_text_file(options_.folder / "scene.json",
-                           write_scene(moved_to_folder(scene, options_.folder.string())));
+  std::optional<IoError> write_scene_file(const Scene& scene) {
+    return folder_.write("scene.json", write_scene(moved_to_folder(scene, options_.folder.string())));
   }
 
   bool begin_folder() {
+    FolderUse use{.kind = "run", .files = run_files(), .inputs = options_.inputs};
+    for (const auto& mesh : mesh_files(scene_)) use.inputs.push_back(mesh);
     Scene resolved = scene_;
     resolved.integrator.time_step = simulation_.time_step();
-    return keep(make_folder(options_.folder)) && keep(write_scene_file(resolved)) &&
-           keep(record_.open(options_.folder, simulation_.quantities()));
+    return keep(folder_.claim(options_.folder, use)) && keep(write_scene_file(resolved)) &&
+           keep(record_.open(folder_, simulation_.quantities()));
   }
 
   /// Steps to the next of which somebody sees the state: a row, a command, the end.
@@ -224,11 +226,14 @@ class Run {
                      : !ended_ || !problems_.empty() ? Status::stopped
                                                      : Status::finished;
     if (!summary.divergence) note(describe(summary.energy));
-    if (options_.folder.empty()) return;
+    if (!folder_.is_open()) return;
     keep(record_.close());
     if (!summary.step_changes.empty()) keep(write_scene_file(scene_));  // no one step repeats this run
-    keep(write_text_file(options_.folder / "final_state.csv", state_csv(result_.final_state)));
-    keep(write_text_file(options_.folder / "summary.json", summary_json(summary)));
+    // Without its record a run has no summary: what has one is whole.
+    if (result_.io_error || !keep(folder_.write("final_state.csv", state_csv(result_.final_state), true)))
+      return;
+    summary.files = folder_.digests();
+    keep(folder_.finish("summary.json", summary_json(summary)));
   }
 
   const Scene& scene_;
@@ -236,6 +241,7 @@ class Run {
   Script script_;
   Simulation simulation_;
   RowClock clock_;
+  ResultFolder folder_;
   RecordFile record_;
   RunResult result_;
   bool ended_ = false;
@@ -281,31 +287,38 @@ void RowClock::follow(const Simulation& simulation) {
   *this = now;
 }
 
-std::filesystem::path RecordFile::part_path(int part) const {
-  return folder_ / (part == 1 ? "record.csv" : fmt::format("record-{}.csv", part));
-}
-
-std::optional<IoError> RecordFile::open(const std::filesystem::path& folder, const Quantities& quantities) {
-  folder_ = folder;
+std::optional<IoError> RecordFile::open(ResultFolder& folder, const Quantities& quantities) {
+  folder_ = &folder;
   part_ = 0;
-  std::error_code ignored;
-  for (int part = 2; std::filesystem::remove(part_path(part), ignored); ++part) {
-  }
   return open_part(quantities);
 }
 
 std::optional<IoError> RecordFile::open_part(const Quantities& quantities) {
   quantities_ = quantities;
-  return csv_.open(part_path(++part_), record_columns(quantities));
+  const std::string name = ++part_ == 1 ? "record.csv" : fmt::format("record-{}.csv", part_);
+  if (auto error = folder_->add(name)) return error;
+  return csv_.open(*folder_ / name, record_columns(quantities));
+}
+
+std::optional<IoError> RecordFile::close() {
+  if (!csv_.is_open()) return std::nullopt;
+  if (auto error = csv_.close()) return error;
+  folder_->note(csv_.digest());
+  return std::nullopt;
 }
 
 std::optional<IoError> RecordFile::add(const Measurement& measurement, const Quantities& quantities,
                                        double step_time) {
   if (quantities != quantities_) {
-    if (auto error = csv_.close()) return error;
+    if (auto error = close()) return error;
     if (auto error = open_part(quantities)) return error;
   }
   return csv_.add(record_row(measurement, quantities, step_time));
+}
+
+const std::vector<std::string>& run_files() {
+  static const std::vector<std::string> names{"scene.json", "record.csv", "final_state.csv", "summary.json"};
+  return names;
 }
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
@@ -313,7 +326,8 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
 }
 
 ReplayResult replay(const Session& session, const ReplayOptions& options) {
-  const RunOptions run_options{.folder = options.folder, .progress = options.progress};
+  const RunOptions run_options{
+      .folder = options.folder, .progress = options.progress, .inputs = options.inputs};
   Run run(session.scene, run_options,
           {.commands = &session.commands, .steps = session.steps, .until = options.until});
   ReplayResult result;

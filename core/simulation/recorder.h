@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "io/csv.h"
+#include "io/result_folder.h"
 #include "io/run_folder.h"
 #include "simulation/simulation.h"
 
@@ -36,21 +37,20 @@ struct RowClock {
 /// record.csv; where the scene's stages change within a run, record-2.csv, ... go on with the new columns.
 class RecordFile {
  public:
-  /// Those of an earlier run in the folder go.
-  std::optional<IoError> open(const std::filesystem::path& folder, const Quantities& quantities);
+  /// In a folder that is claimed and outlives the file.
+  std::optional<IoError> open(ResultFolder& folder, const Quantities& quantities);
 
   /// `step_time` in s: mean wall time of a step since the row before.
   std::optional<IoError> add(const Measurement& measurement, const Quantities& quantities, double step_time);
 
   std::optional<IoError> flush() { return csv_.flush(); }
-  std::optional<IoError> close() { return csv_.close(); }
+  std::optional<IoError> close();
   bool is_open() const { return csv_.is_open(); }
 
  private:
   std::optional<IoError> open_part(const Quantities& quantities);
-  std::filesystem::path part_path(int part) const;
 
-  std::filesystem::path folder_;
+  ResultFolder* folder_ = nullptr;
   CsvFile csv_;
   Quantities quantities_;
   int part_ = 0;
@@ -60,7 +60,8 @@ struct RunOptions {
   std::filesystem::path folder;  ///< empty: leave nothing on disk
   /// Called some ten times a second with the simulated time; false stops the run.
   std::function<bool(double time)> progress;
-  int threads = 1;  ///< that a step may use
+  int threads = 1;                              ///< that a step may use
+  std::vector<std::filesystem::path> inputs{};  ///< files that the folder must not replace, beside the meshes
 };
 
 struct RunResult {
@@ -68,6 +69,9 @@ struct RunResult {
   std::optional<IoError> io_error;  ///< what was written before it is valid
   ClothState final_state;           ///< the last good one
 };
+
+/// The names of the files that a run leaves in its folder.
+const std::vector<std::string>& run_files();
 
 /// Runs a scene to its duration. Precondition: as for Simulation.
 RunResult run_scene(const Scene& scene, const RunOptions& options);

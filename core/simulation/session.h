@@ -56,6 +56,7 @@ struct ReplayOptions {
   double until =
       std::numeric_limits<double>::infinity();  ///< s: ends at the step nearest to it, if that is earlier
   std::function<bool(double time)> progress;    ///< as for RunOptions
+  std::vector<std::filesystem::path> inputs{};  ///< as for RunOptions
 };
 
 struct ReplayResult {

@@ -201,6 +201,10 @@ ExtremesTable run_extremes(const ExtremesOptions& options) {
   };
   for (const ExtremeCase& extreme : table.cases)
     for (const std::string& method : table.methods) {
+      if (options.earlier && table.cells.size() < options.earlier->cells.size()) {
+        table.cells.push_back(options.earlier->cells[table.cells.size()]);
+        continue;
+      }
       const StudyProgress progress{static_cast<double>(table.cells.size()) / all,
                                    extreme.name + ", " + method};
       if (options.progress && !options.progress(progress)) return table;

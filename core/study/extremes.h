@@ -87,6 +87,8 @@ struct ExtremesOptions {
   std::function<void(const ExtremesTable&)> partial{};
   std::stop_token stop{};              ///< looked at after every step; half a cell is none
   std::function<bool()> keep_going{};  ///< likewise, for who has no stop token; false stops the study
+  /// The same table, stopped before its end: its cells are not run again.
+  const ExtremesTable* earlier = nullptr;
 };
 
 /// The cases and methods that are asked for, in the list's order; no cells yet.

@@ -59,6 +59,9 @@ struct ReferenceSolution {
   std::string first, second;     ///< what solved it, and what checked it
   std::int64_t evaluations = 0;  ///< of the force, by both
   std::string failure;           ///< not empty: there is no reference, and why
+
+  /// Solved, though its states may not be kept.
+  bool is_known() const { return !first.empty() && failure.empty(); }
 };
 
 /// Told the part that is done, from 0 to 1; false stops.

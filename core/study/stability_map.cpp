@@ -69,8 +69,8 @@ double energy_scale(const Simulation& run) {
   double elastic = 0;
   for (const SpringRun& springs : run.system().springs)
     elastic += 0.5 * springs.stiffness * springs.rest_length * springs.rest_length * springs.count;
-  return mass * gravity_of(scene).norm() * run.system().diagonal +
-         0.5 * mass * wind * wind + std::abs(run.checkpoint().ledger.initial) + trace * elastic;
+  return mass * gravity_of(scene).norm() * run.system().diagonal + 0.5 * mass * wind * wind +
+         std::abs(run.checkpoint().ledger.initial) + trace * elastic;
 }
 
 /// A mesh stays as it is: no smaller one has the same triangles.
@@ -121,6 +121,8 @@ class MapRunner {
   bool run_cells(MethodMap& map);
   bool measure_limits(MethodMap& map);
   bool narrow(const std::string& method, MeasuredLimit& limit);
+  const MethodMap* earlier(const MethodMap& map) const;
+  PredictedLimits limits_beside(const MethodMap& map, std::size_t k) const;
   StabilityCell run_at(const std::string& method, double x, double y);
   bool keep_on() {
     if (options_.stop.stop_requested()) return false;
@@ -169,11 +171,23 @@ bool MapRunner::lay_out(MethodMap& map) {
   return true;
 }
 
+/// The same method of the map that goes on, if there is one.
+const MethodMap* MapRunner::earlier(const MethodMap& map) const {
+  if (!options_.earlier) return nullptr;
+  for (const MethodMap& method : options_.earlier->methods)
+    if (method.method == map.method) return &method;
+  return nullptr;
+}
+
 bool MapRunner::run_cells(MethodMap& map) {
-  for (StabilityCell& cell : map.cells) {
+  const MethodMap* before = earlier(map);
+  for (std::size_t k = 0; k < map.cells.size(); ++k) {
+    StabilityCell& cell = map.cells[k];
     const PredictedLimits limits = cell.limits;
     const double work = expected_work(cell, options_.criterion);
-    StabilityCell result = run_at(map.method, cell.x, cell.y);
+    const bool is_known =
+        before && k < before->cells.size() && before->cells[k].status != CellStatus::not_run;
+    StabilityCell result = is_known ? before->cells[k] : run_at(map.method, cell.x, cell.y);
     if (result.status == CellStatus::not_run) return false;
     result.limits = limits;
     cell = std::move(result);
@@ -196,15 +210,27 @@ bool MapRunner::narrow(const std::string& method, MeasuredLimit& limit) {
   return true;
 }
 
+/// Those of the last step that was run with the other axis' value `k`.
+PredictedLimits MapRunner::limits_beside(const MethodMap& map, std::size_t k) const {
+  const std::size_t columns = x_values_.size(), rows = y_values_.size();
+  return map.cells[x_is_step() ? k * columns + columns - 1 : (rows - 1) * columns + k].limits;
+}
+
 bool MapRunner::measure_limits(MethodMap& map) {
   const std::size_t columns = x_values_.size();
   const std::vector<double>& others = x_is_step() ? y_values_ : x_values_;
   const std::vector<double>& steps = x_is_step() ? x_values_ : y_values_;
+  const MethodMap* before = earlier(map);
   for (std::size_t k = 0; k < others.size(); ++k) {
+    if (before && k < before->measured.size()) {
+      map.measured.push_back(before->measured[k]);
+      map.measured.back().limits = limits_beside(map, k);
+      continue;
+    }
     MeasuredLimit limit{.other = others[k]};
+    limit.limits = limits_beside(map, k);
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const StabilityCell& cell = map.cells[x_is_step() ? k * columns + s : s * columns + k];
-      limit.limits = cell.limits;
       if (cell.status != CellStatus::run) continue;
       if (!cell.stable())
         limit.shortest_unstable = std::min(limit.shortest_unstable, steps[s]);
@@ -221,16 +247,9 @@ bool MapRunner::measure_limits(MethodMap& map) {
 }
 
 StabilityMap MapRunner::run() {
-  map_ = {.scene = scene_, .options = options_};
-  map_.options.progress = {};
-  map_.options.partial = {};
-  map_.options.stop = {};
-  x_values_ = map_.x_values = values_of(options_.x);
-  y_values_ = map_.y_values = values_of(options_.y);
-  const Scene example =
-      cell_scene(scene_, options_, options_.methods.front(), x_values_.front(), y_values_.front());
-  map_.rows = example.cloth.rows;
-  map_.columns = example.cloth.columns;
+  map_ = plan_stability_map(scene_, options_);
+  x_values_ = map_.x_values;
+  y_values_ = map_.y_values;
   for (const std::string& method : options_.methods) {
     map_.methods.push_back({method, {}, {}});
     map_.complete = map_.complete && lay_out(map_.methods.back());
@@ -379,6 +398,21 @@ StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion,
     cell.detail = fmt::format("cut short: {} of {} steps", steps, cell.wanted_steps);
   }
   return cell;
+}
+
+StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options) {
+  StabilityMap map{.scene = scene, .options = options};
+  map.options.progress = {};
+  map.options.partial = {};
+  map.options.stop = {};
+  map.options.earlier = nullptr;
+  map.x_values = values_of(options.x);
+  map.y_values = values_of(options.y);
+  const Scene example =
+      cell_scene(scene, options, options.methods.front(), map.x_values.front(), map.y_values.front());
+  map.rows = example.cloth.rows;
+  map.columns = example.cloth.columns;
+  return map;
 }
 
 StabilityMap run_stability_map(const Scene& scene, const StabilityOptions& options) {

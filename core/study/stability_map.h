@@ -28,6 +28,8 @@ struct StabilityOptions {
   /// The map so far, after every finished cell and measured limit; the last is what is returned.
   std::function<void(const StabilityMap&)> partial{};
   std::stop_token stop{};  ///< looked at before every step; stops like `progress`
+  /// The same map, stopped before its end: its cells and measured limits are not run again.
+  const StabilityMap* earlier = nullptr;
 };
 
 /// The step that is predicted to be the longest stable one, in s; 0: none is stable; infinity: any.
@@ -106,6 +108,9 @@ PredictedLimits predict_limits(const Scene& cell);
 /// One run, judged. `keep_on` is asked after every step; after false the cell's status is not_run.
 StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion,
                        const std::function<bool()>& keep_on = {});
+
+/// What will be run: axes and methods, no cells yet.
+StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options);
 
 /// Deterministic: the same map for the same scene and options. Precondition: no problems.
 StabilityMap run_stability_map(const Scene& scene, const StabilityOptions& options);

@@ -122,7 +122,7 @@ std::ptrdiff_t cells_cut_short(const StabilityMap& map) {
 /// A sentence where a method's predicted limits do not lie on the map; empty where they do.
 std::string limits_outside(const StabilityMap& map, const MethodMap& method) {
   const bool x_is_step = map.options.x.path == time_step_path;
-  if (!x_is_step && map.options.y.path != time_step_path) return {};
+  if ((!x_is_step && map.options.y.path != time_step_path) || method.cells.empty()) return {};
   const std::vector<double>& steps = x_is_step ? map.x_values : map.y_values;
   double shortest = infinity, longest = 0;
   for (const StabilityCell& cell : method.cells) {
@@ -169,20 +169,50 @@ std::string status_of(const StabilityCell& cell) {
   return "";
 }
 
+std::vector<std::string> stability_columns() {
+  return {"method",
+          "x",
+          "y",
+          "status",
+          "energy_ratio",
+          "predicted_limit_s",
+          "guaranteed_limit_s",
+          "provot_s",
+          "spectrum_limit_s",
+          "time_step_s",
+          "growth_rate_per_s",
+          "steps",
+          "detail",
+          "wanted_steps"};
+}
+
+std::vector<std::string> stability_row(const std::string& method, const StabilityCell& cell) {
+  const bool run = cell.status == CellStatus::run;
+  return {method,
+          csv_number(cell.x),
+          csv_number(cell.y),
+          status_of(cell),
+          run ? csv_limit(cell.energy_ratio) : "",
+          csv_limit(cell.limits.predicted),
+          csv_limit(cell.limits.guaranteed),
+          csv_limit(cell.limits.provot),
+          csv_limit(cell.limits.spectrum),
+          csv_number(cell.time_step),
+          run ? csv_number(cell.growth_rate) : "",
+          std::to_string(cell.steps),
+          cell.detail,
+          std::to_string(cell.wanted_steps)};
+}
+
 std::string stability_csv(const StabilityMap& map) {
-  std::string text =
-      "method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,"
-      "time_step_s,growth_rate_per_s,steps,detail,wanted_steps\r\n";
+  std::string text;
+  const auto add = [&text](const std::vector<std::string>& row) {
+    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + csv_field(row[k]);
+    text += "\r\n";
+  };
+  add(stability_columns());
   for (const MethodMap& method : map.methods)
-    for (const StabilityCell& cell : method.cells) {
-      const bool run = cell.status == CellStatus::run;
-      text += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_field(method.method), csv_number(cell.x),
-          csv_number(cell.y), status_of(cell), run ? csv_limit(cell.energy_ratio) : "",
-          csv_limit(cell.limits.predicted), csv_limit(cell.limits.guaranteed), csv_limit(cell.limits.provot),
-          csv_limit(cell.limits.spectrum), csv_number(cell.time_step),
-          run ? csv_number(cell.growth_rate) : "", cell.steps, csv_field(cell.detail), cell.wanted_steps);
-    }
+    for (const StabilityCell& cell : method.cells) add(stability_row(method.method, cell));
   return text;
 }
 

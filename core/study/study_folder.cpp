@@ -7,10 +7,13 @@
 
 #include "io/csv.h"
 #include "io/run_folder.h"
+#include "kernels/instruction_set.h"
+#include "report/machine.h"
 #include "scene/scene_json.h"
+#include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
-#include "study/work_precision_report.h"
+#include "study/study_recorder.h"
 #include "study/work_precision_tables.h"
 
 namespace cloth {
@@ -41,11 +44,11 @@ json contents(const WorkPrecision& study) {
   json methods = json::array();
   for (const MethodStudy& method : study.methods) methods.push_back(method.ladder.facts.name);
   const ReferenceSolution& reference = study.reference;
-  return {{"scene", json::parse(write_scene(study.scene))},
-          {"options",
+  return {{"options",
            {{"methods", methods},
             {"horizon_s", study.horizon},
             {"repeats", study.repeats},
+            {"runs_per_method", study.steps_per_method},
             {"budget_s", study.budget}}},
           {"estimated_s", study.estimated},
           {"reference",
@@ -69,8 +72,7 @@ json contents(const StabilityMap& map) {
                                        {"longest_stable_s", limit.longest_stable},
                                        {"shortest_unstable_s", number(limit.shortest_unstable)},
                                        {"stable_beyond", limit.stable_beyond}});
-  return {{"scene", json::parse(write_scene(map.scene))},
-          {"options",
+  return {{"options",
            {{"methods", options.methods},
             {"x", axis_json(options.x)},
             {"y", axis_json(options.y)},
@@ -92,9 +94,7 @@ json contents(const StabilityMap& map) {
 json contents(const ExtremesTable& table) {
   json cases = json::array();
   for (const ExtremeCase& extreme : table.cases) cases.push_back(extreme.name);
-  json root{{"options", {{"methods", table.methods}, {"cases", cases}}}};
-  if (table.scene) root["scene"] = json::parse(write_scene(*table.scene));
-  return root;
+  return {{"options", {{"methods", table.methods}, {"cases", cases}}}};
 }
 
 std::string csv_text(const CsvTable& table) {
@@ -114,14 +114,21 @@ CsvTable extremes_table(const ExtremesTable& table) {
   return rows;
 }
 
-template <class Table>
-std::optional<IoError> write_start(const std::filesystem::path& folder, const Table& table,
-                                   const std::string& command, double wall) {
-  if (auto error = make_folder(folder)) return error;
-  return write_study_json(folder, table, command, wall);
+/// What its numbers depend on beside scene and options.
+json maker() {
+  return {{"version", version()},
+          {"instruction_set", name_of(active_instruction_set())},
+          {"processor", machine_facts().processor}};
 }
 
 }  // namespace
+
+const Scene* scene_of(const StudyTable& table) {
+  if (const auto* study = std::get_if<WorkPrecision>(&table)) return &study->scene;
+  if (const auto* map = std::get_if<StabilityMap>(&table)) return &map->scene;
+  const auto& scene = std::get<ExtremesTable>(table).scene;
+  return scene ? &*scene : nullptr;
+}
 
 const char* kind_of(const StudyTable& table) {
   constexpr const char* names[] = {"work-precision", "stability", "extremes"};
@@ -164,45 +171,45 @@ std::string study_json_text(const StudyTable& table) {
   return extremes_json(std::get<ExtremesTable>(table));
 }
 
-std::optional<IoError> write_study_json(const std::filesystem::path& folder, const StudyTable& table,
-                                        const std::string& command, double wall) {
+std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
+                        const std::string& command, double wall, const std::vector<FileDigest>& files) {
   json root{{"format", study_format}, {"kind", kind_of(table)}, {"title", title_of(table)},
             {"command", command},     {"wall_s", wall},         {"complete", is_complete(table)}};
+  root["made_by"] = maker();
   root.update(std::visit([](const auto& kind) { return contents(kind); }, table));
-  return write_text_file(folder / "study.json", root.dump(2) + "\n");
+  if (const Scene* scene = scene_of(table)) {
+    root["scene_hash"] = scene_hash(*scene);
+    root["scene"] = json::parse(write_scene(moved_to_folder(*scene, folder.string())));
+  }
+  if (!files.empty()) root["files"] = digests_json(files);
+  if (files.empty()) root["complete"] = false;
+  return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> study_files(const StudyTable& table) {
+  std::vector<std::string> names{"study.json", csv_name(table), "report.html"};
+  if (std::holds_alternative<WorkPrecision>(table)) names.emplace_back(samples_name);
+  names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
+  return names;
 }
 
 std::optional<IoError> write_study(const std::filesystem::path& folder, const WorkPrecision& study,
                                    const std::string& command, double wall) {
-  if (auto error = write_start(folder, study, command, wall)) return error;
-  if (auto error = write_text_file(folder / "work_precision.csv", csv_text(run_table(study)))) return error;
-  if (auto error = write_text_file(folder / "work_precision_samples.csv", csv_text(sample_table(study))))
-    return error;
-  const std::string svg = to_svg(error_plot(study, PlotAgainst::run_time));
-  if (auto error = write_text_file(folder / "work_precision.svg", svg)) return error;
-  return write_text_file(folder / "report.html", work_precision_page(study, command));
+  return StudyRecorder::write(folder, study, command, wall);
 }
 
 std::optional<IoError> write_study(const std::filesystem::path& folder, const StabilityMap& map,
                                    const std::string& command, double wall) {
-  if (auto error = write_start(folder, map, command, wall)) return error;
-  const std::string svg = to_svg(stability_heat_map(map));
-  if (auto error = write_text_file(folder / "stability.csv", stability_csv(map))) return error;
-  if (auto error = write_text_file(folder / "stability.svg", svg)) return error;
-  return write_text_file(folder / "report.html", stability_page(map, svg, command, wall));
+  return StudyRecorder::write(folder, map, command, wall);
 }
 
 std::optional<IoError> write_study(const std::filesystem::path& folder, const ExtremesTable& table,
                                    const std::string& command, double wall) {
-  if (auto error = write_start(folder, table, command, wall)) return error;
-  if (auto error = write_text_file(folder / "extremes.csv", csv_text(extremes_table(table)))) return error;
-  if (auto error = write_text_file(folder / "extremes.svg", to_svg(extremes_map(table)))) return error;
-  return write_text_file(folder / "report.html", extremes_html(table, command));
+  return StudyRecorder::write(folder, table, command, wall);
 }
 
 std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study) {
-  return std::visit([&](const auto& table) { return write_study(folder, table, study.command, study.wall); },
-                    study.table);
+  return StudyRecorder::write(folder, study.table, study.command, study.wall);
 }
 
 }  // namespace cloth

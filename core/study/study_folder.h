@@ -30,13 +30,17 @@ struct Study {
 /// "work-precision", "stability", "extremes": the command's name.
 const char* kind_of(const StudyTable& table);
 
+/// The scene that is studied; null for the fixed list of cases.
+const Scene* scene_of(const StudyTable& table);
+
 /// The scene's title, or what the fixed list is.
 std::string title_of(const StudyTable& table);
 
 /// Whether it came to its end.
 bool is_complete(const StudyTable& table);
 
-/// Makes the folder and writes or replaces its files, each of them old or new, never half.
+/// Makes the folder and writes its files; those of an earlier study in it go first. study.json comes last and
+/// has the digests of the others: whenever the writing ends, the folder holds this study or none.
 std::optional<IoError> write_study(const std::filesystem::path& folder, const WorkPrecision& study,
                                    const std::string& command, double wall);
 std::optional<IoError> write_study(const std::filesystem::path& folder, const StabilityMap& map,
@@ -45,15 +49,19 @@ std::optional<IoError> write_study(const std::filesystem::path& folder, const Ex
                                    const std::string& command, double wall);
 std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study);
 
-/// Only study.json: what a folder begins with.
-std::optional<IoError> write_study_json(const std::filesystem::path& folder, const StudyTable& table,
-                                        const std::string& command, double wall);
+/// study.json for a folder. Without `files`: of a study that is being made, whose tables still grow.
+std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
+                        const std::string& command, double wall, const std::vector<FileDigest>& files);
+
+/// The names of all files of such a study, study.json too.
+std::vector<std::string> study_files(const StudyTable& table);
 
 /// The same table that was written, but for the states of a reference and estimated costs. Exactly one of the
 /// two is there.
 struct StudyReading {
   std::optional<Study> study;
-  std::string problem;  ///< file, place and rule
+  std::string problem;   ///< file, place and rule
+  bool is_lost = false;  ///< a file is not there, or not the one that study.json describes
 };
 StudyReading read_study(const std::filesystem::path& folder);
 

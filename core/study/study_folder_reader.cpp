@@ -23,19 +23,27 @@ using json = nlohmann::ordered_json;
 /// What is wrong with a folder, on its way to the reader's caller; never leaves this file.
 struct BadFolder {
   std::string problem;
+  bool is_lost = false;  ///< see StudyReading
 };
 
 /// A CSV file of the folder, by row and column name.
 class Rows {
  public:
-  Rows(const std::filesystem::path& folder, const char* name) : name_(name) {
+  /// Of a study that is being made, or was killed, a table may not be there yet, and a loss of power may have
+  /// cut its last line.
+  Rows(const std::filesystem::path& folder, const char* name, const json& root) : name_(name) {
     std::string text;
-    if (const auto error = read_text_file(folder / name, text)) throw BadFolder{error->text()};
+    const bool grows = !root.contains("files") && !root.at("complete").get<bool>();
+    if (grows && !std::filesystem::exists(folder / name)) return;
+    if (const auto error = read_text_file(folder / name, text))
+      throw BadFolder{fmt::format("{}: {}", name, error->message), true};
+    if (grows) text.resize(text.rfind('\n') + 1);  // npos + 1 is 0
     table_ = parse_csv(text);
     for (std::size_t k = 0; k < table_.header.size(); ++k) columns_[table_.header[k]] = k;
   }
 
   std::size_t size() const { return table_.rows.size(); }
+  bool has(const char* column) const { return columns_.contains(column); }
   std::string text(std::size_t row, const char* column) const {
     const auto at = columns_.find(column);
     if (at == columns_.end()) throw BadFolder{fmt::format("{}: has no column \"{}\"", name_, column)};
@@ -83,8 +91,9 @@ std::vector<std::string> methods_of(const json& options) {
   return methods;
 }
 
-Scene scene_of(const json& root) {
-  SceneReading reading = read_scene(root.at("scene").dump(), "study.json, scene");
+Scene read_scene_of(const json& root, const std::filesystem::path& folder) {
+  const MeshSource meshes{.folder = SceneFolder{.path = folder.string()}};
+  SceneReading reading = read_scene(root.at("scene").dump(), "study.json, scene", {}, meshes);
   if (!reading.scene) throw BadFolder{reading.problems.front().text()};
   return std::move(*reading.scene);
 }
@@ -126,6 +135,7 @@ WorkPrecisionRun read_run(const Rows& rows, std::size_t row) {
                                        {RunStatus::stable, RunStatus::energy_growth, RunStatus::diverged,
                                         RunStatus::solver_failed, RunStatus::refused});
   run.detail = rows.text(row, "detail");
+  if (rows.has("estimated_s")) run.estimated = rows.number(row, "estimated_s", 0);
   return run;
 }
 
@@ -137,13 +147,14 @@ std::string key_of(const Rows& rows, std::size_t row) {
 
 WorkPrecision read_work_precision(const std::filesystem::path& folder, const json& root) {
   WorkPrecision study;
-  study.scene = scene_of(root);
+  study.scene = read_scene_of(root, folder);
   study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
   study.diagonal = diagonal_of(study.scene.cloth);
   const json& options = root.at("options");
   const double horizon = options.at("horizon_s").get<double>();
   if (!(horizon > 0)) throw BadFolder{"study.json: options.horizon_s: must be > 0"};
   study.repeats = options.at("repeats").get<int>();
+  study.steps_per_method = options.value("runs_per_method", WorkPrecisionOptions{}.steps_per_method);
   study.budget = options.at("budget_s").get<double>();
   study.estimated = root.at("estimated_s").get<double>();
   study.stopped = !root.at("complete").get<bool>();
@@ -163,7 +174,7 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const jso
   for (StepLadder& ladder : ladders.methods)
     study.methods.push_back({.ladder = std::move(ladder), .runs = {}, .order = {}, .velocity_order = {}});
 
-  const Rows rows(folder, "work_precision.csv");
+  const Rows rows(folder, "work_precision.csv", root);
   std::map<std::string, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::string method = rows.text(row, "method");
@@ -173,7 +184,7 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const jso
     places[key_of(rows, row)] = {static_cast<std::size_t>(at - study.methods.begin()), at->runs.size()};
     at->runs.push_back(read_run(rows, row));
   }
-  const Rows samples(folder, "work_precision_samples.csv");
+  const Rows samples(folder, "work_precision_samples.csv", root);
   for (std::size_t row = 0; row < samples.size(); ++row) {
     const auto at = places.find(key_of(samples, row));
     if (at == places.end()) throw samples.bad(row, "method", samples.text(row, "method"), "has no such run");
@@ -238,7 +249,7 @@ StabilityCell read_cell(const Rows& rows, std::size_t row) {
 
 StabilityMap read_stability(const std::filesystem::path& folder, const json& root) {
   StabilityMap map;
-  map.scene = scene_of(root);
+  map.scene = read_scene_of(root, folder);
   map.options = options_of(root.at("options"));
   const auto problems = find_problems(map.scene, map.options);
   if (!problems.empty()) throw BadFolder{"study.json: " + problems.front().text()};
@@ -248,7 +259,7 @@ StabilityMap read_stability(const std::filesystem::path& folder, const json& roo
   map.columns = root.at("columns").get<int>();
   map.complete = root.at("complete").get<bool>();
   for (const std::string& method : map.options.methods) map.methods.push_back({method, {}, {}});
-  const Rows rows(folder, "stability.csv");
+  const Rows rows(folder, "stability.csv", root);
   const std::size_t most = map.x_values.size() * map.y_values.size();
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::string name = rows.text(row, "method");
@@ -279,13 +290,13 @@ StabilityMap read_stability(const std::filesystem::path& folder, const json& roo
 
 ExtremesTable read_extremes(const std::filesystem::path& folder, const json& root) {
   ExtremesOptions options;
-  if (root.contains("scene")) options.scene = scene_of(root);
+  if (root.contains("scene")) options.scene = read_scene_of(root, folder);
   options.methods = methods_of(root.at("options"));
   options.cases = root.at("options").at("cases").get<std::vector<std::string>>();
   ExtremesTable table = empty_table(options);
   if (table.cases.size() != options.cases.size() || table.methods.size() != options.methods.size())
     throw BadFolder{"study.json: options: there is a case or method that this version does not have"};
-  const Rows rows(folder, "extremes.csv");
+  const Rows rows(folder, "extremes.csv", root);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t extreme = row / table.methods.size();
     ExtremeCell cell{.case_name = rows.text(row, "case"), .method = rows.text(row, "method"), .detail = {}};
@@ -305,6 +316,21 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const json& roo
   return table;
 }
 
+/// The tables that are not those that study.json describes, a clause each. One that is not there at all is
+/// said by who reads it.
+std::string find_disagreements(const std::filesystem::path& folder, const json& root) {
+  std::string found, text;
+  if (!root.contains("files")) return found;  // it is being made, or an old version made it
+  for (const FileDigest& expected : digests_of(root.at("files"))) {
+    if (!expected.rows || expected.name.find('/') != std::string::npos) continue;
+    if (read_text_file(folder / expected.name, text)) continue;
+    const std::string what = disagreement(expected, digest_of(expected.name, text, true));
+    if (what.empty()) continue;
+    found += fmt::format("{}{} {} as study.json says", found.empty() ? "" : "; ", expected.name, what);
+  }
+  return found;
+}
+
 StudyTable read_table(const std::filesystem::path& folder, const json& root) {
   const std::string kind = root.at("kind").get<std::string>();
   if (kind == "work-precision") return read_work_precision(folder, root);
@@ -318,19 +344,25 @@ StudyTable read_table(const std::filesystem::path& folder, const json& root) {
 
 StudyReading read_study(const std::filesystem::path& folder) {
   std::string text;
-  if (const auto error = read_text_file(folder / "study.json", text)) return {std::nullopt, error->text()};
+  if (const auto error = read_text_file(folder / "study.json", text))
+    return {std::nullopt, error->text(), true};
+  const std::string place = (folder / "").string();
+  std::string disagreements;
   try {
     const json root = json::parse(text);
     if (root.at("format") != study_format)
       throw BadFolder{fmt::format("study.json: format: must be \"{}\"", study_format)};
-    return {Study{read_table(folder, root), root.at("command").get<std::string>(),
-                  root.at("wall_s").get<double>()},
-            {}};
+    disagreements = find_disagreements(folder, root);
+    Study study{read_table(folder, root), root.at("command").get<std::string>(),
+                root.at("wall_s").get<double>()};
+    if (disagreements.empty()) return {std::move(study), {}};
   } catch (const BadFolder& bad) {
-    return {std::nullopt, (folder / "").string() + bad.problem};
+    if (!disagreements.empty()) disagreements += "; ";
+    return {std::nullopt, place + disagreements + bad.problem, bad.is_lost || !disagreements.empty()};
   } catch (const json::exception& error) {
-    return {std::nullopt, (folder / "study.json").string() + ": " + error.what()};
+    if (disagreements.empty()) return {std::nullopt, place + "study.json: " + error.what()};
   }
+  return {std::nullopt, place + disagreements, true};
 }
 
 }  // namespace cloth

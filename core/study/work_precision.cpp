@@ -117,6 +117,8 @@ void tell(WorkPrecision& study, const WorkPrecisionOptions& options) {
   options.partial(study);
 }
 
+ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecisionOptions& options);
+
 /// Measures rung by rung, all methods before the next rung, so that what the budget cannot hold are the
 /// finest runs.
 class Measuring {
@@ -149,15 +151,29 @@ class Measuring {
       active_[m] = false;
       return true;
     }
-    const std::string text = fmt::format("measuring {}", method.ladder.facts.name);
-    const auto run = UntimedPass(study_, method.ladder, options_.stop).run(rung, [&] {
-      return !options_.progress || options_.progress({0.1 + 0.15 * study_.estimated / study_.budget, text});
-    });
+    const auto run = measured(m, rung);
     if (!run) return false;
     study_.estimated += whole_cost(*run, study_.repeats);
     method.runs.push_back(*run);
     tell(study_, options_);
     return true;
+  }
+
+  /// The run, unless it was made before; nullopt if it was stopped.
+  std::optional<WorkPrecisionRun> measured(std::size_t m, int rung) {
+    const MethodStudy& method = study_.methods[m];
+    if (options_.earlier)
+      for (const WorkPrecisionRun& run : options_.earlier->methods[m].runs)
+        if (run.rung == rung && run.status != RunStatus::refused) return run;
+    if (study_.reference.states.empty()) {  // a study that goes on knows all of it but the states
+      ReferenceSolution again = make_reference(study_, options_);
+      if (!again.failure.empty()) return std::nullopt;
+      study_.reference = std::move(again);
+    }
+    const std::string text = fmt::format("measuring {}", method.ladder.facts.name);
+    return UntimedPass(study_, method.ladder, options_.stop).run(rung, [&] {
+      return !options_.progress || options_.progress({0.1 + 0.15 * study_.estimated / study_.budget, text});
+    });
   }
 
   /// Enough runs, or errors that no longer say anything.
@@ -216,6 +232,11 @@ bool time_all(WorkPrecision& study, const WorkPrecisionOptions& options) {
     shuffle(turn, static_cast<std::uint64_t>(repeat));
     for (std::size_t k = 0; k < turn.size(); ++k) {
       auto& [method, run] = turn[k];
+      if (std::any_of(run->samples.begin(), run->samples.end(),
+                      [&](const TimedSample& sample) { return sample.repeat == repeat; })) {
+        spent += run->estimated;
+        continue;  // timed before the study was stopped
+      }
       const std::string text =
           fmt::format("timing {}, repeat {} of {}", method->ladder.facts.name, repeat, most);
       if (options.progress && !options.progress({0.25 + 0.75 * spent / std::max(total, 1e-9), text}))
@@ -324,12 +345,13 @@ Scene scene_of(const WorkPrecision& study, const MethodStudy& method, const Work
   return scene_at(study.scene, method.ladder, run.rung, study.horizon);
 }
 
-WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
+WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study;
   study.scene = studied_scene(scene);
   study.particles = scene.cloth.rows * scene.cloth.columns;
   study.diagonal = diagonal_of(scene.cloth);
   study.repeats = options.repeats;
+  study.steps_per_method = options.steps_per_method;
   study.budget = options.budget;
   const auto& methods = options.methods.empty() ? integrator_names() : options.methods;
   Ladders ladders = make_ladders(scene, methods, options.horizon.value_or(default_horizon(scene)));
@@ -337,8 +359,15 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
   study.samples = ladders.samples;
   for (StepLadder& ladder : ladders.methods)
     study.methods.push_back({.ladder = std::move(ladder), .runs = {}, .order = {}, .velocity_order = {}});
+  return study;
+}
 
-  study.reference = make_reference(study, options);
+WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
+  WorkPrecision study = plan_work_precision(scene, options);
+  if (options.earlier && options.earlier->reference.is_known())
+    study.reference = options.earlier->reference;
+  else
+    study.reference = make_reference(study, options);
   if (!study.reference.failure.empty()) {
     study.stopped = study.reference.failure == "stopped";
     return study;

@@ -27,6 +27,9 @@ struct WorkPrecisionOptions {
   /// The study so far, after every finished run and every timed repeat of one; the last is what is returned.
   std::function<void(const WorkPrecision&)> partial{};
   std::stop_token stop{};  ///< looked at before every step, the timed ones too; stops like `progress`
+  /// The same study, stopped before its end: its runs and timings are not made again. The reference is, where
+  /// a run is left to measure.
+  const WorkPrecision* earlier = nullptr;
 };
 
 enum class RunStatus { stable, energy_growth, diverged, solver_failed, refused };
@@ -71,7 +74,7 @@ struct WorkPrecision {
   double diagonal = 0;  ///< m
   double horizon = 0;   ///< s
   int samples = 0;
-  int repeats = 0;
+  int repeats = 0, steps_per_method = 0;
   double budget = 0, estimated = 0;  ///< s
   ReferenceSolution reference;
   std::vector<MethodStudy> methods;
@@ -93,6 +96,9 @@ Scene studied_scene(const Scene& scene);
 
 /// Quartiles are interpolated.
 TimeSpread spread_of(const std::vector<TimedSample>& samples);
+
+/// What will be studied: ladders without runs, and no reference yet.
+WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions& options);
 
 /// Preconditions: find_problems(scene) is empty; the methods are known. Where there is no reference
 /// (`reference.failure`) there are no runs.

@@ -21,44 +21,6 @@ json finite(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-std::vector<std::string> run_row(const WorkPrecision& study, const MethodStudy& method,
-                                 const WorkPrecisionRun& run) {
-  const bool timed = !run.samples.empty();
-  const bool ran = run.status != RunStatus::refused;
-  const auto count = [&](std::int64_t n) { return ran ? std::to_string(n) : ""; };
-  const auto time = [&](double seconds) { return number_or_empty(seconds, timed); };
-  const OrderEstimate& order = method.order;
-  return {method.ladder.facts.name,
-          number_or_empty(run.time_step),
-          ran || run.steps > 0 ? std::to_string(run.steps) : "",
-          count(run.count.force_evaluations),
-          time(run.time.least),
-          number_or_empty(run.error.rms_position),
-          number_or_empty(run.error.rms_position / study.diagonal),
-          name_of(run.status),
-          order.asymptotic ? csv_number(order.order.value) : "pre-asymptotic",
-          number_or_empty(order.order.standard_error, order.asymptotic),
-          number_or_empty(order.overall.value, order.overall.points > 1),
-          number_or_empty(run.error.largest_position),
-          number_or_empty(run.error.rms_velocity),
-          number_or_empty(run.energy_error),
-          count(run.count.factorisations),
-          count(run.count.iterations),
-          count(run.count.linear_iterations),
-          count(run.count.velocity_iterations),
-          count(run.count.limiter_sweeps),
-          count(run.limiter_iterations),
-          count(run.count.rejected_steps),
-          time(run.time.median),
-          time(run.time.lower_quartile),
-          time(run.time.upper_quartile),
-          std::to_string(run.samples.size()),
-          number_or_empty(run.tolerance, run.tolerance > 0),
-          number_or_empty(method.ladder.limit.value_or(NAN)),
-          run.detail,
-          std::to_string(run.rung)};
-}
-
 json run_json(const WorkPrecisionRun& run) {
   json object{{"time_step_s", finite(run.time_step)},
               {"steps", run.steps},
@@ -116,6 +78,45 @@ json machine_json() {
 
 }  // namespace
 
+std::vector<std::string> run_row(const WorkPrecision& study, const MethodStudy& method,
+                                 const WorkPrecisionRun& run) {
+  const bool timed = !run.samples.empty();
+  const bool ran = run.status != RunStatus::refused;
+  const auto count = [&](std::int64_t n) { return ran ? std::to_string(n) : ""; };
+  const auto time = [&](double seconds) { return number_or_empty(seconds, timed); };
+  const OrderEstimate& order = method.order;
+  return {method.ladder.facts.name,
+          number_or_empty(run.time_step),
+          ran || run.steps > 0 ? std::to_string(run.steps) : "",
+          count(run.count.force_evaluations),
+          time(run.time.least),
+          number_or_empty(run.error.rms_position),
+          number_or_empty(run.error.rms_position / study.diagonal),
+          name_of(run.status),
+          order.asymptotic ? csv_number(order.order.value) : "pre-asymptotic",
+          number_or_empty(order.order.standard_error, order.asymptotic),
+          number_or_empty(order.overall.value, order.overall.points > 1),
+          number_or_empty(run.error.largest_position),
+          number_or_empty(run.error.rms_velocity),
+          number_or_empty(run.energy_error),
+          count(run.count.factorisations),
+          count(run.count.iterations),
+          count(run.count.linear_iterations),
+          count(run.count.velocity_iterations),
+          count(run.count.limiter_sweeps),
+          count(run.limiter_iterations),
+          count(run.count.rejected_steps),
+          time(run.time.median),
+          time(run.time.lower_quartile),
+          time(run.time.upper_quartile),
+          std::to_string(run.samples.size()),
+          number_or_empty(run.tolerance, run.tolerance > 0),
+          number_or_empty(method.ladder.limit.value_or(NAN)),
+          run.detail,
+          std::to_string(run.rung),
+          number_or_empty(run.estimated, ran)};
+}
+
 CsvTable run_table(const WorkPrecision& study) {
   CsvTable table{{"method",
                   "time_step",
@@ -145,22 +146,31 @@ CsvTable run_table(const WorkPrecision& study) {
                   "tolerance",
                   "stable_step_s",
                   "detail",
-                  "rung"},
+                  "rung",
+                  "estimated_s"},
                  {}};
   for (const MethodStudy& method : study.methods)
     for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(run_row(study, method, run));
   return table;
 }
 
+std::vector<std::string> sample_columns() {
+  return {"method", "time_step", "steps", "tolerance", "repeat", "turn", "wall_s"};
+}
+
+std::vector<std::string> sample_row(const MethodStudy& method, const WorkPrecisionRun& run,
+                                    const TimedSample& sample) {
+  return {method.ladder.facts.name,      csv_number(run.time_step),
+          std::to_string(run.steps),     number_or_empty(run.tolerance, run.tolerance > 0),
+          std::to_string(sample.repeat), std::to_string(sample.turn),
+          csv_number(sample.seconds)};
+}
+
 CsvTable sample_table(const WorkPrecision& study) {
-  CsvTable table{{"method", "time_step", "steps", "tolerance", "repeat", "turn", "wall_s"}, {}};
+  CsvTable table{sample_columns(), {}};
   for (const MethodStudy& method : study.methods)
     for (const WorkPrecisionRun& run : method.runs)
-      for (const TimedSample& sample : run.samples)
-        table.rows.push_back({method.ladder.facts.name, csv_number(run.time_step), std::to_string(run.steps),
-                              number_or_empty(run.tolerance, run.tolerance > 0),
-                              std::to_string(sample.repeat), std::to_string(sample.turn),
-                              csv_number(sample.seconds)});
+      for (const TimedSample& sample : run.samples) table.rows.push_back(sample_row(method, run, sample));
   return table;
 }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "bridge/worker_pace.h"
+#include "scene/scene_mesh.h"
 #include "simulation/session_json.h"
 
 namespace clothlab {
 std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& folder,
                                                    const cloth::Simulation& simulation) {
-  folder_ = folder;
   rows_ = 0;
   wall_ = max_strain_ = limiter_excess_ = 0;
   energy_ = {};
@@ -19,14 +19,18 @@ std::optional<cloth::IoError> LiveRecording::begin(const std::filesystem::path& 
 
   cloth::Scene scene = simulation.scene();
   scene.integrator.time_step = simulation.time_step();
-  if (auto error = cloth::make_folder(folder)) return error;
+  cloth::FolderUse use{
+      .kind = "run", .files = {"scene.json", "record.csv", "final_state.csv", "edits.jsonl", "summary.json"}};
+  for (const std::string& mesh : cloth::mesh_files(scene)) use.inputs.emplace_back(mesh);
+  if (auto error = folder_.claim(folder, use)) return error;
   const cloth::Scene moved = moved_to_folder(scene, folder.string());
-  if (auto error = cloth::write_text_file(folder / "scene.json", cloth::write_scene(moved))) return error;
+  if (auto error = folder_.write("scene.json", cloth::write_scene(moved))) return error;
   if (first_step_ > 0)
-    if (auto error = cloth::write_text_file(folder / "start_state.csv", cloth::state_csv(simulation.state())))
+    if (auto error = folder_.write("start_state.csv", cloth::state_csv(simulation.state()), true))
       return error;
-  if (auto error = edits_.open(folder / "edits.jsonl")) return error;
-  if (auto error = record_.open(folder, simulation.quantities())) return error;
+  if (auto error = folder_.add("edits.jsonl")) return error;
+  if (auto error = edits_.open(folder_ / "edits.jsonl")) return error;
+  if (auto error = record_.open(folder_, simulation.quantities())) return error;
   active_ = true;
   return add_row(simulation, simulation.measure(), 0, 0);
 }
@@ -81,10 +85,18 @@ std::optional<cloth::IoError> LiveRecording::end(const cloth::Simulation& simula
   std::optional<cloth::IoError> first = record_.close();
   const auto keep = [&](std::optional<cloth::IoError> error) {
     if (error && !first) first = std::move(error);
+    return !first;
   };
-  keep(edits_.close());
-  keep(cloth::write_text_file(folder_ / "final_state.csv", cloth::state_csv(last_good)));
-  keep(cloth::write_text_file(folder_ / "summary.json", cloth::summary_json(summary)));
+  if (keep(edits_.close())) {
+    cloth::FileDigest edits = edits_.digest();
+    edits.rows.reset();
+    folder_.note(edits);
+  }
+  if (!first && keep(folder_.write("final_state.csv", cloth::state_csv(last_good), true))) {
+    summary.files = folder_.digests();
+    keep(folder_.finish("summary.json", cloth::summary_json(summary)));
+  }
+  folder_.release();
   return first;
 }
 

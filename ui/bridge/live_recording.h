@@ -26,7 +26,7 @@ class LiveRecording {
                                       const cloth::Simulation& simulation);
 
   bool is_active() const { return active_; }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
   std::int64_t rows() const { return rows_; }
 
   /// A row that is due; `steps` since the row before took `wall` s. Where the scene's stages have changed
@@ -41,12 +41,13 @@ class LiveRecording {
   /// Puts everything on disk if the last time was more than half a second ago, or `now`.
   std::optional<cloth::IoError> keep_current(bool now);
 
-  /// Ends with final_state.csv (of `last_good`) and summary.json.
+  /// Ends with final_state.csv (of `last_good`) and summary.json; without them where something could not be
+  /// written.
   std::optional<cloth::IoError> end(const cloth::Simulation& simulation, const cloth::ClothState& last_good,
                                     const std::optional<cloth::Divergence>& divergence);
 
  private:
-  std::filesystem::path folder_;
+  cloth::ResultFolder folder_;
   cloth::RecordFile record_;
   cloth::LineFile edits_;
   bool active_ = false;

@@ -12,9 +12,8 @@ namespace clothlab {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr milliseconds between_offers{100}, between_writings{2000};
-constexpr int writing_share = 20;  // a large table is written less often: at most this part of the time
-constexpr int low_priority = 10;   // of nice(2): the simulation and the window go first
+constexpr milliseconds between_offers{100};
+constexpr int low_priority = 10;  // of nice(2): the simulation and the window go first
 
 /// Without the states of the reference, which no diagram and no file needs.
 cloth::WorkPrecision copy_of(const cloth::WorkPrecision& study) {
@@ -109,41 +108,57 @@ bool StudyRunner::note(const cloth::StudyProgress& progress) {
   return !status_.stopping;
 }
 
+/// What is finished is on disk at once; the window sees it some ten times a second.
 template <class Table>
-void StudyRunner::offer(const Table& table, const StudyOrder& order, bool last) {
+void StudyRunner::offer(const Table& table, bool last) {
   const auto now = Clock::now();
-  const bool writes =
-      last || now - written_ >= std::max<Clock::duration>(between_writings, writing_share * writing_);
-  if (!writes && now - offered_ < between_offers) return;
+  if (recorder_.is_open()) keep(table, last);
+  if (!last && now - offered_ < between_offers) return;
   offered_ = now;
   Table copy = copy_of(table);
   if (!last) mark(copy);
   const auto shared = std::make_shared<const cloth::StudyTable>(std::move(copy));
+  const std::lock_guard lock(mutex_);
+  newest_ = shared;
+}
+
+/// A study goes on without its folder: its table is on the screen, and its end is written if that can be done
+/// by then.
+template <class Table>
+void StudyRunner::keep(const Table& table, bool last) {
   double elapsed = 0;
   {
     const std::lock_guard lock(mutex_);
-    newest_ = shared;
-    elapsed = seconds(now - start_);
+    if (!last && !status_.problem.empty()) return;
+    elapsed = seconds(Clock::now() - start_);
   }
-  if (!writes) return;
-  const auto error = cloth::write_study(order.folder, std::get<Table>(*shared), order.command, elapsed);
-  written_ = Clock::now();
-  writing_ = written_ - now;
+  const auto error = last ? recorder_.end(table, elapsed) : recorder_.keep(table);
   const std::lock_guard lock(mutex_);
   status_.problem = error ? error->text() : "";
 }
 
+/// The unfinished study of the same kind and inputs that the folder holds, or null.
+template <class Table>
+const Table* StudyRunner::begin(const Table& plan, const StudyOrder& order) {
+  if (const auto error = recorder_.begin(order.folder, plan, {.command = order.command})) {
+    const std::lock_guard lock(mutex_);
+    status_.problem = error->text();
+  }
+  return recorder_.earlier() ? &std::get<Table>(*recorder_.earlier()) : nullptr;
+}
+
 void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), low_priority);
-  offered_ = written_ = Clock::now();
-  const auto partial = [&](const auto& table) { offer(table, order, false); };
+  offered_ = Clock::now();
+  const auto partial = [&](const auto& table) { offer(table, false); };
   const auto progress = [this](const cloth::StudyProgress& now) { return note(now); };
   if (const auto* chosen = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
     cloth::WorkPrecisionOptions options = *chosen;
     options.progress = progress;
     options.partial = partial;
     options.stop = stop;
-    offer(cloth::study_work_precision(order.scene, options), order, true);
+    options.earlier = begin(cloth::plan_work_precision(order.scene, options), order);
+    offer(cloth::study_work_precision(order.scene, options), true);
   } else if (const auto* map = std::get_if<cloth::StabilityOptions>(&order.options)) {
     cloth::StabilityOptions options = *map;
     std::string text = "laying out the map";
@@ -158,13 +173,15 @@ void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
     };
     options.stop = stop;
     note({0, text});
-    offer(cloth::run_stability_map(order.scene, options), order, true);
+    options.earlier = begin(cloth::plan_stability_map(order.scene, options), order);
+    offer(cloth::run_stability_map(order.scene, options), true);
   } else {
     cloth::ExtremesOptions options = std::get<cloth::ExtremesOptions>(order.options);
     options.progress = progress;
     options.partial = partial;
     options.stop = stop;
-    offer(cloth::run_extremes(options), order, true);
+    options.earlier = begin(cloth::empty_table(options), order);
+    offer(cloth::run_extremes(options), true);
   }
   const std::lock_guard lock(mutex_);
   status_.running = false;

@@ -12,7 +12,7 @@
 #include <thread>
 #include <variant>
 
-#include "study/study_folder.h"
+#include "study/study_recorder.h"
 
 namespace clothlab {
 
@@ -22,7 +22,7 @@ using StudyOptions =
 struct StudyOrder {
   cloth::Scene scene;  ///< extremes: not used, see ExtremesOptions::scene
   StudyOptions options;
-  std::filesystem::path folder;  ///< the results so far lie there every few seconds, and whole at the end
+  std::filesystem::path folder;  ///< finished runs are on disk there at once; an unfinished study goes on
   std::string command;           ///< what made it
 };
 
@@ -60,15 +60,19 @@ class StudyRunner {
   void run(const StudyOrder& order, const std::stop_token& stop);
   bool note(const cloth::StudyProgress& progress);
   template <class Table>
-  void offer(const Table& table, const StudyOrder& order, bool last);
+  const Table* begin(const Table& plan, const StudyOrder& order);
+  template <class Table>
+  void offer(const Table& table, bool last);
+  template <class Table>
+  void keep(const Table& table, bool last);
 
   mutable std::mutex mutex_;  // of the members down to the blank line
   StudyStatus status_;
   Clock::time_point start_;
   std::shared_ptr<const cloth::StudyTable> newest_;
 
-  Clock::time_point offered_, written_;  // of the worker alone
-  Clock::duration writing_{};
+  Clock::time_point offered_;  // of the worker alone
+  cloth::StudyRecorder recorder_;
   std::jthread thread_;
 };
 

@@ -1,0 +1,239 @@
+#include "study/study_recorder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/run_folder.h"
+#include "scene/scene_mesh.h"
+#include "study/extremes_report.h"
+#include "study/stability_report.h"
+#include "study/study_runs.h"
+#include "study/work_precision_report.h"
+#include "study/work_precision_tables.h"
+
+namespace cloth {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What is not the same in two studies, in words: then one is not the other's beginning.
+std::vector<std::string> differences(const Json& before, const Json& now) {
+  std::vector<std::string> found;
+  const auto value = [](const Json& root, const char* block, const std::string& key) {
+    const auto at = root.find(block);
+    return at != root.end() && at->is_object() ? at->value(key, Json()) : Json();
+  };
+  if (before.value("scene_hash", Json()) != now.value("scene_hash", Json())) found.emplace_back("the scene");
+  for (const auto& [key, wanted] : now.at("options").items())
+    if (value(before, "options", key) != wanted) found.push_back(key);
+  for (const char* key : {"version", "instruction_set", "processor"}) {
+    if (key == std::string("processor") && now.at("kind") != "work-precision") continue;  // no times to mix
+    if (value(before, "made_by", key) != value(now, "made_by", key)) found.emplace_back(key);
+  }
+  return found;
+}
+
+std::string text_of(const std::vector<std::string>& columns,
+                    const std::vector<std::vector<std::string>>& rows) {
+  std::string text;
+  const auto add = [&text](const std::vector<std::string>& row) {
+    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + csv_field(row[k]);
+    text += '\n';
+  };
+  add(columns);
+  for (const auto& row : rows) add(row);
+  return text;
+}
+
+/// Begins a table with the rows that are there, to go on after them.
+std::optional<IoError> begin_table(ResultFolder& folder, const char* name, const CsvTable& kept,
+                                   CsvFile& file) {
+  if (auto error = folder.add(name)) return error;
+  if (auto error = write_text_file(folder / name, text_of(kept.header, kept.rows))) return error;
+  return file.open_at_end(folder / name);
+}
+
+std::string svg_of(const StudyTable& table) {
+  if (const auto* study = std::get_if<WorkPrecision>(&table))
+    return to_svg(error_plot(*study, PlotAgainst::run_time));
+  if (const auto* map = std::get_if<StabilityMap>(&table)) return to_svg(stability_heat_map(*map));
+  return to_svg(extremes_map(std::get<ExtremesTable>(table)));
+}
+
+std::string page_of(const StudyTable& table, const std::string& svg, const std::string& command,
+                    double wall) {
+  if (const auto* study = std::get_if<WorkPrecision>(&table)) return work_precision_page(*study, command);
+  if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_page(*map, svg, command, wall);
+  return extremes_html(std::get<ExtremesTable>(table), command);
+}
+
+bool is_finished(const StabilityCell& cell) {
+  return cell.status != CellStatus::not_run;
+}
+
+/// What is decided anew by what is left of the budget.
+void forget_refused(StudyTable& table) {
+  if (auto* study = std::get_if<WorkPrecision>(&table))
+    for (MethodStudy& method : study->methods)
+      std::erase_if(method.runs,
+                    [](const WorkPrecisionRun& run) { return run.status == RunStatus::refused; });
+}
+
+}  // namespace
+
+std::optional<IoError> StudyRecorder::begin(const std::filesystem::path& folder, const StudyTable& plan,
+                                            const StudyStart& start) {
+  command_ = start.command;
+  earlier_.reset();
+  FolderUse use{.kind = kind_of(plan), .files = study_files(plan), .inputs = start.inputs};
+  if (const Scene* scene = scene_of(plan))
+    for (const std::string& mesh : mesh_files(*scene)) use.inputs.emplace_back(mesh);
+  if (auto error = folder_.lock(folder, use)) return error;
+  if (auto error = look_at_earlier(plan, start)) {
+    folder_.release();
+    return error;
+  }
+  if (auto error = earlier_ ? folder_.go_on() : folder_.begin_anew()) return error;
+  // Before the tables change, so that no study.json ever has the digests of other tables.
+  if (auto error = write_index(earlier_ ? earlier_->table : plan)) return error;
+  return begin_tables(earlier_ ? earlier_->table : plan);
+}
+
+std::optional<IoError> StudyRecorder::look_at_earlier(const StudyTable& plan, const StudyStart& start) {
+  std::string text;
+  std::error_code ignored;
+  if (start.overwrite || !std::filesystem::exists(folder_ / "study.json", ignored)) return std::nullopt;
+  if (auto error = read_text_file(folder_ / "study.json", text)) return error;
+  const Json before = Json::parse(text, nullptr, false);
+  if (!before.is_object() || before.value("complete", Json()) != Json(false)) return std::nullopt;
+  const auto refused = [&](const std::string& why) {
+    return IoError{folder_.path(),
+                   "holds an unfinished study " + why + ": give another folder, or --overwrite to begin anew",
+                   true};
+  };
+  StudyReading reading = read_study(folder_.path());
+  if (!reading.study) return refused("that cannot be read (" + reading.problem + ")");
+  if (finished_runs(reading.study->table) == 0) return std::nullopt;
+  const Json now = Json::parse(study_index(folder_.path(), plan, command_, 0, {}));
+  if (const auto found = differences(before, now); !found.empty())
+    return refused(fmt::format("of other inputs (not the same: {})", fmt::join(found, ", ")));
+  earlier_ = std::move(reading.study);
+  forget_refused(earlier_->table);
+  return std::nullopt;
+}
+
+std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
+  rows_kept_.clear();
+  samples_kept_.clear();
+  limits_kept_ = 0;
+  reference_kept_ = false;
+  if (const auto* study = std::get_if<WorkPrecision>(&table)) {
+    for (const MethodStudy& method : study->methods) {
+      rows_kept_.push_back(method.runs.size());
+      samples_kept_.emplace_back();
+      for (const WorkPrecisionRun& run : method.runs) samples_kept_.back().push_back(run.samples.size());
+    }
+    reference_kept_ = study->reference.is_known();
+    if (auto error = begin_table(folder_, csv_name(table), run_table(*study), rows_)) return error;
+    return begin_table(folder_, samples_name, sample_table(*study), samples_);
+  }
+  CsvTable kept;
+  if (const auto* map = std::get_if<StabilityMap>(&table)) {
+    kept.header = stability_columns();
+    rows_kept_.assign(map->options.methods.size(), 0);
+    for (std::size_t m = 0; m < map->methods.size(); ++m) {
+      for (const StabilityCell& cell : map->methods[m].cells) {
+        if (!is_finished(cell)) break;
+        kept.rows.push_back(stability_row(map->methods[m].method, cell));
+        ++rows_kept_[m];
+      }
+      limits_kept_ += map->methods[m].measured.size();
+    }
+  } else {
+    const auto& extremes = std::get<ExtremesTable>(table);
+    kept.header = extremes_columns();
+    for (const ExtremeCell& cell : extremes.cells) kept.rows.push_back(extremes_row(cell));
+    rows_kept_ = {extremes.cells.size()};
+  }
+  return begin_table(folder_, csv_name(table), kept, rows_);
+}
+
+std::optional<IoError> StudyRecorder::write_index(const StudyTable& so_far) {
+  if (auto error = folder_.add("study.json")) return error;
+  const double wall = earlier_ ? earlier_->wall : 0;
+  return write_text_file(folder_ / "study.json", study_index(folder_.path(), so_far, command_, wall, {}));
+}
+
+std::optional<IoError> StudyRecorder::keep(const StudyTable& so_far) {
+  return std::visit([this](const auto& table) { return keep(table); }, so_far);
+}
+
+std::optional<IoError> StudyRecorder::keep(const WorkPrecision& so_far) {
+  if (!reference_kept_ && so_far.reference.is_known()) {
+    if (auto error = write_index(so_far)) return error;
+    reference_kept_ = true;
+  }
+  for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
+    const MethodStudy& method = so_far.methods[m];
+    for (std::size_t& k = rows_kept_[m]; k < method.runs.size(); ++k) {
+      if (auto error = rows_.add(run_row(so_far, method, method.runs[k]))) return error;
+      samples_kept_[m].push_back(0);
+    }
+    for (std::size_t r = 0; r < method.runs.size(); ++r)
+      for (std::size_t& k = samples_kept_[m][r]; k < method.runs[r].samples.size(); ++k)
+        if (auto error = samples_.add(sample_row(method, method.runs[r], method.runs[r].samples[k])))
+          return error;
+  }
+  if (auto error = rows_.flush()) return error;  // first: a sample names its run
+  return samples_.flush();
+}
+
+std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
+  std::size_t limits = 0;
+  for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
+    const MethodMap& method = so_far.methods[m];
+    for (std::size_t& k = rows_kept_[m]; k < method.cells.size() && is_finished(method.cells[k]); ++k)
+      if (auto error = rows_.add(stability_row(method.method, method.cells[k]))) return error;
+    limits += method.measured.size();
+  }
+  if (auto error = rows_.flush()) return error;
+  if (limits <= limits_kept_) return std::nullopt;
+  limits_kept_ = limits;
+  return write_index(so_far);
+}
+
+std::optional<IoError> StudyRecorder::keep(const ExtremesTable& so_far) {
+  for (std::size_t& k = rows_kept_.front(); k < so_far.cells.size(); ++k)
+    if (auto error = rows_.add(extremes_row(so_far.cells[k]))) return error;
+  return rows_.flush();
+}
+
+std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) {
+  if (earlier_) wall += earlier_->wall;
+  if (auto error = rows_.close()) return error;
+  if (auto error = samples_.close()) return error;
+  if (auto error = folder_.write(csv_name(table), study_csv(table), true)) return error;
+  if (const auto* study = std::get_if<WorkPrecision>(&table)) {
+    const std::string samples = text_of(sample_columns(), sample_table(*study).rows);
+    if (auto error = folder_.write(samples_name, samples, true)) return error;
+  }
+  const std::string svg = svg_of(table);
+  const std::string svg_name = std::filesystem::path(csv_name(table)).replace_extension("svg").string();
+  if (auto error = folder_.write(svg_name, svg)) return error;
+  if (auto error = folder_.write("report.html", page_of(table, svg, command_, wall))) return error;
+  return folder_.finish("study.json", study_index(folder_.path(), table, command_, wall, folder_.digests()));
+}
+
+std::optional<IoError> StudyRecorder::write(const std::filesystem::path& folder, const StudyTable& table,
+                                            const std::string& command, double wall) {
+  StudyRecorder recorder;
+  recorder.command_ = command;
+  if (auto error = recorder.folder_.claim(folder, {.kind = kind_of(table), .files = study_files(table)}))
+    return error;
+  return recorder.end(table, wall);
+}
+
+}  // namespace cloth

@@ -10,6 +10,7 @@
 #include "integrators/implicit_methods.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_checks.h"
 #include "simulation/stages.h"
 #include "simulation/time_step.h"
 

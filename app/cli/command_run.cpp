@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <thread>
 
 #include "cloth/mesh_cloth.h"
@@ -9,8 +8,11 @@
 #include "console.h"
 #include "io/cloth_obj.h"
 #include "io/run_folder.h"
+#include "io/user_file.h"
 #include "progress.h"
 #include "scene/scene_mesh.h"
+#include "scene/scene_checks.h"
+#include "simulation/memory_estimate.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -34,11 +36,15 @@ int threads_for(const RunArguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Before a run that may be long.
-std::optional<cloth::IoError> missing_folder_of(const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.parent_path();
-  if (folder.empty() || std::filesystem::is_directory(folder)) return std::nullopt;
-  return cloth::IoError{file, "there is no folder " + folder.string()};
+/// What would keep a run from its end, said before it begins: more steps or memory than there can be.
+int refusal(const cloth::Scene& scene, double time_step) {
+  if (const auto rule = cloth::too_many_steps(scene.duration, time_step))
+    return report({{"duration", fmt::format("{} s", scene.duration), *rule, "", 0, 0}});
+  if (const auto problem = cloth::memory_problem(scene)) {
+    say(*problem);
+    return io_failed;
+  }
+  return done;
 }
 
 /// Where the OBJ file would replace what is read, or be replaced by the run's own files.
@@ -60,13 +66,14 @@ std::optional<cloth::IoError> misplaced_obj(const RunArguments& arguments, const
 std::optional<cloth::IoError> write_cloth(const cloth::Scene& scene, const cloth::ClothState& state,
                                           const std::string& path) {
   const cloth::ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
-  return cloth::write_text_file(path, cloth_obj(system, state, cloth::title_at(scene.title, state.time)));
+  return cloth::write_user_file(path, cloth_obj(system, state, cloth::title_at(scene.title, state.time)));
 }
 
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  if (const auto error = missing_folder_of(arguments.obj)) return report(*error);
+  if (!arguments.obj.empty())
+    if (const auto error = cloth::problem_of_user_file(arguments.obj)) return report(*error);
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   const cloth::Scene& scene = *loaded.scene;
@@ -76,6 +83,7 @@ int run(const RunArguments& arguments) {
     say(cloth::no_stable_step_text(scene));
     return bad_input;
   }
+  if (const int refused = refusal(scene, *time_step); refused != done) return refused;
   if (!scene.integrator.time_step) say(fmt::format("time step: auto, {:.6g} s", *time_step));
 
   listen_for_stop();

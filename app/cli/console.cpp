@@ -1,23 +1,41 @@
 #include "console.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "io/printable.h"
+#include "io/process.h"
 #include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab::cli {
 
+void write_error(const std::string& text) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t part = ::write(STDERR_FILENO, text.data() + done, text.size() - done);
+    if (part < 0 && errno != EINTR) return;  // there is nobody left to tell
+    if (part > 0) done += static_cast<std::size_t>(part);
+  }
+}
+
 void say(const std::string& message) {
-  fmt::print(stderr, "clothlab-cli: {}\n", message);
+  write_error("clothlab-cli: " + cloth::printable(message) + "\n");
 }
 
 int report(const std::vector<cloth::Problem>& problems) {
-  for (const cloth::Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
+  constexpr std::size_t most = 100;  // a file of a million errors is not read to its end
+  std::string text;
+  for (std::size_t k = 0; k < std::min(problems.size(), most); ++k)
+    text += cloth::printable(problems[k].text()) + "\n";
+  if (problems.size() > most) text += fmt::format("and {} more\n", problems.size() - most);
+  write_error(text);
   return bad_input;
 }
 
@@ -26,11 +44,19 @@ int report(const cloth::IoError& error) {
   return error.refused ? bad_input : io_failed;
 }
 
-int print(const std::string& text) {
+namespace {
+
+int print_bytes(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
     return done;
   say(fmt::format("standard output: {}", std::strerror(errno)));
   return io_failed;
+}
+
+}  // namespace
+
+int print(const std::string& text) {
+  return print_bytes(cloth::printable_lines(text));
 }
 
 std::string summary_text(const cloth::RunSummary& s, const std::string& folder) {
@@ -55,6 +81,16 @@ std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std
     overrides.push_back(*parsed);
   }
   return overrides;
+}
+
+int guarded(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (...) {
+    const cloth::Failure failure = cloth::failure_in_hand();
+    say(failure.text);
+    return failure.is_defect ? defect : io_failed;
+  }
 }
 
 LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings) {

@@ -1,6 +1,7 @@
 // What every command shares: exit codes, where a scene comes from, how a message looks.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@
 
 namespace clothlab::cli {
 
-enum ExitCode { done = 0, bad_input = 2, diverged = 3, io_failed = 4, differs = 5, interrupted = 130 };
+/// `defect`: an error of the program itself, which no input should bring about.
+enum ExitCode { done = 0, defect = 1, bad_input = 2, diverged = 3, io_failed = 4, differs = 5, interrupted = 130 };
 
 /// A scene, or the exit code of a command whose messages are already on standard error.
 struct LoadedScene {
@@ -30,13 +32,21 @@ int report(const std::vector<cloth::Problem>& problems);
 /// What would destroy something is bad usage, all else a failure to read or write.
 int report(const cloth::IoError& error);
 
-/// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe.
+/// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe. Control
+/// characters within lines are escaped, in a way that leaves JSON its meaning.
 int print(const std::string& text);
 
 /// A run in a few lines; `folder` is where its files are, or empty.
 std::string summary_text(const cloth::RunSummary& summary, const std::string& folder);
 
-/// Writes to standard error with the program's name before it.
+/// Writes to standard error with the program's name before it, made printable. Never fails: where standard
+/// error is closed or full, the exit code is left to tell.
 void say(const std::string& message);
+
+/// To standard error as it is.
+void write_error(const std::string& text);
+
+/// The command's exit code, or that of the exception which it ended by, with a message.
+int guarded(const std::function<int()>& command);
 
 }  // namespace clothlab::cli

@@ -3,9 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "commands.h"
 #include "console.h"
+#include "io/printable.h"
+#include "io/process.h"
 #include "io/run_folder.h"
 #include "kernels/instruction_set.h"
 #include "study/reproduce.h"
@@ -28,9 +31,9 @@ const char* const json_help = "Give the result as one JSON object";
 const char* const footer =
     "CLOTHLAB_INSTRUCTION_SET=portable, sse2, avx2 or avx512 in the environment makes the kernels use that "
     "instruction set instead of the processor's best.\n"
-    "Exit codes: 0 done; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
+    "Exit codes: 0 done; 1 a defect of the program; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
     "on disk); "
-    "4 a file could not be read or written; 5 a replay did not end in its session's state; 130 interrupted.";
+    "4 a file could not be read or written, or there is not enough memory; 5 a replay did not end in its session's state; 130 interrupted.";
 
 struct Arguments {
   cli::RunArguments run;
@@ -255,9 +258,16 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
 }
 
-}  // namespace
+/// What the parser says, and its exit code: help and the version are asked for, all else is bad usage.
+int answer(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream output, errors;
+  const bool asked_for = app.exit(error, output, errors) == 0;
+  cli::write_error(cloth::printable_lines(errors.str()));
+  if (const int printed = cli::print(output.str()); printed != cli::done) return printed;
+  return asked_for ? cli::done : cli::bad_input;
+}
 
-int main(int argc, char** argv) {
+int run_command(int argc, char** argv) {
   CLI::App app{
       "Clothlab on the command line: runs and explains cloth simulation scenes, and studies their methods.",
       "clothlab-cli"};
@@ -269,7 +279,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::done : cli::bad_input;
+    return answer(app, error);
   }
   if (const std::string problem = cloth::instruction_set_problem(); !problem.empty()) {
     cli::say(problem);
@@ -289,4 +299,12 @@ int main(int argc, char** argv) {
   if (app.got_subcommand("bench")) return cli::bench(arguments.bench);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema(arguments.comparison_schema);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cloth::settle_standard_streams();
+  cloth::end_by_exit_code("clothlab-cli", cli::io_failed, cli::defect);
+  return cli::guarded([&] { return run_command(argc, argv); });
 }

@@ -7,7 +7,9 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
+
+#include "console.h"
+#include "io/printable.h"
 
 namespace clothlab::cli {
 namespace {
@@ -28,7 +30,7 @@ std::string remaining_text(double seconds) {
 Progress::Progress() : shown_(::isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) write_error("\r\033[K");
 }
 
 void Progress::show(double fraction, const std::string& text) {
@@ -39,13 +41,13 @@ void Progress::show(double fraction, const std::string& text) {
   constexpr int width = 30;
   const double part = std::clamp(fraction, 0.0, 1.0);
   const int filled = static_cast<int>(std::lround(part * width));
-  fmt::print(stderr, "\r\033[K[{:=<{}}{:<{}}] {:3.0f} %", "", filled, "", width - filled, 100 * part);
+  std::string line =
+      fmt::format("\r\033[K[{:=<{}}{:<{}}] {:3.0f} %", "", filled, "", width - filled, 100 * part);
   if (part > 0.02) {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    fmt::print(stderr, "  {}", remaining_text(elapsed * (1 - part) / part));
+    line += "  " + remaining_text(elapsed * (1 - part) / part);
   }
-  fmt::print(stderr, "  {}", text);
-  std::fflush(stderr);
+  write_error(line + "  " + cloth::printable(text));
 }
 
 void listen_for_stop() {
@@ -53,7 +55,6 @@ void listen_for_stop() {
   std::signal(SIGTERM, note_stop);
   // Under nohup a closed terminal is to be ignored, and stays so.
   if (std::signal(SIGHUP, note_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, not the end of the process
 }
 
 bool stop_is_requested() {

@@ -1,19 +1,50 @@
 // clothlab: the desktop tool.
 #include <QApplication>
 #include <QCommandLineParser>
+#include <QMessageBox>
 #include <QSurfaceFormat>
 #include <clocale>
 
 #include "compare/compare_window.h"
 #include "compare/comparison_files.h"
+#include "io/process.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
 
-int main(int argc, char** argv) {
-  QApplication application(argc, argv);
+namespace {
+
+/// What goes wrong in an event, for want of memory as a rule, is said, and the window stays: there may be work
+/// in it that is not saved.
+class Application : public QApplication {
+ public:
+  using QApplication::QApplication;
+
+  bool notify(QObject* receiver, QEvent* event) override {
+    try {
+      return QApplication::notify(receiver, event);
+    } catch (...) {
+      show(QString::fromStdString(cloth::failure_in_hand().text));
+      return false;
+    }
+  }
+
+ private:
+  void show(const QString& text) {
+    qCritical("clothlab: %s", qPrintable(text));
+    if (showing_) return;  // one message is enough
+    showing_ = true;
+    QMessageBox::critical(activeWindow(), applicationDisplayName(), text);
+    showing_ = false;
+  }
+
+  bool showing_ = false;
+};
+
+int run(int argc, char** argv) {
+  Application application(argc, argv);
   QApplication::setOrganizationName("Clothlab");
   QApplication::setApplicationName("clothlab");
   QApplication::setApplicationDisplayName("Clothlab");
@@ -45,4 +76,17 @@ int main(int argc, char** argv) {
   window.openScene(cloth::default_scene_name);
   if (!wanted.isEmpty()) window.openScene(wanted);
   return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cloth::settle_standard_streams();
+  cloth::end_by_exit_code("clothlab", 4, 1);
+  try {
+    return run(argc, argv);
+  } catch (...) {
+    qCritical("clothlab: %s", cloth::failure_in_hand().text.c_str());
+    return 4;
+  }
 }

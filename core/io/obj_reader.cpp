@@ -4,8 +4,11 @@
 
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <string_view>
 
+#include "geometry/polygon.h"
 #include "io/run_folder.h"
 #include "io/tiny_obj.h"
 
@@ -14,6 +17,7 @@ namespace {
 
 constexpr double largest_coordinate = 1e9;
 constexpr std::size_t most_vertices = 10'000'000;
+constexpr std::size_t most_corners_at_once = 64;  // tiny_obj's time for a face grows with a power of them
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
@@ -88,9 +92,8 @@ class Scan {
 
   /// Corners are "7", "7/1", "7//3" or "7/1/3"; numbers below 0 count back from the last vertex.
   void read_face(std::string_view line) {
-    int corners = 0;
-    faces += 'f';
-    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++corners) {
+    corners_.clear();
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
       const std::string_view number = word.substr(0, word.find('/'));
       long long vertex = 0;
       const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), vertex);
@@ -102,13 +105,30 @@ class Scan {
             fmt::format("\"{}\" is no corner of a face: {} vertices stand before it", shown(word), count);
         return;
       }
-      faces += ' ';
-      faces += std::to_string(vertex);
+      corners_.push_back(static_cast<int>(vertex) - 1);
     }
-    faces += '\n';
-    if (corners < 3) problem = "a face needs three corners";
+    if (corners_.size() < 3)
+      problem = "a face needs three corners";
+    else if (corners_.size() <= most_corners_at_once)
+      add_face(corners_);
+    else
+      cut_face();
   }
 
+  void add_face(std::span<const int> corners) {
+    faces += 'f';
+    for (const int corner : corners) fmt::format_to(std::back_inserter(faces), " {}", corner + 1);
+    faces += '\n';
+  }
+
+  void cut_face() {
+    const std::vector<Triangle> triangles = cut_polygon(vertices, corners_);
+    if (triangles.empty())
+      problem = fmt::format("a face of {} corners is too entangled to be cut into triangles", corners_.size());
+    for (const Triangle& triangle : triangles) add_face(triangle);
+  }
+
+  std::vector<int> corners_;  ///< of the face being read
   int line_ = 0;
 };
 
@@ -125,7 +145,7 @@ ObjReading parse_obj(const std::string& text, const std::string& place) {
 
 ObjReading read_obj(const std::filesystem::path& path) {
   std::string text;
-  if (const auto error = read_text_file(path, text))
+  if (const auto error = read_text_file(path, text, largest_mesh_text))
     return {std::nullopt, fmt::format("{}: {}", path.filename().string(), error->message)};
   return parse_obj(text, path.filename().string());
 }

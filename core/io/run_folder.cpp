@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,7 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <vector>
 
 #include "kernels/instruction_set.h"
 
@@ -119,16 +120,27 @@ std::optional<IoError> write_text_file(const fs::path& path, const std::string& 
   return std::nullopt;
 }
 
-std::optional<IoError> read_text_file(const fs::path& path, std::string& text) {
+std::optional<IoError> read_text_file(const fs::path& path, std::string& text, std::size_t largest) {
   std::error_code error;
   if (fs::is_directory(path, error)) return IoError{path, "is a folder"};
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  if (file) content << file.rdbuf();
-  if (!file && content.str().empty() && errno != 0) return IoError{path, std::strerror(errno)};
-  text = content.str();
-  return std::nullopt;
+  const auto failure = [&] { return IoError{path, std::strerror(errno)}; };
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return failure();
+  text.clear();
+  std::vector<char> block(std::size_t{1} << 20);
+  std::optional<IoError> problem;
+  for (ssize_t part = 1; part != 0 && !problem;) {
+    part = ::read(file, block.data(), block.size());
+    if (part < 0 && errno == EINTR) continue;
+    if (part < 0)
+      problem = failure();
+    else if (text.size() + static_cast<std::size_t>(part) > largest)
+      problem = IoError{path, fmt::format("is too large: more than {} MB are not read", largest >> 20)};
+    else
+      text.append(block.data(), static_cast<std::size_t>(part));
+  }
+  ::close(file);
+  return problem;
 }
 
 std::string state_csv(const ClothState& state) {

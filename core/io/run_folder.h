@@ -22,8 +22,13 @@ std::optional<IoError> write_text_file(const std::filesystem::path& path, const 
 /// Waits until the disk has what was renamed, made or removed in the folder, where the system can tell.
 void sync_folder(const std::filesystem::path& folder);
 
-/// The whole file, or why not.
-std::optional<IoError> read_text_file(const std::filesystem::path& path, std::string& text);
+/// Bytes of a scene, a session or a table that are read at most: far more than there is use for, and little
+/// enough for what is made of them. A mesh may have more.
+inline constexpr std::size_t largest_text = std::size_t{256} << 20, largest_mesh_text = std::size_t{2} << 30;
+
+/// The whole file, or why not: it may have `largest` bytes.
+std::optional<IoError> read_text_file(const std::filesystem::path& path, std::string& text,
+                                      std::size_t largest = largest_text);
 
 /// final_state.csv: particle,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s
 std::string state_csv(const ClothState& state);

@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <chrono>
+#include <new>
+#include <system_error>
 #if defined(__x86_64__) || defined(_M_X64)
 #include <immintrin.h>
 #endif
@@ -46,14 +48,35 @@ void Milestone::await(int number) const {
 
 WorkerTeam::WorkerTeam(int size) {
   assert(size >= 1);
-  for (int share = 1; share < size; ++share) workers_.emplace_back([this, share] { work(share); });
+  // Half of what can just be had leaves room for what the threads work on.
+  for (int workers = size - 1; !hire(workers);) workers = static_cast<int>(workers_.size()) / 2, dismiss();
 }
 
 WorkerTeam::~WorkerTeam() {
+  dismiss();
+}
+
+/// Whether all of them could be had.
+bool WorkerTeam::hire(int workers) {
+  try {
+    workers_.reserve(static_cast<std::size_t>(workers));
+    for (int share = 1; share <= workers; ++share) workers_.emplace_back([this, share] { work(share); });
+  } catch (const std::system_error&) {
+    return false;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  return true;
+}
+
+void WorkerTeam::dismiss() {
   stops_ = true;
   job_number_.fetch_add(1, std::memory_order_release);
   job_number_.notify_all();
   for (std::thread& worker : workers_) worker.join();
+  workers_.clear();
+  job_number_ = 0;
+  stops_ = false;
 }
 
 void WorkerTeam::start(int shares, Function function, const void* context) {
@@ -74,7 +97,7 @@ void WorkerTeam::start(int shares, Function function, const void* context) {
 }
 
 void WorkerTeam::work(int share) {
-  std::uint32_t seen = 0;
+  std::uint32_t seen = 0;  // no job starts before all are hired
   for (;;) {
     wait_for_change(job_number_, seen);
     seen = job_number_.load(std::memory_order_acquire);

@@ -9,7 +9,8 @@ namespace cloth {
 
 template <class Owner, class Value>
 Field<Owner> plain_field(Value Owner::*member, ParameterInfo info) {
-  return {std::move(info), [member](const Owner& owner) { return ParameterValue(owner.*member); },
+  return {with_physical_bound(std::move(info)),
+          [member](const Owner& owner) { return ParameterValue(owner.*member); },
           [member](Owner& owner, const ParameterValue& value) { owner.*member = std::get<Value>(value); }};
 }
 
@@ -62,7 +63,7 @@ Field<Owner> words(Words Owner::*member, ParameterInfo info) {
 template <class Owner>
 Field<Owner> number_or_auto(std::optional<double> Owner::*member, ParameterInfo info) {
   info.auto_allowed = true;
-  return {std::move(info),
+  return {with_physical_bound(std::move(info)),
           [member](const Owner& owner) -> ParameterValue {
             return owner.*member ? ParameterValue(*(owner.*member)) : ParameterValue(std::string("auto"));
           },
@@ -77,7 +78,8 @@ Field<Owner> number_or_auto(std::optional<double> Owner::*member, ParameterInfo 
 /// A root value whose absence is absent physics. `get` needs it to be present.
 template <class Owner, class Value>
 Field<Owner> optional_field(std::optional<Value> Owner::*member, ParameterInfo info) {
-  return {std::move(info), [member](const Owner& owner) { return ParameterValue((owner.*member).value()); },
+  return {with_physical_bound(std::move(info)),
+          [member](const Owner& owner) { return ParameterValue((owner.*member).value()); },
           [member](Owner& owner, const ParameterValue& value) { owner.*member = std::get<Value>(value); }};
 }
 

@@ -45,6 +45,8 @@ struct ParameterInfo {
   double minimum = -infinity;  ///< accepted values, per component for vectors
   double maximum = infinity;
   bool minimum_excluded = false;  ///< value > minimum rather than >=
+  double largest = infinity;      ///< physical bound on the magnitude; that of the unit if not declared
+  double smallest = 0;            ///< likewise, of values that may not be 0: where minimum is an excluded 0
   bool unit_vector = false;       ///< a direction: any length but zero, normalised when used
   double slider_minimum = 0;      ///< the range of the form's slider
   double slider_maximum = 1;
@@ -53,8 +55,22 @@ struct ParameterInfo {
   std::vector<Words> word_sets{};      ///< Kind::words: the combinations that are allowed
 };
 
+/// Magnitudes that a model of cloth in the air has no use for, by unit: beyond them sums of squares, times and
+/// counts of steps leave what doubles and whole numbers hold. `smallest` is of lengths, times and masses that
+/// may not be 0; 0 where a unit has none.
+struct PhysicalBound {
+  double largest, smallest;
+};
+PhysicalBound physical_bound(const std::string& unit);
+
+/// `info` with the bound of its unit where it declares none itself.
+ParameterInfo with_physical_bound(ParameterInfo info);
+
 /// The rule that `value` breaks, in words ("must be >= 0"), or nothing.
 std::optional<std::string> broken_rule(const ParameterInfo& info, const ParameterValue& value);
+
+/// The range that is left within the physical bounds, as minimum and maximum; for schemas.
+ParameterInfo within_physical_bounds(ParameterInfo info);
 
 /// The accepted values in words, for tooltips and the reference page ("> 0", ">= 0 and <= 1", "any").
 std::string range_text(const ParameterInfo& info);

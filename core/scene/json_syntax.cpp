@@ -10,19 +10,28 @@ namespace {
 
 using json = nlohmann::json;
 
-/// Only notes where and why a text is not JSON, or is nested so deeply that it cannot be a scene.
+/// Only notes where and why a text is not JSON, or is nested so deeply or has so many values that it cannot be
+/// a file of this program. Reads without recursion, and without keeping what it reads.
 struct SyntaxCheck : nlohmann::json_sax<json> {
   static constexpr int deepest = 64;
+  static constexpr std::size_t most_values = 10'000'000;
   const std::size_t length;  // of the text
   std::size_t offset = 0;
   std::string message;
   int depth = 0;
+  std::size_t values = 0;
 
   explicit SyntaxCheck(std::size_t text_length) : length(text_length) {}
 
+  bool count() {
+    if (++values <= most_values) return true;
+    message = "has too many values: " + std::to_string(most_values) + " are allowed";
+    return false;
+  }
   bool enter() {
+    if (!count()) return false;
     if (++depth <= deepest) return true;
-    message = "is nested too deeply for a scene";
+    message = "is nested too deeply: " + std::to_string(deepest) + " levels are allowed";
     return false;
   }
   bool leave() {
@@ -30,12 +39,12 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
     return true;
   }
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override { return enter(); }
   bool end_object() override { return leave(); }
@@ -52,19 +61,13 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   }
 };
 
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return text;
-}
-
 }  // namespace
 
 std::optional<Problem> syntax_problem(const std::string& text, const std::string& place) {
   SyntaxCheck syntax(text.size());
   if (json::sax_parse(text, &syntax)) return std::nullopt;
   const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
-  return Problem{"", "", printable(syntax.message), place, at.line, at.column};
+  return Problem{"", "", syntax.message, place, at.line, at.column};
 }
 
 }  // namespace cloth

@@ -8,8 +8,8 @@
 
 namespace cloth {
 
-/// Where and why `text` is not JSON, or is nested so deeply that it cannot be a file of this program; nothing
-/// if it is. `place` names the text in the message.
+/// Where and why `text` is not JSON, or is nested so deeply or has so many values that it cannot be a file of this
+/// program; nothing if it is. `place` names the text in the message.
 std::optional<Problem> syntax_problem(const std::string& text, const std::string& place);
 
 }  // namespace cloth

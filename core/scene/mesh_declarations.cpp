@@ -50,6 +50,7 @@ Fields<Obstacle> mesh_obstacle_fields() {
                              .scale = Scale::logarithmic,
                              .minimum = 0,
                              .minimum_excluded = true,
+                             .smallest = 1e-9,
                              .slider_minimum = 0.01,
                              .slider_maximum = 100}),
           vector(&O::rotate, {.key = "rotate",

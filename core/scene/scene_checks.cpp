@@ -110,7 +110,33 @@ double cell_size(const ClothSheet& cloth) {
   return sum / static_cast<double>(cloth.mesh.loaded->edges.size());
 }
 
+void check_steps(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.integrator.time_step || !(*scene.integrator.time_step > 0)) return;  // said already
+  if (const auto rule = too_many_steps(scene.duration, *scene.integrator.time_step))
+    problems.push_back({"duration", fmt::format("{} s", scene.duration), *rule, "", 0, 0});
+}
+
+/// What is made of a list for each of its entries takes time and messages: no real scene has so many.
+void check_counts(const Scene& scene, std::vector<Problem>& problems) {
+  constexpr std::size_t most_obstacles = 1000, most_keyframes = 100'000;
+  const auto check = [&](const std::string& path, std::size_t count, std::size_t most) {
+    if (count > most)
+      problems.push_back(
+          {path, "", fmt::format("has {} entries; there may be at most {}", count, most), "", 0, 0});
+  };
+  check("obstacles", scene.obstacles.size(), most_obstacles);
+  for (std::size_t k = 0; k < scene.obstacles.size() && k <= most_obstacles; ++k)
+    check(fmt::format("obstacles.{}.keyframes", k), scene.obstacles[k].keyframes.size(), most_keyframes);
+}
+
 }  // namespace
+
+std::optional<std::string> too_many_steps(double duration, double time_step) {
+  const double steps = duration / time_step;
+  if (steps <= most_steps_of_run) return std::nullopt;
+  return fmt::format("takes {:.3g} steps of {:.6g} s; a run may have at most {:g}", steps, time_step,
+                     most_steps_of_run);
+}
 
 std::string Problem::text() const {
   std::string text;
@@ -121,12 +147,15 @@ std::string Problem::text() const {
 
 std::vector<Problem> find_problems(const Scene& scene) {
   std::vector<Problem> problems;
+  check_counts(scene, problems);
+  if (!problems.empty()) return problems;
   check_parameters(scene, problems);
   check_meshes(scene, problems);
   check_pins(scene.cloth, problems);
   check_directions(scene.cloth, problems);
   check_keyframes(scene, problems);
   check_self_contact(scene, problems);
+  check_steps(scene, problems);
   return problems;
 }
 

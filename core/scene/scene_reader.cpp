@@ -7,6 +7,7 @@
 
 #include "contact/rigid_motion.h"
 #include "contact/start_check.h"
+#include "io/printable.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
@@ -236,7 +237,12 @@ class SceneReader {
         return std::nullopt;
       case Kind::choice:
       case Kind::text:
-        if (value.is_string()) return value.get<std::string>();
+        if (value.is_string() && is_utf8(value.get_ref<const std::string&>()))
+          return value.get<std::string>();
+        if (value.is_string()) {
+          problem(path, value, "must be UTF-8 text");
+          return std::nullopt;
+        }
         problem(path, value, "must be a text in quotes");
         return std::nullopt;
       case Kind::words:
@@ -254,14 +260,20 @@ class SceneReader {
   }
 };
 
-/// A bare word that is no JSON stands for itself, so that `--set integrator.method=rk4` needs no quotes.
+/// A bare word that is no JSON stands for itself, so that `--set integrator.method=rk4` needs no quotes. So
+/// does what is nested too deeply for a value.
 json parse_value(const std::string& text) {
-  json value = json::parse(text, nullptr, false);
-  return value.is_discarded() ? json(text) : value;
+  return syntax_problem(text, "") ? json(text) : json::parse(text);
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
 }
 
 /// Walks to the parent of `path`, making objects on the way, and sets its last key; null takes it out.
 bool set_at(json& root, const std::string& path, const json& value) {
+  constexpr std::ptrdiff_t deepest = 16;  // no parameter lies so deep, and objects are made on the way
+  if (std::count(path.begin(), path.end(), '.') > deepest) return false;
   json* at = &root;
   std::size_t begin = 0;
   while (true) {
@@ -269,7 +281,7 @@ bool set_at(json& root, const std::string& path, const json& value) {
     const std::string key = path.substr(begin, end - begin);
     json* next = nullptr;
     if (at->is_array()) {
-      const bool digits = !key.empty() && key.size() < 7 && std::all_of(key.begin(), key.end(), ::isdigit);
+      const bool digits = !key.empty() && key.size() < 7 && std::all_of(key.begin(), key.end(), is_digit);
       if (!digits || std::stoul(key) >= at->size()) return false;
       next = &(*at)[std::stoul(key)];
     } else if (at->is_object() && !key.empty()) {

@@ -10,7 +10,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-json number_schema(const ParameterInfo& info) {
+json number_schema(const ParameterInfo& declared) {
+  const ParameterInfo info = within_physical_bounds(declared);
   json schema{{"type", "number"}};
   if (info.minimum > -infinity) schema[info.minimum_excluded ? "exclusiveMinimum" : "minimum"] = info.minimum;
   if (info.maximum < infinity) schema["maximum"] = info.maximum;

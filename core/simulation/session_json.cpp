@@ -9,12 +9,13 @@
 #include "io/run_folder.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
+#include "scene/scene_checks.h"
 
 namespace cloth {
 namespace {
 
 using json = nlohmann::ordered_json;
-constexpr double largest_step = 1e15;  // whole numbers up to here are exact in a double
+constexpr double largest_step = most_steps_of_run;
 
 json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -139,7 +140,7 @@ class SessionReader {
     if (!value) return std::nullopt;
     if (value->is_number_integer() && value->get<double>() >= 0 && value->get<double>() <= largest_step)
       return value->get<std::int64_t>();
-    problem(joined(path, key), *value, "must be a whole number, >= 0");
+    problem(joined(path, key), *value, fmt::format("must be a whole number, >= 0 and <= {:g}", largest_step));
     return std::nullopt;
   }
 

@@ -1,15 +1,24 @@
 #include "simulation/time_step.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "measure/stability_limit.h"
+#include "scene/scene_checks.h"
 
 namespace cloth {
 namespace {
 
 // 0.1 / 0.001 is not quite 100: quotients this close to a whole number are that number.
 constexpr double whole_number_slack = 1e-9;
+
+/// At least 1. Beyond most_steps_of_run nothing is counted any more, and no double is cast that a whole number could
+/// not hold.
+std::int64_t whole_steps(double steps) {
+  return static_cast<std::int64_t>(std::clamp(steps, 1.0, most_steps_of_run));
+}
 
 }  // namespace
 
@@ -40,12 +49,20 @@ std::string no_stable_step_text(const Scene& scene) {
 }
 
 std::int64_t steps_per_row(double record_interval, double time_step) {
-  return std::max<std::int64_t>(1, std::llround(record_interval / time_step));
+  return whole_steps(std::round(record_interval / time_step));
 }
 
 std::int64_t steps_to_cover(double duration, double time_step) {
-  const double steps = duration / time_step;
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps * (1 - whole_number_slack))));
+  return whole_steps(std::ceil(duration / time_step * (1 - whole_number_slack)));
+}
+
+std::string uneven_duration_text(double duration, double time_step) {
+  const double parts = duration / time_step, whole = std::max(1.0, std::round(parts));
+  if (std::abs(parts - whole) <= whole_number_slack * whole || parts > most_steps_of_run) return "";
+  const std::int64_t steps = steps_to_cover(duration, time_step);
+  return fmt::format("duration = {:.6g} s is no whole number of steps of {:.6g} s: it takes {} {}, {:.6g} s",
+                     duration, time_step, steps, steps == 1 ? "step" : "steps",
+                     static_cast<double>(steps) * time_step);
 }
 
 }  // namespace cloth

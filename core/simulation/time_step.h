@@ -26,7 +26,10 @@ std::string no_stable_step_text(const Scene& scene);
 /// Steps between two rows of a recording: the interval in steps, rounded, at least 1.
 std::int64_t steps_per_row(double record_interval, double time_step);
 
-/// Steps that cover `duration`.
+/// Steps that cover `duration`, most_steps_of_run at most.
 std::int64_t steps_to_cover(double duration, double time_step);
+
+/// That the last step goes beyond the duration, in words, where it is no whole number of steps; else empty.
+std::string uneven_duration_text(double duration, double time_step);
 
 }  // namespace cloth

@@ -20,7 +20,7 @@ class CaseMaker {
     const double step = resolved_time_step(scene).value_or(fallback_step);
     scene_.integrator.time_step = step;  // one step for all methods: what differs is the method
     most_ = std::clamp<std::int64_t>(steps_to_cover(scene.duration / 2, step), 1, most_steps);
-    scene_.duration = 1e9;  // the bound is on steps
+    scene_.duration = std::min(1e9, 1e9 * step);  // the bound is on steps
   }
 
   /// `edit` pushes the scene. Left out where that breaks a rule of the scene.

@@ -11,6 +11,7 @@
 #include "integrators/registry.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
+#include "scene/json_syntax.h"
 #include "scene/scene_json.h"
 #include "study/stability_report.h"
 #include "study/study_folder.h"
@@ -346,6 +347,8 @@ StudyReading read_study(const std::filesystem::path& folder) {
   std::string text;
   if (const auto error = read_text_file(folder / "study.json", text))
     return {std::nullopt, error->text(), true};
+  if (const auto problem = syntax_problem(text, (folder / "study.json").string()))
+    return {std::nullopt, problem->text()};
   const std::string place = (folder / "").string();
   std::string disagreements;
   try {

@@ -116,6 +116,28 @@ TEST(EveryParameter, HasADefaultThatKeepsItsOwnRule) {
   }
 }
 
+TEST(EveryParameter, HasPhysicalBoundsThatAreToldAndKept) {
+  const Scene scene = full_scene();
+  for (const Parameter& parameter : parameters_of(scene)) {
+    const ParameterInfo& info = parameter.info;
+    if (info.kind != Kind::number && info.kind != Kind::integer && info.kind != Kind::vector) continue;
+    const double most = std::min(info.maximum, info.largest);
+    EXPECT_LE(most, 1e15) << parameter.path;
+    EXPECT_GE(std::max(info.minimum, -info.largest), -1e15) << parameter.path;
+    EXPECT_NE(range_text(info).find("<= "), std::string::npos) << parameter.path << range_text(info);
+    const auto broken = [&](double value) {
+      if (info.kind == Kind::vector) return broken_rule(info, Vec3(1, value, 1)).has_value();
+      return broken_rule(info, value).has_value();
+    };
+    EXPECT_FALSE(broken(most)) << parameter.path;
+    for (const double value : {most * 1.01, 1e16, 1e308, -1e16, -1e308})
+      EXPECT_TRUE(broken(value)) << parameter.path << " = " << value;
+  }
+  EXPECT_EQ(*broken_rule(find_parameter(scene, "cloth.width")->info, 0.0), "must be > 0");
+  EXPECT_EQ(*broken_rule(find_parameter(scene, "cloth.width")->info, 1e-300), "must be >= 1e-09");
+  EXPECT_EQ(*broken_rule(find_parameter(scene, "duration")->info, 1e20), "must be <= 1e+09");
+}
+
 TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
   Scene scene;
   std::set<std::string> offered;

@@ -7,6 +7,7 @@
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
+#include "scene/scene_checks.h"
 #include "support/scenes.h"
 
 namespace cloth::test::time_step_test {
@@ -77,6 +78,25 @@ TEST(StepsToCover, RoundsQuotientsThatAreWholeButForRounding) {
   EXPECT_EQ(steps_to_cover(1, 0.3), 4);
   EXPECT_EQ(steps_to_cover(1e-9, 1), 1);
   for (int n = 1; n < 5000; ++n) EXPECT_EQ(steps_to_cover(n * 0.001, 0.001), n);
+}
+
+TEST(Steps, AreCountedWithoutLeavingWholeNumbers) {
+  for (const double huge : {1e20, 1e300, infinity}) {
+    EXPECT_EQ(steps_to_cover(huge, 1e-3), 1'000'000'000'000);
+    EXPECT_EQ(steps_per_row(huge, 1e-3), 1'000'000'000'000);
+    EXPECT_EQ(steps_to_cover(1, 1 / huge), 1'000'000'000'000);
+  }
+  EXPECT_EQ(too_many_steps(1e9, 1e-3), std::nullopt);
+  EXPECT_NE(too_many_steps(1e9, 0.9e-3), std::nullopt);
+  EXPECT_NE(too_many_steps(1, 1e-300), std::nullopt);
+}
+
+TEST(ADurationThatIsNoWholeNumberOfSteps, IsSaid) {
+  for (int n = 1; n < 5000; ++n) EXPECT_EQ(uneven_duration_text(n * 0.001, 0.001), "");
+  EXPECT_EQ(uneven_duration_text(0.105, 0.01),
+            "duration = 0.105 s is no whole number of steps of 0.01 s: it takes 11 steps, 0.11 s");
+  EXPECT_EQ(uneven_duration_text(0.001, 0.01),
+            "duration = 0.001 s is no whole number of steps of 0.01 s: it takes 1 step, 0.01 s");
 }
 
 TEST(StepsPerRow, IsTheIntervalInWholeStepsAndAtLeastOne) {

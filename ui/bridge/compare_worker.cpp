@@ -4,6 +4,7 @@
 
 #include "bridge/fill_frame.h"
 #include "compare/comparison_log.h"
+#include "io/process.h"
 
 namespace clothlab {
 namespace {
@@ -45,13 +46,29 @@ void CompareWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {
     wait_for_work(stop);
-    handle_waiting();
-    if (status_.playing || under_way_) play_for_a_moment();
+    try {
+      handle_waiting();
+      if (status_.playing || under_way_) play_for_a_moment();
+    } catch (...) {
+      give_up(cloth::failure_in_hand().text);
+    }
     publish_status();
     if (!under_way_) settled_ = handled_;
     channel_.settle(settled_, has_work());
   }
   end_recording();
+}
+
+/// What was under way when memory ran out may be half done: there are no panes until the next start.
+void CompareWorker::give_up(const std::string& why) {
+  status_.playing = false;
+  under_way_.reset();
+  status_.refusal = why;
+  end_recording();
+  lockstep_.reset();
+  handled_ += waiting_.size() + (handling_ ? 1 : 0);
+  waiting_.clear();
+  handling_ = false;
 }
 
 bool CompareWorker::has_work() const {
@@ -79,7 +96,9 @@ void CompareWorker::handle_waiting() {
     if (under_way_ && acts_on_the_panes(waiting_.front())) return;
     const CompareCommand command = std::move(waiting_.front());
     waiting_.pop_front();
+    handling_ = true;
     std::visit([this](const auto& c) { handle(c); }, command);
+    handling_ = false;
     ++handled_;
   }
 }

@@ -82,6 +82,7 @@ class CompareWorker {
 
  private:
   void run(const std::stop_token& stop);
+  void give_up(const std::string& why);
   void wait_for_work(const std::stop_token& stop);
   bool has_work() const;
   void handle_waiting();
@@ -118,6 +119,7 @@ class CompareWorker {
   // The worker's own.
   int threads_;
   std::deque<CompareCommand> waiting_;
+  bool handling_ = false;  ///< a command that is not yet among handled_
   std::uint64_t handled_ = 0, settled_ = 0;  ///< commands; the second: with the step that they asked for
   std::unique_ptr<cloth::LockStep> lockstep_;
   std::optional<std::int64_t> under_way_;  ///< the common time that panes are on their way to

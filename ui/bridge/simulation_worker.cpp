@@ -4,6 +4,7 @@
 
 #include "bridge/fill_frame.h"
 #include "contact/start_check.h"
+#include "io/process.h"
 #include "scene/scene_checks.h"
 #include "simulation/time_step.h"
 
@@ -43,18 +44,36 @@ void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {
     const std::vector<Command> commands = wait_for_work(stop);
-    for (std::size_t i = 0; i < commands.size(); ++i)
-      if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
-        batch_is_done_ = i + 1 == commands.size();
-        std::visit([this](const auto& c) { handle(c); }, commands[i]);
-      }
-    if (status_.playing) play_for_a_moment();
-    if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
+    try {
+      carry_out(commands);
+      if (status_.playing) play_for_a_moment();
+      if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
+    } catch (...) {
+      give_up(cloth::failure_in_hand().text);
+    }
     status_.commands += commands.size();
     publish_status();
     channel_.settle(status_.commands, status_.playing);
   }
   if (recording_.is_active()) end_recording();
+}
+
+void SimulationWorker::carry_out(const std::vector<Command>& commands) {
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
+      batch_is_done_ = i + 1 == commands.size();
+      std::visit([this](const auto& c) { handle(c); }, commands[i]);
+    }
+}
+
+/// What was under way when memory ran out may be half done: there is no simulation until the next start.
+void SimulationWorker::give_up(const std::string& why) {
+  status_.playing = false;
+  playing_again_ = false;
+  status_.refusal = why;
+  gave_up_ = true;
+  if (recording_.is_active() && simulation_) end_recording();
+  simulation_.reset();
 }
 
 /// Until there is a command, or the next step is due.
@@ -86,6 +105,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
   simulation_->set_stop_test([this] { return thread_.get_stop_token().stop_requested(); });
+  gave_up_ = false;
   history_.begin(*simulation_);
   playing_again_ = false;
   last_sampled_step_ = -1;
@@ -103,6 +123,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
 }
 
 void SimulationWorker::handle(const command::Edit& edit) {
+  if (gave_up_) return handle(command::Load{edit.scene});
   if (!simulation_) return;
   status_.refusal = refusal_of(edit.scene);
   if (!status_.refusal.empty()) return;

@@ -91,6 +91,8 @@ class SimulationWorker {
  private:
   void run(const std::stop_token& stop);
   std::vector<Command> wait_for_work(const std::stop_token& stop);
+  void carry_out(const std::vector<Command>& commands);
+  void give_up(const std::string& why);
   void handle(const command::Load& load);
   void handle(const command::Restart&);
   void handle(const command::Edit& edit);
@@ -134,6 +136,7 @@ class SimulationWorker {
   std::unique_ptr<cloth::Simulation> simulation_;
   cloth::History history_;
   bool playing_again_ = false;
+  bool gave_up_ = false;                 ///< for want of memory, and nothing has been started since
   bool batch_is_done_ = true;            ///< no command waits behind the present one but those in the inbox
   std::int64_t last_sampled_step_ = -1;  ///< samples up to here have been given
   cloth::RowClock rows_;

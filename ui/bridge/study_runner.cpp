@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "bridge/worker_pace.h"
+#include "io/process.h"
 
 namespace clothlab {
 namespace {
@@ -150,6 +151,22 @@ const Table* StudyRunner::begin(const Table& plan, const StudyOrder& order) {
 void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), low_priority);
   offered_ = Clock::now();
+  std::string problem;
+  try {
+    carry_out(order, stop);
+  } catch (...) {
+    problem = cloth::failure_in_hand().text;
+  }
+  const std::lock_guard lock(mutex_);
+  if (!problem.empty()) status_.problem = problem;
+  status_.running = false;
+  status_.stopping = false;
+  status_.elapsed = seconds(Clock::now() - start_);
+  status_.left.reset();
+  if (!stop.stop_requested() && problem.empty()) status_.fraction = 1;
+}
+
+void StudyRunner::carry_out(const StudyOrder& order, const std::stop_token& stop) {
   const auto partial = [&](const auto& table) { offer(table, false); };
   const auto progress = [this](const cloth::StudyProgress& now) { return note(now); };
   if (const auto* chosen = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
@@ -183,12 +200,6 @@ void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
     options.earlier = begin(cloth::empty_table(options), order);
     offer(cloth::run_extremes(options), true);
   }
-  const std::lock_guard lock(mutex_);
-  status_.running = false;
-  status_.stopping = false;
-  status_.elapsed = seconds(Clock::now() - start_);
-  status_.left.reset();
-  if (!stop.stop_requested()) status_.fraction = 1;
 }
 
 }  // namespace clothlab

@@ -33,7 +33,7 @@ struct StudyStatus {
   std::string text;            ///< what is being done
   double elapsed = 0;          ///< s
   std::optional<double> left;  ///< s, estimated; none: too early to say
-  std::string problem;         ///< why the folder could not be written; the study goes on
+  std::string problem;         ///< why the folder could not be written, or the study not brought to its end
 };
 
 class StudyRunner {
@@ -58,6 +58,7 @@ class StudyRunner {
  private:
   using Clock = std::chrono::steady_clock;
   void run(const StudyOrder& order, const std::stop_token& stop);
+  void carry_out(const StudyOrder& order, const std::stop_token& stop);
   bool note(const cloth::StudyProgress& progress);
   template <class Table>
   const Table* begin(const Table& plan, const StudyOrder& order);

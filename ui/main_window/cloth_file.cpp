@@ -3,7 +3,7 @@
 #include "cloth/mesh_cloth.h"
 #include "io/cloth_obj.h"
 #include "io/obj_writer.h"
-#include "io/run_folder.h"
+#include "io/user_file.h"
 
 namespace clothlab {
 namespace {
@@ -26,7 +26,7 @@ QString save_cloth_file(const ClothFrame& frame, const QString& title, const QSt
   surface.texture = cloth::grid_texture<float>(frame.rows, frame.columns);
   surface.triangles = triangles;
   const std::string text = cloth::obj_text(surface, cloth::title_at(title.toStdString(), frame.time));
-  const auto error = cloth::write_text_file(path.toStdString(), text);
+  const auto error = cloth::write_user_file(path.toStdString(), text);
   return error ? QString::fromStdString(error->text()) : QString();
 }
 

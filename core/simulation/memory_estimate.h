@@ -1,0 +1,19 @@
+// Whether there is memory for a run, asked before anything is assembled: a system that lends memory which it
+// does not have ends the process later, without a word.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace cloth {
+
+/// What a run of the scene takes at least, in bytes: its particles and their springs in its method's arrays.
+/// What depends on the motion, such as contact's lists, comes on top.
+double least_memory(const Scene& scene);
+
+/// That a run needs more memory than this process can have, in words; nothing where it can have it.
+std::optional<std::string> memory_problem(const Scene& scene);
+
+}  // namespace cloth

@@ -313,7 +313,6 @@ ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Fiel
   report.contacts = count_touched();
   wished_ = state.position;
   state.position = safe_;
-  if (settling.positions) settling.positions();
   answer_velocities(system, {from, times.step}, settling, state, report);
   return report;
 }

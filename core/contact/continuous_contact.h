@@ -40,8 +40,10 @@ struct ContactTimes {
 struct Settling {
   const Vec3Field& velocity_before;  ///< m/s, as the step began
   ContactMemory& memory;             ///< of the last step, and then of this one
-  std::function<void()> positions;   ///< called once the positions are in the state, before velocities answer
-  std::function<void()> velocities;  ///< called once they have answered; they answer once more
+  std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
+  /// Called once the positions are in the state, before velocities answer; `motion` in m/s has led there.
+  std::function<void(const Vec3Field& motion)> positions;
+  std::function<void(const Vec3Field& motion)> velocities;  ///< once they have answered; they answer once more
 };
 
 class ContinuousContact {
@@ -135,16 +137,17 @@ class ContinuousContact {
     const Vec3Field& position;  ///< m, as the step began
     double step = 0;            ///< s
   };
+  bool find_motion(const ClothSystem& system, const Begin& begin);
   void take_touches(const Begin& begin, const Settling& settling);
   double approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const;
   void answer_velocities(const ClothSystem& system, const Begin& begin, const Settling& settling,
                          ClothState& state, ContactReport& report);
   Vec3 impulse_of_pushes(const ClothSystem& system) const;
-  void find_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
-                 const ClothState& state);
-  void add_half_steps_work(const ClothSystem& system, double step, const Settling& settling,
+  void find_work(const ClothSystem& system, const Settling& settling, const ClothState& state);
+  Vec3 opening_of(std::size_t particle, const Begin& begin) const;
+  void add_half_steps_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
                            const ClothState& state);
-  void bounce(const ClothSystem& system, double step, bool follows, ClothState& state);
+  void bounce(const ClothSystem& system, const Begin& begin, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
   int note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state);
 
@@ -194,6 +197,7 @@ class ContinuousContact {
   bool was_rebased_ = false;                  ///< contacts of earlier rounds are part of what is wished
 
   // of the velocities' answer
+  Vec3Field motion_;                   ///< m/s, mean of the step, without what put too near pairs apart
   Vec3Field free_velocity_;            ///< m/s, before the answer
   std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
   std::vector<double> work_;           ///< J, of each particle

@@ -108,12 +108,15 @@ ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity
     : obstacles_(std::move(obstacles)), gravity_(gravity) {}
 
 /// m/s, what a bounce gives back: of a particle that nothing held its mean speed in this step, of one that was
-/// held the speed with which the step began. What the step adds to that is load.
+/// held the speed with which the step began. What the step adds to that is load. Slower than twice what gravity
+/// or the load adds in a step is no blow, or a cloth at rest would dance.
 double ObstacleContact::approach_of(std::size_t i, const Vec3& normal, const ContactBegin& begin,
-                                    const Vec3& wished) const {
-  const Vec3 speed = begin.memory.held[i] ? begin.velocity[i] : Vec3((wished - begin.position[i]) / begin.step);
-  const double approach = -speed.dot(normal), least = 2 * gravity_ * begin.step;
-  return approach > least ? approach : 0;  // slower, and a cloth at rest would dance
+                                    const Wished& wished) const {
+  const Vec3 began = begin.velocity[i];
+  const Vec3 speed = begin.memory.held[i] ? began : Vec3((wished.position - begin.position[i]) / begin.step);
+  const double load = normal.dot(began - wished.velocity);
+  const double approach = -speed.dot(normal);
+  return approach > 2 * std::max(gravity_ * begin.step, load) ? approach : 0;
 }
 
 ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBegin& begin,
@@ -131,7 +134,7 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
 /// One particle and all obstacles, in their order.
 bool ObstacleContact::touch(const ClothSystem& system, std::size_t i, const ContactBegin& begin,
                             ClothState& state, ContactReport& report) const {
-  const Vec3 wished = state.position[i];
+  const Wished wished{state.position[i], state.velocity[i]};
   Vec3 before = begin.velocity[i];
   bool touched = false, bounced = false;
   for (const Obstacle& obstacle : obstacles_) {

@@ -72,10 +72,14 @@ class ObstacleContact {
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
 
  private:
+  /// Where and how fast the integrator let a particle go.
+  struct Wished {
+    Vec3 position{0, 0, 0}, velocity{0, 0, 0};  ///< m, m/s
+  };
   bool touch(const ClothSystem& system, std::size_t particle, const ContactBegin& begin, ClothState& state,
              ContactReport& report) const;
   double approach_of(std::size_t particle, const Vec3& normal, const ContactBegin& begin,
-                     const Vec3& wished) const;
+                     const Wished& wished) const;
 
   std::vector<Obstacle> obstacles_;
   double gravity_ = 0;  ///< m/s^2

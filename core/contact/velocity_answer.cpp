@@ -24,21 +24,61 @@ double kinetic_change(double mass, const Vec3& now, const Vec3& then) {
 
 }  // namespace
 
-/// m/s, of the touch's two sides, negative where they come nearer. What nothing held before comes as fast as
-/// the integrator lets it go in this step. What was held comes as fast as it went when the step began: what
-/// the step adds to that is load.
+/// The mean velocity of the step. What began it nearer than its thickness was put apart, and that is no motion:
+/// as one it would leave at the missing distance over the step. There the motion is solved for anew, with the
+/// distance at which the step began as the one to keep. Returns whether there was such a pair.
+bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begin) {
+  if (motion_.size() != safe_.size()) motion_ = Vec3Field(safe_.size());
+  for (std::size_t i = 0; i < safe_.size(); ++i)
+    motion_.set(i, (safe_[i] - begin.position[i]) / begin.step);
+  constraints_.clear();
+  std::vector<double> gaps;  // m, beyond the thickness as the step began
+  for (const Touch& touch : touches_) {
+    if (!(touch.contact.push > 0) || !(touch.contact.mobility > 0)) continue;
+    ContactConstraint contact = touch.contact;
+    gaps.push_back(contact.normal.dot(contact.rest) - contact.bound);
+    contact.bound = contact.normal.dot(touch.velocity) - std::max(gaps.back(), 0.0) / begin.step;
+    contact.rest = touch.velocity;
+    contact.push = 0, contact.rub.setZero();
+    constraints_.push_back(contact);
+  }
+  if (std::none_of(gaps.begin(), gaps.end(), [&](double gap) { return gap < -arrived_length(); })) return false;
+  Vec3Field solved(safe_.size());
+  for (std::size_t i = 0; i < safe_.size(); ++i) solved.set(i, (wished_[i] - begin.position[i]) / begin.step);
+  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, solved);
+  Islands islands(constraints_, system.inverse_mass);
+  std::vector<std::uint8_t> recovers(safe_.size(), 0);
+  for (std::size_t c = 0; c < gaps.size(); ++c)
+    if (gaps[c] < -arrived_length())
+      recovers[at(islands.of(Islands::first_free(constraints_[c], system.inverse_mass)))] = 1;
+  for (std::size_t i = 0; i < safe_.size(); ++i)
+    if (recovers[at(islands.of(static_cast<int>(i)))]) motion_.set(i, solved[i]);
+  return true;
+}
+
+/// m/s: what contact adds to the velocity that leads through the step.
+Vec3 ContinuousContact::opening_of(std::size_t i, const Begin& begin) const {
+  return motion_[i] - (wished_[i] - begin.position[i]) / begin.step;
+}
+
+/// m/s, of the touch's two sides, negative where they come nearer; 0 if that is no blow. What nothing held
+/// before comes as fast as the integrator lets it go in this step. What was held comes as fast as it went when
+/// the step began: what the step adds to that is load. Slower than a few times what gravity or the load adds
+/// in a step is no blow, or a cloth at rest would dance.
 double ContinuousContact::approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const {
   const ContactConstraint& contact = touch.contact;
   bool was_held = false;
   for (int k = 0; k < contact.count; ++k)
     was_held = was_held || (contact.weight[at(k)] != 0 && settling.memory.held[at(contact.particle[at(k)])]);
-  if (was_held) return contact.normal.dot(contact.point(settling.velocity_before) - touch.velocity);
-  return contact.normal.dot(contact.point(wished_) - contact.rest) / begin.step;
+  const double began = contact.normal.dot(contact.point(settling.velocity_before) - touch.velocity);
+  const double goes = contact.normal.dot(contact.point(wished_) - contact.rest) / begin.step;
+  const double coming = was_held ? began : goes;
+  const double least = std::max(2 * gravity_ * begin.step, 4 * (began - goes));
+  return coming < -least ? coming : 0;
 }
 
 /// The touching pairs, with what their velocities must answer without restitution, and with it.
 void ContinuousContact::take_touches(const Begin& begin, const Settling& settling) {
-  const double least_bounce = 2 * gravity_ * begin.step;  // slower, and a cloth at rest would dance
   constraints_.clear();
   bounce_bound_.clear();
   for (const Touch& touch : touches_) {
@@ -51,7 +91,7 @@ void ContinuousContact::take_touches(const Begin& begin, const Settling& settlin
     }
     contact.bound = contact.normal.dot(touch.velocity);
     const double coming = restitution > 0 ? approach_of(touch, begin, settling) : 0;
-    bounce_bound_.push_back(contact.bound + (coming < -least_bounce ? -restitution * coming : 0));
+    bounce_bound_.push_back(contact.bound - restitution * coming);
     contact.rest = touch.velocity;
     contact.push = 0, contact.rub.setZero();
     constraints_.push_back(contact);
@@ -63,11 +103,17 @@ void ContinuousContact::answer_velocities(const ClothSystem& system, const Begin
                                           ContactReport& report) {
   const bool follows = static_cast<bool>(settling.positions);
   settling.memory.resize(safe_.size());
+  if (find_motion(system, begin)) {
+    Vec3Field led = begin.position;
+    for (std::size_t i = 0; i < led.size(); ++i) led.add(i, begin.step * motion_[i]);
+    report.work += settling.potential(safe_) - settling.potential(led);
+  }
+  if (follows) settling.positions(motion_);
   take_touches(begin, settling);
   free_velocity_ = state.velocity;
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
   if (settling.velocities) {
-    settling.velocities();
+    settling.velocities(motion_);
     free_velocity_ = state.velocity;
     for (const ContactConstraint& contact : constraints_)
       apply_pushes(contact, system.inverse_mass, state.velocity);
@@ -75,14 +121,14 @@ void ContinuousContact::answer_velocities(const ClothSystem& system, const Begin
   }
   work_.assign(safe_.size(), 0.0);
   if (follows)
-    add_half_steps_work(system, begin.step, settling, state);
+    add_half_steps_work(system, begin, settling, state);
   else
-    find_work(system, begin, settling, state);
-  bounce(system, begin.step, follows, state);
+    find_work(system, settling, state);
+  bounce(system, begin, follows, state);
   report.impulse = impulse_of_pushes(system);
   if (follows)
     for (std::size_t i = 0; i < safe_.size(); ++i)
-      if (!system.pinned[i]) report.impulse += system.mass[i] / begin.step * (safe_[i] - wished_[i]);
+      if (!system.pinned[i]) report.impulse += system.mass[i] * opening_of(i, begin);
   report.held_back = note_held_back(system, begin, state);
   remember(system, state, follows, settling.memory);
   for (const double work : work_) report.work += work;
@@ -101,11 +147,11 @@ Vec3 ContinuousContact::impulse_of_pushes(const ClothSystem& system) const {
 }
 
 /// Of contacts that act on a velocity which the integrator has finished.
-void ContinuousContact::find_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
+void ContinuousContact::find_work(const ClothSystem& system, const Settling& settling,
                                   const ClothState& state) {
   for (const ContactConstraint& contact : constraints_) {
     const PointSpeeds speeds{contact.point(settling.velocity_before), contact.point(state.velocity),
-                             (contact.point(safe_) - contact.point(begin.position)) / begin.step};
+                             contact.point(motion_)};
     work_[at(Islands::first_free(contact, system.inverse_mass))] += work_of(contact, speeds);
   }
 }
@@ -114,12 +160,12 @@ void ContinuousContact::find_work(const ClothSystem& system, const Begin& begin,
 /// as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet in one
 /// state this is the impulse times the mean of the velocities of the steps before and after, under which the
 /// energy of a leapfrog closes; m |c|^2/2, which c took and the next o gives back, is lent meanwhile.
-void ContinuousContact::add_half_steps_work(const ClothSystem& system, double step, const Settling& settling,
-                                            const ClothState& state) {
+void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Begin& begin,
+                                            const Settling& settling, const ClothState& state) {
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     if (system.pinned[i]) continue;
     const double mass = system.mass[i];
-    const Vec3 opening = (safe_[i] - wished_[i]) / step;
+    const Vec3 opening = opening_of(i, begin);
     work_[i] = mass * opening.dot(settling.velocity_before[i] + 0.5 * opening) +
                kinetic_change(mass, free_velocity_[i], state.velocity[i]) - settling.memory.lent[i];
   }
@@ -128,7 +174,8 @@ void ContinuousContact::add_half_steps_work(const ClothSystem& system, double st
 /// Restitution, as far as it gives no more than was taken. Any part of the change between two answers of the
 /// contacts is an answer too: bounds and cones of friction are convex. Speeds are those relative to the
 /// obstacles.
-void ContinuousContact::bounce(const ClothSystem& system, double step, bool follows, ClothState& state) {
+void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bool follows,
+                               ClothState& state) {
   bounced_.assign(safe_.size(), 0);
   bool any = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c)
@@ -159,7 +206,7 @@ void ContinuousContact::bounce(const ClothSystem& system, double step, bool foll
     const double mass = system.mass[i];
     const Vec3 change = state.velocity[i] - stopped[i];
     Vec3 impulse = stopped[i] - free_velocity_[i];
-    if (follows) impulse += (safe_[i] - wished_[i]) / step;
+    if (follows) impulse += opening_of(i, begin);
     Share& share = shares[at(islands.of(static_cast<int>(i)))];
     share.taken -= work_[i] - mass * impulse.dot(carried[i]);
     share.square += 0.5 * mass * change.squaredNorm();

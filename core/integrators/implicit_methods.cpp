@@ -28,7 +28,9 @@ IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forc
                velocity_, position_, report);
   std::swap(state.position, position_);
   std::swap(state.velocity, velocity_);
-  if (forces.has_power()) work += times.step * forces.power(state.position, state.velocity);
+  if (forces.has_power()) end_power_ = forces.power(state.position, state.velocity);
+  end_weight_ = times.step;
+  work += end_weight_ * end_power_;
   return report;
 }
 
@@ -58,8 +60,11 @@ IntegratorReport Bdf2::step(const ClothSystem& system, ForceModel& forces, const
     report = multistep(system, forces, times, state, of_step);
   } else {
     before_ = state;
-    report = history_ == History::none ? midpoint_.step(system, forces, times, state, of_step)
-                                       : euler_.step(system, forces, times, state, of_step);
+    const bool is_first = history_ == History::none;
+    report = is_first ? midpoint_.step(system, forces, times, state, of_step)
+                      : euler_.step(system, forces, times, state, of_step);
+    end_weight_ = is_first ? 0 : times.step;
+    end_power_ = 1 / times.step * of_step;
   }
   history_ = History::held;
   step_before_ = times.step;
@@ -90,7 +95,9 @@ IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, 
   state.position = position_;
   state.velocity = velocity_;
   work += (1.0 / 3) * work_before_;
-  if (forces.has_power()) work += weight * forces.power(state.position, state.velocity);
+  if (forces.has_power()) end_power_ = forces.power(state.position, state.velocity);
+  end_weight_ = weight;
+  work += end_weight_ * end_power_;
   return report;
 }
 

@@ -102,9 +102,13 @@ class Integrator {
 
   /// The state at the end of the last step is another one by contact. Returns what that changes of the work
   /// which the step has added with the velocity that never happened.
-  virtual Work follow_contact(ForceModel&, const StepTimes&, const ClothState&) {
+  virtual Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) {
     forget(Change::state);
-    return {};
+    if (end_weight_ == 0 || !forces.has_power()) return {};
+    forces.update(state.position, times.end);
+    Work correction = end_weight_ * forces.power(state.position, state.velocity);
+    correction += -end_weight_ * end_power_;
+    return correction;
   }
 
   /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
@@ -113,6 +117,12 @@ class Integrator {
 
   /// The state is again that at which `memory` was made; the forces stand elsewhere.
   virtual void recall(const IntegratorMemory&) { forget(Change::state); }
+
+ protected:
+  /// Of methods whose work takes the power at the end of the step: that power, and the time in s that it
+  /// counts for.
+  Work end_power_;
+  double end_weight_ = 0;
 };
 
 /// to += scale * inverse_mass * force

@@ -130,7 +130,9 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
   if (forces.has_power()) {
     forces.update(state.position, times.end);
     ++report.force_evaluations;
-    work += h * forces.power(state.position, state.velocity);
+    end_power_ = forces.power(state.position, state.velocity);
+    end_weight_ = h;
+    work += end_weight_ * end_power_;
   }
   return report;
 }

@@ -119,7 +119,9 @@ IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;
-      work += h * forces.power(state.position, state.velocity);
+      end_power_ = forces.power(state.position, state.velocity);
+      end_weight_ = h;
+      work += end_weight_ * end_power_;
     }
   }
   return report;

@@ -22,18 +22,20 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   }
   const ContactTimes contact_times{times.begin, times.end, times.step};
   if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return end_contact();
-  Settling settling{velocity_before_, contact_memory_, {}, {}};
+  Settling settling{velocity_before_, contact_memory_, {}, {}, {}};
+  settling.potential = [&](const Vec3Field& position) {
+    ClothState there;
+    there.position = position, there.velocity = Vec3Field(position.size());
+    return measure_energy(system_, gravity_of(scene_), there).total();
+  };
   const bool follows = integrator_->velocity_follows_positions();
   if (follows)
-    settling.positions = [&] {
-      if (half_velocity_.size() != system_.start.size()) half_velocity_ = Vec3Field(system_.start.size());
-      for (std::size_t i = 0; i < half_velocity_.size(); ++i)
-        half_velocity_.set(i, (state_.position[i] - position_before_[i]) / times.step);
-      integrator_->follow_positions(system_, *forces_, times, half_velocity_, state_);
+    settling.positions = [&](const Vec3Field& motion) {
+      integrator_->follow_positions(system_, *forces_, times, motion, state_);
     };
   if (follows && forces_->has_damping())
-    settling.velocities = [&] {
-      integrator_->follow_velocities(system_, *forces_, times, half_velocity_, state_);
+    settling.velocities = [&](const Vec3Field& motion) {
+      integrator_->follow_velocities(system_, *forces_, times, motion, state_);
     };
   last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
   if (last_contact_.interrupted) return;

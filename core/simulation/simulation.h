@@ -238,7 +238,6 @@ class Simulation {
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
   Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact
   ContactMemory contact_memory_;
-  Vec3Field half_velocity_;  ///< m/s, from there to where the step ended before contact
 
   std::function<bool()> stop_test_;
   bool interrupted_ = false;

@@ -41,12 +41,20 @@ int reproduce(const ReproduceArguments& arguments) {
   cloth::ReproduceResult result;
   {
     Progress bar;
-    result = cloth::reproduce({.folder = arguments.folder,
-                               .only = arguments.only,
-                               .progress = [&](const cloth::ReproduceProgress& progress) {
-                                 bar.show(progress.fraction, progress.part);
-                                 return !stop_is_requested();
-                               }});
+    result = cloth::reproduce(
+        {.folder = arguments.folder,
+         .only = arguments.only,
+         .progress =
+             [&](const cloth::ReproduceProgress& progress) {
+               bar.show(progress.fraction, progress.part);
+               return !stop_is_requested();
+             },
+         .overwrite = arguments.overwrite,
+         .goes_on =
+             [](int parts) {
+               say(fmt::format("going on with the unfinished reproduction in the folder: {} parts are there",
+                               parts));
+             }});
   }
   if (result.io_error) return report(*result.io_error);
   const int printed =

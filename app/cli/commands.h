@@ -90,6 +90,7 @@ int study(const StudyArguments& arguments);
 struct ReproduceArguments {
   std::string folder;
   std::vector<std::string> only;
+  bool overwrite = false;  ///< an unfinished reproduction of other parts
   bool json = false;
 };
 int reproduce(const ReproduceArguments& arguments);

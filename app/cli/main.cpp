@@ -171,6 +171,7 @@ void add_reproduce(CLI::App& app, cli::ReproduceArguments& arguments) {
                        fmt::format("{}", fmt::join(cloth::reproduce_parts(), ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(cloth::reproduce_parts()));
+  reproduce->add_flag("--overwrite", arguments.overwrite, overwrite_help);
   reproduce->add_flag("--json", arguments.json, json_help);
 }
 

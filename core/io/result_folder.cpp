@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const char* const list_name = ".clothlab";
 const char* const list_format = "clothlab folder 1";
-constexpr std::array<const char*, 2> index_names{"study.json", "summary.json"};
+constexpr std::array<const char*, 3> index_names{"study.json", "summary.json", "reproduce.json"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();

@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "report/html_style.h"
 #include "report/svg.h"
@@ -180,6 +181,35 @@ void HtmlPage::end_details() {
   assert(open_details_ > 0);
   --open_details_;
   body_ += "</details>\n";
+}
+
+std::string HtmlPage::saved() const {
+  nlohmann::ordered_json state{{"body", body_},
+                               {"figures", figures_},
+                               {"tables", tables_},
+                               {"open_details", open_details_},
+                               {"contents", nlohmann::ordered_json::array()}};
+  for (const Entry& entry : contents_) state["contents"].push_back({entry.anchor, entry.text, entry.level});
+  return state.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+bool HtmlPage::restore(const std::string& saved) {
+  try {
+    const auto state = nlohmann::ordered_json::parse(saved);
+    std::vector<Entry> contents;
+    for (const auto& entry : state.at("contents"))
+      contents.push_back(
+          {entry.at(0).get<std::string>(), entry.at(1).get<std::string>(), entry.at(2).get<int>()});
+    const int figures = state.at("figures").get<int>(), tables = state.at("tables").get<int>();
+    open_details_ = state.at("open_details").get<int>();
+    body_ = state.at("body").get<std::string>();
+    figures_ = figures;
+    tables_ = tables;
+    contents_ = std::move(contents);
+    return true;
+  } catch (const nlohmann::ordered_json::exception&) {
+    return false;
+  }
 }
 
 std::string HtmlPage::to_html() const {

@@ -89,6 +89,11 @@ class HtmlPage {
   /// The whole page. Open details are closed.
   std::string to_html() const;
 
+  /// What has been put on it, as text that another page can begin with.
+  std::string saved() const;
+  /// False where the text is not one that saved() gave.
+  bool restore(const std::string& saved);
+
  private:
   struct Entry {
     std::string anchor, text;

@@ -30,6 +30,9 @@ struct ReproduceOptions {
   std::vector<std::string> only{};  ///< of reproduce_parts(); empty: all
   /// Called often; false stops: what is done by then is written.
   std::function<bool(const ReproduceProgress&)> progress{};
+  bool overwrite = false;  ///< begin anew where an unfinished reproduction of other parts lies
+  /// Told once where an unfinished one goes on: how many of its parts are there.
+  std::function<void(int parts)> goes_on{};
 };
 
 struct ReproduceResult {
@@ -42,6 +45,9 @@ struct ReproduceResult {
 /// fig1, fig2, ..., table1, equal-error, errata: in the order of the report.
 std::vector<std::string> reproduce_parts();
 
+/// Each finished part is in the folder before the next begins. An unfinished reproduction there goes on after
+/// its last whole part, if it is of the same parts, version, instruction set and processor.
+///
 /// Precondition: every name in `only` is one of reproduce_parts().
 ReproduceResult reproduce(const ReproduceOptions& options);
 

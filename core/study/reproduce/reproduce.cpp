@@ -8,6 +8,7 @@
 #include "io/csv.h"
 #include "io/run_folder.h"
 #include "report/machine.h"
+#include "study/reproduce/reproduction_index.h"
 #include "study/reproduce/study_page.h"
 
 namespace cloth {
@@ -75,25 +76,34 @@ std::vector<std::string> reproduce_parts() {
 
 ReproduceResult reproduce(const ReproduceOptions& options) {
   ReproduceResult result;
-  result.io_error = make_folder(options.folder);
+  HtmlPage page("The report's results, measured here", lead());
+  ReproductionIndex index;
+  ResultFolder& folder = index.folder();
+  result.io_error = index.begin(options, page, result);
   if (result.io_error) return result;
 
   double total = 0, done = 0;
   for (const Part& part : parts) total += is_wanted(options, part) ? part.cost : 0;
-  HtmlPage page("The report's results, measured here", lead());
-  StudyPage study(options, page, result);
+  StudyPage study(options, folder, page, result);
   for (const Part& part : parts) {
     if (!is_wanted(options, part)) continue;
+    if (index.has(part.name)) {
+      done += part.cost;
+      continue;
+    }
     study.begin_part(part.name, done / total, part.cost / total);
     if (!study.go_on(0)) break;
     part.run(study);
     done += part.cost;
+    if (study.go_on(1)) result.io_error = index.keep(part.name, page, result);
+    if (result.io_error) return result;
   }
   if (result.stopped)
     page.notice("Stopped before the end: what follows the last figure here was not measured.", Verdict::warn);
   add_machine(page);
   study.write("numbers.csv", numbers_csv(result.numbers));
   study.write("report.html", page.to_html());
+  if (!result.io_error) result.io_error = index.end(result);
   return result;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "cloth/sums.h"
-#include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
 
 namespace cloth {
@@ -32,7 +31,7 @@ double StudyPage::number(const std::string& name, double value, const std::strin
 
 void StudyPage::write(const std::string& file, const std::string& content) {
   if (result_.io_error) return;
-  result_.io_error = write_text_file(options_.folder / file, content);
+  result_.io_error = folder_.write(file, content, file.ends_with(".csv"));
   if (!result_.io_error) result_.files.push_back(file);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
+#include "io/result_folder.h"
 #include "picture/picture.h"
 #include "report/html_page.h"
 #include "report/line_plot.h"
@@ -24,8 +25,9 @@ inline constexpr double panel_aspect = static_cast<double>(panel_width) / panel_
 
 class StudyPage {
  public:
-  StudyPage(const ReproduceOptions& options, HtmlPage& page, ReproduceResult& result)
-      : options_(options), page_(page), result_(result) {}
+  /// `folder` is claimed.
+  StudyPage(const ReproduceOptions& options, ResultFolder& folder, HtmlPage& page, ReproduceResult& result)
+      : options_(options), folder_(folder), page_(page), result_(result) {}
 
   HtmlPage& page() { return page_; }
 
@@ -48,6 +50,7 @@ class StudyPage {
 
  private:
   const ReproduceOptions& options_;
+  ResultFolder& folder_;
   HtmlPage& page_;
   ReproduceResult& result_;
   std::string part_;

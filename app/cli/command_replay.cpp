@@ -47,7 +47,8 @@ int exit_code_of(const cloth::ReplayResult& result) {
     case cloth::Status::finished:
       break;
   }
-  return result.agrees.value_or(true) ? done : differs;
+  if (!result.agrees.value_or(true)) return differs;
+  return result.run.summary.rate_breach ? rate_not_kept : done;
 }
 
 void say_what_went_wrong(const cloth::Session& session, const cloth::ReplayResult& result) {

@@ -19,10 +19,10 @@
 namespace clothlab::cli {
 namespace {
 
-int exit_code_of(cloth::Status status) {
-  switch (status) {
+int exit_code_of(const cloth::RunSummary& summary) {
+  switch (summary.status) {
     case cloth::Status::finished:
-      return done;
+      return summary.rate_breach ? rate_not_kept : done;
     case cloth::Status::diverged:
       return diverged;
     case cloth::Status::stopped:
@@ -109,7 +109,7 @@ int run(const RunArguments& arguments) {
     if (const auto error = write_cloth(scene, result.final_state, arguments.obj)) return report(*error);
   const int printed =
       print(arguments.json ? cloth::summary_json(summary) : summary_text(summary, arguments.folder));
-  return printed == done ? exit_code_of(summary.status) : printed;
+  return printed == done ? exit_code_of(summary) : printed;
 }
 
 }  // namespace clothlab::cli

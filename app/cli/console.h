@@ -14,7 +14,16 @@
 namespace clothlab::cli {
 
 /// `defect`: an error of the program itself, which no input should bring about.
-enum ExitCode { done = 0, defect = 1, bad_input = 2, diverged = 3, io_failed = 4, differs = 5, interrupted = 130 };
+enum ExitCode {
+  done = 0,
+  defect = 1,
+  bad_input = 2,
+  diverged = 3,
+  rate_not_kept = 3,
+  io_failed = 4,
+  differs = 5,
+  interrupted = 130
+};
 
 /// A scene, or the exit code of a command whose messages are already on standard error.
 struct LoadedScene {

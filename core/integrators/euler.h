@@ -24,12 +24,18 @@ class SemiImplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool drifts_with_end_velocity() const override { return true; }
-  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
+  bool set_drift_constraint(DriftConstraint* constraint) override {
+    constraint_ = constraint;
+    return true;
+  }
+  bool gains_unseen(const ForceModel& forces) const override {
+    return forces.gains_steps_at_once() && !constraint_;
+  }
   IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
                                 ClothState& state, Work& work) override;
 
  private:
+  DriftConstraint* constraint_ = nullptr;
   Vec3Field force_;
 };
 

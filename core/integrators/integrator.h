@@ -46,16 +46,20 @@ struct IntegratorMemory {
   std::vector<double> numbers;
 };
 
-/// What the positions must obey whatever the forces say, as a method with a drift between two kicks asks for
-/// it. Nothing of it is a force of the model.
+/// What the positions must obey whatever the forces say, as a method that kicks and then drifts asks for it.
+/// Nothing of it is a force of the model, but what it needed in the last step it may hold as one in the next.
 class DriftConstraint {
  public:
   virtual ~DriftConstraint() = default;
-  /// At the step's begin, before the first kick.
-  virtual void before_kick(const ClothState& state) = 0;
-  /// After the drift: moves positions to where they may be, and changes the velocity, which led there, by
-  /// displacement/h.
-  virtual void after_drift(ClothState& state) = 0;
+  /// Whether before_kick() would change the velocity.
+  virtual bool holds() const = 0;
+  /// At the step's begin, when the forces are known: their kick of `kick` seconds follows. Adds its own.
+  virtual void before_kick(double kick, ClothState& state) = 0;
+  /// After the drift: moves positions to where they may be, changes the velocity, which led there, by
+  /// displacement/h, and adds its part of a closing kick of `closing_kick` seconds.
+  virtual void after_drift(double closing_kick, ClothState& state) = 0;
+  /// Adds that part to a velocity that is made anew from the drift's.
+  virtual void close(ClothState& state) = 0;
 };
 
 class Integrator {

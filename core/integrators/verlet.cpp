@@ -22,10 +22,10 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
 
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
-  if (constraint_) constraint_->before_kick(state);
+  if (constraint_) constraint_->before_kick(0.5 * h, state);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
-  if (constraint_) constraint_->after_drift(state);
+  if (constraint_) constraint_->after_drift(0.5 * h, state);
   forces.update(state.position, times.end);
   ++report.force_evaluations;
   report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
@@ -63,6 +63,7 @@ int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, doubl
 void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                               const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
+  if (constraint_) constraint_->close(state);
   forces.update(state.position, times.end);
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   finish_velocity(system, forces, 0.5 * times.step, state);
@@ -75,6 +76,7 @@ void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, co
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   holds_force_ = false;
   state.velocity = half_velocity;
+  if (constraint_) constraint_->close(state);
   add_acceleration(system, 0.5 * times.step, force(forces), state.velocity);
 }
 

@@ -161,6 +161,21 @@ std::string version() {
   return CLOTHLAB_VERSION;
 }
 
+namespace {
+
+json breach_json(const RateBreach& breach) {
+  return {{"message", describe(breach)},
+          {"first_step", breach.first_step},
+          {"first_time_s", breach.first_time},
+          {"particles", {breach.first_particle, breach.second_particle}},
+          {"first_excess", breach.first_excess},
+          {"largest_excess", breach.largest_excess},
+          {"largest_step", breach.largest_step},
+          {"steps", breach.steps}};
+}
+
+}  // namespace
+
 std::string summary_json(const RunSummary& s) {
   json root{{"program", "clothlab"},
             {"version", version()},
@@ -187,6 +202,7 @@ std::string summary_json(const RunSummary& s) {
   for (const StepChange& change : s.step_changes)
     root["time_step_changes"].push_back(
         {{"step", change.step}, {"time_s", change.time}, {"time_step_s", change.time_step}});
+  if (s.rate_breach) root["rate_not_kept"] = breach_json(*s.rate_breach);
   if (!s.notice.empty()) root["notice"] = s.notice;
   if (!s.files.empty()) root["files"] = digests_json(s.files);
   root["threads"] = s.threads;

@@ -47,6 +47,7 @@ struct RunSummary {
   double limiter_excess = 0;  ///< largest of all rows
   Status status = Status::finished;
   std::optional<Divergence> divergence;
+  std::optional<RateBreach> rate_breach;
   std::vector<StepChange> step_changes;  ///< where "auto" has shortened the step
   std::string notice;                    ///< e.g. a rate that the pins make unreachable
   int threads = 1;

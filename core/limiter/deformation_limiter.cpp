@@ -217,27 +217,6 @@ double DeformationLimiter::work(const ClothSystem& system, const Vec3& gravity, 
   return work;
 }
 
-double DeformationLimiter::impulse_work(const ClothSystem& system, double time_step,
-                                        const Vec3Field& velocity, const ClothState& state) const {
-  const double per_step = 1 / time_step;
-  const double* x[] = {state.position.x(), state.position.y(), state.position.z()};
-  const double* x0[] = {before_.x(), before_.y(), before_.z()};
-  const double* v[] = {velocity.x(), velocity.y(), velocity.z()};
-  double work = 0;
-  for (int row = 0; row < system.rows; ++row) {
-    if (!has_moved(row)) continue;
-    const auto first = static_cast<std::size_t>(system.index(row, 0));
-    for (int axis = 0; axis < 3; ++axis)
-      work += ordered_sum(static_cast<std::size_t>(system.columns),
-                          [=, m = system.mass.data() + first, to = x[axis] + first, from = x0[axis] + first,
-                           speed = v[axis] + first](std::size_t k) {
-                            const double change = (to[k] - from[k]) * per_step;
-                            return m[k] * change * (speed[k] + 0.5 * change);
-                          });
-  }
-  return work;
-}
-
 namespace {
 
 /// Which springs of a grid make up chains.

@@ -50,11 +50,6 @@ class DeformationLimiter {
   double work(const ClothSystem& system, const Vec3& gravity, double time_step,
               const ClothState& state) const;
 
-  /// What the velocity changes of the last `apply`, in m/s in `state`, do to the kinetic energy of a cloth
-  /// that moves with `velocity`, in J: the work of the limiter's impulses on it.
-  double impulse_work(const ClothSystem& system, double time_step, const Vec3Field& velocity,
-                      const ClothState& state) const;
-
   /// Whether the pins are known to make the rate unreachable. "auto" then stays with sweeps.
   void set_unreachable(bool unreachable) { unreachable_ = unreachable; }
 

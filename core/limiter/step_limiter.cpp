@@ -1,11 +1,58 @@
 #include "limiter/step_limiter.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/sums.h"
+
 namespace cloth {
+namespace {
+
+/// The kinetic energy that velocity changes add to a cloth whose velocity is `velocity` + share * change when
+/// they come: sum m change . (velocity + share change), J.
+double work_of_changes(const ClothSystem& system, const Vec3Field& change, const Vec3Field& velocity,
+                       double share) {
+  const double* by[] = {change.x(), change.y(), change.z()};
+  const double* v[] = {velocity.x(), velocity.y(), velocity.z()};
+  double work = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    work += ordered_sum(change.size(), [m = system.mass.data(), d = by[axis], u = v[axis], share](std::size_t k) {
+      return m[k] * d[k] * (u[k] + share * d[k]);
+    });
+  return work;
+}
+
+void size_like(const Vec3Field& field, Vec3Field& result) {
+  if (result.size() != field.size()) result = Vec3Field(field.size());
+}
+
+}  // namespace
+
+StepLimiter::StepLimiter(const Deformation& deformation, const ClothSystem& system)
+    : deformation_(deformation), system_(&system), limiter_(deformation, system) {
+  if (deformation.solver != "auto") return;
+  tensions_.emplace(deformation, system);
+  tension_.assign(tensions_->springs().size(), 0.0);
+}
+
+void StepLimiter::set_unreachable(bool unreachable) {
+  limiter_.set_unreachable(unreachable);
+  if (tensions_) tensions_->set_unreachable(unreachable);
+}
+
+void StepLimiter::set_tension(const std::vector<double>& tension) {
+  if (tension.size() == tension_.size())
+    tension_ = tension;
+  else
+    std::fill(tension_.begin(), tension_.end(), 0.0);
+  holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
+}
 
 void StepLimiter::begin(double time_step) {
   time_step_ = time_step;
   report_ = {};
   work_ = 0;
+  opened_ = closed_ = false;
 }
 
 void StepLimiter::begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity) {
@@ -14,44 +61,121 @@ void StepLimiter::begin_step(double time_step, const ClothState& state, bool dri
   if (drifts_with_end_velocity) start_velocity_ = state.velocity;
 }
 
-bool StepLimiter::apply(ClothState& state) {
-  report_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_.excess(state.position)};
-  if (limiter_.accepts(report_.excess)) return false;
-  report_ = limiter_.apply(*system_, time_step_, state);
+bool StepLimiter::holds() const {
+  return holds_ && !tensions_->unreachable();
+}
+
+/// velocity += duration W J^T tension; leaves the force in pull_.
+void StepLimiter::pull(double duration, const std::vector<double>& tension, ClothState& state) {
+  size_like(state.position, pull_);
+  pull_.fill(0);
+  tensions_->add_force(tension, state.position, pull_);
+  add_acceleration(*system_, duration, pull_, state.velocity);
+}
+
+void StepLimiter::before_kick(double kick, ClothState& state) {
+  start_velocity_ = state.velocity;
+  opened_ = holds();
+  if (!opened_) return;
+  held_ = tensions_->held(tension_, time_step_);
+  pull(kick, held_, state);
+  size_like(state.position, change_);
+  change_.fill(0);
+  add_acceleration(*system_, kick, pull_, change_);
+}
+
+/// Brings the positions within the rate and leaves in report_ what is left. False: they were already.
+bool StepLimiter::move(ClothState& state) {
+  if (!tensions_ || !opened_) {
+    report_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_.excess(state.position)};
+    if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
+    if (limiter_.accepts(report_.excess)) return false;
+  }
+  drifted_ = state.position;
+  if (!tensions_) {
+    report_ = limiter_.apply(*system_, time_step_, state);
+    return true;
+  }
+  if (opened_) tension_ = held_;
+  const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position);
+  report_ = {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess};
+  holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
+  const auto to = state.position.flat(), from = drifted_.flat(), speed = state.velocity.flat();
+  for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
   return true;
 }
 
-void StepLimiter::before_kick(const ClothState& state) {
-  start_velocity_ = state.velocity;
-}
-
-/// The kinetic energy that the impulses p add to the velocity v with which the step began, p (v + p/(2 m)).
-/// So counted, Verlet keeps its balance of energy up to a term of order h^2 that swings and does not grow.
-void StepLimiter::after_drift(ClothState& state) {
-  if (apply(state)) work_ = limiter_.impulse_work(*system_, time_step_, start_velocity_, state);
-}
-
-/// A method that drifts with its end velocity takes the impulse along: it works on the mean of the
-/// velocities at the step's begin and end. Otherwise what is moved after the step has done its work at once.
-bool StepLimiter::after_step(const Vec3& gravity, ClothState& state) {
-  if (limiter_.accepts(report_.excess = limiter_.excess(state.position))) return false;
-  if (drifts_with_end_velocity_) {
-    const auto start = start_velocity_.flat();
-    const auto end = state.velocity.flat();
-    for (std::size_t k = 0; k < start.size(); ++k) start[k] = 0.5 * (start[k] + end[k]);
+/// A kick, a drift, a closing kick: what opening kick and limiting change is counted as if it came first, and
+/// the closing kick as if it came last. So counted, Verlet keeps its balance of energy up to a term of order
+/// h^2 that swings and does not grow. Where the drift goes with the end velocity it is counted on the mean of
+/// the velocities at both ends, for the same reason.
+void StepLimiter::after_drift(double closing_kick, ClothState& state) {
+  const bool moved = move(state);
+  closing_kick_ = closing_kick;
+  if (moved || opened_) {
+    size_like(state.position, change_);
+    if (!opened_) change_.fill(0);
+    if (moved) {
+      const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
+      for (std::size_t k = 0; k < change.size(); ++k) change[k] += (to[k] - from[k]) / time_step_;
+    }
+    work_ = closing_kick > 0
+                ? work_of_changes(*system_, change_, start_velocity_, 0.5)
+                : 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
+                         work_of_changes(*system_, change_, state.velocity, 0));
   }
-  report_ = limiter_.apply(*system_, time_step_, state);
-  work_ = drifts_with_end_velocity_ ? limiter_.impulse_work(*system_, time_step_, start_velocity_, state)
-                                    : limiter_.work(*system_, gravity, time_step_, state);
+  close(state);
+}
+
+void StepLimiter::close(ClothState& state) {
+  closed_ = closing_kick_ > 0 && holds();
+  if (!closed_) return;
+  pull(closing_kick_, tensions_->held(tension_, time_step_), state);
+  size_like(state.position, closing_);
+  closing_.fill(0);
+  add_acceleration(*system_, closing_kick_, pull_, closing_);
+}
+
+void StepLimiter::end_step(const ClothState& state) {
+  if (closed_) *work_ += work_of_changes(*system_, closing_, state.velocity, -0.5);
+}
+
+/// A method that drifts with its end velocity takes the impulse along, see above. Of others the account is
+/// the energy after it less that before.
+bool StepLimiter::after_step(ClothState& state) {
+  if (!move(state)) return false;
+  if (!drifts_with_end_velocity_) {
+    work_.reset();
+    return true;
+  }
+  size_like(state.position, change_);
+  const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+  work_ = 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
+                 work_of_changes(*system_, change_, state.velocity, 0));
   return true;
 }
 
 void StepLimiter::limit_start(double time_step, ClothState& state) {
   begin(time_step);
   const Vec3Field velocity = state.velocity;
-  apply(state);
+  move(state);
   state.velocity = velocity;
+  set_tension({});
   report_ = {};
+}
+
+std::pair<int, int> StepLimiter::worst_spring(const Vec3Field& position) const {
+  std::pair<int, int> worst{0, 0};
+  double largest = -1;
+  for (const TensionSpring& spring : tension_springs(deformation_, *system_)) {
+    const double over = (position[spring.second] - position[spring.first]).norm() - spring.limit;
+    if (system_->pinned[spring.first] && system_->pinned[spring.second]) continue;
+    if (over / spring.rest_length <= largest) continue;
+    largest = over / spring.rest_length;
+    worst = {static_cast<int>(spring.first), static_cast<int>(spring.second)};
+  }
+  return worst;
 }
 
 }  // namespace cloth

@@ -1,51 +1,84 @@
-// The deformation rate as a stage of the step. Where a method has a drift between two kicks, the rate is kept
-// between them (SHAKE: Ryckaert, Ciccotti, Berendsen 1977; RATTLE: Andersen 1983), so that the closing kick
-// takes the forces of the limited shape. A kick by the forces of the overstretched one, which the limiter has
-// already brought back, throws a taut spring back with restitution (omega h)^2/2: more than it came with,
-// beyond 0.71 of the stable step. After other methods the rate is kept at the step's end.
+// The deformation rate as a stage of the step. Where a method has a drift, the rate is kept at its end (SHAKE:
+// Ryckaert, Ciccotti, Berendsen 1977; RATTLE: Andersen 1983), so that a closing kick takes the forces of the
+// limited shape. A kick by the forces of the overstretched one, which the limiter has already brought back,
+// throws a taut spring back with restitution (omega h)^2/2: more than it came with, beyond 0.71 of the stable
+// step. Tensions that the last step has found act as forces in the kicks of the next one, opening and closing
+// alike, so that only their changes are left to find and a taut cloth at rest has no speed. After other
+// methods the rate is kept at the step's end, from no tension.
 #pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "integrators/integrator.h"
 #include "limiter/deformation_limiter.h"
+#include "limiter/tension_solver.h"
 
 namespace cloth {
 
 class StepLimiter : public DriftConstraint {
  public:
-  StepLimiter(const Deformation& deformation, const ClothSystem& system)
-      : system_(&system), limiter_(deformation, system) {}
+  StepLimiter(const Deformation& deformation, const ClothSystem& system);
 
   /// Whether the pins are known to make the rate unreachable, from the next step on.
-  void set_unreachable(bool unreachable) { limiter_.set_unreachable(unreachable); }
+  void set_unreachable(bool unreachable);
 
   /// A step of `time_step` seconds begins, by a method with or without drifts_with_end_velocity().
   void begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity);
 
-  void before_kick(const ClothState& state) override;
-  void after_drift(ClothState& state) override;
+  bool holds() const override;
+  void before_kick(double kick, ClothState& state) override;
+  void after_drift(double closing_kick, ClothState& state) override;
+  void close(ClothState& state) override;
+  /// After the closing kick: adds its part to work().
+  void end_step(const ClothState& state);
 
   /// For methods that do not call the constraint. Returns whether anything was moved.
-  bool after_step(const Vec3& gravity, ClothState& state);
+  bool after_step(ClothState& state);
 
   /// Brings a start within the rate; no motion led there, so that none comes of it.
   void limit_start(double time_step, ClothState& state);
 
   const LimiterReport& report() const { return report_; }  ///< of the last step
+  bool is_kept() const { return limiter_.accepts(report_.excess); }
+  /// The ends of the spring that is furthest beyond the rate.
+  std::pair<int, int> worst_spring(const Vec3Field& position) const;
 
-  /// J, given to the cloth in the last step (negative: taken).
-  double work() const { return work_; }
+  /// J, given to the cloth in the last step (negative: taken). Nothing where a method without a drift of its
+  /// own was moved after the step and goes with another velocity than drifts_with_end_velocity() says: that
+  /// is the energy after it less that before.
+  std::optional<double> work() const { return work_; }
+
+  /// N, what the next step will hold: to be remembered with a state.
+  const std::vector<double>& tension() const { return tension_; }
+  void set_tension(const std::vector<double>& tension);
 
  private:
   void begin(double time_step);
-  bool apply(ClothState& state);
+  bool move(ClothState& state);
+  void pull(double duration, const std::vector<double>& tension, ClothState& state);
 
+  Deformation deformation_;
   const ClothSystem* system_;
   DeformationLimiter limiter_;
-  double time_step_ = 0;      ///< s
+  std::optional<TensionSolver> tensions_;  ///< none: the limiter's sweeps or its nearest shape
+  std::vector<double> tension_;            ///< N, at the end of the last step
+  std::vector<double> held_;               ///< N, in the present step's opening kick
+  bool holds_ = false;                     ///< any of tension_ is above 0
+
+  // Of the present step.
+  double time_step_ = 0;  ///< s
   bool drifts_with_end_velocity_ = false;
-  Vec3Field start_velocity_;  ///< m/s, before the first kick
+  double closing_kick_ = 0;     ///< s
+  Vec3Field start_velocity_;    ///< m/s, before the first kick
+  Vec3Field drifted_;           ///< m
+  Vec3Field change_, closing_;  ///< m/s, by opening kick and limiting; by the closing kick
+  bool opened_ = false, closed_ = false;
+  Vec3Field pull_;  ///< N, scratch
   LimiterReport report_;
-  double work_ = 0;
+  std::optional<double> work_;
 };
 
 }  // namespace cloth

@@ -114,7 +114,7 @@ const Fields<Deformation>& deformation_fields() {
       integer(&D::max_sweeps,
               {.key = "max_sweeps",
                .label = "Most sweeps",
-               .doc = "Sweeps over the limited springs per step before the rest is reported as excess.",
+               .doc = "Of the solver "sweeps": how many per step before the rest is reported as excess.",
                .scale = Scale::logarithmic,
                .minimum = 1,
                .maximum = 1000000,
@@ -123,8 +123,8 @@ const Fields<Deformation>& deformation_fields() {
       choice(&D::solver,
              {.key = "solver",
               .label = "Solver",
-              .doc = "How the rate is kept: sweeps as Provot's, the nearest shape that obeys it by "
-                     "a direct method, or sweeps while they are expected to arrive first.",
+              .doc = "How the rate is kept: by tensions of the limited springs (auto), by sweeps as "
+                     "Provot's, or by the nearest shape that obeys it.",
               .choices = {"auto", "sweeps", "direct"}}),
   };
   return fields;

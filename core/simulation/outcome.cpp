@@ -61,4 +61,20 @@ std::string describe(const std::vector<StepChange>& changes) {
   return text;
 }
 
+std::string describe(const RateBreach& b) {
+  const auto particle = [&](int i) {
+    return b.columns > 0 ? fmt::format("{} (row {}, column {})", i, i / b.columns, i % b.columns)
+                         : std::to_string(i);
+  };
+  const std::string also =
+      b.steps > 1 ? fmt::format("; so it was in {} steps, worst in step {} with {:.3g} %", b.steps,
+                                b.largest_step, 100 * b.largest_excess)
+                  : "";
+  return fmt::format(
+      "rate not kept: in step {} (t = {:.6g} s) the spring between particles {} and {} is left {:.3g} % of "
+      "its rest length beyond deformation.rate{}{}",
+      b.first_step, b.first_time, particle(b.first_particle), particle(b.second_particle),
+      100 * b.first_excess, b.unreachable ? ", which the pins make unreachable" : "", also);
+}
+
 }  // namespace cloth

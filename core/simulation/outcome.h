@@ -50,4 +50,22 @@ std::string describe(const Divergence& divergence);
 /// One sentence: how often and where the step became shorter. Empty: never.
 std::string describe(const std::vector<StepChange>& changes);
 
+/// Where springs were left beyond the deformation rate and its tolerance. The run goes on, but it is not the
+/// run that the scene asks for.
+struct RateBreach {
+  std::int64_t steps = 0;       ///< in which that was so
+  std::int64_t first_step = 0;  ///< the first of them
+  double first_time = 0;        ///< s, at its end
+  int first_particle = 0, second_particle = 0;  ///< ends of the spring that was furthest beyond then
+  double first_excess = 0;                      ///< (|d| - (1 + rate) L)/L of that spring
+  std::int64_t largest_step = 0;                ///< where it was worst
+  double largest_excess = 0;
+  bool unreachable = false;  ///< in the first of them the pins were too far apart
+  int columns = 0;           ///< of the grid; 0 for a mesh
+  bool operator==(const RateBreach&) const = default;
+};
+
+/// One sentence, "rate not kept: ...".
+std::string describe(const RateBreach& breach);
+
 }  // namespace cloth

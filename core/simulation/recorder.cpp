@@ -227,6 +227,8 @@ class Run {
                      : !ended_ || !problems_.empty() ? Status::stopped
                                                      : Status::finished;
     if (!summary.divergence) note(describe(summary.energy));
+    summary.rate_breach = simulation_.rate_breach();
+    if (summary.rate_breach) note(describe(*summary.rate_breach));
     if (!folder_.is_open()) return;
     keep(record_.close());
     if (!summary.step_changes.empty()) keep(write_scene_file(scene_));  // no one step repeats this run

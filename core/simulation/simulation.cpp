@@ -57,9 +57,12 @@ Simulation::~Simulation() = default;
 void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
   forces_->set_team(team_.get(), thread_use_);
+  const std::vector<double> tension = limiter_ ? limiter_->tension() : std::vector<double>();
   limiter_.reset();
-  if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_))
+  if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_)) {
     limiter_.emplace(*scene_.deformation, system_);
+    limiter_->set_tension(tension);
+  }
   limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
   contact_.reset();
   continuous_contact_.reset();
@@ -207,10 +210,37 @@ void Simulation::limit_start() {
 
 /// Where the method has not had it done within the step.
 void Simulation::limit_deformation() {
-  if (!limits_drift_ && limiter_->after_step(gravity_of(scene_), state_))
-    integrator_->forget(Change::state);
+  if (limits_drift_) {
+    limiter_->end_step(state_);
+  } else {
+    const bool by_energy = !integrator_->drifts_with_end_velocity();
+    const double before = by_energy ? total_energy() : 0;
+    if (limiter_->after_step(state_)) {
+      if (by_energy) ledger_.limiter += total_energy() - before;
+      integrator_->forget(Change::state);
+    }
+  }
   last_limit_ = limiter_->report();
-  ledger_.limiter += limiter_->work();
+  ledger_.limiter += limiter_->work().value_or(0);
+  if (!limiter_->is_kept() && std::isfinite(last_limit_.excess)) note_breach();
+}
+
+void Simulation::note_breach() {
+  if (!rate_breach_) {
+    const auto [first, second] = limiter_->worst_spring(state_.position);
+    rate_breach_ = RateBreach{.first_step = state_.step + 1,
+                              .first_time = first_time_ +
+                                            static_cast<double>(state_.step + 1 - first_step_) * time_step_,
+                              .first_particle = first,
+                              .second_particle = second,
+                              .first_excess = last_limit_.excess,
+                              .unreachable = unreachable_.has_value(),
+                              .columns = system_.is_mesh() ? 0 : system_.columns};
+  }
+  ++rate_breach_->steps;
+  if (!(last_limit_.excess > rate_breach_->largest_excess)) return;
+  rate_breach_->largest_excess = last_limit_.excess;
+  rate_breach_->largest_step = state_.step + 1;
 }
 
 TriangleMesh Simulation::cloth_mesh() const {
@@ -254,7 +284,7 @@ void Simulation::edit(const Scene& scene) {
 }
 
 std::size_t Checkpoint::bytes() const {
-  std::size_t numbers = memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
+  std::size_t numbers = tension.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
   numbers += contact_memory.lent.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
@@ -282,7 +312,9 @@ Checkpoint Simulation::checkpoint() const {
           .thickness_carry = thickness_carry_,
           .obstacle_speed = obstacle_speed_,
           .contact_impulse = contact_impulse_,
-          .contact_memory = contact_memory_};
+          .contact_memory = contact_memory_,
+          .tension = limiter_ ? limiter_->tension() : std::vector<double>(),
+          .rate_breach = rate_breach_};
 }
 
 void Simulation::restore(const Checkpoint& checkpoint) {
@@ -300,6 +332,8 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   if (same_step && watches_step_) time_step_ = checkpoint.time_step;
   if (same_step && watches_step_) automatic_ = checkpoint.automatic;
   last_limit_ = checkpoint.last_limit;
+  if (limiter_) limiter_->set_tension(checkpoint.tension);
+  rate_breach_ = checkpoint.rate_breach;
   last_contact_ = checkpoint.last_contact;
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
   carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};

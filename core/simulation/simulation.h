@@ -91,6 +91,8 @@ struct Checkpoint {
   double obstacle_speed = 0;      ///< m/s, the highest so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
   ContactMemory contact_memory;
+  std::vector<double> tension;  ///< N, of the limited springs, as the limiter holds them
+  std::optional<RateBreach> rate_breach;
 
   std::size_t bytes() const;
 };
@@ -165,6 +167,8 @@ class Simulation {
   const StepCount& count() const { return count_; }
   /// Of the last step.
   const LimiterReport& last_limit() const { return last_limit_; }
+  /// Where so far the deformation rate was not kept within its tolerance.
+  const std::optional<RateBreach>& rate_breach() const { return rate_breach_; }
   const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
@@ -207,6 +211,7 @@ class Simulation {
   void find_unreachable();
   void limit_start();
   void limit_deformation();
+  void note_breach();
   void resolve_contact(const StepTimes& times);
   void book_contact(const StepTimes& times);
   void end_contact();
@@ -251,6 +256,7 @@ class Simulation {
   Quantities quantities_;
   StepCount count_;
   LimiterReport last_limit_;
+  std::optional<RateBreach> rate_breach_;
   ContactReport last_contact_;
   Vec3 contact_impulse_{0, 0, 0};  ///< N s, of continuous contact since t = 0
   std::optional<UnreachableRate> unreachable_;

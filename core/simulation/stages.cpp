@@ -56,7 +56,7 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
   const Deformation& deformation = *scene.deformation;
   std::string how = fmt::format("at most {} sweeps a step", deformation.max_sweeps);
   if (deformation.solver == "direct") how = "the nearest shape, by the direct solver";
-  if (deformation.solver == "auto") how += ", the direct solver where they would not do or would take longer";
+  if (deformation.solver == "auto") how = "by tensions of the springs";
   return {name, true,
           fmt::format("{} springs to {} %, {}", fmt::join(deformation.springs, " and "),
                       100 * deformation.rate, how)};

@@ -323,6 +323,10 @@ void SimulationWorker::publish_status() {
     for (const std::string& notice : cloth::scene_notices(simulation_->scene()))
       status_.notice += notice + '\n';
     if (unreachable) status_.notice += cloth::describe(*unreachable, simulation_->system()) + '\n';
+    if (auto breach = simulation_->rate_breach()) {
+      breach->steps = 1;  // a notice that does not change with every step
+      status_.notice += cloth::describe(*breach) + '\n';
+    }
     status_.notice += energy_.notice();
     if (status_.notice.ends_with('\n')) status_.notice.pop_back();
     if (!status_.scene || *status_.scene != simulation_->scene())

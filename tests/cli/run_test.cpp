@@ -86,6 +86,21 @@ TEST(Run, ThatDivergesExitsWithThreeAndKeepsTheLastGoodState) {
     EXPECT_TRUE(std::isfinite(value));
 }
 
+TEST(Run, ThatDoesNotKeepItsRateGoesOnAndExitsWithThree) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      cli("run corners-shear --set duration=0.1 --set deformation.rate=0.001 --set deformation.solver=sweeps "
+          "--set deformation.max_sweeps=1 " +
+          out(folder));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(has(result.errors, "rate not kept: in step ")) << result.errors;
+  const auto summary = nlohmann::json::parse(content_of(folder / "result/summary.json"));
+  EXPECT_EQ(summary["status"], "finished");
+  EXPECT_GT(summary["rate_not_kept"]["first_step"], 0);
+  EXPECT_EQ(summary["rate_not_kept"]["particles"].size(), 2u);
+  EXPECT_GE(summary["rate_not_kept"]["largest_excess"], summary["limiter_excess"]);
+}
+
 TEST(Run, WritesTheClothAfterTheLastStepAsAnObjFile) {
   const TemporaryFolder folder;
   const std::string obj = (folder / "the cloth.obj").string();

@@ -43,6 +43,28 @@ TEST(Comparison, GivesEachPaneTheSharedSceneWithItsOwnValues) {
   EXPECT_EQ(own_value(comparison.panes[1], "springs.shear"), nullptr);
 }
 
+TEST(AComparisonsFile, IsRefusedWhereAPanesClothStartsInAnObstacle) {
+  for (const bool continuous : {false, true}) {
+    Comparison comparison = two_panes();
+    comparison.scene.obstacles = {Obstacle{.shape = Shape::sphere, .center = {0, -5, 0}, .radius = 0.2}};
+    if (continuous) comparison.scene.contact = ContactSettings{};
+    ASSERT_TRUE(read_comparison(write_comparison(comparison), "two").comparison);
+    set_own(comparison.panes[1], "obstacles.0.center", Vec3(0.2, -0.2, 0));
+    const ComparisonReading reading = read_comparison(write_comparison(comparison), "two");
+    EXPECT_FALSE(reading.comparison);
+    ASSERT_EQ(reading.problems.size(), 1u);
+    EXPECT_EQ(reading.problems[0].path, "panes.1.obstacles.0");
+    EXPECT_NE(reading.problems[0].rule.find("the cloth starts in this obstacle"), std::string::npos);
+    ASSERT_EQ(find_start_problems(comparison).size(), 1u);
+
+    comparison = two_panes();
+    comparison.scene.obstacles = {Obstacle{.shape = Shape::sphere, .center = {0.2, -0.2, 0}, .radius = 0.2}};
+    if (continuous) comparison.scene.contact = ContactSettings{};
+    ASSERT_EQ(find_start_problems(comparison).size(), 1u) << "said once of what all share";
+    EXPECT_EQ(find_start_problems(comparison)[0].path, "scene.obstacles.0");
+  }
+}
+
 TEST(Comparison, LetsAPaneHaveSettingsThatOnlyItsMethodHas) {
   Comparison comparison = two_panes();
   comparison.panes[1].own = {{"integrator.tolerance", 1e-4}, {"integrator.method", "dormand-prince"}};
@@ -190,7 +212,7 @@ TEST(ALogOfEdits, SaysThatAValueIsSharedAgainAndThatTheHandLetsGo) {
 TEST(AComparisonFile, ReadsBackToTheSameComparison) {
   Comparison comparison = two_panes();
   comparison.panes[0].title = "Left, with \"quotes\"\nand lines";
-  comparison.scene.obstacles.emplace_back();
+  comparison.scene.obstacles.emplace_back().center = {0, -5, 0};
   set_own(comparison.panes[1], "integrator.time_step", 1.0 / 3e3);
   set_own(comparison.panes[1], "air.wind", Vec3(0.1, -2, 1e-7));
   set_own(comparison.panes[1], "obstacles.0.friction", 0.1);

@@ -114,7 +114,7 @@ const Fields<Deformation>& deformation_fields() {
       integer(&D::max_sweeps,
               {.key = "max_sweeps",
                .label = "Most sweeps",
-               .doc = "Of the solver "sweeps": how many per step before the rest is reported as excess.",
+               .doc = "Of the solver \"sweeps\": how many per step before the rest is reported as excess.",
                .scale = Scale::logarithmic,
                .minimum = 1,
                .maximum = 1000000,

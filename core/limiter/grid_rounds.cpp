@@ -10,60 +10,96 @@ namespace cloth {
 namespace {
 
 constexpr int rows_in_lanes = tension::lanes_of_rows;
-constexpr int lines_in_lanes = 32;  ///< columns or diagonals, about
+int first_of_block(int row) {
+  return row / rows_in_lanes * rows_in_lanes;
+}
+
+constexpr int lines_in_lanes = 128;  ///< columns or diagonals at most: what the cache holds
+constexpr int most_terms = 16;       ///< springs of a particle, in twelve directions
 
 }  // namespace
 
 GridRounds::GridRounds(const GridPlan& plan) : plan_(plan) {
-  const std::size_t size = plan.size();
-  for (AlignedDoubles* field : {&x_, &y_, &z_, &weight_, &sx_, &sy_, &sz_}) field->assign(size, 0.0);
-  zero_.assign(static_cast<std::size_t>(std::max(plan.stride, rows_in_lanes)), 0.0);
+  const std::size_t size = plan.size(), line = static_cast<std::size_t>(plan.stride) * rows_in_lanes;
+  for (AlignedDoubles* field : {&x_, &y_, &z_, &weight_}) field->assign(size, 0.0);
+  for (tension::AlignedFloats* field : {&light_, &sx_, &sy_, &sz_}) field->assign(size, 0.0f);
+  zero_.assign(line, 0.0f);
   shortest_ = std::numeric_limits<double>::infinity();
+  const std::size_t blocks = static_cast<std::size_t>((plan.rows + rows_in_lanes - 1) / rows_in_lanes);
   for (const GridFamily& member : plan.families) {
     Family& family = families_.emplace_back();
     family.plan = member;
     family.offset = plan.offset(member);
     shortest_ = std::min(shortest_, member.rest_length);
-    for (AlignedDoubles* field :
-         {&family.tension, &family.ax, &family.ay, &family.az, &family.over, &family.change, &family.residual,
-          &family.solved, &family.direction, &family.product})
-      field->assign(size, 0.0);
-    const std::size_t lanes = static_cast<std::size_t>((plan.rows + rows_in_lanes - 1) / rows_in_lanes) *
-                              static_cast<std::size_t>((plan.columns + 2 * plan.reach) * rows_in_lanes);
-    for (AlignedDoubles* field : {&family.link, &family.pivot})
-      field->assign(family.is_row() ? lanes : size, 0.0);
+    family.tension.assign(size, 0.0);
+    for (tension::AlignedFloats* field :
+         {&family.ax, &family.ay, &family.az, &family.over, &family.change, &family.residual, &family.solved,
+          &family.direction, &family.product})
+      field->assign(size, 0.0f);
+    for (tension::AlignedFloats* field : {&family.link, &family.pivot})
+      field->assign(family.is_row() ? blocks * line : size, 0.0f);
     family.lengths.resize(static_cast<std::size_t>(member.rows));
     family.residuals.resize(static_cast<std::size_t>(member.rows));
   }
-  const auto lanes = static_cast<std::size_t>((plan.columns + 2 * plan.reach) * rows_in_lanes);
-  for (AlignedDoubles* field : {&lanes_x_, &lanes_y_, &lanes_z_, &lanes_weight_, &lanes_})
-    field->assign(lanes, 0.0);
+  for (AlignedDoubles* field : {&lanes_x_, &lanes_y_, &lanes_z_, &lanes_}) field->assign(line, 0.0);
+  for (tension::AlignedFloats* field : {&floats_x_, &floats_y_, &floats_z_, &floats_})
+    field->assign(line, 0.0f);
+  lanes_weight_.assign(blocks * line, 0.0);
+  floats_weight_.assign(blocks * line, 0.0f);
+}
+
+/// They hardly ever change.
+void GridRounds::take_weights(const std::vector<double>& inverse_mass) {
+  if (inverse_mass == inverse_mass_) return;
+  inverse_mass_ = inverse_mass;
+  const double largest = *std::max_element(inverse_mass.begin(), inverse_mass.end());
+  const double per_largest = largest > 0 ? 1 / largest : 0;
+  for (int row = 0; row < plan_.rows; ++row)
+    for (int column = 0; column < plan_.columns; ++column) {
+      const auto i = static_cast<std::size_t>(plan_.index(row, column));
+      weight_[i] =
+          per_largest * inverse_mass[static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns) +
+                                     static_cast<std::size_t>(column)];
+      light_[i] = static_cast<float>(weight_[i]);
+    }
+  for (Family& family : families_) {
+    family.pins.assign(static_cast<std::size_t>(family.plan.rows), 0);
+    for (int row = 0; row < family.plan.rows; ++row)
+      for (int column = family.plan.begin; column < family.plan.end; ++column) {
+        const std::ptrdiff_t i = plan_.index(row, column);
+        const bool pins = !(
+            weight_[static_cast<std::size_t>(i)] + weight_[static_cast<std::size_t>(i + family.offset)] > 0);
+        family.pins[static_cast<std::size_t>(row)] |= static_cast<std::uint8_t>(pins);
+      }
+  }
+  for (int first = 0; first < plan_.rows; first += rows_in_lanes) {
+    const int count = std::min(rows_in_lanes, plan_.rows - first);
+    const std::ptrdiff_t i = plan_.index(first, 0), block = static_cast<std::ptrdiff_t>(first) * plan_.stride;
+    tension::into_lanes(weight_.data() + i, plan_.stride, count, plan_.columns, lanes_weight_.data() + block);
+    tension::into_lanes(light_.data() + i, plan_.stride, count, plan_.columns, floats_weight_.data() + block);
+  }
 }
 
 void GridRounds::begin(const TensionTask& task, const std::vector<double>& inverse_mass,
                        const std::vector<double>& tension, const Vec3Field& position) {
   task_ = task;
-  square_ = task.time_step * task.time_step;
-  const double* from[] = {position.x(), position.y(), position.z(), inverse_mass.data()};
-  AlignedDoubles* to[] = {&x_, &y_, &z_, &weight_};
+  take_weights(inverse_mass);
+  const double largest = *std::max_element(inverse_mass.begin(), inverse_mass.end());
+  unit_ = task.time_step * task.time_step * (largest > 0 ? largest : 1);
+  const double* from[] = {position.x(), position.y(), position.z()};
+  AlignedDoubles* to[] = {&x_, &y_, &z_};
   for (int row = 0; row < plan_.rows; ++row)
-    for (int k = 0; k < 4; ++k)
+    for (int k = 0; k < 3; ++k)
       std::copy_n(from[k] + static_cast<std::ptrdiff_t>(row) * plan_.columns, plan_.columns,
                   to[k]->data() + plan_.index(row, 0));
-  for (Family& family : families_) {
-    family.pins.assign(static_cast<std::size_t>(family.plan.rows), 0);
+  for (Family& family : families_)
     for (int row = 0; row < family.plan.rows; ++row) {
-      const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
       const int width = family.plan.width();
-      std::copy_n(tension.data() + family.plan.first_spring + static_cast<std::ptrdiff_t>(row) * width, width,
-                  family.tension.data() + i);
-      std::uint8_t& pins = family.pins[static_cast<std::size_t>(row)];
-      for (int c = 0; c < width; ++c)
-        pins |= !(weight_[static_cast<std::size_t>(i + c)] +
-                      weight_[static_cast<std::size_t>(i + c + family.offset)] >
-                  0);
+      const double* there =
+          tension.data() + family.plan.first_spring + static_cast<std::ptrdiff_t>(row) * width;
+      double* here = family.tension.data() + plan_.index(row, family.plan.begin);
+      for (int c = 0; c < width; ++c) here[c] = unit_ * there[c];
     }
-  }
   moved_ = {0, plan_.rows};
 }
 
@@ -75,10 +111,12 @@ void GridRounds::end(std::vector<double>& tension, Vec3Field& position) const {
       std::copy_n(from[k]->data() + plan_.index(row, 0), plan_.columns,
                   to[k] + static_cast<std::ptrdiff_t>(row) * plan_.columns);
   for (const Family& family : families_)
-    for (int row = 0; row < family.plan.rows; ++row)
-      std::copy_n(
-          family.tension.data() + plan_.index(row, family.plan.begin), family.plan.width(),
-          tension.data() + family.plan.first_spring + static_cast<std::ptrdiff_t>(row) * family.plan.width());
+    for (int row = 0; row < family.plan.rows; ++row) {
+      const double* here = family.tension.data() + plan_.index(row, family.plan.begin);
+      const int width = family.plan.width();
+      double* there = tension.data() + family.plan.first_spring + static_cast<std::ptrdiff_t>(row) * width;
+      for (int c = 0; c < width; ++c) there[c] = here[c] / unit_;
+    }
 }
 
 tension::Nodes GridRounds::nodes() {
@@ -86,7 +124,7 @@ tension::Nodes GridRounds::nodes() {
 }
 
 tension::SpringRule GridRounds::rule_of(const Family& family) const {
-  return {family.plan.limit, square_, task_.softness, least_ridge};
+  return {family.plan.limit, task_.softness, least_ridge};
 }
 
 /// Rows of a family's springs within an interval.
@@ -94,25 +132,30 @@ GridRounds::Interval GridRounds::rows_of(const Family& family, Interval rows) co
   return {std::max(rows.begin, 0), std::min(rows.end, family.plan.rows)};
 }
 
+void GridRounds::equate(Family& family, int row) {
+  const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
+  tension::evaluate_row(nodes(), i, family.offset, family.tension.data() + i, family.plan.width(),
+                        rule_of(family),
+                        {family.ax.data() + i, family.ay.data() + i, family.az.data() + i,
+                         family.over.data() + i, family.residual.data() + i});
+}
+
 void GridRounds::measure(Family& family, int row) {
   const auto r = static_cast<std::size_t>(row);
   const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
-  if (task_.softness > 0)
-    family.residuals[r] = tension::evaluate_row(
-        nodes(), i, family.offset, family.tension.data() + i, family.plan.width(), rule_of(family),
-        {family.ax.data() + i, family.ay.data() + i, family.az.data() + i, family.over.data() + i,
-         family.residual.data() + i});
-  else
-    family.lengths[r] = tension::measure_row(nodes(), i, family.offset, family.tension.data() + i,
-                                             family.plan.width(), family.pins[r] != 0);
+  const double* tension = family.tension.data() + i;
+  if (task_.softness > 0) {
+    equate(family, row);
+    family.residuals[r] = tension::residual_row(tension, family.over.data() + i, family.plan.width());
+  } else {
+    family.lengths[r] =
+        tension::measure_row(nodes(), i, family.offset, tension, family.plan.width(), family.pins[r] != 0);
+  }
 }
 
 bool GridRounds::is_active(const Family& family, int row) const {
   const auto r = static_cast<std::size_t>(row);
-  if (task_.softness > 0) {
-    const tension::RowResidual& found = family.residuals[r];
-    return found.over > 0 || found.slack > -std::numeric_limits<double>::infinity();
-  }
+  if (task_.softness > 0) return family.residuals[r].active;
   const tension::RowLengths& found = family.lengths[r];
   return found.longest > family.plan.limit * family.plan.limit ||
          found.shortest < std::numeric_limits<double>::infinity();
@@ -125,7 +168,7 @@ TensionResidual GridRounds::evaluate() {
     const Interval changed = rows_of(family, {moved_.begin - family.plan.down, moved_.end});
     for (int row = changed.begin; row < changed.end; ++row) measure(family, row);
     double longest = 0, shortest = std::numeric_limits<double>::infinity();
-    tension::RowResidual soft{0, 0};
+    tension::RowResidual soft;
     for (int row = 0; row < family.plan.rows; ++row) {
       const auto r = static_cast<std::size_t>(row);
       if (!is_active(family, row)) continue;
@@ -133,10 +176,13 @@ TensionResidual GridRounds::evaluate() {
       active_.end = std::max(active_.end, row + 1);
       longest = std::max(longest, family.lengths[r].longest);
       shortest = std::min(shortest, family.lengths[r].shortest);
-      soft = {std::max(soft.over, family.residuals[r].over), std::max(soft.slack, family.residuals[r].slack)};
+      soft.over = std::max(soft.over, family.residuals[r].over);
+      soft.slack = std::max(soft.slack, family.residuals[r].slack);
     }
-    if (!(task_.softness > 0))
-      soft = {std::sqrt(longest) - family.plan.limit, family.plan.limit - std::sqrt(shortest)};
+    if (!(task_.softness > 0)) {
+      soft.over = std::sqrt(longest) - family.plan.limit;
+      soft.slack = family.plan.limit - std::sqrt(shortest);
+    }
     found.excess = std::max(found.excess, soft.over / family.plan.rest_length);
     found.slack = std::max(found.slack, soft.slack / family.plan.rest_length);
   }
@@ -159,17 +205,18 @@ void GridRounds::sweep_lines(bool backwards) {
 void GridRounds::sweep_rows(Family& family) {
   const Interval rows = rows_of(family, {active_.begin - 1, active_.end + 1});
   const int columns = plan_.columns, across = family.plan.across;
-  for (int first = rows.begin; first < rows.end; first += rows_in_lanes) {
-    const int count = std::min(rows_in_lanes, rows.end - first);
+  for (int first = first_of_block(rows.begin); first < rows.end; first += rows_in_lanes) {
+    const int count = std::min(rows_in_lanes, plan_.rows - first);
     const std::ptrdiff_t i = plan_.index(first, 0);
     const auto load = [&](const AlignedDoubles& from, AlignedDoubles& to) {
       tension::into_lanes(from.data() + i, plan_.stride, count, columns, to.data());
     };
     load(x_, lanes_x_), load(y_, lanes_y_), load(z_, lanes_z_);
-    load(weight_, lanes_weight_), load(family.tension, lanes_);
+    load(family.tension, lanes_);
     for (int start = 0; start < across; ++start) {
       const tension::LineBlock block{
-          .nodes = {lanes_x_.data(), lanes_y_.data(), lanes_z_.data(), lanes_weight_.data()},
+          .nodes = {lanes_x_.data(), lanes_y_.data(), lanes_z_.data(),
+                    lanes_weight_.data() + static_cast<std::ptrdiff_t>(first) * plan_.stride},
           .tension = lanes_.data(),
           .first = start * rows_in_lanes,
           .step = across * rows_in_lanes,
@@ -194,14 +241,14 @@ void GridRounds::sweep_columns(Family& family) {
     // A line is told by the column in which it would stand in the row `start`.
     const int across = family.plan.across, drift = (count - 1) * across;
     const int low = family.plan.begin - std::max(0, drift), high = family.plan.end - std::min(0, drift);
-    const int blocks = std::max(1, (high - low) / lines_in_lanes), lanes = (high - low + blocks - 1) / blocks;
-    for (int column = low; column < high; column += lanes) {
+
+    for (int column = low; column < high; column += lines_in_lanes) {
       const tension::LineBlock block{.nodes = nodes(),
                                      .tension = family.tension.data(),
                                      .first = plan_.index(start, column),
                                      .step = family.offset,
                                      .count = count,
-                                     .lanes = std::min(lanes, high - column),
+                                     .lanes = std::min(lines_in_lanes, high - column),
                                      .begin = family.plan.begin - column,
                                      .end = family.plan.end - column,
                                      .shift = across};
@@ -214,12 +261,8 @@ void GridRounds::find_equations() {
   for (Family& family : families_) {
     const Interval rows = rows_of(family, active_);
     for (int row = rows.begin; row < rows.end; ++row) {
-      const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
-      tension::evaluate_row(nodes(), i, family.offset, family.tension.data() + i, family.plan.width(),
-                            rule_of(family),
-                            {family.ax.data() + i, family.ay.data() + i, family.az.data() + i,
-                             family.over.data() + i, family.residual.data() + i});
-      std::fill_n(family.change.data() + i, family.plan.width(), 0.0);
+      equate(family, row);
+      std::fill_n(family.change.data() + plan_.index(row, family.plan.begin), family.plan.width(), 0.0f);
     }
   }
 }
@@ -239,12 +282,12 @@ void GridRounds::factorise() {
         return tension::FactorRow{family.ax.data() + k,
                                   family.ay.data() + k,
                                   family.az.data() + k,
-                                  weight_.data() + k,
-                                  weight_.data() + k + family.offset,
+                                  light_.data() + k,
+                                  light_.data() + k + family.offset,
                                   family.link.data() + k,
                                   family.pivot.data() + k};
       };
-      const double* zero = zero_.data();
+      const float* zero = zero_.data();
       const bool first = row - family.plan.down < rows.begin;
       const tension::FactorRow none{zero, zero, zero, zero, zero, nullptr, zero_.data()};
       tension::factorise_row(at(i), first ? none : at(i - family.offset), ridge, width);
@@ -256,28 +299,26 @@ void GridRounds::factorise() {
 void GridRounds::factorise_lanes(Family& family) {
   const Interval rows = rows_of(family, active_);
   const int columns = plan_.columns, across = family.plan.across;
-  for (int first = rows.begin; first < rows.end; first += rows_in_lanes) {
-    const int count = std::min(rows_in_lanes, rows.end - first);
+  for (int first = first_of_block(rows.begin); first < rows.end; first += rows_in_lanes) {
+    const int count = std::min(rows_in_lanes, plan_.rows - first);
     const std::ptrdiff_t i = plan_.index(first, 0);
-    const auto load = [&](const AlignedDoubles& from, AlignedDoubles& to) {
+    const auto load = [&](const tension::AlignedFloats& from, tension::AlignedFloats& to) {
       tension::into_lanes(from.data() + i, plan_.stride, count, columns, to.data());
     };
-    load(family.ax, lanes_x_), load(family.ay, lanes_y_), load(family.az, lanes_z_),
-        load(weight_, lanes_weight_);
-    const std::ptrdiff_t block =
-        static_cast<std::ptrdiff_t>((first - rows.begin) / rows_in_lanes) * plan_.stride * rows_in_lanes;
+    load(family.ax, floats_x_), load(family.ay, floats_y_), load(family.az, floats_z_);
+    const std::ptrdiff_t block = static_cast<std::ptrdiff_t>(first) * plan_.stride;
     for (int c = 0; c < family.plan.end; ++c) {
       const auto at = [&](int column) {
         const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(column) * rows_in_lanes;
-        return tension::FactorRow{lanes_x_.data() + k,
-                                  lanes_y_.data() + k,
-                                  lanes_z_.data() + k,
-                                  lanes_weight_.data() + k,
-                                  lanes_weight_.data() + k + across * rows_in_lanes,
+        return tension::FactorRow{floats_x_.data() + k,
+                                  floats_y_.data() + k,
+                                  floats_z_.data() + k,
+                                  floats_weight_.data() + block + k,
+                                  floats_weight_.data() + block + k + across * rows_in_lanes,
                                   family.link.data() + block + k,
                                   family.pivot.data() + block + k};
       };
-      const double* zero = zero_.data();
+      const float* zero = zero_.data();
       const tension::FactorRow none{zero, zero, zero, zero, zero, nullptr, zero_.data()};
       tension::factorise_row(at(c), c < across ? none : at(c - across), ridge_of(task_), rows_in_lanes);
     }
@@ -285,14 +326,10 @@ void GridRounds::factorise_lanes(Family& family) {
 }
 
 void GridRounds::precondition_lanes(Family& family, int first) {
-  const Interval rows = rows_of(family, active_);
-  const int count = std::min(rows_in_lanes, rows.end - first), across = family.plan.across;
-  const std::ptrdiff_t i = plan_.index(first, 0);
-  const std::ptrdiff_t block =
-      static_cast<std::ptrdiff_t>((first - rows.begin) / rows_in_lanes) * plan_.stride * rows_in_lanes;
-  tension::solve_lanes({family.link.data() + block, family.pivot.data() + block, lanes_.data()},
-                       family.residual.data() + i, plan_.stride, count, family.plan.end, across,
-                       family.solved.data() + i);
+  const std::ptrdiff_t i = plan_.index(first, 0), block = static_cast<std::ptrdiff_t>(first) * plan_.stride;
+  tension::solve_lanes({family.link.data() + block, family.pivot.data() + block, floats_.data()},
+                       family.residual.data() + i, plan_.stride, std::min(rows_in_lanes, plan_.rows - first),
+                       family.plan.end, family.plan.across, family.solved.data() + i);
 }
 
 /// Of what is preconditioned, a row after those above it.
@@ -300,8 +337,8 @@ void GridRounds::eliminate(Family& family, int row) {
   const Interval rows = rows_of(family, active_);
   if (row < rows.begin || row >= rows.end) return;
   if (family.is_row()) {
-    if ((row + 1 - rows.begin) % rows_in_lanes == 0 || row + 1 == rows.end)
-      precondition_lanes(family, row - (row - rows.begin) % rows_in_lanes);
+    if ((row + 1) % rows_in_lanes == 0 || row + 1 == rows.end)
+      precondition_lanes(family, first_of_block(row));
     return;
   }
   const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
@@ -329,14 +366,13 @@ double GridRounds::precondition() {
   return product;
 }
 
-/// s of a row of particles
-void GridRounds::pull(int row, AlignedDoubles Family::*value) {
-  tension::PullTerm terms[2 * 8];
+/// What pulls on a row of particles: springs that begin there and springs that end there.
+int GridRounds::pulls_on(int row, tension::AlignedFloats Family::*value, tension::PullTerm* terms) const {
   int count = 0;
   const std::ptrdiff_t i = plan_.index(row, 0);
-  for (Family& family : families_) {
+  for (const Family& family : families_) {
     const Interval rows = rows_of(family, active_);
-    const auto add = [&](std::ptrdiff_t k, double sign) {
+    const auto add = [&](std::ptrdiff_t k, float sign) {
       terms[count++] = {family.ax.data() + k, family.ay.data() + k, family.az.data() + k,
                         (family.*value).data() + k, sign};
     };
@@ -344,14 +380,22 @@ void GridRounds::pull(int row, AlignedDoubles Family::*value) {
     const int above = row - family.plan.down;
     if (above >= rows.begin && above < rows.end) add(i - family.offset, -1);
   }
-  if (count == 0) return;
-  tension::pull_row(terms, count, weight_.data() + i, sx_.data() + i, sy_.data() + i, sz_.data() + i,
-                    plan_.columns);
+  return count;
+}
+
+/// s of a row of particles
+void GridRounds::pull(int row, tension::AlignedFloats Family::*value) {
+  tension::PullTerm terms[most_terms];
+  const int count = pulls_on(row, value, terms);
+  const std::ptrdiff_t i = plan_.index(row, 0);
+  if (count > 0)
+    tension::pull_row(terms, count, light_.data() + i, sx_.data() + i, sy_.data() + i, sz_.data() + i,
+                      plan_.columns);
 }
 
 /// product <- (J W J^T + ridge diagonal) value, row by row as the particles' rows become known. Returns
 /// value . product.
-double GridRounds::apply(AlignedDoubles Family::*value, double ridge) {
+double GridRounds::apply(tension::AlignedFloats Family::*value, double ridge) {
   double dot = 0;
   const int end = std::min(plan_.rows, active_.end + plan_.reach);
   for (int row = active_.begin; row < end; ++row) {
@@ -363,7 +407,7 @@ double GridRounds::apply(AlignedDoubles Family::*value, double ridge) {
       const std::ptrdiff_t i = plan_.index(begins, family.plan.begin);
       dot += tension::answer_row(
           {family.ax.data() + i, family.ay.data() + i, family.az.data() + i, (family.*value).data() + i,
-           weight_.data() + i, sx_.data() + i, sy_.data() + i, sz_.data() + i, family.product.data() + i},
+           light_.data() + i, sx_.data() + i, sy_.data() + i, sz_.data() + i, family.product.data() + i},
           family.offset, ridge, family.plan.width());
     }
   }
@@ -372,14 +416,15 @@ double GridRounds::apply(AlignedDoubles Family::*value, double ridge) {
 
 /// Returns the largest residual that is left.
 double GridRounds::advance(double length) {
-  double largest = 0;
+  float largest = 0;
   for (int row = active_.begin; row < active_.end; ++row)
     for (Family& family : families_) {
       if (row >= family.plan.rows) continue;
       const std::ptrdiff_t i = plan_.index(row, family.plan.begin);
-      largest = std::max(largest, tension::advance_row(length, family.direction.data() + i,
-                                                       family.product.data() + i, family.change.data() + i,
-                                                       family.residual.data() + i, family.plan.width()));
+      largest =
+          std::max(largest, tension::advance_row(static_cast<float>(length), family.direction.data() + i,
+                                                 family.product.data() + i, family.change.data() + i,
+                                                 family.residual.data() + i, family.plan.width()));
       eliminate(family, row);
     }
   return largest;
@@ -387,7 +432,7 @@ double GridRounds::advance(double length) {
 
 int GridRounds::conjugate_gradients() {
   const double ridge = ridge_of(task_);
-  double largest = 0;
+  float largest = 0;
   for (int row = active_.begin; row < active_.end; ++row)
     for (Family& family : families_) {
       if (row >= family.plan.rows) continue;
@@ -396,7 +441,7 @@ int GridRounds::conjugate_gradients() {
       eliminate(family, row);
     }
   const double enough =
-      std::max(enough_of_residual * largest, enough_of_tolerance * task_.tolerance * shortest_ / square_);
+      std::max(enough_of_residual * largest, enough_of_tolerance * task_.tolerance * shortest_);
   double product = precondition(), share = 0;
   int iterations = 0;
   while (iterations < most_gradients && product > 0) {
@@ -407,7 +452,7 @@ int GridRounds::conjugate_gradients() {
         if (iterations == 0)
           std::copy_n(family.solved.data() + i, family.plan.width(), family.direction.data() + i);
         else
-          tension::turn_row(family.solved.data() + i, share, family.direction.data() + i,
+          tension::turn_row(family.solved.data() + i, static_cast<float>(share), family.direction.data() + i,
                             family.plan.width());
       }
     const double length = product / apply(&Family::direction, ridge);
@@ -436,30 +481,25 @@ void GridRounds::take_step() {
     gain += found.gain;
     clipped = clipped || found.clipped;
   });
-  const double bend = apply(&Family::change, task_.softness);
-  if (clipped) length = gain > 0 ? std::min(1.0, gain / (square_ * bend)) : 0;
+  if (clipped) length = gain > 0 ? std::min(1.0, gain / apply(&Family::change, task_.softness)) : 0;
   if (!(length > 0)) {
     length = 1;
     each_row([&](Family& family, std::ptrdiff_t i) {
-      // The residual of the equations, not what conjugate gradients left of it.
-      for (int k = 0; k < family.plan.width(); ++k)
-        family.residual[static_cast<std::size_t>(i + k)] =
-            family.over[static_cast<std::size_t>(i + k)] / square_;
-      tension::steepest_row(steepest_share, family.residual.data() + i, weight_.data() + i,
-                            weight_.data() + i + family.offset, family.tension.data() + i,
+      tension::steepest_row(static_cast<float>(steepest_share), family.over.data() + i, light_.data() + i,
+                            light_.data() + i + family.offset, family.tension.data() + i,
                             family.change.data() + i, family.plan.width());
     });
-    apply(&Family::change, 0);
   }
   each_row([&](Family& family, std::ptrdiff_t i) {
     tension::raise_row(length, family.change.data() + i, family.tension.data() + i, family.plan.width());
   });
   const int end = std::min(plan_.rows, active_.end + plan_.reach);
   for (int row = active_.begin; row < end; ++row) {
+    tension::PullTerm terms[most_terms];
+    const int count = pulls_on(row, &Family::change, terms);
     const std::ptrdiff_t i = plan_.index(row, 0);
-    tension::add_row(length * square_, sx_.data() + i, x_.data() + i, plan_.columns);
-    tension::add_row(length * square_, sy_.data() + i, y_.data() + i, plan_.columns);
-    tension::add_row(length * square_, sz_.data() + i, z_.data() + i, plan_.columns);
+    tension::move_row(terms, count, length, weight_.data() + i, x_.data() + i, y_.data() + i, z_.data() + i,
+                      plan_.columns);
   }
   moved_ = {std::min(moved_.begin, active_.begin), std::max(moved_.end, end)};
 }

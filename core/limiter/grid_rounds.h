@@ -24,13 +24,13 @@ class GridRounds : public TensionRounds {
   struct Family {
     GridFamily plan;
     std::ptrdiff_t offset;
-    AlignedDoubles tension;
-    AlignedDoubles ax, ay, az, over;                              ///< equations
-    AlignedDoubles link, pivot;                                   ///< factors; of rows in lanes
-    AlignedDoubles change, residual, solved, direction, product;  ///< of conjugate gradients
-    std::vector<tension::RowLengths> lengths;                     ///< of each row
-    std::vector<tension::RowResidual> residuals;                  ///< of each row, of soft springs
-    std::vector<std::uint8_t> pins;                               ///< rows with springs between two pins
+    AlignedDoubles tension;                   ///< m, times h^2 and the largest inverse mass
+    tension::AlignedFloats ax, ay, az, over;  ///< equations
+    tension::AlignedFloats link, pivot;       ///< factors; of rows in lanes
+    tension::AlignedFloats change, residual, solved, direction, product;  ///< of conjugate gradients
+    std::vector<tension::RowLengths> lengths;                             ///< of each row
+    std::vector<tension::RowResidual> residuals;                          ///< of each row, of soft springs
+    std::vector<std::uint8_t> pins;  ///< rows with springs between two pins
     bool is_row() const { return plan.down == 0; }
   };
   struct Interval {
@@ -40,6 +40,8 @@ class GridRounds : public TensionRounds {
   tension::SpringRule rule_of(const Family& family) const;
   tension::Nodes nodes();
   bool is_active(const Family& family, int row) const;
+  void take_weights(const std::vector<double>& inverse_mass);
+  void equate(Family& family, int row);
   void measure(Family& family, int row);
   Interval rows_of(const Family& family, Interval rows) const;
   void sweep_rows(Family& family);
@@ -49,25 +51,31 @@ class GridRounds : public TensionRounds {
   void factorise_lanes(Family& family);
   void eliminate(Family& family, int row);
   void precondition_lanes(Family& family, int first_row);
-  void pull(int row, AlignedDoubles Family::*value);
+  int pulls_on(int row, tension::AlignedFloats Family::*value, tension::PullTerm* terms) const;
+  void pull(int row, tension::AlignedFloats Family::*value);
   double advance(double length);
   double precondition();
   int conjugate_gradients();
   void take_step();
-  double apply(AlignedDoubles Family::*value, double ridge);
+  double apply(tension::AlignedFloats Family::*value, double ridge);
 
   GridPlan plan_;
   TensionTask task_;
-  double square_ = 0;
+  double unit_ = 0;  ///< m/N, h^2 times the largest inverse mass
   std::vector<Family> families_;
+  std::vector<double> inverse_mass_;  ///< that the weights are of
   AlignedDoubles x_, y_, z_, weight_;
-  AlignedDoubles sx_, sy_, sz_;  ///< w J^T of what conjugate gradients look at
-  AlignedDoubles zero_;          ///< a row
-  Interval moved_;               ///< rows of particles since the last evaluation
-  Interval active_;              ///< rows in which active springs begin
-  double shortest_ = 0;          ///< rest length
+  tension::AlignedFloats light_;         ///< weights
+  tension::AlignedFloats sx_, sy_, sz_;  ///< w J^T of what conjugate gradients look at
+  tension::AlignedFloats zero_;          ///< a row
+  Interval moved_;                       ///< rows of particles since the last evaluation
+  Interval active_;                      ///< rows in which active springs begin
+  double shortest_ = 0;                  ///< rest length
   tension::LineScratch scratch_;
-  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_weight_, lanes_;  ///< rows side by side
+  AlignedDoubles lanes_weight_;  ///< of all rows, block after block
+  tension::AlignedFloats floats_weight_;
+  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_;              ///< rows side by side
+  tension::AlignedFloats floats_x_, floats_y_, floats_z_, floats_;  ///< rows side by side
 };
 
 }  // namespace cloth

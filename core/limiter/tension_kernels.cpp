@@ -10,10 +10,11 @@
 namespace cloth::tension {
 namespace {
 
-constexpr int parts = 8;
+constexpr int parts = 8;         // of doubles
+constexpr int float_parts = 16;  // of floats
 
-/// 1/sqrt(a) for a >= 0 to a few roundings, large but finite for 0: Newton's iteration from a linear guess in
-/// the exponent (Lomont 2003), four times, which is quicker than a root and a division.
+/// 1/sqrt(a) for a >= 0, large but finite for 0: Newton's iteration from a guess that is linear in the
+/// exponent (Lomont 2003), quicker than a root and a division.
 [[gnu::always_inline]] inline double inverse_root(double a) {
   const auto bits = std::bit_cast<std::uint64_t>(a);
   double y = std::bit_cast<double>(std::uint64_t{0x5FE6EB50C7B537A9} - (bits >> 1));
@@ -23,22 +24,78 @@ constexpr int parts = 8;
   y = y * (1.5 - half * y * y);
   return y * (1.5 - half * y * y);
 }
+[[gnu::always_inline]] inline float inverse_root(float a) {
+  const auto bits = std::bit_cast<std::uint32_t>(a);
+  float y = std::bit_cast<float>(std::uint32_t{0x5F375A86} - (bits >> 1));
+  const float half = 0.5f * a;
+  y = y * (1.5f - half * y * y);
+  y = y * (1.5f - half * y * y);
+  return y * (1.5f - half * y * y);
+}
 
-inline double larger(double a, double b) {
+template <class Number>
+[[gnu::always_inline]] inline Number larger(Number a, Number b) {
   return a > b ? a : b;
 }
-inline double smaller(double a, double b) {
+template <class Number>
+[[gnu::always_inline]] inline Number smaller(Number a, Number b) {
   return a < b ? a : b;
 }
+template <class Number>
+[[gnu::always_inline]] inline Number size_of(Number a) {
+  return a > 0 ? a : -a;
+}
 
-double largest_of(const double* part) {
-  double found = part[0];
-  for (int k = 1; k < parts; ++k) found = larger(found, part[k]);
+template <class Number, std::size_t count>
+Number largest_of(const Number (&part)[count]) {
+  Number found = part[0];
+  for (const Number p : part) found = larger(p, found);
   return found;
 }
 
-double sum_of(const double* part) {
-  return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+template <class Number, std::size_t count>
+double sum_of(const Number (&part)[count]) {
+  double sum = 0;
+  for (const Number p : part) sum += static_cast<double>(p);
+  return sum;
+}
+
+/// Visits k = 0 .. count in blocks of `width`, telling each which part of a sum it belongs to.
+template <int width, class Visit>
+[[gnu::always_inline]] inline void in_parts(int count, Visit visit) {
+  int k = 0;
+  for (; k + width <= count; k += width)
+#pragma GCC ivdep
+    for (int part = 0; part < width; ++part) visit(k + part, part);
+  for (; k < count; ++k) visit(k, k % width);
+}
+
+/// The direction of a spring, C, and whether it is over its limit or has a tension. C/limit is
+/// (q - 1)/(1 + sqrt(q)), q = |d|^2/limit^2: what is small is known to as many digits as it has.
+struct Equation {
+  float ax, ay, az, over;
+  bool active;
+};
+struct EquationRule {
+  double per_square;  ///< 1/limit^2
+  double per_limit;
+  float limit, softness;
+};
+inline EquationRule equation_rule(const SpringRule& rule) {
+  return {1 / (rule.limit * rule.limit), 1 / rule.limit, static_cast<float>(rule.limit),
+          static_cast<float>(rule.softness)};
+}
+[[gnu::always_inline]] inline Equation equation_of(const EquationRule& rule, double dx, double dy, double dz,
+                                                   double t, float both) {
+  const double q = (dx * dx + dy * dy + dz * dz) * rule.per_square;
+  const float ratio = static_cast<float>(q), inverse = inverse_root(ratio);
+  const float beyond = static_cast<float>(q - 1);
+  const float tension = static_cast<float>(t);
+  const float over = beyond / (1 + ratio * inverse) * rule.limit - rule.softness * both * tension;
+  const bool active = (tension > 0 || over > 0) && both > 0;
+  const float scale = active ? inverse : 0.0f;
+  return {scale * static_cast<float>(dx * rule.per_limit), scale * static_cast<float>(dy * rule.per_limit),
+          scale * static_cast<float>(dz * rule.per_limit), over, active};
 }
 
 }  // namespace
@@ -46,35 +103,27 @@ double sum_of(const double* part) {
 CLOTH_VECTORISED RowLengths measure_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset,
                                         const double* tension, int count, bool pins) {
   const double *x = nodes.x + i, *y = nodes.y + i, *z = nodes.z + i, *w = nodes.weight + i;
-  const double *xe = x + offset, *ye = y + offset, *ze = z + offset, *we = w + offset;
   double longest[parts] = {}, shortest[parts];
   std::fill(shortest, shortest + parts, std::numeric_limits<double>::infinity());
-  const auto square = [&](int k) {
-    const double dx = xe[k] - x[k], dy = ye[k] - y[k], dz = ze[k] - z[k];
-    return dx * dx + dy * dy + dz * dz;
-  };
   const auto look = [&](int k, int part) {
-    double d = square(k);
-    shortest[part] = tension[k] > 0 ? smaller(d, shortest[part]) : shortest[part];
-    longest[part] = larger(d, longest[part]);
+    const double dx = x[k + offset] - x[k], dy = y[k + offset] - y[k], dz = z[k + offset] - z[k];
+    const double square = dx * dx + dy * dy + dz * dz;
+    shortest[part] = tension[k] > 0 ? smaller(square, shortest[part]) : shortest[part];
+    longest[part] = larger(square, longest[part]);
   };
-  int k = 0;
   if (pins) {
-    for (; k < count; ++k)
-      if (w[k] + we[k] > 0) look(k, k % parts);
+    for (int k = 0; k < count; ++k)
+      if (w[k] + w[k + offset] > 0) look(k, k % parts);
   } else {
-    for (; k + parts <= count; k += parts)
-#pragma GCC ivdep
-      for (int part = 0; part < parts; ++part) look(k + part, part);
-    for (; k < count; ++k) look(k, k % parts);
+    in_parts<parts>(count, look);
   }
   RowLengths found{largest_of(longest), shortest[0]};
-  for (int part = 1; part < parts; ++part) found.shortest = smaller(found.shortest, shortest[part]);
+  for (const double part : shortest) found.shortest = smaller(part, found.shortest);
   return found;
 }
 
 void LineScratch::resize(std::size_t size) {
-  for (AlignedDoubles* field : {&ax, &ay, &az, &link, &pivot, &step})
+  for (AlignedFloats* field : {&ax, &ay, &az, &link, &pivot, &step})
     if (field->size() < size) field->resize(size);
 }
 
@@ -93,62 +142,54 @@ LaneRange lanes_of(const LineBlock& block, int n) {
 void clear_lanes(LineScratch& s, std::size_t row, int begin, int end) {
   if (begin >= end) return;
   const auto b = row + static_cast<std::size_t>(begin), e = row + static_cast<std::size_t>(end);
-  for (AlignedDoubles* field : {&s.ax, &s.ay, &s.az, &s.link, &s.pivot, &s.step})
+  for (AlignedFloats* field : {&s.ax, &s.ay, &s.az, &s.link, &s.pivot, &s.step})
     std::fill(field->begin() + static_cast<std::ptrdiff_t>(b),
-              field->begin() + static_cast<std::ptrdiff_t>(e), 0.0);
+              field->begin() + static_cast<std::ptrdiff_t>(e), 0.0f);
 }
 
 /// One row of the forward elimination.
-[[gnu::always_inline]] inline void eliminate_lines(const LineBlock& block, const SpringRule& rule,
-                                                   std::ptrdiff_t i, LaneRange lanes, std::size_t row,
-                                                   LineScratch& scratch) {
+[[gnu::always_inline]] inline void eliminate_lines(const LineBlock& block, const EquationRule& rule,
+                                                   float share, std::ptrdiff_t i, LaneRange lanes,
+                                                   std::size_t row, LineScratch& scratch) {
   const double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i;
   const double *w = block.nodes.weight + i, *t = block.tension + i;
-  const std::ptrdiff_t e = block.step;
-  double *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
-  double *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
-  double* step = scratch.step.data() + row;
-  const std::ptrdiff_t back = -block.lanes;
-  const double allowed = rule.square * rule.softness, per_square = 1 / rule.square, limit = rule.limit;
-  const double share = 1 + rule.ridge + rule.softness;
+  const std::ptrdiff_t e = block.step, back = -block.lanes;
+  float *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
+  float *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
+  float* step = scratch.step.data() + row;
 #pragma GCC ivdep
   for (int k = lanes.begin; k < lanes.end; ++k) {
-    const double dx = x[k + e] - x[k], dy = y[k + e] - y[k], dz = z[k + e] - z[k];
-    const double squared = dx * dx + dy * dy + dz * dz, inverse = inverse_root(squared);
-    const double both = w[k] + w[k + e];
-    const double over = squared * inverse - limit - allowed * both * t[k];
-    double active = t[k] > 0 ? 1.0 : over > 0 ? 1.0 : 0.0;
-    active = both > 0 ? active : 0.0;
-    const double scale = active * inverse;
-    const double nx = scale * dx, ny = scale * dy, nz = scale * dz;
-    const double l = -w[k] * (nx * ax[k + back] + ny * ay[k + back] + nz * az[k + back]);
-    const double u = l * pivot[k + back];
-    const double diagonal = both > 0 ? both * share : 1.0;
-    const double p = 1 / (diagonal - l * u);
-    ax[k] = nx, ay[k] = ny, az[k] = nz;
+    const float weight = static_cast<float>(w[k]), both = weight + static_cast<float>(w[k + e]);
+    const Equation found = equation_of(rule, x[k + e] - x[k], y[k + e] - y[k], z[k + e] - z[k], t[k], both);
+    const float l = -weight * (found.ax * ax[k + back] + found.ay * ay[k + back] + found.az * az[k + back]);
+    const float u = l * pivot[k + back];
+    const float diagonal = both > 0 ? both * share : 1.0f;
+    const float p = 1 / (diagonal - l * u);
+    ax[k] = found.ax, ay[k] = found.ay, az[k] = found.az;
     link[k] = l, pivot[k] = p;
-    step[k] = (active * over * per_square - l * step[k + back]) * p;
+    step[k] = ((found.active ? found.over : 0.0f) - l * step[k + back]) * p;
   }
 }
 
 /// One row of the back substitution. What a clipped tension leaves to do is known to those before it.
-[[gnu::always_inline]] inline void substitute_lines(const LineBlock& block, const SpringRule& rule,
-                                                    std::ptrdiff_t i, LaneRange lanes, std::size_t row,
-                                                    LineScratch& scratch) {
+[[gnu::always_inline]] inline void substitute_lines(const LineBlock& block, std::ptrdiff_t i, LaneRange lanes,
+                                                    std::size_t row, LineScratch& scratch) {
   double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i, *t = block.tension + i;
   const double* w = block.nodes.weight + i;
   const std::ptrdiff_t e = block.step, next = block.lanes;
-  const double *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
-  const double *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
-  double* step = scratch.step.data() + row;
+  const float *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
+  const float *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
+  float* step = scratch.step.data() + row;
 #pragma GCC ivdep
   for (int k = lanes.begin; k < lanes.end; ++k) {
-    const double free = step[k] - pivot[k] * link[k + next] * step[k + next];
-    const double change = free > -t[k] ? free : -t[k];
+    const float free = step[k] - pivot[k] * link[k + next] * step[k + next];
+    const float least = -static_cast<float>(t[k]);
+    const bool kept = free > least;
+    const float change = kept ? free : least;
     step[k] = change;
-    t[k] += change;
-    const double pull = rule.square * change;
-    const double px = pull * ax[k], py = pull * ay[k], pz = pull * az[k];
+    t[k] = kept ? t[k] + static_cast<double>(change) : 0.0;
+    const double px = static_cast<double>(change * ax[k]), py = static_cast<double>(change * ay[k]),
+                 pz = static_cast<double>(change * az[k]);
     x[k + e] -= w[k + e] * px, y[k + e] -= w[k + e] * py, z[k + e] -= w[k + e] * pz;
     x[k] += w[k] * px, y[k] += w[k] * py, z[k] += w[k] * pz;
   }
@@ -159,6 +200,8 @@ void clear_lanes(LineScratch& s, std::size_t row, int begin, int end) {
 CLOTH_VECTORISED void sweep_block(const LineBlock& block, const SpringRule& rule, LineScratch& scratch) {
   const auto lanes = static_cast<std::size_t>(block.lanes);
   scratch.resize((static_cast<std::size_t>(block.count) + 2) * lanes);
+  const EquationRule equation = equation_rule(rule);
+  const float share = static_cast<float>(1 + rule.ridge + rule.softness);
   clear_lanes(scratch, 0, 0, block.lanes);
   clear_lanes(scratch, (static_cast<std::size_t>(block.count) + 1) * lanes, 0, block.lanes);
   for (int n = 0; n < block.count; ++n) {
@@ -166,86 +209,93 @@ CLOTH_VECTORISED void sweep_block(const LineBlock& block, const SpringRule& rule
     const std::size_t row = (static_cast<std::size_t>(n) + 1) * lanes;
     clear_lanes(scratch, row, 0, here.begin);
     clear_lanes(scratch, row, here.end, block.lanes);
-    eliminate_lines(block, rule, block.first + n * block.step, here, row, scratch);
+    eliminate_lines(block, equation, share, block.first + n * block.step, here, row, scratch);
   }
   for (int n = block.count; n-- > 0;)
-    substitute_lines(block, rule, block.first + n * block.step, lanes_of(block, n),
+    substitute_lines(block, block.first + n * block.step, lanes_of(block, n),
                      (static_cast<std::size_t>(n) + 1) * lanes, scratch);
 }
 
-CLOTH_VECTORISED RowResidual evaluate_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset,
-                                          const double* t, int count, const SpringRule& rule,
-                                          const SpringRows& rows) {
+CLOTH_VECTORISED void evaluate_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset,
+                                   const double* t, int count, const SpringRule& rule,
+                                   const SpringRows& rows) {
   const double *x = nodes.x + i, *y = nodes.y + i, *z = nodes.z + i, *w = nodes.weight + i;
-  const double allowed = rule.square * rule.softness, per_square = 1 / rule.square, limit = rule.limit;
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  double over[parts], slack[parts];
-  std::fill(over, over + parts, none);
-  std::fill(slack, slack + parts, none);
-  const auto evaluate = [&](int k, int part) {
-    const double dx = x[k + offset] - x[k], dy = y[k + offset] - y[k], dz = z[k + offset] - z[k];
-    const double squared = dx * dx + dy * dy + dz * dz, inverse = inverse_root(squared);
-    const double both = w[k] + w[k + offset];
-    double c = squared * inverse - limit - allowed * both * t[k];
-    double active = t[k] > 0 ? 1.0 : c > 0 ? 1.0 : 0.0;
-    active = both > 0 ? active : 0.0;
-    const double seen = both > 0 ? c : none;
-    over[part] = larger(seen, over[part]);
-    slack[part] = t[k] > 0 ? larger(-c, slack[part]) : slack[part];
-    c = both > 0 ? active * c : 0.0;
-    const double scale = active * inverse;
-    rows.ax[k] = scale * dx, rows.ay[k] = scale * dy, rows.az[k] = scale * dz;
-    rows.over[k] = c, rows.residual[k] = c * per_square;
-  };
-  int k = 0;
-  for (; k + parts <= count; k += parts)
+  const EquationRule equation = equation_rule(rule);
+  float *ax = rows.ax, *ay = rows.ay, *az = rows.az, *over = rows.over, *residual = rows.residual;
 #pragma GCC ivdep
-    for (int part = 0; part < parts; ++part) evaluate(k + part, part);
-  for (; k < count; ++k) evaluate(k, k % parts);
-  return {largest_of(over), largest_of(slack)};
+  for (int k = 0; k < count; ++k) {
+    const float both = static_cast<float>(w[k]) + static_cast<float>(w[k + offset]);
+    const Equation found =
+        equation_of(equation, x[k + offset] - x[k], y[k + offset] - y[k], z[k + offset] - z[k], t[k], both);
+    const float c = found.active ? found.over : 0.0f;
+    ax[k] = found.ax, ay[k] = found.ay, az[k] = found.az;
+    over[k] = c, residual[k] = c;
+  }
+}
+
+RowResidual residual_row(const double* t, const float* over, int count) {
+  RowResidual found;
+  for (int k = 0; k < count; ++k) {
+    const auto c = static_cast<double>(over[k]);
+    found.over = larger(c, found.over);
+    if (t[k] > 0) found.slack = larger(-c, found.slack);
+    found.active = found.active || c > 0 || t[k] > 0;
+  }
+  return found;
 }
 
 CLOTH_VECTORISED void factorise_row(const FactorRow& row, const FactorRow& before, double ridge, int count) {
-  const double *ax = row.ax, *ay = row.ay, *az = row.az, *w = row.weight, *we = row.weight_end;
-  const double *bx = before.ax, *by = before.ay, *bz = before.az, *pivot_before = before.pivot;
-  double *link = row.link, *pivot = row.pivot;
+  const float *ax = row.ax, *ay = row.ay, *az = row.az, *w = row.weight, *we = row.weight_end;
+  const float *bx = before.ax, *by = before.ay, *bz = before.az, *pivot_before = before.pivot;
+  float *link = row.link, *pivot = row.pivot;
+  const float share = static_cast<float>(1 + ridge);
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) {
-    const double l = -w[k] * (ax[k] * bx[k] + ay[k] * by[k] + az[k] * bz[k]);
-    const double both = w[k] + we[k];
-    const double diagonal = both > 0 ? both * (1 + ridge) : 1.0;
+    const float l = -w[k] * (ax[k] * bx[k] + ay[k] * by[k] + az[k] * bz[k]);
+    const float both = w[k] + we[k];
+    const float diagonal = both > 0 ? both * share : 1.0f;
     link[k] = l;
     pivot[k] = 1 / (diagonal - l * (l * pivot_before[k]));
   }
 }
 
-CLOTH_VECTORISED void eliminate_row(const double* residual, const double* link, const double* pivot,
-                                    const double* before, double* solved, int count) {
+CLOTH_VECTORISED void eliminate_row(const float* residual, const float* link, const float* pivot,
+                                    const float* before, float* solved, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) solved[k] = (residual[k] - link[k] * before[k]) * pivot[k];
 }
 
-CLOTH_VECTORISED void substitute_row(const double* pivot, const double* link_next, const double* next,
-                                     double* solved, int count) {
+CLOTH_VECTORISED void substitute_row(const float* pivot, const float* link_next, const float* next,
+                                     float* solved, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) solved[k] -= pivot[k] * link_next[k] * next[k];
 }
 
-/// out[column * lanes + lane] = in[lane][column]; zero in lanes without a row.
-void into_lanes(const double* in, std::ptrdiff_t stride, int rows, int columns, double* out) {
-  for (int lane = 0; lane < lanes_of_rows; ++lane)
-    for (int c = 0; c < columns; ++c)
-      out[c * lanes_of_rows + lane] = lane < rows ? in[lane * stride + c] : 0.0;
+template <class Number>
+void into_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, Number* out) {
+  for (int c = 0; c < columns; ++c) {
+    Number* to = out + c * lanes_of_rows;
+    if (rows == lanes_of_rows)
+      for (int lane = 0; lane < lanes_of_rows; ++lane) to[lane] = in[lane * stride + c];
+    else
+      for (int lane = 0; lane < lanes_of_rows; ++lane)
+        to[lane] = lane < rows ? in[lane * stride + c] : Number{};
+  }
 }
+template void into_lanes(const float*, std::ptrdiff_t, int, int, float*);
+template void into_lanes(const double*, std::ptrdiff_t, int, int, double*);
 
-void out_of_lanes(const double* in, std::ptrdiff_t stride, int rows, int columns, double* out) {
+template <class Number>
+void out_of_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, Number* out) {
   for (int lane = 0; lane < rows; ++lane)
     for (int c = 0; c < columns; ++c) out[lane * stride + c] = in[c * lanes_of_rows + lane];
 }
+template void out_of_lanes(const float*, std::ptrdiff_t, int, int, float*);
+template void out_of_lanes(const double*, std::ptrdiff_t, int, int, double*);
 
-CLOTH_VECTORISED void solve_lanes(const LaneFactors& f, const double* residual, std::ptrdiff_t stride,
-                                  int rows, int count, int across, double* solved) {
-  double* v = f.scratch;
+CLOTH_VECTORISED void solve_lanes(const LaneFactors& f, const float* residual, std::ptrdiff_t stride,
+                                  int rows, int count, int across, float* solved) {
+  float* v = f.scratch;
   into_lanes(residual, stride, rows, count, v);
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(across) * lanes_of_rows;
   for (int c = 0; c < count; ++c) {
@@ -266,14 +316,14 @@ CLOTH_VECTORISED void solve_lanes(const LaneFactors& f, const double* residual, 
   out_of_lanes(v, stride, rows, count, solved);
 }
 
-CLOTH_VECTORISED void pull_row(const PullTerm* terms, int term_count, const double* weight, double* sx,
-                               double* sy, double* sz, int count) {
+CLOTH_VECTORISED void pull_row(const PullTerm* terms, int term_count, const float* weight, float* sx,
+                               float* sy, float* sz, int count) {
   for (int n = 0; n < term_count; ++n) {
-    const double *ax = terms[n].ax, *ay = terms[n].ay, *az = terms[n].az, *value = terms[n].value;
-    const double sign = terms[n].sign, begin = n == 0 ? 0.0 : 1.0;
+    const float *ax = terms[n].ax, *ay = terms[n].ay, *az = terms[n].az, *value = terms[n].value;
+    const float sign = terms[n].sign, begin = n == 0 ? 0.0f : 1.0f;
 #pragma GCC ivdep
     for (int k = 0; k < count; ++k) {
-      const double v = sign * value[k];
+      const float v = sign * value[k];
       sx[k] = begin * sx[k] + v * ax[k];
       sy[k] = begin * sy[k] + v * ay[k];
       sz[k] = begin * sz[k] + v * az[k];
@@ -283,100 +333,97 @@ CLOTH_VECTORISED void pull_row(const PullTerm* terms, int term_count, const doub
   for (int k = 0; k < count; ++k) sx[k] *= weight[k], sy[k] *= weight[k], sz[k] *= weight[k];
 }
 
-CLOTH_VECTORISED double answer_row(const AnswerRow& row, std::ptrdiff_t e, double ridge, int count) {
-  const double *sx = row.sx, *sy = row.sy, *sz = row.sz, *value = row.value, *w = row.weight;
-  double sum[parts] = {};
-  const auto answer = [&](int k, int part) {
-    const double product = row.ax[k] * (sx[k] - sx[k + e]) + row.ay[k] * (sy[k] - sy[k + e]) +
-                           row.az[k] * (sz[k] - sz[k + e]) + ridge * (w[k] + w[k + e]) * value[k];
+CLOTH_VECTORISED void move_row(const PullTerm* terms, int term_count, double length, const double* weight,
+                               double* x, double* y, double* z, int count) {
+  for (int n = 0; n < term_count; ++n) {
+    const float *ax = terms[n].ax, *ay = terms[n].ay, *az = terms[n].az, *value = terms[n].value;
+    const float sign = terms[n].sign;
+#pragma GCC ivdep
+    for (int k = 0; k < count; ++k) {
+      const float v = sign * value[k];
+      const double share = length * weight[k];
+      x[k] += share * static_cast<double>(v * ax[k]);
+      y[k] += share * static_cast<double>(v * ay[k]);
+      z[k] += share * static_cast<double>(v * az[k]);
+    }
+  }
+}
+
+CLOTH_VECTORISED double answer_row(const AnswerRow& row, std::ptrdiff_t e, double ridge_share, int count) {
+  const float *sx = row.sx, *sy = row.sy, *sz = row.sz, *value = row.value, *w = row.weight;
+  const float ridge = static_cast<float>(ridge_share);
+  float sum[float_parts] = {};
+  in_parts<float_parts>(count, [&](int k, int part) {
+    const float product = row.ax[k] * (sx[k] - sx[k + e]) + row.ay[k] * (sy[k] - sy[k + e]) +
+                          row.az[k] * (sz[k] - sz[k + e]) + ridge * (w[k] + w[k + e]) * value[k];
     row.product[k] = product;
     sum[part] += product * value[k];
-  };
-  int k = 0;
-  for (; k + parts <= count; k += parts)
-#pragma GCC ivdep
-    for (int part = 0; part < parts; ++part) answer(k + part, part);
-  for (; k < count; ++k) answer(k, k % parts);
+  });
   return sum_of(sum);
 }
 
-CLOTH_VECTORISED void turn_row(const double* solved, double share, double* direction, int count) {
+CLOTH_VECTORISED void turn_row(const float* solved, float share, float* direction, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) direction[k] = solved[k] + share * direction[k];
 }
 
-CLOTH_VECTORISED double advance_row(double length, const double* direction, const double* product,
-                                    double* change, double* residual, int count) {
-  double largest[parts] = {};
-  const auto advance = [&](int k, int part) {
+CLOTH_VECTORISED float advance_row(float length, const float* direction, const float* product, float* change,
+                                   float* residual, int count) {
+  float largest[float_parts] = {};
+  in_parts<float_parts>(count, [&](int k, int part) {
     change[k] += length * direction[k];
-    const double left = residual[k] - length * product[k];
+    const float left = residual[k] - length * product[k];
     residual[k] = left;
-    largest[part] = larger(left > 0 ? left : -left, largest[part]);
-  };
-  int k = 0;
-  for (; k + parts <= count; k += parts)
-#pragma GCC ivdep
-    for (int part = 0; part < parts; ++part) advance(k + part, part);
-  for (; k < count; ++k) advance(k, k % parts);
+    largest[part] = larger(size_of(left), largest[part]);
+  });
   return largest_of(largest);
 }
 
-CLOTH_VECTORISED double dot_row(const double* a, const double* b, int count) {
-  double sum[parts] = {};
-  int k = 0;
-  for (; k + parts <= count; k += parts)
-    for (int part = 0; part < parts; ++part) sum[part] += a[k + part] * b[k + part];
-  for (; k < count; ++k) sum[k % parts] += a[k] * b[k];
+CLOTH_VECTORISED double dot_row(const float* a, const float* b, int count) {
+  float sum[float_parts] = {};
+  in_parts<float_parts>(count, [&](int k, int part) { sum[part] += a[k] * b[k]; });
   return sum_of(sum);
 }
 
-CLOTH_VECTORISED double largest_row(const double* a, int count) {
-  double largest[parts] = {};
-  int k = 0;
-  for (; k + parts <= count; k += parts)
-    for (int part = 0; part < parts; ++part)
-      largest[part] = larger(a[k + part] > 0 ? a[k + part] : -a[k + part], largest[part]);
-  for (; k < count; ++k) largest[k % parts] = larger(a[k] > 0 ? a[k] : -a[k], largest[k % parts]);
+CLOTH_VECTORISED float largest_row(const float* a, int count) {
+  float largest[float_parts] = {};
+  in_parts<float_parts>(count,
+                        [&](int k, int part) { largest[part] = larger(size_of(a[k]), largest[part]); });
   return largest_of(largest);
 }
 
-CLOTH_VECTORISED void add_row(double factor, const double* from, double* to, int count) {
-#pragma GCC ivdep
-  for (int k = 0; k < count; ++k) to[k] += factor * from[k];
-}
-
-CLOTH_VECTORISED ClippedRow clip_row(const double* t, const double* over, double* change, int count) {
-  double gain[parts] = {}, least[parts] = {};
-  const auto clip = [&](int k, int part) {
-    const double beyond = change[k] + t[k];
+CLOTH_VECTORISED ClippedRow clip_row(const double* t, const float* over, float* change, int count) {
+  float gain[float_parts] = {}, least[float_parts] = {};
+  in_parts<float_parts>(count, [&](int k, int part) {
+    const float lowest = -static_cast<float>(t[k]), beyond = change[k] - lowest;
     least[part] = smaller(beyond, least[part]);
-    const double kept = beyond < 0 ? -t[k] : change[k];
+    const float kept = beyond < 0 ? lowest : change[k];
     change[k] = kept;
     gain[part] += kept * over[k];
-  };
-  int k = 0;
-  for (; k + parts <= count; k += parts)
-#pragma GCC ivdep
-    for (int part = 0; part < parts; ++part) clip(k + part, part);
-  for (; k < count; ++k) clip(k, k % parts);
-  double lowest = 0;
-  for (int part = 0; part < parts; ++part) lowest = smaller(least[part], lowest);
+  });
+  float lowest = 0;
+  for (const float part : least) lowest = smaller(part, lowest);
   return {sum_of(gain), lowest < 0};
 }
 
-CLOTH_VECTORISED void steepest_row(double share, const double* residual, const double* w, const double* we,
-                                   const double* t, double* change, int count) {
+CLOTH_VECTORISED void steepest_row(float share, const float* over, const float* w, const float* we,
+                                   const double* t, float* change, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) {
-    const double both = w[k] + we[k], step = both > 0 ? share * residual[k] / both : 0.0;
-    change[k] = step > -t[k] ? step : -t[k];
+    const float both = w[k] + we[k], step = both > 0 ? share * over[k] / both : 0.0f;
+    const float lowest = -static_cast<float>(t[k]);
+    change[k] = step > lowest ? step : lowest;
   }
 }
 
-CLOTH_VECTORISED void raise_row(double length, const double* change, double* t, int count) {
+CLOTH_VECTORISED void raise_row(double length, const float* change, double* t, int count) {
 #pragma GCC ivdep
-  for (int k = 0; k < count; ++k) t[k] = larger(t[k] + length * change[k], 0.0);
+  for (int k = 0; k < count; ++k) {
+    const double raised = t[k] + length * static_cast<double>(change[k]);
+    // A float is not the double that it stands for: what is clipped is gone.
+    const bool gone = length >= 1 && change[k] <= -static_cast<float>(t[k]);
+    t[k] = gone ? 0.0 : larger(raised, 0.0);
+  }
 }
 
 CLOTH_VECTORISED void force_row(const ForceRow& row, std::ptrdiff_t e, const double* tension, double* scratch,

@@ -1,9 +1,15 @@
 // The innermost loops of the tensions of a grid: lines side by side and rows of springs. All are plain loops
 // over contiguous numbers, without fused operations and with sums and maxima in eight parts, so that every
 // instruction set gives the same bits. Legend: tension_rounds.h.
+//
+// Positions and tensions are doubles, and what says how far a spring is from its limit. The equations for the
+// changes of tensions, which need not be solved exactly, are floats: twice as many at once. Weights are in
+// units of the largest one and tensions in metres, times h^2 and that unit, so that no number is out of
+// range.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "cloth/aligned.h"
 
@@ -14,12 +20,13 @@ struct Nodes {
   double* x;  ///< m
   double* y;
   double* z;
-  const double* weight;  ///< inverse mass, 1/kg
+  const double* weight;  ///< inverse mass over the largest one
 };
+
+using AlignedFloats = std::vector<float, CacheLineAllocator<float>>;
 
 struct SpringRule {
   double limit = 0;     ///< m
-  double square = 0;    ///< h^2
   double softness = 0;  ///< TensionTask
   double ridge = 0;     ///< of the diagonal, added to it
 };
@@ -47,7 +54,7 @@ struct LineBlock {
 
 /// Rows of `lanes` numbers for every spring of a block, and one of zeros before and after.
 struct LineScratch {
-  AlignedDoubles ax, ay, az, link, pivot, step;
+  AlignedFloats ax, ay, az, link, pivot, step;
   void resize(std::size_t size);
 };
 
@@ -58,80 +65,86 @@ void sweep_block(const LineBlock& block, const SpringRule& rule, LineScratch& sc
 /// Of a row of springs: directions and equations of those that are over their limit or have a tension, zeros
 /// of the others.
 struct SpringRows {
-  double* ax;
-  double* ay;
-  double* az;
-  double* over;      ///< C less what the softness allows
-  double* residual;  ///< the same over h^2
+  float* ax;
+  float* ay;
+  float* az;
+  float* over;      ///< m, C less what the softness allows
+  float* residual;  ///< the same
 };
+void evaluate_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset, const double* tension,
+                  int count, const SpringRule& rule, const SpringRows& rows);
+
+/// Of a row so evaluated.
 struct RowResidual {
-  double over = 0, slack = 0;  ///< m: largest C, and largest -C of those that have a tension; or -infinite
+  double over = 0, slack = 0;  ///< m: largest C, and largest -C of those that have a tension
+  bool active = false;         ///< any is over its limit or has a tension
 };
-RowResidual evaluate_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset, const double* tension,
-                         int count, const SpringRule& rule, const SpringRows& rows);
+RowResidual residual_row(const double* tension, const float* over, int count);
 
 /// Factors of the tridiagonal equations, of a row whose springs go on those of `before`.
 struct FactorRow {
-  const double *ax, *ay, *az, *weight, *weight_end;
-  double *link, *pivot;
+  const float *ax, *ay, *az, *weight, *weight_end;
+  float *link, *pivot;
 };
 void factorise_row(const FactorRow& row, const FactorRow& before, double ridge, int count);
 
 /// solved <- (residual - link before) pivot
-void eliminate_row(const double* residual, const double* link, const double* pivot, const double* before,
-                   double* solved, int count);
+void eliminate_row(const float* residual, const float* link, const float* pivot, const float* before,
+                   float* solved, int count);
 /// solved -= pivot link_next next
-void substitute_row(const double* pivot, const double* link_next, const double* next, double* solved,
-                    int count);
+void substitute_row(const float* pivot, const float* link_next, const float* next, float* solved, int count);
 
 /// Both, of rows side by side: spring c of a row goes on spring c - across. Rows are `stride` apart.
 struct LaneFactors {
-  const double *link, *pivot;
-  double* scratch;  ///< count + 2 across columns of lanes
+  const float *link, *pivot;
+  float* scratch;  ///< count + 2 across columns of lanes
 };
 inline constexpr int lanes_of_rows = 16;
-void solve_lanes(const LaneFactors& factors, const double* residual, std::ptrdiff_t stride, int rows,
-                 int count, int across, double* solved);
-void into_lanes(const double* in, std::ptrdiff_t stride, int rows, int columns, double* out);
-void out_of_lanes(const double* in, std::ptrdiff_t stride, int rows, int columns, double* out);
+void solve_lanes(const LaneFactors& factors, const float* residual, std::ptrdiff_t stride, int rows,
+                 int count, int across, float* solved);
+template <class Number>
+void into_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, Number* out);
+template <class Number>
+void out_of_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, Number* out);
 
 /// Particles: s <- weight * sum of sign value a over the terms.
 struct PullTerm {
-  const double *ax, *ay, *az, *value;
-  double sign;
+  const float *ax, *ay, *az, *value;
+  float sign;
 };
-void pull_row(const PullTerm* terms, int term_count, const double* weight, double* sx, double* sy, double* sz,
+void pull_row(const PullTerm* terms, int term_count, const float* weight, float* sx, float* sy, float* sz,
               int count);
+/// x += length of that, in doubles: equal and opposite at the two ends.
+void move_row(const PullTerm* terms, int term_count, double length, const double* weight, double* x,
+              double* y, double* z, int count);
 
 /// product <- a . (s - s of the other end) + ridge (w + w_end) value; returns product . value.
 struct AnswerRow {
-  const double *ax, *ay, *az, *value, *weight;
-  const double *sx, *sy, *sz;
-  double* product;
+  const float *ax, *ay, *az, *value, *weight;
+  const float *sx, *sy, *sz;
+  float* product;
 };
 double answer_row(const AnswerRow& row, std::ptrdiff_t offset, double ridge, int count);
 
 /// direction <- solved + share direction
-void turn_row(const double* solved, double share, double* direction, int count);
+void turn_row(const float* solved, float share, float* direction, int count);
 /// change += length direction, residual -= length product; returns the largest |residual|.
-double advance_row(double length, const double* direction, const double* product, double* change,
-                   double* residual, int count);
-double dot_row(const double* a, const double* b, int count);
-double largest_row(const double* a, int count);
-/// to += factor from
-void add_row(double factor, const double* from, double* to, int count);
+float advance_row(float length, const float* direction, const float* product, float* change, float* residual,
+                  int count);
+double dot_row(const float* a, const float* b, int count);
+float largest_row(const float* a, int count);
 
 /// change <- max(change, -tension); returns change . over, and whether any was less.
 struct ClippedRow {
   double gain = 0;
   bool clipped = false;
 };
-ClippedRow clip_row(const double* tension, const double* over, double* change, int count);
-/// change <- max(share residual / (w + w_end), -tension)
-void steepest_row(double share, const double* residual, const double* weight, const double* weight_end,
-                  const double* tension, double* change, int count);
+ClippedRow clip_row(const double* tension, const float* over, float* change, int count);
+/// change <- max(share over / (w + w_end), -tension)
+void steepest_row(float share, const float* over, const float* weight, const float* weight_end,
+                  const double* tension, float* change, int count);
 /// tension <- max(0, tension + length change)
-void raise_row(double length, const double* change, double* tension, int count);
+void raise_row(double length, const float* change, double* tension, int count);
 /// force += tension a of the springs that begin in a row and end `offset` further.
 struct ForceRow {
   const double *x, *y, *z;

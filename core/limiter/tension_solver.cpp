@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cloth/sums.h"
+#include "limiter/tension_kernels.h"
+
 namespace cloth {
 namespace {
 
@@ -16,7 +19,8 @@ constexpr double held_share = 0.5;
 constexpr double soft_springs = 3e-2;
 
 bool is_finite(const Vec3Field& field) {
-  return std::all_of(field.flat().begin(), field.flat().end(), [](double x) { return std::isfinite(x); });
+  const double* x = field.flat().data();
+  return ordered_sum(field.flat().size(), [x](std::size_t k) { return 0 * x[k]; }) == 0;
 }
 
 }  // namespace
@@ -28,6 +32,7 @@ TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& 
     const double lighter = std::max(system.inverse_mass[spring.first], system.inverse_mass[spring.second]);
     hold_.push_back(lighter > 0 ? held_share * spring.limit / lighter : 0);
   }
+  grid_ = plan_grid(springs_, system);
   rounds_ = make_tension_rounds(springs_, system);
 }
 
@@ -42,14 +47,16 @@ bool TensionSolver::is_needed(const Deformation& deformation, const ClothSystem&
 double TensionSolver::excess(const Vec3Field& position) const {
   double largest = 0;
   for (const TensionSpring& spring : springs_) {
-    const double over = (position[spring.second] - position[spring.first]).norm() - spring.limit;
-    largest = std::max(largest, over / spring.rest_length);
+    const double squared = (position[spring.second] - position[spring.first]).squaredNorm();
+    if (!(squared > spring.limit * spring.limit)) continue;
+    largest = std::max(largest, (std::sqrt(squared) - spring.limit) / spring.rest_length);
   }
   return largest;
 }
 
 void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Field& position,
                               Vec3Field& force) const {
+  if (grid_) return add_grid_force(tension, position, force);
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     if (!(tension[s] > 0)) continue;
     const std::size_t i = springs_[s].first, j = springs_[s].second;
@@ -59,6 +66,25 @@ void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Fiel
     const Vec3 pull = (tension[s] / length) * d;
     force.add(i, pull);
     force.add(j, -pull);
+  }
+}
+
+/// Row by row, those with a tension.
+void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec3Field& position,
+                                   Vec3Field& force) const {
+  std::vector<double> scratch(3 * static_cast<std::size_t>(grid_->columns));
+  for (const GridFamily& family : grid_->families) {
+    const int width = family.width();
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
+    for (int row = 0; row < family.rows; ++row) {
+      const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
+      const double* t =
+          tension.data() + family.first_spring + static_cast<std::ptrdiff_t>(row) * family.width();
+      if (std::none_of(t, t + width, [](double pull) { return pull > 0; })) continue;
+      tension::force_row(
+          {position.x() + i, position.y() + i, position.z() + i, force.x() + i, force.y() + i, force.z() + i},
+          offset, t, scratch.data(), width);
+    }
   }
 }
 

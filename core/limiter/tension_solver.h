@@ -16,6 +16,7 @@
 #include <optional>
 #include <vector>
 
+#include "limiter/grid_plan.h"
 #include "limiter/nearest_shape.h"
 #include "limiter/tension_rounds.h"
 #include "scene/scene.h"
@@ -67,6 +68,7 @@ class TensionSolver {
   bool unreachable() const { return unreachable_; }
 
  private:
+  void add_grid_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
   void go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
              Vec3Field& position, TensionReport& report);
   void find_nearest(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
@@ -75,6 +77,7 @@ class TensionSolver {
   Deformation deformation_;
   std::vector<TensionSpring> springs_;
   std::vector<double> hold_;  ///< N s^2, of each spring: h^2 times the most that is held
+  std::optional<GridPlan> grid_;
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for
   bool unreachable_ = false;

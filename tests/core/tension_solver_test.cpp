@@ -237,6 +237,21 @@ TEST(TensionSolver, PullsTheEndsOfASpringTogether) {
   EXPECT_NEAR(largest_norm(force), 2, 1e-15);
 }
 
+TEST(TensionSolver, PullsOnAGridAsOnAnySprings) {
+  Random random;
+  const Hung cloth(9, 0.1);
+  ClothSystem line = cloth.system;
+  line.rows = 1, line.columns = cloth.system.size();  // no longer a grid
+  const TensionSolver families(cloth.deformation, cloth.system), lines(cloth.deformation, line);
+  std::vector<double> tension = no_tension(families);
+  for (double& t : tension) t = std::max(0.0, random.uniform(-1, 1));
+  const Vec3Field x = stretched(cloth.system, 0.1, 0.5 * cloth.spacing(), random);
+  Vec3Field one(x.size()), two(x.size());
+  families.add_force(tension, x, one);
+  lines.add_force(tension, x, two);
+  EXPECT_LE(largest_distance(one, two), 1e-13);
+}
+
 TEST(TensionSolver, GivesTheSameBitsAgainWhateverItSolvedBefore) {
   Random random;
   const Hung cloth(33, 0.01);

@@ -27,7 +27,7 @@ constexpr double progress_part = 0.7;
 /// Pairs and particles that the rounds of one step may look at, for a cloth of so many particles: some
 /// seconds of work. Counted, so that a run does not depend on the machine.
 double most_work_of(std::size_t particles) {
-  constexpr double least = 2e6, for_a_particle = 2e3;
+  constexpr double least = 1e7, for_a_particle = 2e3;
   return least + for_a_particle * static_cast<double>(particles);
 }
 

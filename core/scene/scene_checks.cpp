@@ -165,10 +165,10 @@ std::vector<std::string> scene_notices(const Scene& scene) {
   const double cell = cell_size(scene.cloth);
   const auto look_at = [&](const char* path, double thickness) {
     if (thickness >= least_part * cell) return;
-    notices.push_back(
-        fmt::format("{} = {:.4g} m is less than a hundredth of a cell, {:.4g} m: it is kept, but by small steps of "
-                    "contact, which are slow, and the cloth's faces bend by more than that",
-                    path, thickness, cell));
+    notices.push_back(fmt::format(
+        "{} = {:.4g} m is less than a hundredth of a cell, {:.4g} m: it is kept, but by small steps of "
+        "contact, which are slow, and the cloth's faces bend by more than that",
+        path, thickness, cell));
   };
   if (scene.contact) look_at("contact.thickness", scene.contact->thickness);
   if (scene.self_contact) look_at("self_contact.thickness", scene.self_contact->thickness);

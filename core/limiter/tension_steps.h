@@ -8,7 +8,7 @@
 namespace cloth {
 
 /// Of a diagonal of J W J^T, added to it: springs that say the same thing twice make that matrix singular.
-inline constexpr double least_ridge = 1e-9;     ///< along a line
+inline constexpr double least_ridge = 3e-6;     ///< along a line, above what floats round
 inline constexpr double together_ridge = 1e-3;  ///< all tensions at once; less only makes iterations more
 inline double ridge_of(const TensionTask& task) {
   return std::max(together_ridge, task.softness);

@@ -141,11 +141,33 @@ void TensionSolver::find_nearest(const TensionTask& task, const ClothSystem& sys
   }
 }
 
+/// No spring of a grid has a tension or is over its limit: most steps of a loose cloth end here.
+bool TensionSolver::is_loose(const std::vector<double>& tension, Vec3Field& position) const {
+  if (!grid_) return false;
+  const double* t = tension.data();
+  if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
+  const tension::Nodes nodes{position.x(), position.y(), position.z(),
+                             position.x()};  // weights: not asked for
+  for (const GridFamily& family : grid_->families) {
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
+    for (int row = 0; row < family.rows; ++row) {
+      const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
+      const double longest = tension::measure_row(nodes, i, offset, t, family.width(), false).longest;
+      if (!(longest <= family.limit * family.limit)) return false;
+    }
+  }
+  return true;
+}
+
 TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
                                    Vec3Field& position) {
   TensionReport report;
   if (!is_finite(position)) {
     report.excess = std::nan("");
+    return report;
+  }
+  if (is_loose(tension, position)) {
+    report.converged = true;
     return report;
   }
   const TensionTask task{.time_step = time_step,

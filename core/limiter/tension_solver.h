@@ -68,6 +68,7 @@ class TensionSolver {
   bool unreachable() const { return unreachable_; }
 
  private:
+  bool is_loose(const std::vector<double>& tension, Vec3Field& position) const;
   void add_grid_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
   void go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
              Vec3Field& position, TensionReport& report);

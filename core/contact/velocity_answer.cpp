@@ -42,14 +42,15 @@ bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begi
     contact.push = 0, contact.rub.setZero();
     constraints_.push_back(contact);
   }
-  if (std::none_of(gaps.begin(), gaps.end(), [&](double gap) { return gap < -arrived_length(); })) return false;
+  const auto is_missing = [&](double gap) { return gap < -arrived_length(); };
+  if (substeps_ > 1 || std::none_of(gaps.begin(), gaps.end(), is_missing)) return false;
   Vec3Field solved(safe_.size());
   for (std::size_t i = 0; i < safe_.size(); ++i) solved.set(i, (wished_[i] - begin.position[i]) / begin.step);
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, solved);
   Islands islands(constraints_, system.inverse_mass);
   std::vector<std::uint8_t> recovers(safe_.size(), 0);
   for (std::size_t c = 0; c < gaps.size(); ++c)
-    if (gaps[c] < -arrived_length())
+    if (is_missing(gaps[c]))
       recovers[at(islands.of(Islands::first_free(constraints_[c], system.inverse_mass)))] = 1;
   for (std::size_t i = 0; i < safe_.size(); ++i)
     if (recovers[at(islands.of(static_cast<int>(i)))]) motion_.set(i, solved[i]);

@@ -10,6 +10,7 @@
 #include "io/process.h"
 #include "io/run_folder.h"
 #include "main_window/main_window.h"
+#include "main_window/stop_signals.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
@@ -53,9 +54,9 @@ int run(int argc, char** argv) {
 
   QCommandLineParser parser;
   parser.setApplicationDescription("A desktop lab for cloth simulation.");
-  parser.addPositionalArgument("file",
-                               "A scene, session or comparison (.compare.json), or the name of a built-in one.",
-                               "[SCENE|SESSION|COMPARISON]");
+  parser.addPositionalArgument(
+      "file", "A scene, session or comparison (.compare.json), or the name of a built-in one.",
+      "[SCENE|SESSION|COMPARISON]");
   parser.addHelpOption();
   parser.addVersionOption();
   parser.process(application);
@@ -64,6 +65,8 @@ int run(int argc, char** argv) {
   clothlab::apply_theme(application);
   application.setWindowIcon(clothlab::icon("clothlab"));
 
+  // Leaving the event loop destroys the window, and that finishes recordings and studies.
+  const clothlab::StopSignals stop_signals([] { QApplication::exit(130); });
   const QString wanted = parser.positionalArguments().value(0);
   if (clothlab::is_comparison_name(wanted)) {
     clothlab::CompareWindow window;

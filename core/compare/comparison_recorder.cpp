@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "compare/comparison_json.h"
 #include "io/run_folder.h"
 #include "scene/scene_mesh.h"
@@ -27,6 +29,16 @@ std::vector<std::string> names_of(const Comparison& comparison) {
   std::vector<std::string> names;
   for (const Pane& pane : comparison.panes) names.push_back(pane.name);
   return names;
+}
+
+/// Of a recording without a ranking, as the window makes it: what the folder holds.
+std::string recording_summary(const ResultFolder& folder) {
+  const nlohmann::ordered_json root{{"program", "clothlab"},
+                                    {"version", version()},
+                                    {"kind", "comparison"},
+                                    {"status", name_of(Status::stopped)},
+                                    {"files", digests_json(folder.digests())}};
+  return root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -150,8 +162,17 @@ std::optional<IoError> ComparisonRecorder::flush() {
 
 std::optional<IoError> ComparisonRecorder::close() {
   auto error = close_rows();
-  const auto of_edits = edits_.is_open() ? edits_.close() : std::nullopt;
-  return error ? error : of_edits;
+  if (edits_.is_open()) {
+    auto of_edits = edits_.close();
+    FileDigest edits = edits_.digest();
+    edits.rows.reset();
+    folder_->note(edits);
+    if (!error) error = std::move(of_edits);
+  }
+  if (!error && own_folder_.is_open())
+    error = own_folder_.finish("summary.json", recording_summary(own_folder_));
+  own_folder_.release();
+  return error;
 }
 
 std::optional<IoError> ComparisonRecorder::close_rows() {

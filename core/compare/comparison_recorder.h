@@ -38,6 +38,7 @@ class ComparisonRecorder {
   std::optional<IoError> log(const std::vector<std::string>& lines);
 
   std::optional<IoError> flush();
+  /// A folder that was not claimed before gets a summary.json that lists its files.
   std::optional<IoError> close();
 
  private:

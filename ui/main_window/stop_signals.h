@@ -1,0 +1,27 @@
+// A program that is told to end from outside (Ctrl+C, a closed terminal, kill, the end of the session) ends
+// in order: what is being recorded is finished.
+//
+//     const StopSignals stop_signals([] { QCoreApplication::exit(130); });
+#pragma once
+
+#include <QSocketNotifier>
+#include <functional>
+#include <memory>
+
+namespace clothlab {
+
+class StopSignals {
+ public:
+  /// From now on the first SIGINT, SIGTERM or SIGHUP calls `stop` from the event loop; a second one of its
+  /// kind ends the process at once. SIGHUP stays ignored under nohup. One object at a time.
+  explicit StopSignals(std::function<void()> stop);
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  int read_end_ = -1;
+  std::unique_ptr<QSocketNotifier> notifier_;
+};
+
+}  // namespace clothlab

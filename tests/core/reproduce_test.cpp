@@ -121,5 +121,42 @@ TEST(StoppedReproduction, LeavesAPageOfWhatWasDone) {
   EXPECT_EQ(page.find("Table 1: 2500"), std::string::npos);
 }
 
+TEST(StoppedReproduction, GoesOnAfterItsLastWholePartToTheSamePage) {
+  const auto without_date = [](std::string page) {
+    const auto at = page.find("Date");
+    return at == std::string::npos ? page : page.erase(at, page.find("</tr>", at) - at);
+  };
+  const ReproduceOptions parts{.only = {"fig1", "errata"}};
+  const TemporaryFolder whole, stopped;
+  ReproduceOptions options = parts;
+  options.folder = whole.path();
+  reproduce(options);
+  options.folder = stopped.path();
+  options.progress = [](const ReproduceProgress& p) { return p.part == "fig1"; };
+  EXPECT_TRUE(reproduce(options).stopped);
+  options.progress = {};
+  int there = 0;
+  options.goes_on = [&](int count) { there = count; };
+  const ReproduceResult result = reproduce(options);
+  EXPECT_FALSE(result.stopped);
+  EXPECT_EQ(there, 1);
+  EXPECT_EQ(content_of(stopped / "numbers.csv"), content_of(whole / "numbers.csv"));
+  EXPECT_EQ(without_date(content_of(stopped / "report.html")),
+            without_date(content_of(whole / "report.html")));
+  for (const std::string& file : result.files) EXPECT_TRUE(std::filesystem::exists(stopped / file)) << file;
+}
+
+TEST(StoppedReproduction, IsLeftAloneByOneOfOtherParts) {
+  const TemporaryFolder folder;
+  reproduce({.folder = folder.path(), .only = {"fig1", "errata"}, .progress = [](const ReproduceProgress& p) {
+               return p.part == "fig1";
+             }});
+  const ReproduceResult other = reproduce({.folder = folder.path(), .only = {"fig1"}});
+  ASSERT_TRUE(other.io_error);
+  EXPECT_TRUE(other.io_error->refused);
+  EXPECT_TRUE(std::filesystem::exists(folder / "reproduce.json"));
+  EXPECT_FALSE(reproduce({.folder = folder.path(), .only = {"fig1"}, .overwrite = true}).io_error);
+}
+
 }  // namespace
 }  // namespace cloth::test::reproduce_test

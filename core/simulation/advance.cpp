@@ -24,7 +24,7 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
     if (automatic_.next_change >= 0) part = std::min(part, automatic_.next_change - state_.step);
     const std::int64_t taken = advance_unseen(part);
     steps -= taken;
-    if (taken > 0) watch_step();
+    if (taken > 0) watch_step(false);
     for (std::int64_t n = taken; n < part; ++n, --steps) {
       if (auto divergence = step()) return divergence;
       if (interrupted_) return std::nullopt;
@@ -87,8 +87,10 @@ void Simulation::begin_step_length() {
   automatic_.next_change = -1;
 }
 
-void Simulation::watch_step() {
-  if (!watches_step_ || state_.step % ledger_interval != 0) return;
+/// Every few steps, or at once where the cloth is as fast as all that the scene could give: a stretched start
+/// that is let go can heat within a few steps.
+void Simulation::watch_step(bool at_once) {
+  if (!watches_step_ || !(at_once || state_.step % ledger_interval == 0)) return;
   const Energy energy = measure_energy(system_, gravity_of(scene_), state_);
   const double error = energy.total() - ledger_.initial - ledger_.entered();
   if (asks_for_shorter(automatic_, error / energy_scale_after(-energy.gravity))) shorten_step();

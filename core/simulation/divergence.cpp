@@ -56,17 +56,28 @@ std::string holder_in_words(const Scene& scene, const Pinch& pinch) {
 
 }  // namespace
 
-/// The energy that the scene can put into motion: the fall so far (or over the cloth's own length), the full
-/// wind, moving obstacles, what the hand did and what entered elsewhere, what there was at the start.
-double Simulation::energy_scale_after(double fallen) const {
+/// The energy that the scene can put into motion whatever has been done to it: a fall over the cloth's own
+/// length, the full wind, moving obstacles, what there was at the start.
+double Simulation::steady_energy_scale() const {
   const double mass = total_mass_;
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
   double wind = 0;
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
   const double struck = 2 * obstacle_speed_;  // at most, off an obstacle that gives all speed back
-  return std::max(drop, fallen) + 0.5 * mass * (wind * wind + struck * struck) +
-         std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::abs(ledger_.limiter) +
-         std::abs(ledger_.contact) + std::abs(ledger_.initial) + rounding_floor * elastic_scale_;
+  return drop + 0.5 * mass * (wind * wind + struck * struck) + std::abs(ledger_.initial) +
+         rounding_floor * elastic_scale_;
+}
+
+/// The same with a longer fall so far, what the hand did and could do, and what entered elsewhere.
+double Simulation::energy_scale_after(double fallen) const {
+  const double drop = total_mass_ * gravity_of(scene_).norm() * system_.diagonal;
+  double hand = std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull);
+  if (pull_) {
+    const Vec3 way = pull_->target - state_.position[static_cast<std::size_t>(pull_->particle)];
+    hand += 0.5 * pull_strength_.stiffness * way.squaredNorm();
+  }
+  return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(ledger_.limiter) +
+         std::abs(ledger_.contact);
 }
 
 double Simulation::energy_scale() const {
@@ -86,9 +97,12 @@ bool Simulation::has_run_away() const {
   return !(unexplained <= runaway_factor * energy_scale_after(-energy.gravity));
 }
 
-/// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2.
+/// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2. Where the step is
+/// watched, so slow that heating can wait for the next look at the ledger.
 bool Simulation::is_surely_slow(double speed_squares) const {
-  return 0.5 * largest_mass_ * speed_squares <= runaway_factor * energy_scale_after(0);
+  const double kinetic = 0.5 * largest_mass_ * speed_squares;
+  if (watches_step_) return kinetic <= steady_energy_scale();
+  return kinetic <= runaway_factor * energy_scale_after(0);
 }
 
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for

@@ -5,6 +5,7 @@
 
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
+#include "cloth/sums.h"
 #include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
@@ -162,7 +163,12 @@ std::optional<Divergence> Simulation::step() {
   if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
   if (!report.failure) {
     auto divergence = find_divergence(report);
-    if (!divergence) watch_step();
+    if (!divergence && watches_step_) {
+      const double squares = report.speed_squares.value_or(
+          ordered_sum(state_.velocity.flat().size(),
+                      [v = state_.velocity.flat().data()](std::size_t k) { return v[k] * v[k]; }));
+      watch_step(!is_surely_slow(squares));
+    }
     return divergence;
   }
   Divergence stop = stop_at(report.failure->particle, report.failure->cause);
@@ -228,14 +234,14 @@ void Simulation::limit_deformation() {
 void Simulation::note_breach() {
   if (!rate_breach_) {
     const auto [first, second] = limiter_->worst_spring(state_.position);
-    rate_breach_ = RateBreach{.first_step = state_.step + 1,
-                              .first_time = first_time_ +
-                                            static_cast<double>(state_.step + 1 - first_step_) * time_step_,
-                              .first_particle = first,
-                              .second_particle = second,
-                              .first_excess = last_limit_.excess,
-                              .unreachable = unreachable_.has_value(),
-                              .columns = system_.is_mesh() ? 0 : system_.columns};
+    rate_breach_ = RateBreach{
+        .first_step = state_.step + 1,
+        .first_time = first_time_ + static_cast<double>(state_.step + 1 - first_step_) * time_step_,
+        .first_particle = first,
+        .second_particle = second,
+        .first_excess = last_limit_.excess,
+        .unreachable = unreachable_.has_value(),
+        .columns = system_.is_mesh() ? 0 : system_.columns};
   }
   ++rate_breach_->steps;
   if (!(last_limit_.excess > rate_breach_->largest_excess)) return;
@@ -284,7 +290,8 @@ void Simulation::edit(const Scene& scene) {
 }
 
 std::size_t Checkpoint::bytes() const {
-  std::size_t numbers = tension.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
+  std::size_t numbers =
+      tension.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
   numbers += contact_memory.lent.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +

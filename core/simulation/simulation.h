@@ -201,7 +201,7 @@ class Simulation {
   void assemble();
   std::int64_t advance_unseen(std::int64_t most);
   void begin_step_length();
-  void watch_step();
+  void watch_step(bool at_once);
   void shorten_step();
   void take_step_of_scene();
   bool is_surely_slow(double speed_squares) const;
@@ -225,6 +225,7 @@ class Simulation {
   Divergence stop_at_pinch(const Pinch& pinch) const;
   Divergence stop_at_exhaustion(const Pinch& pinch) const;
   double method_limit() const;
+  double steady_energy_scale() const;
   double energy_scale_after(double fallen) const;
   bool is_fast(double kinetic) const;
   bool has_run_away() const;

@@ -64,34 +64,55 @@ std::size_t at(const ClothSystem& system, int row, int column) {
   return static_cast<std::size_t>(system.index(row, column));
 }
 
+/// Hung straight down a stiff cloth hardly moves, and shows nothing of what a method does to motion: this one
+/// starts tilted, to swing, and is pushed.
+Scene swinging_scene(double stiffness) {
+  Scene scene = scene_with_stiffness(stiffness);
+  scene.cloth.down = {0, -1, 0.3};
+  return scene;
+}
+
+void push(ClothSystem& system, ClothState& state) {
+  Random random;
+  for_each_free(system, [&](std::size_t i) {
+    state.velocity.set(i, Vec3(0.3, 0, 1) + random.vector(0.3));  // m/s
+  });
+}
+
 void add_stiffness(std::vector<ExtremeCase>& cases) {
   constexpr std::int64_t two_seconds = 120;  // in frames
   for (int decade = 0; decade <= 9; ++decade) {
-    Scene scene = scene_with_stiffness(std::pow(10, decade));
+    Scene scene = swinging_scene(std::pow(10, decade));
     scene.integrator.time_step = frame;
     cases.push_back(
         {fmt::format("stiffness-1e{}", decade),
-         fmt::format("Structural springs of 1e{} N/m, shear a half and flexion a tenth of it, at "
-                     "steps of 1/60 s, two seconds.",
-                     decade),
+         fmt::format(
+             "Structural springs of 1e{} N/m, shear a half and flexion a tenth of it, at "
+             "steps of 1/60 s, two seconds. The cloth starts tilted by 17 degrees and pushed at 1 m/s, "
+             "each particle up to 0.3 m/s differently (seed {}).",
+             decade, extreme_seed),
          "An explicit method follows its fastest oscillation or it grows: the limit falls with "
          "the root of the stiffness. Error control follows it too, at the cost of thousands of inner "
-         "steps. Implicit methods have no limit; XPBD's one iteration a substep leaves stiff springs a "
-         "little too long, and at a high stiffness a little strain is much energy.",
-         scene, two_seconds});
+         "steps. Implicit methods have no limit for small motions about a shape; this cloth swings and "
+         "buckles. The midpoint rule damps nothing, so that what it cannot resolve feeds itself. A few "
+         "iterations "
+         "of projective dynamics do not converge: the cloth moves too slowly. XPBD's one iteration a substep "
+         "leaves stiff springs a little too long, and at a high stiffness a little strain is much energy.",
+         scene, two_seconds, push});
   }
   for (const int decade : {0, 3, 6, 9}) {
-    Scene scene = scene_with_stiffness(std::pow(10, decade));
+    Scene scene = swinging_scene(std::pow(10, decade));
     scene.integrator.time_step.reset();
     scene.duration = 2;
-    cases.push_back({fmt::format("stiffness-1e{}-own-step", decade),
-                     fmt::format("The same springs of 1e{} N/m, each method at 80 % of its own limit, 1/60 s "
-                                 "at most: two seconds or 2000 steps.",
-                                 decade),
-                     "At its own step every method that has one must be stable; methods without a limit run "
-                     "at 1/60 s, as "
-                     "above.",
-                     scene, 2000});
+    cases.push_back(
+        {fmt::format("stiffness-1e{}-own-step", decade),
+         fmt::format("The same springs of 1e{} N/m, each method at its own automatic step, 1/60 s "
+                     "at most: two seconds or 2000 steps.",
+                     decade),
+         "At its own step every method that has one must be stable; methods without a limit run "
+         "at 1/60 s, as "
+         "above.",
+         scene, 2000, push});
   }
 }
 
@@ -137,7 +158,7 @@ void add_damping(std::vector<ExtremeCase>& cases) {
   none.integrator.time_step.reset();
   none.duration = 2;
   cases.push_back(
-      {"no-damping-own-step", "The same, each method at 80 % of its own limit.", reading, none, 2000});
+      {"no-damping-own-step", "The same, each method at its own automatic step.", reading, none, 2000});
 
   Scene enormous = base_scene();
   enormous.damping = 1e4;

@@ -82,7 +82,11 @@ class CellRun {
     if (divergence_)
       return divergence_->solver_failed ? ExtremeStatus::solver_failed : ExtremeStatus::diverged;
     if (simulation_.unreachable_rate()) return ExtremeStatus::unreachable;
-    return growth() > growth_threshold ? ExtremeStatus::energy_growth : ExtremeStatus::stable;
+    if (growth() > growth_threshold) return ExtremeStatus::energy_growth;
+    // XPBD does not solve a substep's equations, it visits each spring: its one visit is its residual.
+    const bool open = simulation_.scene().integrator.method != "xpbd" &&
+                      simulation_.count().largest_residual > residual_threshold;
+    return open ? ExtremeStatus::not_converged : ExtremeStatus::stable;
   }
 
   std::string detail() const {
@@ -136,6 +140,8 @@ const char* name_of(ExtremeStatus status) {
   switch (status) {
     case ExtremeStatus::stable:
       return "stable";
+    case ExtremeStatus::not_converged:
+      return "not-converged";
     case ExtremeStatus::energy_growth:
       return "energy-growth";
     case ExtremeStatus::diverged:
@@ -151,9 +157,10 @@ const char* name_of(ExtremeStatus status) {
 }
 
 const std::vector<ExtremeStatus>& extreme_statuses() {
-  static const std::vector<ExtremeStatus> all{ExtremeStatus::stable,   ExtremeStatus::energy_growth,
-                                              ExtremeStatus::diverged, ExtremeStatus::unreachable,
-                                              ExtremeStatus::refused,  ExtremeStatus::solver_failed};
+  static const std::vector<ExtremeStatus> all{ExtremeStatus::stable,        ExtremeStatus::not_converged,
+                                              ExtremeStatus::energy_growth, ExtremeStatus::diverged,
+                                              ExtremeStatus::unreachable,   ExtremeStatus::refused,
+                                              ExtremeStatus::solver_failed};
   return all;
 }
 

@@ -17,7 +17,15 @@
 
 namespace cloth {
 
-enum class ExtremeStatus { stable, energy_growth, diverged, unreachable, refused, solver_failed };
+enum class ExtremeStatus {
+  stable,
+  not_converged,
+  energy_growth,
+  diverged,
+  unreachable,
+  refused,
+  solver_failed
+};
 
 /// As files have it: "energy-growth".
 const char* name_of(ExtremeStatus status);
@@ -27,7 +35,7 @@ struct ExtremeCase {
   std::string name;     ///< "stiffness-1e3"
   std::string what;     ///< the scene and how it is started
   std::string reading;  ///< what a cell that is not stable means here
-  Scene scene;          ///< of any method; without a time step: each method's own, 80 % of its limit
+  Scene scene;          ///< of any method; without a time step: each method's own
   std::int64_t most_steps = 300;
   Preparation prepare = {};  ///< what a scene file cannot say
   /// Of the force, after which a cell ends whatever its steps: error control may need any number.
@@ -46,6 +54,10 @@ inline constexpr std::uint64_t extreme_seed = 19950517;
 
 /// Of the energy that the scene can give: what a method may add before its cell says energy growth.
 inline constexpr double growth_threshold = 0.05;
+
+/// Of the largest speed: what the last iteration of a step may still change before its cell says not
+/// converged.
+inline constexpr double residual_threshold = 0.1;
 
 struct ExtremeCell {
   std::string case_name, method;

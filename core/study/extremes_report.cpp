@@ -18,6 +18,8 @@ namespace {
 std::string status_word(const ExtremeCell* cell) {
   if (!cell) return "-";
   switch (cell->status) {
+    case ExtremeStatus::not_converged:
+      return "open";
     case ExtremeStatus::energy_growth:
       return "growth";
     case ExtremeStatus::solver_failed:
@@ -37,6 +39,7 @@ Verdict verdict_of(ExtremeStatus status) {
   switch (status) {
     case ExtremeStatus::stable:
       return Verdict::good;
+    case ExtremeStatus::not_converged:
     case ExtremeStatus::unreachable:
     case ExtremeStatus::refused:
       return Verdict::warn;
@@ -51,6 +54,12 @@ const char* meaning_of(ExtremeStatus status) {
       return "Finite to the end, and no energy appeared from nowhere. It does not say accurate: a method "
              "that damps "
              "everything is stable.";
+    case ExtremeStatus::not_converged:
+      return "Finite, and no energy appeared from nowhere, but the last iteration of some step still changed "
+             "more "
+             "than a tenth of the largest speed: the step's equations were not solved, and the motion is "
+             "another "
+             "one, as a rule a slower one. The residual is told.";
     case ExtremeStatus::energy_growth:
       return "Finite to the end, but in the second half kinetic, elastic and gravity energy were in the mean "
              "above "
@@ -58,8 +67,9 @@ const char* meaning_of(ExtremeStatus status) {
              "energy, "
              "in one violent moment or steadily.";
     case ExtremeStatus::diverged:
-      return "Stopped: a position or velocity was not finite, or the kinetic energy was ten times all that "
-             "the scene can give. The stop names step, particle and cause.";
+      return "Stopped: a position or velocity was not finite, or the energy that the ledger leaves "
+             "unexplained was ten times all "
+             "that the scene can give. The stop names step, particle and cause.";
     case ExtremeStatus::unreachable:
       return "The pins make the deformation rate unreachable, which their distance shows before the first "
              "step. The run is finite, with the excess that is left.";

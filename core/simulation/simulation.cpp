@@ -145,7 +145,10 @@ std::optional<Divergence> Simulation::step() {
   interrupted_ = false;
   if (contact_ || continuous_contact_) position_before_ = state_.position, velocity_before_ = state_.velocity;
   if (limiter_) limiter_->begin_step(time_step_, state_, integrator_->drifts_with_end_velocity());
-  if (continuous_contact_ && stop_test_) ledger_before_ = ledger_;
+  if (continuous_contact_ && stop_test_) {
+    ledger_before_ = ledger_;
+    if (limiter_) tension_before_ = limiter_->tension();
+  }
   const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
@@ -154,6 +157,7 @@ std::optional<Divergence> Simulation::step() {
     take_back_step();
     return std::nullopt;
   }
+  if (limiter_ && !report.failure) book_limiter();
   if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
   state_.time = times.end;
   state_.step = next;
@@ -180,6 +184,7 @@ void Simulation::take_back_step() {
   state_.position = position_before_;
   state_.velocity = velocity_before_;
   ledger_ = ledger_before_;
+  if (limiter_) limiter_->set_tension(tension_before_);
   last_contact_ = {};
   integrator_->forget(Change::state);
   interrupted_ = true;
@@ -216,9 +221,7 @@ void Simulation::limit_start() {
 
 /// Where the method has not had it done within the step.
 void Simulation::limit_deformation() {
-  if (limits_drift_) {
-    limiter_->end_step(state_);
-  } else {
+  if (!limits_drift_) {
     const bool by_energy = !integrator_->drifts_with_end_velocity();
     const double before = by_energy ? total_energy() : 0;
     if (limiter_->after_step(state_)) {
@@ -227,6 +230,11 @@ void Simulation::limit_deformation() {
     }
   }
   last_limit_ = limiter_->report();
+}
+
+/// After contact, which answers the closing kick of held tensions as it does that of any load.
+void Simulation::book_limiter() {
+  if (limits_drift_) limiter_->end_step(state_);
   ledger_.limiter += limiter_->work().value_or(0);
   if (!limiter_->is_kept() && std::isfinite(last_limit_.excess)) note_breach();
 }

@@ -211,6 +211,7 @@ class Simulation {
   void find_unreachable();
   void limit_start();
   void limit_deformation();
+  void book_limiter();
   void note_breach();
   void resolve_contact(const StepTimes& times);
   void book_contact(const StepTimes& times);
@@ -257,6 +258,7 @@ class Simulation {
   Quantities quantities_;
   StepCount count_;
   LimiterReport last_limit_;
+  std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
   std::optional<RateBreach> rate_breach_;
   ContactReport last_contact_;
   Vec3 contact_impulse_{0, 0, 0};  ///< N s, of continuous contact since t = 0

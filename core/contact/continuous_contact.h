@@ -144,9 +144,11 @@ class ContinuousContact {
                          ClothState& state, ContactReport& report);
   Vec3 impulse_of_pushes(const ClothSystem& system) const;
   void find_work(const ClothSystem& system, const Settling& settling, const ClothState& state);
+  double recovering_work(const Begin& begin, const Settling& settling) const;
   Vec3 opening_of(std::size_t particle, const Begin& begin) const;
   void add_half_steps_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
                            const ClothState& state);
+  double lent_to_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
   void bounce(const ClothSystem& system, const Begin& begin, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
   int note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state);
@@ -202,6 +204,7 @@ class ContinuousContact {
   std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
   std::vector<double> work_;           ///< J, of each particle
   std::vector<std::uint8_t> bounced_;  ///< of each particle
+  std::vector<double> lent_to_bounced_;  ///< J, of each particle
 };
 
 }  // namespace cloth

@@ -57,6 +57,18 @@ bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begi
   return true;
 }
 
+/// J, of putting apart what began too near: against the mean of the forces where the step began and where it
+/// ends, which is what the half kicks do along the motion.
+double ContinuousContact::recovering_work(const Begin& begin, const Settling& settling) const {
+  Vec3Field moved = begin.position, led = safe_;
+  for (std::size_t i = 0; i < safe_.size(); ++i) {
+    const Vec3 put = safe_[i] - begin.position[i] - begin.step * motion_[i];
+    moved.add(i, put), led.add(i, -put);
+  }
+  return 0.5 * (settling.potential(moved) - settling.potential(begin.position) + settling.potential(safe_) -
+                settling.potential(led));
+}
+
 /// m/s: what contact adds to the velocity that leads through the step.
 Vec3 ContinuousContact::opening_of(std::size_t i, const Begin& begin) const {
   return motion_[i] - (wished_[i] - begin.position[i]) / begin.step;
@@ -104,11 +116,7 @@ void ContinuousContact::answer_velocities(const ClothSystem& system, const Begin
                                           ContactReport& report) {
   const bool follows = static_cast<bool>(settling.positions);
   settling.memory.resize(safe_.size());
-  if (find_motion(system, begin)) {
-    Vec3Field led = begin.position;
-    for (std::size_t i = 0; i < led.size(); ++i) led.add(i, begin.step * motion_[i]);
-    report.work += settling.potential(safe_) - settling.potential(led);
-  }
+  if (find_motion(system, begin)) report.work += recovering_work(begin, settling);
   if (follows) settling.positions(motion_);
   take_touches(begin, settling);
   free_velocity_ = state.velocity;
@@ -160,7 +168,8 @@ void ContinuousContact::find_work(const ClothSystem& system, const Settling& set
 /// Of contacts that act at the begin of the step, on the velocity which leads through it, and at its end, each
 /// as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet in one
 /// state this is the impulse times the mean of the velocities of the steps before and after, under which the
-/// energy of a leapfrog closes; m |c|^2/2, which c took and the next o gives back, is lent meanwhile.
+/// energy of a leapfrog closes; what c took of the load's half kick l, m |l|^2/2, and the next o gives back, is
+/// lent meanwhile.
 void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Begin& begin,
                                             const Settling& settling, const ClothState& state) {
   for (std::size_t i = 0; i < safe_.size(); ++i) {
@@ -172,12 +181,23 @@ void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Beg
   }
 }
 
+/// J, of a particle: what the next step will give back, which is what stopped only the load of the half step;
+/// a blow is lost. `stopped` in m/s is the velocity after the impulse.
+double ContinuousContact::lent_to_load(const ClothSystem& system, std::size_t i, const Vec3& stopped) const {
+  const Vec3 impulse = stopped - free_velocity_[i];
+  const double speed = impulse.norm();
+  if (!(speed > 0)) return 0;
+  const double load = std::clamp((motion_[i] - free_velocity_[i]).dot(impulse) / speed, 0.0, speed);
+  return 0.5 * system.mass[i] * load * load;
+}
+
 /// Restitution, as far as it gives no more than was taken. Any part of the change between two answers of the
 /// contacts is an answer too: bounds and cones of friction are convex. Speeds are those relative to the
 /// obstacles.
 void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bool follows,
                                ClothState& state) {
   bounced_.assign(safe_.size(), 0);
+  lent_to_bounced_.assign(safe_.size(), 0.0);
   bool any = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c)
     any = any || bounce_bound_[c] > constraints_[c].bound;
@@ -209,7 +229,8 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
     Vec3 impulse = stopped[i] - free_velocity_[i];
     if (follows) impulse += opening_of(i, begin);
     Share& share = shares[at(islands.of(static_cast<int>(i)))];
-    share.taken -= work_[i] - mass * impulse.dot(carried[i]);
+    if (follows) lent_to_bounced_[i] = lent_to_load(system, i, stopped[i]);
+    share.taken -= work_[i] - mass * impulse.dot(carried[i]) + lent_to_bounced_[i];
     share.square += 0.5 * mass * change.squaredNorm();
     share.linear += mass * change.dot(stopped[i] - carried[i]);
   }
@@ -231,14 +252,14 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
   }
 }
 
-/// A bounce is no load that the next step could give back.
 void ContinuousContact::remember(const ClothSystem& system, const ClothState& state, bool follows,
                                  ContactMemory& memory) {
   for (std::size_t i = 0; i < safe_.size(); ++i) {
     const Vec3 impulse = state.velocity[i] - free_velocity_[i];
     memory.held[i] = !bounced_[i] && !impulse.isZero(0);
-    memory.lent[i] =
-        follows && memory.held[i] && !system.pinned[i] ? 0.5 * system.mass[i] * impulse.squaredNorm() : 0;
+    memory.lent[i] = 0;
+    if (follows && !system.pinned[i])
+      memory.lent[i] = bounced_[i] ? lent_to_bounced_[i] : lent_to_load(system, i, state.velocity[i]);
     work_[i] += memory.lent[i];
   }
 }

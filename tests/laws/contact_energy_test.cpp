@@ -122,8 +122,16 @@ TEST_P(RestitutionOne, LetsAClothComeToRest) {
       const RestingRun run = rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
       const std::string where = std::string(method) + (continuous ? "" : ", particle by particle");
       ASSERT_FALSE(run.stop) << where << describe(*run.stop);
-      EXPECT_LT(run.kinetic, 1e-6 * run.peak) << where;
-      EXPECT_LT(run.highest_after, 1e-6 * run.peak) << where << ": it began to move again";
+      // Particle by particle a cloth goes on slipping a little, without restitution too.
+      double still = 1e-6 * run.peak;
+      if (!continuous) {
+        for (Obstacle& obstacle : scene.obstacles) obstacle.restitution = 0;
+        const RestingRun inelastic =
+            rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
+        still += 10 * inelastic.highest_after;
+      }
+      EXPECT_LT(run.kinetic, still) << where;
+      EXPECT_LT(run.highest_after, still) << where << ": it began to move again";
       EXPECT_GT(run.touched, 0) << where << ": it fell past";
     }
 }

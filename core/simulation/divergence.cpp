@@ -76,8 +76,7 @@ double Simulation::energy_scale_after(double fallen) const {
     const Vec3 way = pull_->target - state_.position[static_cast<std::size_t>(pull_->particle)];
     hand += 0.5 * pull_strength_.stiffness * way.squaredNorm();
   }
-  return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(ledger_.limiter) +
-         std::abs(ledger_.contact);
+  return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(ledger_.contact);
 }
 
 double Simulation::energy_scale() const {
@@ -90,11 +89,13 @@ bool Simulation::is_fast(double kinetic) const {
 }
 
 /// By the ledger: whether more energy has come or gone, kinetic, elastic or of height, than works and losses
-/// and ten times what the scene could give explain.
+/// and ten times what the scene could give explain. What a limiter has taken out may be missing once more; it
+/// explains no gain.
 bool Simulation::has_run_away() const {
   const Energy energy = measure_energy(system_, gravity_of(scene_), state_);
-  const double unexplained = std::abs(energy.total() - ledger_.initial - ledger_.entered());
-  return !(unexplained <= runaway_factor * energy_scale_after(-energy.gravity));
+  const double unexplained = energy.total() - ledger_.initial - ledger_.entered();
+  const double missing = unexplained < 0 ? std::abs(ledger_.limiter) : 0;
+  return !(std::abs(unexplained) <= runaway_factor * (energy_scale_after(-energy.gravity) + missing));
 }
 
 /// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2. Where the step is

@@ -27,7 +27,7 @@ Scene base_scene(int rows = 9, int columns = 9) {
   scene.damping = 0.001;
   scene.gravity = Vec3(0, -9.81, 0);
   scene.integrator.time_step = base_step;
-  scene.duration = 1e9;  // the bound is on steps
+  scene.duration = 1e5;  // the bound is on steps
   scene.record.interval = frame;
   return scene;
 }

@@ -129,7 +129,7 @@ class TimelineTest : public QObject {
     QVERIFY(QDir().mkpath(taken + "/below"));
     WindowBench bench;
     const QString problem = save_cloth_file(*bench.window.view().frame(), "x", taken);
-    QVERIFY2(problem.contains("taken.obj") && problem.contains("irectory"), qPrintable(problem));
+    QVERIFY2(problem.contains("taken.obj") && problem.contains("is a folder"), qPrintable(problem));
   }
 
   void keys_go_by_record_intervals_and_to_the_ends() {

@@ -19,10 +19,15 @@ constexpr std::size_t least_separated = 500;  ///< pairs that are worth a thread
 constexpr double skin_part = 0.25;  ///< of a mean edge: how far overlaps that were found serve again
 constexpr double solver_tolerance_part = 1e-5;
 constexpr int solver_sweeps = 20;
+/// In stacks of layers that is too few: on it goes while a pair misses more than this part of its thickness,
+/// and that becomes less, up to so many.
+constexpr double missing_part = 0.03, less_missing = 0.9;
+constexpr int more_solver_sweeps = 100, most_solver_sweeps = 1000;
 constexpr int most_rounds_at_rest = 100, most_rounds_stuck = 15;
 /// Rounds without a shorter way left, after which the few that are still on their way are held back.
 constexpr int most_rounds_idle = 6;
 constexpr double progress_part = 0.7;
+constexpr double rough_part = 0.005;  ///< of the thickness
 
 /// Pairs and particles that the rounds of one step may look at, for a cloth of so many particles: some
 /// seconds of work. Counted, so that a run does not depend on the machine.
@@ -49,6 +54,38 @@ double reach_of(const Obstacle& obstacle, const Vec3Field& position) {
   for (std::size_t i = 0; i < position.size(); ++i)
     reach = std::max(reach, (position[i] - obstacle.point).norm());
   return reach;
+}
+
+/// Whether a cloth has started in one plane, but for rounding.
+bool is_flat(const Surface& surface, const Vec3Field& position) {
+  Vec3 normal = Vec3::Zero();
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 other = (position[at(b)] - position[at(a)]).cross(position[at(c)] - position[at(a)]);
+    if (other.squaredNorm() > normal.squaredNorm()) normal = other;
+  }
+  constexpr double rounding = 1e-6;
+  double extent = 0, height = 0;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Vec3 from = position[i] - position[0];
+    extent = std::max(extent, from.norm());
+    height = std::max(height, std::abs(normal.normalized().dot(from)));
+  }
+  return height <= rounding * extent;
+}
+
+/// Whether a cloth could lie on one obstacle and be squeezed by others.
+bool may_be_squeezed(const std::vector<Obstacle>& obstacles) {
+  const auto is_floor = [](const Obstacle& o) {
+    return !moves(o) && (o.shape == Shape::plane || o.shape == Shape::box);
+  };
+  const auto is_press = [](const Obstacle& o) { return moves(o) && o.shape != Shape::sphere; };
+  return std::any_of(obstacles.begin(), obstacles.end(), is_floor) &&
+         std::any_of(obstacles.begin(), obstacles.end(), is_press);
+}
+
+/// In [0, 1), evenly spread over the particles (Knuth's multiplicative hash).
+double roughness_of(int particle) {
+  return static_cast<double>(static_cast<std::uint32_t>(particle) * 2654435761u) * 0x1p-32;
 }
 
 double mean_edge(const Surface& surface, const Vec3Field& position) {
@@ -100,6 +137,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
   }
   const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
                                     [](const Obstacle& o) { return o.shape == Shape::mesh; });
+  is_rough_ = may_be_squeezed(obstacles_) && is_flat(surface_, system.start);
   set_thickness(time);
   longest_way_ = scene.self_contact || has_mesh ? edges_of_a_search * mean_edge_ : infinity;
 }
@@ -208,6 +246,10 @@ void ContinuousContact::separate_all() {
 }
 
 /// The pair at the end of the step: its plane is carried along by the obstacle.
+///
+/// A cloth that lies exactly flat never buckles, however it is squeezed: no force leads out of its plane. So
+/// an obstacle at rest keeps its particles up to half a hundredth of the thickness further away, each by a
+/// part of its own, where such a cloth can be squeezed.
 ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSystem& system,
                                                    const Vec3Field& from) const {
   const FeaturePair& pair = pairs_[k];
@@ -218,6 +260,9 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   contact.weight = s.weight;
   contact.normal = s.normal;
   contact.bound = memory_[k].thickness;
+  if (is_rough_ && (pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box) &&
+      !moves(obstacles_[at(pair.obstacle)]))
+    contact.bound *= 1 + rough_part * roughness_of(pair.feature);
   contact.friction = self_friction_;
   contact.rest = contact.point(from);
   if (pair.obstacle != FeaturePair::cloth_itself) {
@@ -251,7 +296,29 @@ void ContinuousContact::solve_wish(const ClothSystem& system, const Vec3Field& f
     constraint_pair_.push_back(k);
     apply_pushes(constraints_.back(), system.inverse_mass, wish_);
   }
-  solve_contacts(constraints_, system.inverse_mass, solver_sweeps, solver_tolerance_part * thickness_, wish_);
+  double last_missing = infinity;
+  int sweeps = solver_sweeps;
+  for (int all = 0; all < most_solver_sweeps; all += sweeps, sweeps = more_solver_sweeps) {
+    const int taken =
+        solve_contacts(constraints_, system.inverse_mass, sweeps, solver_tolerance_part * thickness_, wish_);
+    if (taken < sweeps) return;
+    const double missing = most_missing();
+    if (missing <= missing_part || missing > less_missing * last_missing) return;
+    last_missing = missing;
+    looked_at_ += static_cast<double>(constraints_.size()) * more_solver_sweeps / solver_sweeps;
+  }
+}
+
+/// Of its thickness, by what is wished, of any pair that can move.
+double ContinuousContact::most_missing() const {
+  double most = 0;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const ContactConstraint& contact = constraints_[c];
+    if (!(contact.mobility > 0)) continue;
+    const double missing = contact.bound - contact.normal.dot(contact.point(wish_));
+    most = std::max(most, missing / memory_[constraint_pair_[c]].thickness);
+  }
+  return most;
 }
 
 void ContinuousContact::keep_touches(double step) {

@@ -38,12 +38,13 @@ struct ContactTimes {
 /// What the velocities' answer refers to, and how the integrator's velocities follow contact; no function
 /// where they need not.
 struct Settling {
-  const Vec3Field& velocity_before;  ///< m/s, as the step began
-  ContactMemory& memory;             ///< of the last step, and then of this one
+  const Vec3Field& velocity_before;                            ///< m/s, as the step began
+  ContactMemory& memory;                                       ///< of the last step, and then of this one
   std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
   /// Called once the positions are in the state, before velocities answer; `motion` in m/s has led there.
   std::function<void(const Vec3Field& motion)> positions;
-  std::function<void(const Vec3Field& motion)> velocities;  ///< once they have answered; they answer once more
+  std::function<void(const Vec3Field& motion)>
+      velocities;  ///< once they have answered; they answer once more
 };
 
 class ContinuousContact {
@@ -116,6 +117,7 @@ class ContinuousContact {
   void separate_all();
   void solve_wish(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
+  double most_missing() const;
   void keep_touches(double step);
   double move_cloth();
   void bound_by_pairs();
@@ -160,7 +162,8 @@ class ContinuousContact {
   ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
   std::function<bool()> stop_test_;
-  double mean_edge_ = 0;  ///< m, of the cloth at its start
+  double mean_edge_ = 0;   ///< m, of the cloth at its start
+  bool is_rough_ = false;  ///< obstacles at rest: see constraint_of()
   ThicknessCarry thickness_carry_;
   double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
   double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step

@@ -1,0 +1,127 @@
+// Layers at rest lie a thickness apart, however long the step and however many there are; a cloth that starts
+// exactly flat gives way where it is squeezed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cloth/mesh_cloth.h"
+#include "contact/near_pairs.h"
+#include "geometry/mesh_repair.h"
+#include "support/contact_scenes.h"
+
+namespace cloth::test::contact_layers_test {
+namespace {
+
+/// Sheets of 9 x 9 particles and 0.3 m over each other, 0.01 m apart, each turned by half a radian more than
+/// the one below it, as one cloth.
+TriangleMesh sheets(int count) {
+  constexpr int n = 9;
+  TriangleMesh mesh;
+  for (int sheet = 0; sheet < count; ++sheet) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.5 * sheet, Vec3::UnitY()).toRotationMatrix();
+    Vec3Field position(n * n);
+    for (int k = 0; k < n * n; ++k)
+      position.set(static_cast<std::size_t>(k),
+                   turn * Vec3(0.0375 * (k % n) - 0.15, 0.006 + 0.01 * sheet, 0.0375 * (k / n) - 0.15));
+    const TriangleMesh one = grid_triangles(n, n, position);
+    mesh.vertices.insert(mesh.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const Triangle& t : one.triangles)
+      mesh.triangles.push_back({t[0] + n * n * sheet, t[1] + n * n * sheet, t[2] + n * n * sheet});
+  }
+  return mesh;
+}
+
+MeshChoice chosen(const TriangleMesh& surface) {
+  auto mesh = std::make_shared<SceneMesh>();
+  mesh->file = "made.obj";
+  mesh->surface = surface;
+  for (const MeshEdge& edge : unique_edges(surface)) {
+    mesh->edges.push_back({edge.from, edge.to});
+    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
+    if (a >= 0) mesh->hinges.push_back({a, b});
+  }
+  for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
+  return {mesh->file, mesh};
+}
+
+Scene layers(int count, double thickness) {
+  Scene scene;
+  scene.cloth.mesh = chosen(sheets(count));
+  scene.cloth.rows = 1;
+  scene.cloth.columns = static_cast<int>(scene.cloth.mesh.loaded->surface.vertices.size());
+  scene.cloth.origin.setZero();
+  scene.cloth.mass = 0.01 * count;
+  scene.springs = SpringMaterial{.structural = 500, .shear = 0, .flexion = 50, .damping = 0.004};
+  scene.damping = 0.001;
+  scene.gravity = Vec3(0, -9.81, 0);
+  Obstacle plane;
+  plane.shape = Shape::plane;
+  scene.obstacles = {plane};
+  scene.contact = ContactSettings{};
+  scene.self_contact = SelfContact{.thickness = thickness};
+  scene.integrator.method = "implicit-euler";
+  scene.integrator.time_step = 1.0 / 60;
+  return scene;
+}
+
+/// m, the least of features that share no particle.
+double least_own_distance(const Simulation& simulation, double within) {
+  const Vec3Field& position = simulation.state().position;
+  Ways around{.own_reach = within};
+  for (std::size_t i = 0; i < position.size(); ++i) around.particles.push_back({position[i], position[i], 0});
+  const Surface surface = make_surface(static_cast<int>(position.size()), simulation.cloth_mesh().triangles);
+  std::vector<FeaturePair> pairs;
+  PairSearch(surface, {}, true, 0).find(around, {}, pairs);
+  double least = within;
+  for (const FeaturePair& pair : pairs)
+    least = std::min(least, separate(pair, surface, position, {}, {}, 0).distance);
+  return least;
+}
+
+void expect_layers_apart(int count, double thickness, double seconds) {
+  Simulation simulation(layers(count, thickness));
+  while (simulation.time() < seconds) ASSERT_FALSE(simulation.step());
+  EXPECT_GT(least_own_distance(simulation, 1.5 * thickness), 0.9 * thickness);
+  EXPECT_EQ(all_crossings(simulation).number, 0);
+}
+
+TEST(LayersAtRest, LieAThicknessApartWhereAStepFallsManyThicknesses) {
+  expect_layers_apart(2, 4e-4, 1.0);
+}
+
+TEST(LayersAtRest, LieAThicknessApartInAStack) {
+  expect_layers_apart(5, 0.004, 1.0);
+}
+
+TEST(AClothThatIsExactlyFlat, BucklesWhereItIsSqueezedOnAPlane) {
+  Scene scene;
+  scene.cloth.rows = scene.cloth.columns = 17;
+  scene.cloth.width = scene.cloth.height = 0.5;
+  scene.cloth.mass = 0.0625;
+  scene.cloth.origin = {-0.25, 0.0051, -0.25};
+  scene.cloth.down = {0, 0, 1};
+  scene.springs = SpringMaterial{.structural = 500, .shear = 250, .flexion = 50};
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.contact = ContactSettings{};
+  scene.self_contact = SelfContact{};
+  scene.integrator.time_step = 4e-4;
+  Obstacle plane, box;
+  plane.shape = Shape::plane, box.shape = Shape::box;
+  box.size = {0.2, 0.2, 1};
+  scene.obstacles = {plane, box, box};
+  scene.obstacles[1].center = {-0.36, 0.09, 0}, scene.obstacles[1].velocity = {0.4, 0, 0};
+  scene.obstacles[2].center = {0.36, 0.09, 0}, scene.obstacles[2].velocity = {-0.4, 0, 0};
+  Simulation simulation(scene);
+  double highest = 0;
+  while (0.52 - 0.8 * simulation.time() > 0.15) {
+    const auto stop = simulation.step();
+    ASSERT_FALSE(stop) << describe(*stop) << ", " << 0.52 - 0.8 * simulation.time() << " m open";
+  }
+  for (std::size_t i = 0; i < simulation.state().position.size(); ++i)
+    highest = std::max(highest, simulation.state().position[i].y());
+  EXPECT_GT(highest, 0.05) << "m";
+  EXPECT_EQ(all_crossings(simulation).number, 0);
+}
+
+}  // namespace
+}  // namespace cloth::test::contact_layers_test

@@ -1,8 +1,10 @@
 // What is written reads back equal, bit by bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "contact/start_check.h"
 #include "integrators/registry.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_checks.h"
@@ -134,8 +136,18 @@ Scene any_scene(Random& random) {
 
 TEST(RandomScenes, ReadBackAfterWriting) {
   Random random;
-  for (int trial = 0; trial < 1000 && !::testing::Test::HasFailure(); ++trial)
-    expect_reads_back(any_scene(random));
+  int read = 0;
+  for (int trial = 0; trial < 1000 && !::testing::Test::HasFailure(); ++trial) {
+    Scene scene = any_scene(random);
+    if (!scene.obstacles.empty()) {  // the start is looked at particle by particle
+      scene.cloth.columns = std::min(scene.cloth.columns, 16), scene.cloth.rows = std::min(scene.cloth.rows, 16);
+      scene.cloth.pins.clear();
+      if (!find_start_problems(scene).empty()) continue;
+    }
+    expect_reads_back(scene);
+    ++read;
+  }
+  EXPECT_GT(read, 300);
 }
 
 TEST(SceneHash, TellsScenesApartAndIsTheSameForEqualOnes) {

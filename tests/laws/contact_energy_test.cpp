@@ -150,7 +150,7 @@ TEST_P(TheLedgerOf, ASceneOfContactClosesToTwoPercentOfTheEnergyExchanged) {
   Scene scene = coarser(builtin_scene(GetParam().name), GetParam().part);
   scene.integrator.time_step = resolved_time_step(scene);
   const ContactLedger ledger = ledger_of(scene, {}, scene.duration);
-  EXPECT_LT(ledger.account.share(), 0.025) << "at every step; every_scene_test.cpp has rows to 2 %";
+  EXPECT_LT(ledger.account.share(), 0.02);
   const bool all_rest = std::none_of(scene.obstacles.begin(), scene.obstacles.end(), moves);
   if (all_rest) {
     EXPECT_LT(ledger.work, 0);

@@ -114,9 +114,9 @@ class Sweep {
   }
 
   /// False: it has no business there, so that the polygon is not simple.
-  bool open_slab(int left_edge, int right_edge, int first, int last, int lowest) {
+  bool open_slab(int left_edge, int right_edge, int first, int last, int lowest_node) {
     const int slab = static_cast<int>(slabs_.size());
-    slabs_.push_back({left_edge, right_edge, first, last, lowest});
+    slabs_.push_back({left_edge, right_edge, first, last, lowest_node});
     node(first).left = none;
     node(last).right = none;
     slab_right_of_[place(left_edge)] = slab;

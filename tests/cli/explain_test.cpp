@@ -57,10 +57,11 @@ TEST(Explain, GivesTheFrequencyItsBoundAndEveryMethodsStep) {
       const auto limit = stable_step(method["name"].get<std::string>(), scene);
       const auto guaranteed = guaranteed_step(method["name"].get<std::string>(), scene);
       ASSERT_EQ(limit.has_value(), guaranteed.has_value());
-      if (guaranteed)
+      if (guaranteed) {
         EXPECT_EQ(method["guaranteed_step_s"],
                   std::isfinite(*guaranteed) ? Json(*guaranteed) : Json("infinity"))
             << builtin.name;
+      }
       if (limit)
         EXPECT_EQ(method["stable_step_s"], std::isfinite(*limit) ? Json(*limit) : Json("infinity"))
             << builtin.name;

@@ -16,7 +16,7 @@ namespace {
 
 /// A rational coordinate is a whole number over a power of two that all have in common: no product of three
 /// differences of less than 2^41 leaves 128 bits.
-using Whole = __int128;
+__extension__ using Whole = __int128;
 using Whole3 = std::array<std::int64_t, 3>;
 
 Vec3 in_doubles(const Whole3& point, double unit) {

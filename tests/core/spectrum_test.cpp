@@ -236,7 +236,9 @@ TEST(GuaranteedFrequency, OfAGridStaysBelowThatOfTheSheetAndComesNear) {
       const double bound = guaranteed_frequency(sheet, material_of(r));
       const double free = guaranteed_frequency(make_grid(sheet, material_of(r)));
       EXPECT_LE(free, bound * (1 + 1e-3));
-      if (size > 7) EXPECT_GE(free, 0.99 * bound);
+      if (size > 7) {
+        EXPECT_GE(free, 0.99 * bound);
+      }
       sheet.pins = {NamedPin::top_edge};
       EXPECT_LE(guaranteed_frequency(make_grid(sheet, material_of(r))), free * (1 + 1e-3));
     }

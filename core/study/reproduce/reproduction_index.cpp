@@ -13,12 +13,12 @@ using IndexJson = nlohmann::ordered_json;
 const char* const index_name = "reproduce.json";
 
 IndexJson inputs_of(const ReproduceOptions& options) {
-  IndexJson parts = IndexJson::array();
+  IndexJson wanted = IndexJson::array();
   for (const std::string& part : reproduce_parts())
     if (options.only.empty() ||
         std::find(options.only.begin(), options.only.end(), part) != options.only.end())
-      parts.push_back(part);
-  return {{"parts", parts},
+      wanted.push_back(part);
+  return {{"parts", wanted},
           {"version", version()},
           {"instruction_set", name_of(active_instruction_set())},
           {"processor", machine_facts().processor}};

@@ -128,6 +128,7 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
     const bool touched = touch(system, i, begin, state, report);
     if (!touched) begin.memory.held[i] = 0;
   }
+  report.acted = report.contacts > 0;
   return report;
 }
 

@@ -167,6 +167,7 @@ json breach_json(const RateBreach& breach) {
           {"first_step", breach.first_step},
           {"first_time_s", breach.first_time},
           {"particles", {breach.first_particle, breach.second_particle}},
+          {"by_contact", breach.by_contact},
           {"first_excess", breach.first_excess},
           {"largest_excess", breach.largest_excess},
           {"largest_step", breach.largest_step},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cloth/sums.h"
 
@@ -100,9 +101,14 @@ bool StepLimiter::move(ClothState& state) {
   const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position);
   report_ = {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess};
   holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
-  const auto to = state.position.flat(), from = drifted_.flat(), speed = state.velocity.flat();
-  for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
+  add_speed_of_move(state);
   return true;
+}
+
+void StepLimiter::add_speed_of_move(ClothState& state) const {
+  const std::span<const double> from = drifted_.flat();
+  const auto to = state.position.flat(), speed = state.velocity.flat();
+  for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
 }
 
 /// A kick, a drift, a closing kick: what opening kick and limiting change is counted as if it came first, and

@@ -38,6 +38,9 @@ class StepLimiter : public DriftConstraint {
   /// For methods that do not call the constraint. Returns whether anything was moved.
   bool after_step(ClothState& state);
 
+  /// Something else has moved the cloth since: report() tells the excess of these positions.
+  void look_again(const Vec3Field& position) { report_.excess = limiter_.excess(position); }
+
   /// Brings a start within the rate; no motion led there, so that none comes of it.
   void limit_start(double time_step, ClothState& state);
 
@@ -58,6 +61,7 @@ class StepLimiter : public DriftConstraint {
  private:
   void begin(double time_step);
   bool move(ClothState& state);
+  void add_speed_of_move(ClothState& state) const;
   void pull(double duration, const std::vector<double>& tension, ClothState& state);
 
   Deformation deformation_;

@@ -70,11 +70,14 @@ std::string describe(const RateBreach& b) {
       b.steps > 1 ? fmt::format("; so it was in {} steps, worst in step {} with {:.3g} %", b.steps,
                                 b.largest_step, 100 * b.largest_excess)
                   : "";
+  const char* why = b.unreachable  ? ", which the pins make unreachable"
+                    : b.by_contact ? ", where contact has stretched it"
+                                   : "";
   return fmt::format(
       "rate not kept: in step {} (t = {:.6g} s) the spring between particles {} and {} is left {:.3g} % of "
       "its rest length beyond deformation.rate{}{}",
       b.first_step, b.first_time, particle(b.first_particle), particle(b.second_particle),
-      100 * b.first_excess, b.unreachable ? ", which the pins make unreachable" : "", also);
+      100 * b.first_excess, why, also);
 }
 
 }  // namespace cloth

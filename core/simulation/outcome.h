@@ -61,6 +61,7 @@ struct RateBreach {
   std::int64_t largest_step = 0;                ///< where it was worst
   double largest_excess = 0;
   bool unreachable = false;  ///< in the first of them the pins were too far apart
+  bool by_contact = false;   ///< in the first of them contact stretched what the limiter had limited
   int columns = 0;           ///< of the grid; 0 for a mesh
   bool operator==(const RateBreach&) const = default;
 };

@@ -232,14 +232,18 @@ void Simulation::limit_deformation() {
   last_limit_ = limiter_->report();
 }
 
-/// After contact, which answers the closing kick of held tensions as it does that of any load.
+/// After contact, which answers the closing kick of held tensions as it does that of any load. It may also have
+/// stretched again what was within the rate: what counts is where the step ends.
 void Simulation::book_limiter() {
+  const bool kept_before_contact = limiter_->is_kept();
   if (limits_drift_) limiter_->end_step(state_);
   ledger_.limiter += limiter_->work().value_or(0);
-  if (!limiter_->is_kept() && std::isfinite(last_limit_.excess)) note_breach();
+  if (last_contact_.acted) limiter_->look_again(state_.position);
+  last_limit_ = limiter_->report();
+  if (!limiter_->is_kept() && std::isfinite(last_limit_.excess)) note_breach(kept_before_contact);
 }
 
-void Simulation::note_breach() {
+void Simulation::note_breach(bool by_contact) {
   if (!rate_breach_) {
     const auto [first, second] = limiter_->worst_spring(state_.position);
     rate_breach_ = RateBreach{
@@ -249,6 +253,7 @@ void Simulation::note_breach() {
         .second_particle = second,
         .first_excess = last_limit_.excess,
         .unreachable = unreachable_.has_value(),
+        .by_contact = by_contact,
         .columns = system_.is_mesh() ? 0 : system_.columns};
   }
   ++rate_breach_->steps;

@@ -212,7 +212,7 @@ class Simulation {
   void limit_start();
   void limit_deformation();
   void book_limiter();
-  void note_breach();
+  void note_breach(bool by_contact);
   void resolve_contact(const StepTimes& times);
   void book_contact(const StepTimes& times);
   void end_contact();

@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "integrators/registry.h"
-#include "io/run_folder.h"
+#include "io/result_folder.h"
 #include "progress.h"
 #include "study/speed/speed_tables.h"
 
@@ -46,11 +46,11 @@ int bench(const BenchArguments& arguments) {
       !are_known("--features", arguments.features, feature_names()) ||
       !are_known("--only", arguments.only, speed::speed_parts()))
     return bad_input;
-  const std::filesystem::path folder = arguments.folder;
-  if (!folder.empty())
-    if (const auto error = cloth::make_folder(folder)) return report(*error);
-
   listen_for_stop();
+  cloth::ResultFolder folder;
+  if (!arguments.folder.empty())
+    if (const auto error = folder.claim(arguments.folder, {.kind = "bench", .files = {"bench.json"}}))
+      return report(*error);
   speed::SpeedReport result;
   {
     Progress bar;
@@ -68,8 +68,8 @@ int bench(const BenchArguments& arguments) {
                                  }});
   }
   const std::string json = speed::speed_json(result);
-  if (!folder.empty())
-    if (const auto error = cloth::write_text_file(folder / "bench.json", json)) return report(*error);
+  if (folder.is_open())
+    if (const auto error = folder.finish("bench.json", json)) return report(*error);
   const int printed = print(arguments.json       ? json
                             : arguments.markdown ? speed::speed_markdown(result)
                                                  : speed::speed_text(result));

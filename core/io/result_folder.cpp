@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 const char* const list_name = ".clothlab";
 const char* const list_format = "clothlab folder 1";
-constexpr std::array<const char*, 3> index_names{"study.json", "summary.json", "reproduce.json"};
+constexpr std::array<const char*, 4> index_names{"study.json", "summary.json", "reproduce.json",
+                                                 "bench.json"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -49,7 +50,7 @@ const char* const two_things = "a run and a study";  // as old versions let it h
 
 std::string with_article(const std::string& kind) {
   if (kind == two_things) return kind;
-  return kind == "run" || kind == "comparison" ? "a " + kind : "a study (" + kind + ")";
+  return kind == "run" || kind == "comparison" || kind == "bench" ? "a " + kind : "a study (" + kind + ")";
 }
 
 struct OldResults {
@@ -70,6 +71,7 @@ void read_list(const std::string& text, OldResults& old) {
 
 /// The names that results without a list have, as versions before 0.3 left them.
 std::vector<std::string> names_of_old_versions(const std::string& kind) {
+  if (kind == "bench") return {};
   if (kind == "work-precision")
     return {"work_precision.csv", "work_precision_samples.csv", "work_precision.svg", "report.html"};
   if (kind == "stability") return {"stability.csv", "stability.svg", "report.html"};
@@ -92,7 +94,7 @@ void read_index(const fs::path& folder, const std::string& name, OldResults& old
   };
   if (text_of("program") != "clothlab" && text_of("format").rfind("clothlab/study/", 0) != 0) return;
   std::string kind = text_of("kind");
-  if (kind.empty()) kind = root.contains("panes") ? "comparison" : "run";
+  if (kind.empty()) kind = name == "bench.json" ? "bench" : root.contains("panes") ? "comparison" : "run";
   old.kind = old.kind.empty() || old.kind == kind ? kind : two_things;
   old.files.insert(old.files.begin(), name);
   if (const auto files = root.find("files"); files != root.end() && files->is_object()) {
@@ -272,6 +274,12 @@ std::optional<IoError> ResultFolder::write(const std::string& name, const std::s
   if (auto error = write_text_file(path_ / name, text)) return error;
   note(digest_of(name, text, is_table));
   return std::nullopt;
+}
+
+std::optional<IoError> ResultFolder::remove(const std::string& name) {
+  if (!contains(files_, name)) return std::nullopt;
+  std::erase_if(digests_, [&](const FileDigest& digest) { return digest.name == name; });
+  return remove_file(path_ / name);
 }
 
 void ResultFolder::note(const FileDigest& digest) {

@@ -60,6 +60,9 @@ class ResultFolder {
   /// Adds a file and writes it whole: it is old or new, never half.
   std::optional<IoError> write(const std::string& name, const std::string& text, bool is_table = false);
 
+  /// Takes a file of this run or study away again: it was of use only while the rest was made.
+  std::optional<IoError> remove(const std::string& name);
+
   /// What a file that was written line by line holds.
   void note(const FileDigest& digest);
   const std::vector<FileDigest>& digests() const { return digests_; }

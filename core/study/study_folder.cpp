@@ -12,6 +12,7 @@
 #include "scene/scene_json.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
+#include "study/reference_states.h"
 #include "study/stability_report.h"
 #include "study/study_recorder.h"
 #include "study/work_precision_tables.h"
@@ -172,7 +173,8 @@ std::string study_json_text(const StudyTable& table) {
 }
 
 std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
-                        const std::string& command, double wall, const std::vector<FileDigest>& files) {
+                        const std::string& command, double wall, const std::vector<FileDigest>& files,
+                        const std::optional<FileDigest>& states) {
   json root{{"format", study_format}, {"kind", kind_of(table)}, {"title", title_of(table)},
             {"command", command},     {"wall_s", wall},         {"complete", is_complete(table)}};
   root["made_by"] = maker();
@@ -181,6 +183,7 @@ std::string study_index(const std::filesystem::path& folder, const StudyTable& t
     root["scene_hash"] = scene_hash(*scene);
     root["scene"] = json::parse(write_scene(moved_to_folder(*scene, folder.string())));
   }
+  if (states) root["reference"]["states"] = digests_json({*states});
   if (!files.empty()) root["files"] = digests_json(files);
   if (files.empty()) root["complete"] = false;
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
@@ -188,7 +191,8 @@ std::string study_index(const std::filesystem::path& folder, const StudyTable& t
 
 std::vector<std::string> study_files(const StudyTable& table) {
   std::vector<std::string> names{"study.json", csv_name(table), "report.html"};
-  if (std::holds_alternative<WorkPrecision>(table)) names.emplace_back(samples_name);
+  if (std::holds_alternative<WorkPrecision>(table))
+    names.insert(names.end(), {samples_name, reference_states_name});
   names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
   return names;
 }

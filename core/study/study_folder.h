@@ -50,8 +50,10 @@ std::optional<IoError> write_study(const std::filesystem::path& folder, const Ex
 std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study);
 
 /// study.json for a folder. Without `files`: of a study that is being made, whose tables still grow.
+/// `states`: the file with the states of its reference, while it is kept.
 std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
-                        const std::string& command, double wall, const std::vector<FileDigest>& files);
+                        const std::string& command, double wall, const std::vector<FileDigest>& files,
+                        const std::optional<FileDigest>& states = {});
 
 /// The names of all files of such a study, study.json too.
 std::vector<std::string> study_files(const StudyTable& table);

@@ -9,6 +9,7 @@
 #include "io/run_folder.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
+#include "study/reference_states.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
@@ -74,6 +75,12 @@ bool is_finished(const StabilityCell& cell) {
   return cell.status != CellStatus::not_run;
 }
 
+/// Whether there is anything that need not be made again.
+bool has_beginning(const StudyTable& table) {
+  const auto* study = std::get_if<WorkPrecision>(&table);
+  return finished_runs(table) > 0 || (study && study->reference.is_known());
+}
+
 /// What is decided anew by what is left of the budget.
 void forget_refused(StudyTable& table) {
   if (auto* study = std::get_if<WorkPrecision>(&table))
@@ -88,6 +95,7 @@ std::optional<IoError> StudyRecorder::begin(const std::filesystem::path& folder,
                                             const StudyStart& start) {
   command_ = start.command;
   earlier_.reset();
+  states_.reset();
   FolderUse use{.kind = kind_of(plan), .files = study_files(plan), .inputs = start.inputs};
   if (const Scene* scene = scene_of(plan))
     for (const std::string& mesh : mesh_files(*scene)) use.inputs.emplace_back(mesh);
@@ -116,27 +124,42 @@ std::optional<IoError> StudyRecorder::look_at_earlier(const StudyTable& plan, co
   };
   StudyReading reading = read_study(folder_.path());
   if (!reading.study) return refused("that cannot be read (" + reading.problem + ")");
-  if (finished_runs(reading.study->table) == 0) return std::nullopt;
+  if (!has_beginning(reading.study->table)) return std::nullopt;
   const Json now = Json::parse(study_index(folder_.path(), plan, command_, 0, {}));
   if (const auto found = differences(before, now); !found.empty())
     return refused(fmt::format("of other inputs (not the same: {})", fmt::join(found, ", ")));
   earlier_ = std::move(reading.study);
   forget_refused(earlier_->table);
+  restore_reference(text);
   return std::nullopt;
+}
+
+/// The states of the reference from their file, to the bit. Where it is not the one that study.json
+/// describes, they stay away, and whoever needs them solves the reference again.
+void StudyRecorder::restore_reference(const std::string& index) {
+  auto* study = std::get_if<WorkPrecision>(&earlier_->table);
+  if (!study || !study->reference.is_known()) return;
+  const Json reference = Json::parse(index).at("reference");
+  std::string bytes;
+  if (!reference.contains("states") ||
+      read_text_file(folder_ / reference_states_name, bytes, largest_mesh_text))
+    return;
+  const FileDigest found = digest_of(reference_states_name, bytes, false);
+  if (reference.at("states") != digests_json({found})) return;
+  study->reference.states = states_from(bytes, study->particles, study->samples, study->horizon);
+  if (!study->reference.states.empty()) states_ = found;
 }
 
 std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   rows_kept_.clear();
   samples_kept_.clear();
   limits_kept_ = 0;
-  reference_kept_ = false;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
     for (const MethodStudy& method : study->methods) {
       rows_kept_.push_back(method.runs.size());
       samples_kept_.emplace_back();
       for (const WorkPrecisionRun& run : method.runs) samples_kept_.back().push_back(run.samples.size());
     }
-    reference_kept_ = study->reference.is_known();
     if (auto error = begin_table(folder_, csv_name(table), run_table(*study), rows_)) return error;
     return begin_table(folder_, samples_name, sample_table(*study), samples_);
   }
@@ -164,7 +187,8 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
 std::optional<IoError> StudyRecorder::write_index(const StudyTable& so_far) {
   if (auto error = folder_.add("study.json")) return error;
   const double wall = earlier_ ? earlier_->wall : 0;
-  return write_text_file(folder_ / "study.json", study_index(folder_.path(), so_far, command_, wall, {}));
+  return write_text_file(folder_ / "study.json",
+                         study_index(folder_.path(), so_far, command_, wall, {}, states_));
 }
 
 std::optional<IoError> StudyRecorder::keep(const StudyTable& so_far) {
@@ -172,9 +196,11 @@ std::optional<IoError> StudyRecorder::keep(const StudyTable& so_far) {
 }
 
 std::optional<IoError> StudyRecorder::keep(const WorkPrecision& so_far) {
-  if (!reference_kept_ && so_far.reference.is_known()) {
+  if (!states_ && !so_far.reference.states.empty()) {
+    const std::string bytes = bytes_of(so_far.reference.states);
+    if (auto error = folder_.write(reference_states_name, bytes)) return error;
+    states_ = digest_of(reference_states_name, bytes, false);
     if (auto error = write_index(so_far)) return error;
-    reference_kept_ = true;
   }
   for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
     const MethodStudy& method = so_far.methods[m];
@@ -219,12 +245,19 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
     const std::string samples = text_of(sample_columns(), sample_table(*study).rows);
     if (auto error = folder_.write(samples_name, samples, true)) return error;
+    if (is_complete(table)) {
+      states_.reset();
+      if (auto error = folder_.remove(reference_states_name)) return error;
+    } else if (states_) {
+      folder_.note(*states_);  // an earlier part of the study may have written it
+    }
   }
   const std::string svg = svg_of(table);
   const std::string svg_name = std::filesystem::path(csv_name(table)).replace_extension("svg").string();
   if (auto error = folder_.write(svg_name, svg)) return error;
   if (auto error = folder_.write("report.html", page_of(table, svg, command_, wall))) return error;
-  return folder_.finish("study.json", study_index(folder_.path(), table, command_, wall, folder_.digests()));
+  return folder_.finish("study.json",
+                        study_index(folder_.path(), table, command_, wall, folder_.digests(), states_));
 }
 
 std::optional<IoError> StudyRecorder::write(const std::filesystem::path& folder, const StudyTable& table,

@@ -53,6 +53,7 @@ class StudyRecorder {
   std::optional<IoError> look_at_earlier(const StudyTable& plan, const StudyStart& start);
   std::optional<IoError> begin_tables(const StudyTable& plan);
   std::optional<IoError> write_index(const StudyTable& so_far);
+  void restore_reference(const std::string& index);
 
   ResultFolder folder_;
   std::string command_;
@@ -61,7 +62,7 @@ class StudyRecorder {
   std::vector<std::size_t> rows_kept_;                  ///< of each method; extremes: of all
   std::vector<std::vector<std::size_t>> samples_kept_;  ///< of each run of each method
   std::size_t limits_kept_ = 0;
-  bool reference_kept_ = false;
+  std::optional<FileDigest> states_;  ///< of the reference, once they are in their file
 };
 
 }  // namespace cloth

@@ -9,6 +9,8 @@
 #include <numeric>
 
 #include "cloth/mesh_cloth.h"
+#include "scene/scene_checks.h"
+#include "scene/scene_parameters.h"
 
 namespace cloth {
 namespace {
@@ -165,7 +167,7 @@ class Measuring {
     if (options_.earlier)
       for (const WorkPrecisionRun& run : options_.earlier->methods[m].runs)
         if (run.rung == rung && run.status != RunStatus::refused) return run;
-    if (study_.reference.states.empty()) {  // a study that goes on knows all of it but the states
+    if (study_.reference.states.empty()) {  // a study that goes on may have lost them
       ReferenceSolution again = make_reference(study_, options_);
       if (!again.failure.empty()) return std::nullopt;
       study_.reference = std::move(again);
@@ -345,6 +347,18 @@ Scene scene_of(const WorkPrecision& study, const MethodStudy& method, const Work
   return scene_at(study.scene, method.ladder, run.rung, study.horizon);
 }
 
+std::optional<std::string> broken_horizon_rule(const Scene& scene, const std::vector<std::string>& methods,
+                                               double horizon) {
+  Scene studied = scene;
+  studied.duration = horizon;
+  for (const Parameter& parameter : parameters_of(studied))
+    if (parameter.path == "duration")
+      if (auto rule = broken_rule(parameter.info, parameter.get(studied))) return rule;
+  for (const StepLadder& ladder : make_ladders(scene, methods, horizon).methods)
+    if (auto rule = too_many_steps(horizon, horizon / static_cast<double>(ladder.first_steps))) return rule;
+  return std::nullopt;
+}
+
 WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study;
   study.scene = studied_scene(scene);
@@ -373,6 +387,7 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
     return study;
   }
   study.estimated = estimated_seconds(study.particles, {.force_evaluations = study.reference.evaluations}, 0);
+  tell(study, options);
   study.stopped = !Measuring(study, options).all() || !time_all(study, options);
   tell(study, options);
   conclude(study);

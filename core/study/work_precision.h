@@ -24,11 +24,12 @@ struct WorkPrecisionOptions {
   int steps_per_method = 7;          ///< runs that must reach the horizon, if the budget lasts
   double budget = 200;  ///< estimated s, see estimated_seconds: what does not fit is refused and says so
   std::function<bool(const StudyProgress&)> progress;  ///< false stops the study; what is finished is kept
-  /// The study so far, after every finished run and every timed repeat of one; the last is what is returned.
+  /// The study so far: after the reference, every finished run and every timed repeat of one; the last is
+  /// what is returned.
   std::function<void(const WorkPrecision&)> partial{};
   std::stop_token stop{};  ///< looked at before every step, the timed ones too; stops like `progress`
-  /// The same study, stopped before its end: its runs and timings are not made again. The reference is, where
-  /// a run is left to measure.
+  /// The same study, stopped before its end: its reference, runs and timings are not made again. Only where
+  /// the states of the reference are lost and a run is left to measure is it solved once more.
   const WorkPrecision* earlier = nullptr;
 };
 
@@ -96,6 +97,11 @@ Scene studied_scene(const Scene& scene);
 
 /// Quartiles are interpolated.
 TimeSpread spread_of(const std::vector<TimedSample>& samples);
+
+/// The rule that a study with this horizon breaks, in words; nothing if it keeps them. It holds for a horizon
+/// what holds for a run's duration.
+std::optional<std::string> broken_horizon_rule(const Scene& scene, const std::vector<std::string>& methods,
+                                               double horizon);
 
 /// What will be studied: ladders without runs, and no reference yet.
 WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions& options);

@@ -110,6 +110,32 @@ TEST(Bench, ThatCannotBeWrittenExitsWithFour) {
   EXPECT_EQ(cli(few + "--out /dev/null/x").exit_code, 4);
 }
 
+TEST(Bench, HasItsFolderForItself) {
+  const TemporaryFolder folder;
+  const std::string out = "--out '" + (folder / "result").string() + "'";
+  const CommandResult two = shell("\"$CLI\" bench --only steps " + out +
+                                  " > /dev/null &\n"
+                                  "run=$!\n"
+                                  "until [ -s '" +
+                                  (folder / "result/.clothlab").string() +
+                                  "' ]; do :; done\n"
+                                  "\"$CLI\" " +
+                                  few + "--only steps " + out +
+                                  "\n"
+                                  "echo \"second $?\"\n"
+                                  "kill -TERM $run\n"
+                                  "wait $run");
+  EXPECT_EQ(two.exit_code, 130) << two.errors;
+  EXPECT_TRUE(has(two.output, "second 4")) << two.output;
+  EXPECT_TRUE(has(two.errors, "is writing to this folder")) << two.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "result/.clothlab"));
+  const CommandResult again = cli(few + "--only steps " + out);
+  EXPECT_EQ(again.exit_code, 0) << "its own file is replaced: " << again.errors;
+  const CommandResult run = cli("run pendulum --set duration=0.01 " + out);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(has(run.errors, "holds a bench")) << run.errors;
+}
+
 TEST(Bench, ThatIsInterruptedLeavesAValidFile) {
   const TemporaryFolder folder;
   const std::string out = (folder / "result").string();

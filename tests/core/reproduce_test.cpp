@@ -5,8 +5,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "io/csv.h"
+#include "io/file_digest.h"
+#include "io/run_folder.h"
 #include "study/reproduce/errata.h"
 #include "support/files.h"
 
@@ -143,7 +146,27 @@ TEST(StoppedReproduction, GoesOnAfterItsLastWholePartToTheSamePage) {
   EXPECT_EQ(content_of(stopped / "numbers.csv"), content_of(whole / "numbers.csv"));
   EXPECT_EQ(without_date(content_of(stopped / "report.html")),
             without_date(content_of(whole / "report.html")));
-  for (const std::string& file : result.files) EXPECT_TRUE(std::filesystem::exists(stopped / file)) << file;
+  const auto index = nlohmann::ordered_json::parse(content_of(stopped / "reproduce.json"));
+  const std::vector<FileDigest> digests = digests_of(index.at("files"));
+  EXPECT_EQ(digests.size(), result.files.size());
+  for (const FileDigest& file : digests)
+    EXPECT_EQ(
+        disagreement(file, digest_of(file.name, content_of(stopped / file.name), file.rows.has_value())), "")
+        << file.name;
+}
+
+TEST(StoppedReproduction, BeginsAnewWhereAFileOfAFinishedPartIsNotTheOneThatWasWritten) {
+  const TemporaryFolder folder;
+  ReproduceOptions options{.folder = folder.path(), .only = {"fig1", "errata"}};
+  options.progress = [](const ReproduceProgress& p) { return p.part == "fig1"; };
+  const ReproduceResult first = reproduce(options);
+  ASSERT_TRUE(first.stopped);
+  ASSERT_FALSE(write_text_file(folder / first.files.front(), "another picture"));
+  bool goes_on = false;
+  options.goes_on = [&](int) { goes_on = true; };
+  reproduce(options);
+  EXPECT_FALSE(goes_on);
+  EXPECT_NE(content_of(folder / first.files.front()), "another picture");
 }
 
 TEST(StoppedReproduction, IsLeftAloneByOneOfOtherParts) {

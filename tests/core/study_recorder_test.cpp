@@ -8,6 +8,7 @@
 #include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
+#include "study/reference_states.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
@@ -195,6 +196,69 @@ TEST(StudyRecorder, OfWorkPrecisionKeepsRunsAndTimings) {
   for (const auto& row : kept) EXPECT_NE(std::find(samples.begin(), samples.end(), row), samples.end());
   ASSERT_FALSE(recorder.end(study, 0));
   EXPECT_EQ(study_csv(read_study(folder.path()).study->table), study_csv(study));
+}
+
+/// Makes the study in the folder until it has `last` runs, as if it were killed then; all of it without
+/// `last`. Says whether the reference was solved.
+struct Part {
+  WorkPrecision study;
+  bool solved_reference = false;
+};
+Part make_part(const Scene& scene, const std::filesystem::path& folder, std::optional<int> last) {
+  Part part;
+  WorkPrecisionOptions options = precision_options();
+  StudyRecorder recorder;
+  EXPECT_FALSE(recorder.begin(folder, plan_work_precision(scene, options), {}));
+  if (recorder.earlier()) options.earlier = &std::get<WorkPrecision>(*recorder.earlier());
+  std::stop_source stop;
+  options.stop = stop.get_token();
+  options.partial = [&](const WorkPrecision& so_far) {
+    EXPECT_FALSE(recorder.keep(so_far));
+    if (last && finished_runs(so_far) >= *last) stop.request_stop();
+  };
+  options.progress = [&](const StudyProgress& progress) {
+    part.solved_reference |= progress.text == "solving the reference";
+    return true;
+  };
+  part.study = study_work_precision(scene, options);
+  if (!last) EXPECT_FALSE(recorder.end(part.study, 0));
+  return part;
+}
+
+TEST(StudyRecorder, OfWorkPrecisionSolvesItsReferenceOnce) {
+  Scene limited = builtin_scene("pendulum");
+  limited.deformation = Deformation{.rate = 0.01};
+  for (const Scene& scene : {builtin_scene("pendulum"), limited}) {
+    const WorkPrecision whole = study_work_precision(scene, precision_options());
+    const TemporaryFolder folder;
+    EXPECT_TRUE(make_part(scene, folder.path(), 0).solved_reference);  // killed before the first run
+    EXPECT_FALSE(make_part(scene, folder.path(), 2).solved_reference);
+    const Part end = make_part(scene, folder.path(), {});
+    EXPECT_FALSE(end.solved_reference);
+    ASSERT_EQ(end.study.reference.states.size(), whole.reference.states.size());
+    for (std::size_t k = 0; k < whole.reference.states.size(); ++k) {
+      EXPECT_EQ(end.study.reference.states[k].position, whole.reference.states[k].position) << "to the bit";
+      EXPECT_EQ(end.study.reference.states[k].velocity, whole.reference.states[k].velocity) << "to the bit";
+    }
+    EXPECT_EQ(without_times(end.study), without_times(whole));
+    EXPECT_FALSE(std::filesystem::exists(folder / reference_states_name)) << "of no use to a finished study";
+  }
+}
+
+TEST(StudyRecorder, OfWorkPrecisionSolvesAReferenceThatWasChangedAgain) {
+  const Scene scene = builtin_scene("pendulum");
+  const WorkPrecision whole = study_work_precision(scene, precision_options());
+  const TemporaryFolder folder;
+  make_part(scene, folder.path(), 1);
+  std::string bytes = content_of(folder / reference_states_name);
+  ASSERT_GT(bytes.size(), 100u);
+  bytes[77] ^= 1;
+  ASSERT_FALSE(write_text_file(folder / reference_states_name, bytes));
+  EXPECT_TRUE(make_part(scene, folder.path(), 2).solved_reference);
+  std::filesystem::remove(folder / reference_states_name);
+  const Part end = make_part(scene, folder.path(), {});
+  EXPECT_TRUE(end.solved_reference);
+  EXPECT_EQ(without_times(end.study), without_times(whole));
 }
 
 TEST(StudyFolder, ThatDoesNotAgreeWithItsIndexIsLostAndSaysWhatDoesNot) {

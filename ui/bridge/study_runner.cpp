@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_offers{100};
 constexpr int low_priority = 10;  // of nice(2): the simulation and the window go first
 
-/// Without the states of the reference, which no diagram and no file needs.
+/// Without the states of the reference, which no diagram needs.
 cloth::WorkPrecision copy_of(const cloth::WorkPrecision& study) {
   const cloth::ReferenceSolution& from = study.reference;
   cloth::WorkPrecision copy;
@@ -26,6 +26,7 @@ cloth::WorkPrecision copy_of(const cloth::WorkPrecision& study) {
   copy.horizon = study.horizon;
   copy.samples = study.samples;
   copy.repeats = study.repeats;
+  copy.steps_per_method = study.steps_per_method;
   copy.budget = study.budget;
   copy.estimated = study.estimated;
   copy.reference = {{},         from.floor,  from.excited_frequency, from.largest_kinetic, from.smooth,

@@ -80,16 +80,30 @@ std::optional<IoError> ReproductionIndex::look_at_earlier(const ReproduceOptions
     state_ = root.at("state");
     auto numbers = numbers_from(state_.at("numbers"));
     auto files = state_.at("files").get<std::vector<std::string>>();
+    const auto digests = digests_of(state_.at("digests"));
+    if (!agree(digests)) return std::nullopt;
     auto parts = root.at("finished").get<std::vector<std::string>>();
     if (!page.restore(state_.at("page").get<std::string>())) return std::nullopt;
     result.numbers = std::move(numbers);
     result.files = std::move(files);
     parts_ = std::move(parts);
+    for (const FileDigest& digest : digests) folder_.note(digest);
   } catch (const std::exception&) {  // it was changed since: nothing of it can be used
     result = {};
     parts_.clear();
   }
   return std::nullopt;
+}
+
+/// Whether the files of the finished parts are still those that were written.
+bool ReproductionIndex::agree(const std::vector<FileDigest>& digests) const {
+  std::string text;
+  for (const FileDigest& expected : digests) {
+    if (read_text_file(folder_ / expected.name, text)) return false;
+    if (!disagreement(expected, digest_of(expected.name, text, expected.rows.has_value())).empty())
+      return false;
+  }
+  return true;
 }
 
 bool ReproductionIndex::has(const std::string& part) const {
@@ -99,7 +113,10 @@ bool ReproductionIndex::has(const std::string& part) const {
 std::optional<IoError> ReproductionIndex::keep(const std::string& part, const HtmlPage& page,
                                                const ReproduceResult& result) {
   parts_.push_back(part);
-  state_ = {{"page", page.saved()}, {"numbers", numbers_of(result)}, {"files", result.files}};
+  state_ = {{"page", page.saved()},
+            {"numbers", numbers_of(result)},
+            {"files", result.files},
+            {"digests", digests_json(folder_.digests())}};
   const IndexJson root{{"program", "clothlab"}, {"kind", "reproduce"}, {"complete", false},
                        {"inputs", inputs_},     {"finished", parts_},  {"state", state_}};
   if (auto error = folder_.add(index_name)) return error;
@@ -111,8 +128,6 @@ std::optional<IoError> ReproductionIndex::end(const ReproduceResult& result) {
   IndexJson root{{"program", "clothlab"}, {"kind", "reproduce"}, {"complete", !result.stopped},
                  {"inputs", inputs_},     {"finished", parts_},  {"files", digests_json(folder_.digests())}};
   if (result.stopped) root["state"] = state_;
-  for (const std::string& file : result.files)  // of parts that were finished before
-    if (!root["files"].contains(file)) root["files"][file] = IndexJson::object();
   return folder_.finish(index_name, root.dump(2, ' ', false, IndexJson::error_handler_t::replace) + "\n");
 }
 

@@ -27,6 +27,7 @@ class ReproductionIndex {
  private:
   std::optional<IoError> look_at_earlier(const ReproduceOptions& options, HtmlPage& page,
                                          ReproduceResult& result);
+  bool agree(const std::vector<FileDigest>& digests) const;
 
   ResultFolder folder_;
   nlohmann::ordered_json inputs_;  ///< what must be the same to go on

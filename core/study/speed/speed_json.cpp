@@ -135,6 +135,7 @@ json list_of(const Rows& rows, ToJson to_json) {
 
 std::string speed_json(const SpeedReport& report) {
   const json root{{"program", "clothlab"},
+                  {"kind", "bench"},
                   {"version", report.machine.version},
                   {"complete", report.complete},
                   {"machine", machine_json(report.machine)},

@@ -14,6 +14,7 @@
 #include "integrators/registry.h"
 #include "io/run_folder.h"
 #include "progress.h"
+#include "simulation/memory_estimate.h"
 
 namespace clothlab::cli {
 namespace {
@@ -124,16 +125,25 @@ std::optional<cloth::IoError> write_reports(const CompareArguments& arguments, c
   return folder.finish("summary.json", cloth::comparison_summary(run));
 }
 
+/// The text has it among its notes; beside JSON it is for people.
+void say_what_is_not_as_asked(const cloth::ComparisonRun& run) {
+  if (!run.notice.empty()) say(run.notice);
+  for (const cloth::PaneResult& pane : run.panes)
+    if (pane.rate_breach) say(fmt::format("pane {}: {}", pane.name, describe(*pane.rate_breach)));
+}
+
 int finish(const CompareArguments& arguments, cloth::ResultFolder& folder, cloth::ComparisonRun& run) {
   if (run.io_error) return report(*run.io_error);
   if (folder.is_open())
     if (const auto error = write_reports(arguments, folder, run)) return report(*error);
   if (!run.reference_failure.empty()) say("the reference stopped: " + run.reference_failure);
+  if (arguments.json) say_what_is_not_as_asked(run);
   std::string text = arguments.json ? cloth::comparison_summary(run) : cloth::comparison_text(run);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
   if (const int printed = print(text); printed != done) return printed;
   if (run.stopped) return interrupted;
-  return run.has_result() ? done : diverged;
+  if (!run.has_result()) return diverged;
+  return run.rate_is_kept() ? done : rate_not_kept;
 }
 
 }  // namespace
@@ -143,6 +153,13 @@ int compare(const CompareArguments& arguments) {
   const LoadedComparison loaded = load(arguments);
   if (!loaded.comparison) return loaded.exit_code;
   const cloth::Comparison& comparison = *loaded.comparison;
+
+  std::vector<cloth::Scene> scenes;
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i) scenes.push_back(scene_of(comparison, i));
+  if (const auto problem = cloth::memory_problem(scenes)) {
+    say(*problem);
+    return io_failed;
+  }
 
   listen_for_stop();
   cloth::ResultFolder folder;

@@ -42,7 +42,8 @@ std::string note_of(const PaneResult& pane) {
   std::string note;
   if (pane.divergence) note = describe(*pane.divergence);
   if (pane.below_floor) note = "its difference is less than the reference's from its check";
-  for (const std::string& sentence : {pane.notice, describe(pane.energy)})
+  const std::string breach = pane.rate_breach ? describe(*pane.rate_breach) : "";
+  for (const std::string& sentence : {pane.notice, breach, describe(pane.energy)})
     if (!sentence.empty()) note += (note.empty() ? "" : "; ") + sentence;
   return note;
 }
@@ -92,6 +93,7 @@ json pane_json(const PaneResult& pane) {
                          {"time_s", pane.divergence->time},
                          {"particle", pane.divergence->particle},
                          {"message", describe(*pane.divergence)}};
+  if (pane.rate_breach) entry["rate_not_kept"] = breach_json(*pane.rate_breach);
   if (!pane.notice.empty()) entry["notice"] = pane.notice;
   return entry;
 }
@@ -181,6 +183,7 @@ std::string comparison_text(const ComparisonRun& run) {
       fmt::format("{}\n{} particles, {:.6g} s simulated", title_of(run), run.particles, run.simulated);
   text += has_reference(run) ? fmt::format("; reference: {}\n", run.reference) : "\n";
   if (run.floor) text += floor_sentence(run) + "\n";
+  if (!run.notice.empty()) text += run.notice + "\n";
   text += "\n";
   text +=
       fmt::format("{:<5} {:<24} {:>12} {:>12} {:>12} {:>13} {:>5} {:>10} {:>5} {:>12}\n", "pane", "title",
@@ -222,6 +225,7 @@ std::string comparison_summary(const ComparisonRun& run) {
     root["reference_largest_floor_m"] = finite(run.largest_floor);
   }
   if (!run.reference_failure.empty()) root["reference_failure"] = run.reference_failure;
+  if (!run.notice.empty()) root["notice"] = run.notice;
   root["ranking"] = json::array();
   for (const std::size_t i : ranked(run.panes)) root["ranking"].push_back(run.panes[i].name);
   root["panes"] = json::array();
@@ -288,6 +292,7 @@ std::string comparison_page(const ComparisonRun& run, const std::string& command
                 Verdict::warn);
   if (!run.reference_failure.empty())
     page.notice("The reference stopped, and with it the differences: " + run.reference_failure, Verdict::bad);
+  if (!run.notice.empty()) page.notice(run.notice, Verdict::warn);
   page.heading("Ranking");
   add_table(run, page);
   page.heading("Over time");

@@ -56,6 +56,16 @@ Scene in_lock_step(const Scene& scene) {
   return resolved;
 }
 
+std::string uneven_intervals_text(const Scene& scene) {
+  const double interval = scene.record.interval;
+  if (uneven_duration_text(scene.duration, interval).empty()) return "";
+  return fmt::format(
+      "duration = {:.6g} s is no whole number of record intervals of {:.6g} s: all panes run to {:.6g} s, "
+      "where "
+      "they meet",
+      scene.duration, interval, static_cast<double>(steps_to_cover(scene.duration, interval)) * interval);
+}
+
 LockStep::LockStep(const Comparison& comparison)
     : comparison_(comparison),
       interval_(comparison.scene.record.interval),

@@ -135,6 +135,10 @@ class LockStep {
   Error floor_;
 };
 
+/// That the last common time lies beyond the duration, in words, where that is no whole number of record
+/// intervals; else empty.
+std::string uneven_intervals_text(const Scene& scene);
+
 /// `scene` with the step that a pane of these rows is run with: see step_dividing. Precondition: it has one.
 Scene in_lock_step(const Scene& scene);
 

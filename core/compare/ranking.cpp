@@ -35,6 +35,7 @@ PaneResult result_of(const LockStep& lockstep, std::size_t pane) {
                               : lane.index < lockstep.last_index() ? Status::stopped
                                                                    : Status::finished,
                     .divergence = lane.divergence,
+                    .rate_breach = lane.simulation->rate_breach(),
                     .time_step = lane.simulation->time_step(),
                     .simulated = lane.state.time,
                     .wall = lane.wall,

@@ -15,6 +15,7 @@ struct PaneResult {
   bool is_reference = false;
   Status status = Status::finished;
   std::optional<Divergence> divergence;
+  std::optional<RateBreach> rate_breach;
   double time_step = 0;  ///< s
   double simulated = 0;  ///< s, up to the last common time
   double wall = 0;       ///< s, of stepping alone

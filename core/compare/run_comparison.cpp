@@ -1,5 +1,7 @@
 #include "compare/run_comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -33,7 +35,24 @@ void gather(const LockStep& lockstep, ComparisonRun& run) {
   }
 }
 
+void add_sentence(std::string& notice, const std::string& sentence) {
+  if (!sentence.empty()) notice += (notice.empty() ? "" : "; ") + sentence;
+}
+
+/// The controlled reference and its check ask for the same rate as the panes.
+void look_at_reference_rate(const LockStep& lockstep, ComparisonRun& run) {
+  for (std::size_t i = lockstep.pane_count(); i < lockstep.lane_count(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    if (!lane.simulation->rate_breach()) continue;
+    run.reference_rate_kept = false;
+    add_sentence(run.notice, fmt::format("{} ({}): {}", lane.name, lane.title,
+                                         describe(*lane.simulation->rate_breach())));
+  }
+}
+
 void conclude(const LockStep& lockstep, ComparisonRun& run) {
+  add_sentence(run.notice, uneven_intervals_text(run.comparison.scene));
+  look_at_reference_rate(lockstep, run);
   run.panes = results_of(lockstep);
   run.reference = reference_text(lockstep);
   run.particles = lockstep.lane(0).simulation->system().size();
@@ -54,6 +73,11 @@ void conclude(const LockStep& lockstep, ComparisonRun& run) {
 bool ComparisonRun::has_result() const {
   const bool any = std::any_of(panes.begin(), panes.end(), [](const PaneResult& p) { return !p.divergence; });
   return any && reference_failure.empty();
+}
+
+bool ComparisonRun::rate_is_kept() const {
+  return reference_rate_kept &&
+         std::none_of(panes.begin(), panes.end(), [](const PaneResult& p) { return p.rate_breach; });
 }
 
 ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptions& options) {

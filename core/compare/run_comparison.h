@@ -37,6 +37,8 @@ struct ComparisonRun {
   std::string reference;           ///< reference_text
   std::string check;               ///< what a controlled reference is checked by
   std::string reference_failure;   ///< not empty: the reference stopped, and why
+  std::string notice;  ///< what is not as asked for in all panes, or in the reference; empty: nothing
+  bool reference_rate_kept = true;
   double reference_wall = 0;       ///< s, of a controlled reference
   std::optional<double> floor;     ///< m, RMS at the end: see LockStep::floor
   double largest_floor = 0;        ///< m, of all common times
@@ -50,6 +52,9 @@ struct ComparisonRun {
 
   /// Whether there is what was asked for: a pane that reached the end, and a reference if one was wanted.
   bool has_result() const;
+
+  /// Whether every pane, and a controlled reference, kept its deformation rate.
+  bool rate_is_kept() const;
 };
 
 /// Precondition: find_problems(comparison) is empty.

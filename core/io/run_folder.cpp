@@ -160,9 +160,7 @@ std::string version() {
   return CLOTHLAB_VERSION;
 }
 
-namespace {
-
-json breach_json(const RateBreach& breach) {
+nlohmann::ordered_json breach_json(const RateBreach& breach) {
   return {{"message", describe(breach)},
           {"first_step", breach.first_step},
           {"first_time_s", breach.first_time},
@@ -173,8 +171,6 @@ json breach_json(const RateBreach& breach) {
           {"largest_step", breach.largest_step},
           {"steps", breach.steps}};
 }
-
-}  // namespace
 
 std::string summary_json(const RunSummary& s) {
   json root{{"program", "clothlab"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -55,6 +56,9 @@ struct RunSummary {
 
   double nanoseconds_per_particle_step() const;
 };
+
+/// What summary.json says of a deformation rate that was not kept.
+nlohmann::ordered_json breach_json(const RateBreach& breach);
 
 /// summary.json
 std::string summary_json(const RunSummary& summary);

@@ -95,6 +95,43 @@ TEST(Compare, EndsWithThreeWhereNothingIsLeft) {
   EXPECT_EQ(result.exit_code, 3) << result.output;
 }
 
+TEST(Compare, SaysWhereAPaneDidNotKeepItsDeformationRate) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "rates.compare.json").string();
+  ASSERT_FALSE(write_text_file(
+      file, R"({"scene": "corners-shear", "reference": "none", "panes": [{"own": {"deformation.rate": 0.5}},
+          {"own": {"deformation.rate": 0.001, "deformation.solver": "sweeps", "deformation.max_sweeps": 1}}]})"));
+  const CommandResult result = cli("compare '" + file + "' --duration 0.1 " + out(folder));
+  EXPECT_EQ(result.exit_code, 3) << result.errors << result.output;
+  EXPECT_TRUE(has(result.output, "\nB: rate not kept: in step ")) << result.output;
+  EXPECT_FALSE(has(result.output, "\nA: rate not kept")) << result.output;
+  const auto summary = nlohmann::json::parse(content_of(folder / "results/summary.json"));
+  EXPECT_EQ(summary["status"], "finished");
+  EXPECT_FALSE(summary["panes"][0].contains("rate_not_kept"));
+  EXPECT_GT(summary["panes"][1]["rate_not_kept"]["largest_excess"], 0);
+  EXPECT_TRUE(has(content_of(folder / "results/report.html"), "rate not kept: in step"));
+  const CommandResult json = cli("compare '" + file + "' --duration 0.1 --json");
+  EXPECT_EQ(json.exit_code, 3);
+  EXPECT_TRUE(has(json.errors, "pane B: rate not kept")) << json.errors;
+}
+
+TEST(Compare, SaysWhereItsPanesMeetOnlyBeyondTheDuration) {
+  const TemporaryFolder folder;
+  const CommandResult uneven =
+      cli("compare --scene pendulum --methods verlet,rk4 --duration 0.105 --set record.interval=0.01 " +
+          out(folder));
+  EXPECT_EQ(uneven.exit_code, 0) << uneven.errors;
+  const std::string notice =
+      "duration = 0.105 s is no whole number of record intervals of 0.01 s: all panes run to 0.11 s";
+  EXPECT_TRUE(has(uneven.output, notice)) << uneven.output;
+  const auto summary = nlohmann::json::parse(content_of(folder / "results/summary.json"));
+  EXPECT_TRUE(has(summary["notice"], notice));
+  EXPECT_TRUE(has(content_of(folder / "results/report.html"), notice));
+  EXPECT_FALSE(has(
+      cli("compare --scene pendulum --methods verlet,rk4 --duration 0.11 --set record.interval=0.01").output,
+      "no whole number"));
+}
+
 TEST(Compare, ListsWhatIsBuiltIn) {
   const CommandResult result = cli("compare --list");
   EXPECT_EQ(result.exit_code, 0);

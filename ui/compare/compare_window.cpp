@@ -296,6 +296,18 @@ void CompareWindow::followStatus(const CompareStatus& status) {
                   tr("The reference stopped: it %1").arg(QString::fromStdString(status.reference_failure)));
   else
     notice_->withdraw("reference");
+  QStringList breaches;
+  for (const cloth::PaneResult& pane : status.panes)
+    if (auto breach = pane.rate_breach) {
+      breach->steps = 1;  // a notice that does not change with every step
+      breaches << tr("Pane %1: %2")
+                      .arg(QString::fromStdString(pane.name),
+                           QString::fromStdString(cloth::describe(*breach)));
+    }
+  if (breaches.isEmpty())
+    notice_->withdraw("rate");
+  else
+    notice_->show("rate", NoticeBar::Level::warning, breaches.join('\n'));
   reference_->setToolTip(tr("Differences are from: %1").arg(QString::fromStdString(status.reference)));
   if (status.new_starts != shown_status_.new_starts)
     notice_->show("new-start", NoticeBar::Level::info,

@@ -69,6 +69,9 @@ int extremes(const ExtremesArguments& arguments) {
     options.scene = std::move(loaded.scene);
   }
   if (!read_options(arguments, options)) return bad_input;
+  if (options.scene)
+    if (const int refused = refused_for_memory(*options.scene, options.methods); refused != done)
+      return refused;
   listen_for_stop();
 
   cloth::StudyRecorder recorder;

@@ -76,6 +76,7 @@ int replay(const ReplayArguments& arguments) {
     say(cloth::no_stable_step_text(session.scene));
     return bad_input;
   }
+  if (const int refused = refused_for_memory(session.scene); refused != done) return refused;
 
   listen_for_stop();
   cloth::ReplayOptions options{

@@ -10,9 +10,8 @@
 #include "io/run_folder.h"
 #include "io/user_file.h"
 #include "progress.h"
-#include "scene/scene_mesh.h"
 #include "scene/scene_checks.h"
-#include "simulation/memory_estimate.h"
+#include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -40,11 +39,7 @@ int threads_for(const RunArguments& arguments) {
 int refusal(const cloth::Scene& scene, double time_step) {
   if (const auto rule = cloth::too_many_steps(scene.duration, time_step))
     return report({{"duration", fmt::format("{} s", scene.duration), *rule, "", 0, 0}});
-  if (const auto problem = cloth::memory_problem(scene)) {
-    say(*problem);
-    return io_failed;
-  }
-  return done;
+  return refused_for_memory(scene);
 }
 
 /// Where the OBJ file would replace what is read, or be replaced by the run's own files.

@@ -75,6 +75,9 @@ int stability(const StabilityArguments& arguments) {
   cloth::StabilityOptions options;
   const auto problems = read_options(arguments, *loaded.scene, options);
   if (!problems.empty()) return report(problems);
+  if (options.full_size)
+    if (const int refused = refused_for_memory(*loaded.scene, options.methods); refused != done)
+      return refused;
 
   listen_for_stop();
   cloth::StudyRecorder recorder;

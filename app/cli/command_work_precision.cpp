@@ -43,6 +43,12 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
 
+  const auto& methods = arguments.methods.empty() ? cloth::integrator_names() : arguments.methods;
+  if (arguments.horizon)
+    if (const auto rule = cloth::broken_horizon_rule(*loaded.scene, methods, *arguments.horizon))
+      return report({{"", "", *rule, fmt::format("--horizon {}", *arguments.horizon), 0, 0}});
+  if (const int refused = refused_for_memory(*loaded.scene, methods); refused != done) return refused;
+
   listen_for_stop();
   cloth::WorkPrecisionOptions options;
   options.methods = arguments.methods;

@@ -13,6 +13,7 @@
 #include "io/process.h"
 #include "io/run_folder.h"
 #include "scene/builtin_scenes.h"
+#include "simulation/memory_estimate.h"
 
 namespace clothlab::cli {
 
@@ -81,6 +82,18 @@ std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std
     overrides.push_back(*parsed);
   }
   return overrides;
+}
+
+int refused_for_memory(cloth::Scene scene, const std::vector<std::string>& methods) {
+  std::optional<std::string> problem;
+  if (methods.empty()) problem = cloth::memory_problem(scene);
+  for (const std::string& method : methods) {
+    scene.integrator.method = method;
+    if (!problem) problem = cloth::memory_problem(scene);
+  }
+  if (!problem) return done;
+  say(*problem);
+  return io_failed;
 }
 
 int guarded(const std::function<int()>& command) {

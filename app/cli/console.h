@@ -55,6 +55,10 @@ void say(const std::string& message);
 /// To standard error as it is.
 void write_error(const std::string& text);
 
+/// io_failed, and a message with the size, where a run of the scene needs more memory than there is with one
+/// of the methods (of the scene's own without any); `done` otherwise.
+int refused_for_memory(cloth::Scene scene, const std::vector<std::string>& methods = {});
+
 /// The command's exit code, or that of the exception which it ended by, with a message.
 int guarded(const std::function<int()>& command);
 

@@ -31,9 +31,11 @@ const char* const json_help = "Give the result as one JSON object";
 const char* const footer =
     "CLOTHLAB_INSTRUCTION_SET=portable, sse2, avx2 or avx512 in the environment makes the kernels use that "
     "instruction set instead of the processor's best.\n"
-    "Exit codes: 0 done; 1 a defect of the program; 2 bad input or usage; 3 the run diverged (everything up to the last good state is "
-    "on disk); "
-    "4 a file could not be read or written, or there is not enough memory; 5 a replay did not end in its session's state; 130 interrupted.";
+    "Exit codes: 0 done; 1 a defect of the program; 2 bad input or usage; 3 the run diverged (everything up "
+    "to the last good state is "
+    "on disk), or did not keep its deformation rate; "
+    "4 a file could not be read or written, or there is not enough memory; 5 a replay did not end in its "
+    "session's state; 130 interrupted.";
 
 struct Arguments {
   cli::RunArguments run;
@@ -90,7 +92,8 @@ void add_compare(CLI::App& app, cli::CompareArguments& arguments) {
                       "under error control) or none");
   compare->add_option("--out", arguments.folder,
                       "Folder for A.csv, B.csv, ..., compare.csv, comparison.json, summary.json, compare.svg "
-                      "and report.html; made if missing");
+                      "and report.html; made if missing. A comparison is one run: after an interruption the "
+                      "same command begins anew");
   compare
       ->add_option("--threads", arguments.threads,
                    "Panes that step at the same time; with more than one, costs contain what they take from "
@@ -199,7 +202,10 @@ void add_bench(CLI::App& app, cli::BenchArguments& arguments) {
                    "Only these parts: " + fmt::format("{}", fmt::join(cloth::speed::speed_parts(), ", ")))
       ->delimiter(',');
   bench->add_flag("--quick", arguments.quick, "Small sizes and short timings: a look, not a measurement");
-  bench->add_option("--out", arguments.folder, "Folder for bench.json; made if missing");
+  bench->add_option(
+      "--out", arguments.folder,
+      "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot "
+      "go on after an interruption: the same command begins anew");
   CLI::Option* json = bench->add_flag("--json", arguments.json, json_help);
   bench->add_flag("--markdown", arguments.markdown, "Print the tables as Markdown")->excludes(json);
 }

@@ -28,14 +28,27 @@ nlohmann::ordered_json digests_json(const std::vector<FileDigest>& files) {
   return object;
 }
 
+namespace {
+
+/// Numbers that the type cannot hold are of no file; converting them would have no defined result.
+template <class Integer>
+Integer whole_number(const nlohmann::ordered_json& value) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::uint64_t{1} << 53)
+    throw nlohmann::ordered_json::other_error::create(501, "must be a whole number, >= 0 and <= 2^53",
+                                                      &value);
+  return value.get<Integer>();
+}
+
+}  // namespace
+
 std::vector<FileDigest> digests_of(const nlohmann::ordered_json& files) {
   std::vector<FileDigest> digests;
   for (const auto& [name, entry] : files.items()) {
     FileDigest digest{.name = name,
-                      .bytes = entry.at("bytes").get<std::uint64_t>(),
+                      .bytes = whole_number<std::uint64_t>(entry.at("bytes")),
                       .rows = {},
                       .hash = entry.at("fnv1a_64").get<std::string>()};
-    if (entry.contains("rows")) digest.rows = entry.at("rows").get<std::int64_t>();
+    if (entry.contains("rows")) digest.rows = whole_number<std::int64_t>(entry.at("rows"));
     digests.push_back(std::move(digest));
   }
   return digests;

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -24,6 +26,18 @@ struct LastWords {
 };
 LastWords last_words;
 
+std::atomic<std::size_t> refused_memory{0};  // bytes; 0: none was noted
+
+/// Takes no memory. `text` has room for it.
+void describe_lack(char* text, std::size_t room) {
+  const std::size_t bytes = refused_memory.exchange(0);
+  if (bytes == 0)
+    std::snprintf(text, room, "there is not enough memory for this");
+  else
+    std::snprintf(text, room, "there is not enough memory for this: %.6g MB were asked for at once",
+                  static_cast<double>(bytes) / 1e6);
+}
+
 void write_error(const char* text) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
@@ -36,8 +50,12 @@ void write_error(const char* text) {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
     write_error(": stopped by a defect of the program\n");
   } catch (const std::bad_alloc&) {
+    char text[100];
+    describe_lack(text, sizeof text);
     code = last_words.memory;
-    write_error(": there is not enough memory\n");
+    write_error(": ");
+    write_error(text);
+    write_error("\n");
   } catch (const std::exception& error) {
     write_error(": stopped by a defect of the program: ");
     write_error(error.what());
@@ -82,14 +100,19 @@ void end_by_exit_code(const char* program, int memory, int defect) {
   std::set_terminate(end_now);
 }
 
+void note_refused_memory(std::size_t bytes) {
+  refused_memory = bytes;
+}
+
 Failure failure_in_hand() {
-  const char* const no_memory = "there is not enough memory for this";
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    return {no_memory};
-  } catch (const std::length_error&) {  // of a container that would be larger than any memory
-    return {no_memory};
+    char text[100];
+    describe_lack(text, sizeof text);
+    return {text};
+  } catch (const std::length_error&) {
+    return {"there is not enough memory for this: a list of it would be longer than any memory"};
   } catch (const std::filesystem::filesystem_error& error) {
     return {error.path1().string() + ": " + error.code().message()};
   } catch (const std::system_error& error) {

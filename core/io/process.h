@@ -1,6 +1,7 @@
 // What a program does with its process before anything else, and what of the machine is left to it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,10 @@ void settle_standard_streams();
 /// an exit code, not by a signal: `memory` where memory ran out, `defect` otherwise. `program` stands before
 /// the message.
 void end_by_exit_code(const char* program, int memory, int defect);
+
+/// Notes the size of a request for memory that the system refused, which std::bad_alloc does not carry:
+/// messages then name it. For operator new of a program.
+void note_refused_memory(std::size_t bytes);
 
 /// What an exception that ended some work says to people. A defect is one that no input, no file and no lack
 /// of memory should bring about.

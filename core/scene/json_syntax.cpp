@@ -1,6 +1,8 @@
 #include "scene/json_syntax.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "scene/json_locator.h"
@@ -16,21 +18,29 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   static constexpr int deepest = 64;
   static constexpr std::size_t most_values = 10'000'000;
   const std::size_t length;  // of the text
+  const char* const begin;
+  const char* reached;  // behind the last character that was read
   std::size_t offset = 0;
   std::string message;
   int depth = 0;
   std::size_t values = 0;
 
-  explicit SyntaxCheck(std::size_t text_length) : length(text_length) {}
+  explicit SyntaxCheck(const std::string& text)
+      : length(text.size()), begin(text.data()), reached(text.data()) {}
+
+  /// At the bracket, or at the end of the value, that was read last.
+  void note_place() { offset = reached > begin ? static_cast<std::size_t>(reached - begin) - 1 : 0; }
 
   bool count() {
     if (++values <= most_values) return true;
+    note_place();
     message = "has too many values: " + std::to_string(most_values) + " are allowed";
     return false;
   }
   bool enter() {
     if (!count()) return false;
     if (++depth <= deepest) return true;
+    note_place();
     message = "is nested too deeply: " + std::to_string(deepest) + " levels are allowed";
     return false;
   }
@@ -61,11 +71,40 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   }
 };
 
+/// Says how far it has come: the library names a place only for errors of its own.
+class Reader {
+ public:
+  using iterator_category = std::forward_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  Reader() = default;
+  Reader(const char* at, const char** reached) : at_(at), reached_(reached) {}
+  reference operator*() const { return *at_; }
+  Reader& operator++() {
+    *reached_ = ++at_;
+    return *this;
+  }
+  Reader operator++(int) {
+    const Reader before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const Reader& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_ = nullptr;
+  const char** reached_ = nullptr;
+};
+
 }  // namespace
 
 std::optional<Problem> syntax_problem(const std::string& text, const std::string& place) {
-  SyntaxCheck syntax(text.size());
-  if (json::sax_parse(text, &syntax)) return std::nullopt;
+  SyntaxCheck syntax(text);
+  const Reader begin(text.data(), &syntax.reached), end(text.data() + text.size(), &syntax.reached);
+  if (json::sax_parse(begin, end, &syntax)) return std::nullopt;
   const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
   return Problem{"", "", syntax.message, place, at.line, at.column};
 }

@@ -43,12 +43,21 @@ double least_memory(const Scene& scene) {
 }
 
 std::optional<std::string> memory_problem(const Scene& scene) {
-  const double needed = least_memory(scene);
+  return memory_problem(std::vector<Scene>{scene});
+}
+
+std::optional<std::string> memory_problem(const std::vector<Scene>& scenes) {
+  double needed = 0;
+  for (const Scene& scene : scenes) needed += least_memory(scene);
   const auto available = available_memory();
-  if (!available || needed <= *available) return std::nullopt;
-  const std::int64_t particles = std::int64_t{scene.cloth.rows} * scene.cloth.columns;
-  return fmt::format("there is not enough memory: a run of {} particles with {} takes {} at least, and {} are to be had",
-                     particles, scene.integrator.method, megabytes(needed), megabytes(*available));
+  if (scenes.empty() || !available || needed <= *available) return std::nullopt;
+  const Scene& first = scenes.front();
+  const std::int64_t particles = std::int64_t{first.cloth.rows} * first.cloth.columns;
+  const std::string what =
+      scenes.size() == 1 ? fmt::format("a run of {} particles with {}", particles, first.integrator.method)
+                         : fmt::format("{} runs of {} particles at once", scenes.size(), particles);
+  return fmt::format("there is not enough memory: {} {} {} at least, and {} are to be had", what,
+                     scenes.size() == 1 ? "takes" : "take", megabytes(needed), megabytes(*available));
 }
 
 }  // namespace cloth

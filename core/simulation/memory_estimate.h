@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -15,5 +16,8 @@ double least_memory(const Scene& scene);
 
 /// That a run needs more memory than this process can have, in words; nothing where it can have it.
 std::optional<std::string> memory_problem(const Scene& scene);
+
+/// The same of runs that are all in memory at once, as the panes of a comparison.
+std::optional<std::string> memory_problem(const std::vector<Scene>& scenes);
 
 }  // namespace cloth

@@ -11,7 +11,10 @@
 #include "integrators/registry.h"
 #include "io/csv.h"
 #include "io/run_folder.h"
+#include "scene/json_entry.h"
+#include "scene/json_locator.h"
 #include "scene/json_syntax.h"
+#include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "study/stability_report.h"
 #include "study/study_folder.h"
@@ -32,9 +35,9 @@ class Rows {
  public:
   /// Of a study that is being made, or was killed, a table may not be there yet, and a loss of power may have
   /// cut its last line.
-  Rows(const std::filesystem::path& folder, const char* name, const json& root) : name_(name) {
+  Rows(const std::filesystem::path& folder, const char* name, const JsonEntry& root) : name_(name) {
     std::string text;
-    const bool grows = !root.contains("files") && !root.at("complete").get<bool>();
+    const bool grows = !root.has("files") && !root.at("complete").flag();
     if (grows && !std::filesystem::exists(folder / name)) return;
     if (const auto error = read_text_file(folder / name, text))
       throw BadFolder{fmt::format("{}: {}", name, error->message), true};
@@ -68,7 +71,14 @@ class Rows {
     if (!(std::abs(value) < 1e18)) throw bad(row, column, text(row, column), "must be a whole number");
     return static_cast<std::int64_t>(value);
   }
-  BadFolder bad(std::size_t row, const char* column, const std::string& value, const char* rule) const {
+  int small(std::size_t row, const char* column, int least, int most) const {
+    const std::int64_t value = count(row, column);
+    if (value < least || value > most)
+      throw bad(row, column, text(row, column), fmt::format("must be from {} to {}", least, most));
+    return static_cast<int>(value);
+  }
+  BadFolder bad(std::size_t row, const char* column, const std::string& value,
+                const std::string& rule) const {
     return {fmt::format("{}, line {}, {}: \"{}\" {}", name_, row + 2, column, value, rule)};
   }
 
@@ -78,23 +88,25 @@ class Rows {
   std::map<std::string, std::size_t> columns_;
 };
 
-double number_or(const json& value, double otherwise) {
-  return value.is_null() ? otherwise : value.get<double>();
+double number_or(const JsonEntry& value, double otherwise) {
+  return value.is_null() ? otherwise : value.number();
 }
 
-std::vector<std::string> methods_of(const json& options) {
-  auto methods = options.at("methods").get<std::vector<std::string>>();
+constexpr double largest_count = 1e9;  // of what is kept in an int
+
+std::vector<std::string> methods_of(const JsonEntry& options) {
   const auto& known = integrator_names();
-  for (const std::string& method : methods)
-    if (std::find(known.begin(), known.end(), method) == known.end())
-      throw BadFolder{fmt::format("study.json: options.methods: \"{}\" is not a method", method)};
-  if (methods.empty()) throw BadFolder{"study.json: options.methods: must not be empty"};
-  return methods;
+  const JsonEntry methods = options.at("methods");
+  for (const JsonEntry& method : methods.entries())
+    if (std::find(known.begin(), known.end(), method.text()) == known.end())
+      throw method.bad("is not a method");
+  if (methods.entries().empty()) throw methods.bad("must not be empty");
+  return methods.texts();
 }
 
-Scene read_scene_of(const json& root, const std::filesystem::path& folder) {
+Scene read_scene_of(const JsonEntry& root, const std::filesystem::path& folder) {
   const MeshSource meshes{.folder = SceneFolder{.path = folder.string()}};
-  SceneReading reading = read_scene(root.at("scene").dump(), "study.json, scene", {}, meshes);
+  SceneReading reading = read_scene(root.at("scene").value().dump(), "study.json, scene", {}, meshes);
   if (!reading.scene) throw BadFolder{reading.problems.front().text()};
   return std::move(*reading.scene);
 }
@@ -107,17 +119,15 @@ Status status_named(const Rows& rows, std::size_t row, const std::vector<Status>
   throw rows.bad(row, "status", name, "is not a status");
 }
 
-StateDifference difference_of(const json& value) {
-  return {value.at("rms_position_m").get<double>(), value.at("largest_position_m").get<double>(),
-          value.at("rms_velocity_m_s").get<double>()};
+StateDifference difference_of(const JsonEntry& value) {
+  return {value.at("rms_position_m").number(), value.at("largest_position_m").number(),
+          value.at("rms_velocity_m_s").number()};
 }
 
 WorkPrecisionRun read_run(const Rows& rows, std::size_t row) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   WorkPrecisionRun run;
-  run.rung = static_cast<int>(rows.count(row, "rung"));
-  if (run.rung < -1 || run.rung > 60)
-    throw rows.bad(row, "rung", rows.text(row, "rung"), "must be from -1 to 60");
+  run.rung = rows.small(row, "rung", -1, 60);
   run.tolerance = rows.number(row, "tolerance", 0);
   run.time_step = rows.number(row, "time_step", nan);
   run.steps = rows.count(row, "steps");
@@ -146,30 +156,34 @@ std::string key_of(const Rows& rows, std::size_t row) {
          rows.text(row, "tolerance");
 }
 
-WorkPrecision read_work_precision(const std::filesystem::path& folder, const json& root) {
+WorkPrecision read_work_precision(const std::filesystem::path& folder, const JsonEntry& root) {
   WorkPrecision study;
   study.scene = read_scene_of(root, folder);
   study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
   study.diagonal = diagonal_of(study.scene.cloth);
-  const json& options = root.at("options");
-  const double horizon = options.at("horizon_s").get<double>();
-  if (!(horizon > 0)) throw BadFolder{"study.json: options.horizon_s: must be > 0"};
-  study.repeats = options.at("repeats").get<int>();
-  study.steps_per_method = options.value("runs_per_method", WorkPrecisionOptions{}.steps_per_method);
-  study.budget = options.at("budget_s").get<double>();
-  study.estimated = root.at("estimated_s").get<double>();
-  study.stopped = !root.at("complete").get<bool>();
-  const json& reference = root.at("reference");
+  const JsonEntry& options = root.at("options");
+  const double horizon = options.at("horizon_s").number();
+  const auto methods = methods_of(options);
+  if (const auto rule = broken_horizon_rule(study.scene, methods, horizon))
+    throw options.at("horizon_s").bad(*rule);
+  study.repeats = options.at("repeats").whole<int>(0, largest_count);
+  study.steps_per_method = options.has("runs_per_method")
+                               ? options.at("runs_per_method").whole<int>(0, largest_count)
+                               : WorkPrecisionOptions{}.steps_per_method;
+  study.budget = options.at("budget_s").number();
+  study.estimated = root.at("estimated_s").number();
+  study.stopped = !root.at("complete").flag();
+  const JsonEntry& reference = root.at("reference");
   study.reference = {.states = {},
                      .floor = difference_of(reference.at("floor")),
-                     .excited_frequency = reference.at("excited_frequency_per_s").get<double>(),
-                     .largest_kinetic = reference.at("largest_kinetic_J").get<double>(),
-                     .smooth = reference.at("smooth").get<bool>(),
-                     .first = reference.at("first").get<std::string>(),
-                     .second = reference.at("second").get<std::string>(),
-                     .evaluations = reference.at("evaluations").get<std::int64_t>(),
-                     .failure = reference.at("failure").get<std::string>()};
-  Ladders ladders = make_ladders(study.scene, methods_of(options), horizon);
+                     .excited_frequency = reference.at("excited_frequency_per_s").number(),
+                     .largest_kinetic = reference.at("largest_kinetic_J").number(),
+                     .smooth = reference.at("smooth").flag(),
+                     .first = reference.at("first").text(),
+                     .second = reference.at("second").text(),
+                     .evaluations = reference.at("evaluations").whole<std::int64_t>(0, largest_whole),
+                     .failure = reference.at("failure").text()};
+  Ladders ladders = make_ladders(study.scene, methods, horizon);
   study.horizon = ladders.horizon;
   study.samples = ladders.samples;
   for (StepLadder& ladder : ladders.methods)
@@ -190,39 +204,40 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const jso
     const auto at = places.find(key_of(samples, row));
     if (at == places.end()) throw samples.bad(row, "method", samples.text(row, "method"), "has no such run");
     study.methods[at->second.first].runs[at->second.second].samples.push_back(
-        {static_cast<int>(samples.count(row, "repeat")), static_cast<int>(samples.count(row, "turn")),
+        {samples.small(row, "repeat", 0, 1'000'000), samples.small(row, "turn", 0, 1'000'000),
          samples.number(row, "wall_s")});
   }
   conclude(study);
   return study;
 }
 
-StudyAxis axis_of(const json& value) {
-  StudyAxis axis{.path = value.at("path").get<std::string>(),
-                 .low = value.at("low").get<double>(),
-                 .high = value.at("high").get<double>(),
-                 .count = value.at("count").get<int>(),
-                 .scale = value.at("logarithmic").get<bool>() ? AxisScale::logarithmic : AxisScale::linear};
+StudyAxis axis_of(const JsonEntry& value) {
+  StudyAxis axis{.path = value.at("path").text(),
+                 .low = value.at("low").number(),
+                 .high = value.at("high").number(),
+                 .count = value.at("count").whole<int>(0, largest_count),
+                 .scale = value.at("logarithmic").flag() ? AxisScale::logarithmic : AxisScale::linear};
   const auto checked =
       parse_axis(axis_text(axis), "study.json, axis");  // the same rules as on the command line
   if (const auto* problem = std::get_if<Problem>(&checked)) throw BadFolder{problem->text()};
   return axis;
 }
 
-StabilityOptions options_of(const json& value) {
+StabilityOptions options_of(const JsonEntry& value) {
   StabilityOptions options{.methods = methods_of(value),
                            .x = axis_of(value.at("x")),
                            .y = axis_of(value.at("y")),
-                           .full_size = value.at("full_size").get<bool>()};
-  const json& criterion = value.at("criterion");
-  options.criterion = {.periods = criterion.at("periods").get<double>(),
-                       .least_steps = criterion.at("least_steps").get<int>(),
-                       .most_steps = criterion.at("most_steps").get<int>(),
-                       .perturbation = criterion.at("perturbation").get<double>(),
-                       .perturbation_seed = criterion.at("perturbation_seed").get<unsigned>(),
-                       .growth = criterion.at("growth").get<double>(),
-                       .growth_factor = criterion.at("growth_factor").get<double>(),
-                       .accuracy = criterion.at("accuracy").get<double>()};
+                           .full_size = value.at("full_size").flag()};
+  const JsonEntry& criterion = value.at("criterion");
+  options.criterion = {
+      .periods = criterion.at("periods").number(),
+      .least_steps = criterion.at("least_steps").whole<int>(0, largest_count),
+      .most_steps = criterion.at("most_steps").whole<int>(0, largest_count),
+      .perturbation = criterion.at("perturbation").number(),
+      .perturbation_seed = criterion.at("perturbation_seed").whole<unsigned>(0, 4294967295.0),
+      .growth = criterion.at("growth").number(),
+      .growth_factor = criterion.at("growth_factor").number(),
+      .accuracy = criterion.at("accuracy").number()};
   return options;
 }
 
@@ -248,7 +263,7 @@ StabilityCell read_cell(const Rows& rows, std::size_t row) {
   throw rows.bad(row, "status", status, "is not a status");
 }
 
-StabilityMap read_stability(const std::filesystem::path& folder, const json& root) {
+StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry& root) {
   StabilityMap map;
   map.scene = read_scene_of(root, folder);
   map.options = options_of(root.at("options"));
@@ -256,9 +271,9 @@ StabilityMap read_stability(const std::filesystem::path& folder, const json& roo
   if (!problems.empty()) throw BadFolder{"study.json: " + problems.front().text()};
   map.x_values = values_of(map.options.x);
   map.y_values = values_of(map.options.y);
-  map.rows = root.at("rows").get<int>();
-  map.columns = root.at("columns").get<int>();
-  map.complete = root.at("complete").get<bool>();
+  map.rows = root.at("rows").whole<int>(0, largest_count);
+  map.columns = root.at("columns").whole<int>(0, largest_count);
+  map.complete = root.at("complete").flag();
   for (const std::string& method : map.options.methods) map.methods.push_back({method, {}, {}});
   const Rows rows(folder, "stability.csv", root);
   const std::size_t most = map.x_values.size() * map.y_values.size();
@@ -271,32 +286,32 @@ StabilityMap read_stability(const std::filesystem::path& folder, const json& roo
     at->cells.push_back(read_cell(rows, row));
   }
   const bool x_is_step = map.options.x.path == time_step_path;
-  for (const auto& [name, limits] : root.at("limits").items())
+  for (const std::string& name : root.at("limits").keys())
     for (MethodMap& method : map.methods)
       if (method.method == name)
-        for (const json& value : limits) {
+        for (const JsonEntry& value : root.at("limits").at(name).entries()) {
           const std::size_t k = method.measured.size();
           const std::size_t cell = x_is_step ? k * map.x_values.size() + map.x_values.size() - 1
                                              : (map.y_values.size() - 1) * map.x_values.size() + k;
-          if (cell >= method.cells.size()) throw BadFolder{"study.json: limits: more than there are cells"};
+          if (cell >= method.cells.size()) throw value.bad("is more than there are cells");
           method.measured.push_back(
-              {.other = value.at("at").get<double>(),
-               .longest_stable = value.at("longest_stable_s").get<double>(),
+              {.other = value.at("at").number(),
+               .longest_stable = value.at("longest_stable_s").number(),
                .shortest_unstable = number_or(value.at("shortest_unstable_s"), infinity),
-               .stable_beyond = value.at("stable_beyond").get<bool>(),
+               .stable_beyond = value.at("stable_beyond").flag(),
                .limits = method.cells[cell].limits});
         }
   return map;
 }
 
-ExtremesTable read_extremes(const std::filesystem::path& folder, const json& root) {
+ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry& root) {
   ExtremesOptions options;
-  if (root.contains("scene")) options.scene = read_scene_of(root, folder);
+  if (root.has("scene")) options.scene = read_scene_of(root, folder);
   options.methods = methods_of(root.at("options"));
-  options.cases = root.at("options").at("cases").get<std::vector<std::string>>();
+  options.cases = root.at("options").at("cases").texts();
   ExtremesTable table = empty_table(options);
   if (table.cases.size() != options.cases.size() || table.methods.size() != options.methods.size())
-    throw BadFolder{"study.json: options: there is a case or method that this version does not have"};
+    throw root.at("options").bad("has a case or method that this version does not have");
   const Rows rows(folder, "extremes.csv", root);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t extreme = row / table.methods.size();
@@ -317,12 +332,22 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const json& roo
   return table;
 }
 
+std::vector<FileDigest> digests_in(const JsonEntry& files) {
+  for (const std::string& name : files.keys()) {
+    const JsonEntry file = files.at(name);
+    file.at("bytes").whole<std::uint64_t>(0, largest_whole);
+    if (file.has("rows")) file.at("rows").whole<std::int64_t>(0, largest_whole);
+    file.at("fnv1a_64").text();
+  }
+  return digests_of(files.value());
+}
+
 /// The tables that are not those that study.json describes, a clause each. One that is not there at all is
 /// said by who reads it.
-std::string find_disagreements(const std::filesystem::path& folder, const json& root) {
+std::string find_disagreements(const std::filesystem::path& folder, const JsonEntry& root) {
   std::string found, text;
-  if (!root.contains("files")) return found;  // it is being made, or an old version made it
-  for (const FileDigest& expected : digests_of(root.at("files"))) {
+  if (!root.has("files")) return found;  // it is being made, or an old version made it
+  for (const FileDigest& expected : digests_in(root.at("files"))) {
     if (!expected.rows || expected.name.find('/') != std::string::npos) continue;
     if (read_text_file(folder / expected.name, text)) continue;
     const std::string what = disagreement(expected, digest_of(expected.name, text, true));
@@ -332,13 +357,12 @@ std::string find_disagreements(const std::filesystem::path& folder, const json& 
   return found;
 }
 
-StudyTable read_table(const std::filesystem::path& folder, const json& root) {
-  const std::string kind = root.at("kind").get<std::string>();
+StudyTable read_table(const std::filesystem::path& folder, const JsonEntry& root) {
+  const std::string kind = root.at("kind").text();
   if (kind == "work-precision") return read_work_precision(folder, root);
   if (kind == "stability") return read_stability(folder, root);
   if (kind == "extremes") return read_extremes(folder, root);
-  throw BadFolder{
-      fmt::format("study.json: kind: \"{}\" is none of work-precision, stability, extremes", kind)};
+  throw root.at("kind").bad("must be work-precision, stability or extremes");
 }
 
 }  // namespace
@@ -352,18 +376,21 @@ StudyReading read_study(const std::filesystem::path& folder) {
   const std::string place = (folder / "").string();
   std::string disagreements;
   try {
-    const json root = json::parse(text);
-    if (root.at("format") != study_format)
-      throw BadFolder{fmt::format("study.json: format: must be \"{}\"", study_format)};
+    const json file = json::parse(text);
+    const JsonEntry root(file);
+    if (root.at("format").text() != study_format)
+      throw root.at("format").bad(fmt::format("must be \"{}\"", study_format));
     disagreements = find_disagreements(folder, root);
-    Study study{read_table(folder, root), root.at("command").get<std::string>(),
-                root.at("wall_s").get<double>()};
+    Study study{read_table(folder, root), root.at("command").text(), root.at("wall_s").number()};
     if (disagreements.empty()) return {std::move(study), {}};
   } catch (const BadFolder& bad) {
     if (!disagreements.empty()) disagreements += "; ";
     return {std::nullopt, place + disagreements + bad.problem, bad.is_lost || !disagreements.empty()};
-  } catch (const json::exception& error) {
-    if (disagreements.empty()) return {std::nullopt, place + "study.json: " + error.what()};
+  } catch (BadJsonEntry& bad) {
+    const TextPosition at = locate_json(text).place_of(bad.problem.path, bad.problem.value.empty());
+    bad.problem.place = place + "study.json";
+    bad.problem.line = at.line, bad.problem.column = at.column;
+    if (disagreements.empty()) return {std::nullopt, bad.problem.text()};
   }
   return {std::nullopt, place + disagreements, true};
 }

@@ -55,6 +55,46 @@ TEST(NoInputEndsTheProgramByASignal, HoweverDeepItIsNested) {
   expect_exit(cli("run pendulum --set " + path + "=1"), 2, "a long path");
 }
 
+TEST(NoInputEndsTheProgramByASignal, AndNestingTooDeepIsNamedAtItsPlace) {
+  const TemporaryFolder folder;
+  const std::string text = "{\"title\": \"[[{\",\n \"cloth\": " + nested(100) + "}";
+  for (const char* name : {"x.json", "study.json"}) put(folder / name, text);
+  for (const std::string& command :
+       {"run " + quoted(folder / "x.json"), "replay " + quoted(folder / "x.json"),
+        "compare " + quoted(folder / "x.json"), "study " + quoted(folder.path())}) {
+    const CommandResult result = cli(command);
+    expect_exit(result, 2, command);
+    // The object is the first level: the 64th bracket of the second line opens the 65th.
+    EXPECT_TRUE(has(result.errors, ".json:2:" + std::to_string(10 + 64) + ": is nested too deeply"))
+        << result.errors;
+  }
+}
+
+TEST(NoInputEndsTheProgramByASignal, WhateverNumbersAStudyHas) {
+  const TemporaryFolder folder;
+  const std::string at = quoted(folder / "s");
+  expect_exit(cli("work-precision pendulum --methods verlet,rk4 --horizon 0.5 --out " + at), 0, "a study");
+  const auto index = nlohmann::ordered_json::parse(content_of(folder / "s/study.json"));
+  for (const char* pointer : {"/options/repeats", "/options/runs_per_method", "/reference/evaluations",
+                              "/files/work_precision.csv/rows", "/files/work_precision.csv/bytes"})
+    for (const char* value : {"1e30", "-1", "9223372036854775808", "1.5", "\"many\"", "null"}) {
+      auto changed = index;
+      changed[nlohmann::ordered_json::json_pointer(pointer)] = nlohmann::ordered_json::parse(value);
+      put(folder / "s/study.json", changed.dump(1));
+      const CommandResult result = cli("study " + at);
+      expect_exit(result, 2, std::string(pointer) + " = " + value);
+      EXPECT_TRUE(has(result.errors, ": must be a whole number")) << result.errors;
+      EXPECT_TRUE(has(result.errors, "study.json:")) << result.errors;
+    }
+  auto far = index;
+  far["options"]["horizon_s"] = 1e300;
+  put(folder / "s/study.json", far.dump(1));
+  const CommandResult result = cli("study " + at);
+  expect_exit(result, 2, "a horizon");
+  EXPECT_TRUE(has(result.errors, "options.horizon_s = 1e+300: must be <= 1e+09")) << result.errors;
+  expect_exit(cli("work-precision pendulum --horizon 1e300"), 2, "a horizon");
+}
+
 TEST(NoInputEndsTheProgramByASignal, WhateverBytesItHas) {
   const TemporaryFolder folder;
   for (const std::string& text :
@@ -170,12 +210,31 @@ TEST(TooLittleMemory, ExitsWithFourAndSaysWhatWasAskedFor) {
       "integrator.time_step=0.001");
   expect_exit(large, 4, "a large cloth");
   EXPECT_TRUE(has(large.errors, "not enough memory: a run of 16777216 particles")) << large.errors;
-  for (const char* command : {"explain corners-free", "stability corners-free --full-size --out /tmp/none"}) {
-    const CommandResult other = shell("ulimit -v 200000; \"$CLI\" " + std::string(command) +
-                                      " --set cloth.rows=4096 --set cloth.columns=4096");
+  const TemporaryFolder folder;
+  const std::string sizes = " --set cloth.rows=4096 --set cloth.columns=4096";
+  const std::string out = " --out " + quoted(folder / "none");
+  for (const std::string& command :
+       {"explain corners-free" + sizes, "stability corners-free --full-size" + sizes + out,
+        "compare --scene corners-free --methods verlet,rk4" + sizes + out,
+        "work-precision corners-free" + sizes + out, "extremes corners-free" + sizes + out}) {
+    const CommandResult other = shell("ulimit -v 200000; \"$CLI\" " + command);
     expect_exit(other, 4, command);
     EXPECT_TRUE(has(other.errors, "not enough memory")) << other.errors;
+    EXPECT_TRUE(has(other.errors, " MB ")) << other.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "none")) << command;
   }
+  auto session = nlohmann::json::parse(R"({"format": "clothlab/session/1", "steps": 2, "commands": []})");
+  session["scene"] = nlohmann::json::parse(cli("scenes corners-free").output);
+  session["scene"]["cloth"]["rows"] = session["scene"]["cloth"]["columns"] = 4096;
+  put(folder / "s.json", session.dump());
+  const CommandResult replayed = shell("ulimit -v 200000; \"$CLI\" replay " + quoted(folder / "s.json"));
+  expect_exit(replayed, 4, "a replay");
+  EXPECT_TRUE(has(replayed.errors, "a run of 16777216 particles")) << replayed.errors;
+  // What is not asked for before it is begun: a long text.
+  put(folder / "long.json", std::string(100'000'000, ' '));
+  const CommandResult text = shell("ulimit -v 100000; \"$CLI\" run " + quoted(folder / "long.json"));
+  expect_exit(text, 4, "a text");
+  EXPECT_TRUE(has(text.errors, "MB were asked for at once")) << text.errors;
   for (const int kilobytes : {300'000, 1'000'000, 3'000'000})
     expect_exit(shell("ulimit -v " + std::to_string(kilobytes) + "; \"$CLI\" " + quick + "--threads 1024"), 0,
                 "threads within " + std::to_string(kilobytes) + " kB");

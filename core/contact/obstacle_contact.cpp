@@ -10,12 +10,15 @@
 namespace cloth {
 namespace {
 
+constexpr double above_rounding = 1e-9;  // m
+
 /// J, of the impulse `change` times the mass on a particle.
-double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds, const Vec3& change) {
+double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds, const Vec3& change,
+                     double press) {
   ContactConstraint contact;
   contact.normal = normal;
   contact.mobility = 1 / mass;
-  contact.push = std::max(0.0, mass * change.dot(normal));
+  contact.push = press + std::max(0.0, mass * change.dot(normal));
   contact.rub = mass * (change - change.dot(normal) * normal);
   return work_of(contact, speeds);
 }
@@ -64,18 +67,26 @@ std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& po
   return std::nullopt;
 }
 
+Obstacle grown(Obstacle obstacle, double length) {
+  obstacle.radius += length;
+  obstacle.size += Vec3::Constant(2 * length);
+  obstacle.point += length * obstacle.normal.normalized();
+  return obstacle;
+}
+
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity) {
   return contact_velocity(obstacle, normal, velocity, -velocity.dot(normal));
 }
 
-Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach) {
+Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
+                      double press) {
   const double inward = velocity.dot(normal);
   if (!(inward < 0)) return velocity;
   if (obstacle.response == "reflect") return obstacle.friction * (velocity - 2 * inward * normal);
   const Vec3 tangential = velocity - inward * normal;
   const double rebound = obstacle.restitution * approach, change = rebound - inward;
   const double speed = tangential.norm();
-  const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * change / speed) : 0;
+  const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * (change + press) / speed) : 0;
   return kept * tangential + rebound * normal;
 }
 
@@ -107,9 +118,9 @@ std::string describe(const TunnellingRisk& risk) {
 ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity)
     : obstacles_(std::move(obstacles)), gravity_(gravity) {}
 
-/// m/s, what a bounce gives back: of a particle that nothing held its mean speed in this step, of one that was
-/// held the speed with which the step began. What the step adds to that is load. Slower than twice what gravity
-/// or the load adds in a step is no blow, or a cloth at rest would dance.
+/// m/s, what a bounce gives back: of a particle that nothing held its mean speed in this step, of one that
+/// was held the speed with which the step began. What the step adds to that is load. Slower than twice what
+/// gravity or the load adds in a step is no blow, or a cloth at rest would dance.
 double ObstacleContact::approach_of(std::size_t i, const Vec3& normal, const ContactBegin& begin,
                                     const Wished& wished) const {
   const Vec3 began = begin.velocity[i];
@@ -123,46 +134,85 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
                                      ClothState& state) const {
   ContactReport report;
   begin.memory.resize(state.position.size());
+  std::span<const HeldParticle> held;
+  if (begin.settled) held = begin.settled->held;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (system.pinned[i]) continue;
-    const bool touched = touch(system, i, begin, state, report);
+    Particle particle{i, {state.position[i], state.velocity[i]}, {}, begin.velocity[i]};
+    while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
+      particle.held = held.first(particle.held.size() + 1);
+    held = held.subspan(particle.held.size());
+    if (begin.settled) give_way(particle, *begin.settled, state);
+    const bool touched = touch(system, particle, begin, state, report);
     if (!touched) begin.memory.held[i] = 0;
   }
   report.acted = report.contacts > 0;
   return report;
 }
 
+/// To where the springs let it go, along the surfaces that hold it: against them it has the speed it came
+/// with.
+void ObstacleContact::give_way(const Particle& particle, const SettledStep& settled, ClothState& state) {
+  const std::size_t i = particle.index;
+  Vec3 moved = settled.position[i] - particle.wished.position;
+  for (const HeldParticle& held : particle.held) moved -= held.normal.dot(moved) * held.normal;
+  state.position.set(i, settled.position[i]);
+  state.velocity.add(i, moved / settled.weight);
+}
+
+/// Where the particle belongs and what it is pressed there with, if it touches the obstacle.
+std::optional<ObstacleContact::Touched> ObstacleContact::touched(std::size_t obstacle,
+                                                                 const Particle& particle,
+                                                                 const Vec3& position, bool settled) const {
+  if (!settled) {
+    const auto surface = penetration(obstacles_[obstacle], position);
+    return surface ? std::optional(Touched{*surface, 0}) : std::nullopt;
+  }
+  for (const HeldParticle& held : particle.held)
+    if (held.obstacle == obstacle) return Touched{{position, held.normal}, held.press};
+  return std::nullopt;
+}
+
 /// One particle and all obstacles, in their order.
-bool ObstacleContact::touch(const ClothSystem& system, std::size_t i, const ContactBegin& begin,
+bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin,
                             ClothState& state, ContactReport& report) const {
-  const Wished wished{state.position[i], state.velocity[i]};
-  Vec3 before = begin.velocity[i];
-  bool touched = false, bounced = false;
-  for (const Obstacle& obstacle : obstacles_) {
-    const auto surface = penetration(obstacle, state.position[i]);
-    if (!surface) continue;
+  const std::size_t i = particle.index;
+  const double mass = system.mass[i];
+  bool is_touched = false, bounced = false;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const auto place = touched(k, particle, state.position[i], begin.settled != nullptr);
+    if (!place) continue;
+    const auto& [surface, press] = *place;
     const Vec3 speed = state.velocity[i];
-    const double approach = approach_of(i, surface->normal, begin, wished);
-    const Vec3 stopped = contact_velocity(obstacle, surface->normal, speed, 0);
-    Vec3 answer = contact_velocity(obstacle, surface->normal, speed, approach);
-    const double work =
-        stopping_work(system.mass[i], surface->normal,
-                      {before, stopped, (surface->point - begin.position[i]) / begin.step}, stopped - speed);
-    const double square = 0.5 * system.mass[i] * (answer - stopped).squaredNorm();
+    const double approach = approach_of(i, surface.normal, begin, particle.wished);
+    const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, press / mass);
+    Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, press / mass);
+    const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
+    const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, press);
+    const double square = 0.5 * mass * (answer - stopped).squaredNorm();
     if (square > 0) {  // gives back no more than was taken
-      const double linear = system.mass[i] * stopped.dot(answer - stopped);
+      const double linear = mass * stopped.dot(answer - stopped);
       answer = stopped + part_within(square, linear, std::max(-work, 0.0)) * (answer - stopped);
     }
-    state.position.set(i, surface->point);
+    state.position.set(i, surface.point);
     state.velocity.set(i, answer);
-    report.work += work + 0.5 * system.mass[i] * (answer.squaredNorm() - stopped.squaredNorm());
-    before = answer;
+    report.work += work + 0.5 * mass * (answer.squaredNorm() - stopped.squaredNorm());
+    particle.before = answer;
     bounced = bounced || answer != stopped;
-    touched = true;
+    is_touched = true;
     ++report.contacts;
   }
-  if (touched) begin.memory.held[i] = !bounced;
-  return touched;
+  if (is_touched) begin.memory.held[i] = !bounced;
+  return is_touched;
+}
+
+bool ObstacleContact::is_inside(const ClothSystem& system, const Vec3Field& position) const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
+    const Obstacle within = grown(obstacle, -above_rounding);
+    for (std::size_t i = 0; i < position.size(); ++i)
+      if (!system.pinned[i] && penetration(within, position[i])) return true;
+    return false;
+  });
 }
 
 bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state) const {
@@ -174,13 +224,10 @@ bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state
 }
 
 void ObstacleContact::append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const {
-  constexpr double rounding = 1e-9;  // m, far above it
-  for (Obstacle grown : obstacles_) {
-    grown.radius += rounding;
-    grown.size += Vec3::Constant(2 * rounding);
-    grown.point += rounding * grown.normal.normalized();
+  for (const Obstacle& obstacle : obstacles_) {
+    const Obstacle reached = grown(obstacle, above_rounding);
     for (std::size_t i = 0; i < position.size(); ++i)
-      if (const auto surface = penetration(grown, position[i]))
+      if (const auto surface = penetration(reached, position[i]))
         marks.push_back({position[i], surface->normal, 0});
   }
 }

@@ -1,5 +1,7 @@
 // Contact at the end of a step, and its part of the ledger.
 #include "contact/continuous_contact.h"
+#include "contact/stiff_contact.h"
+#include "integrators/implicit_methods.h"
 #include "measure/energy.h"
 #include "simulation/simulation.h"
 
@@ -8,8 +10,16 @@ namespace cloth {
 void Simulation::resolve_contact(const StepTimes& times) {
   last_contact_ = {};
   if (!contact_->touches(system_, state_)) return end_contact();
-  last_contact_ =
-      contact_->apply(system_, {position_before_, velocity_before_, times.step, contact_memory_}, state_);
+  ContactBegin begin{position_before_, velocity_before_, times.step, contact_memory_};
+  SettledStep settled;
+  if (stiff_contact_ && !contact_->is_inside(system_, position_before_)) {
+    settled.weight = stage_weight(scene_.integrator.method).value_or(1) * times.step;
+    settled.position = state_.position;
+    settled.held = stiff_contact_->settle(system_, *forces_, contact_->obstacles(), settled.weight, times.end,
+                                          position_before_, settled.position);
+    begin.settled = &settled;
+  }
+  last_contact_ = contact_->apply(system_, begin, state_);
   book_contact(times);
 }
 

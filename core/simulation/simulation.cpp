@@ -7,6 +7,7 @@
 #include "cloth/mesh_cloth.h"
 #include "cloth/sums.h"
 #include "contact/continuous_contact.h"
+#include "contact/stiff_contact.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
 #include "measure/spectrum.h"
@@ -72,6 +73,9 @@ void Simulation::assemble() {
         std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_carry_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
+  stiff_contact_.reset();
+  if (contact_ && time_step_ > guaranteed_step("verlet", scene_).value_or(infinity))
+    stiff_contact_ = std::make_unique<StiffContact>();
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
   if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
   find_unreachable();
@@ -232,8 +236,8 @@ void Simulation::limit_deformation() {
   last_limit_ = limiter_->report();
 }
 
-/// After contact, which answers the closing kick of held tensions as it does that of any load. It may also have
-/// stretched again what was within the rate: what counts is where the step ends.
+/// After contact, which answers the closing kick of held tensions as it does that of any load. It may also
+/// have stretched again what was within the rate: what counts is where the step ends.
 void Simulation::book_limiter() {
   const bool kept_before_contact = limiter_->is_kept();
   if (limits_drift_) limiter_->end_step(state_);

@@ -24,6 +24,7 @@
 namespace cloth {
 
 class ContinuousContact;
+class StiffContact;
 class WorkerTeam;
 
 /// What entered the cloth since t = 0, in J; the loss left it.
@@ -242,6 +243,7 @@ class Simulation {
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::optional<ObstacleContact> contact_;                 ///< particle by particle
+  std::unique_ptr<StiffContact> stiff_contact_;            ///< of that, after methods that take long steps
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
   Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact
   ContactMemory contact_memory_;

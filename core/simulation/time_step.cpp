@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/continuous_contact.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
 
@@ -14,8 +15,8 @@ namespace {
 // 0.1 / 0.001 is not quite 100: quotients this close to a whole number are that number.
 constexpr double whole_number_slack = 1e-9;
 
-/// At least 1. Beyond most_steps_of_run nothing is counted any more, and no double is cast that a whole number could
-/// not hold.
+/// At least 1. Beyond most_steps_of_run nothing is counted any more, and no double is cast that a whole
+/// number could not hold.
 std::int64_t whole_steps(double steps) {
   return static_cast<std::int64_t>(std::clamp(steps, 1.0, most_steps_of_run));
 }
@@ -24,9 +25,13 @@ std::int64_t whole_steps(double steps) {
 
 std::optional<double> resolved_time_step(const Scene& scene) {
   if (scene.integrator.time_step) return scene.integrator.time_step;
-  const auto limit = stable_step(scene.integrator.method, scene);
+  // Error control divides steps as the forces ask for it, but contact particle by particle acts at their
+  // ends.
+  Scene limited = scene;
+  if (!scene.obstacles.empty() && !has_continuous_contact(scene)) limited.integrator.tolerance = 0;
+  const auto limit = stable_step(scene.integrator.method, limited);
   if (!limit) return std::nullopt;
-  const double guaranteed = guaranteed_step(scene.integrator.method, scene).value_or(0);
+  const double guaranteed = guaranteed_step(scene.integrator.method, limited).value_or(0);
   if (!(guaranteed > 0)) return std::nullopt;
   const double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
   const double interval = scene.record.interval;

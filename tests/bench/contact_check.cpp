@@ -4,6 +4,7 @@
 //
 //     clothlab-contact-check --scenes corner fold --methods verlet xpbd --steps 0.001 0.0001
 //     clothlab-contact-check --scenes bunny --steps 1e-4 --from touch --duration 0.2
+//     clothlab-contact-check --ledger --scenes cube tablecloth --methods own xpbd
 //     clothlab-contact-check --rest --methods verlet --scenes slope corner --damping 0.004
 //
 // Scenes: the built-in ones with continuous contact, and the small ones of the tests, as small/NAME.
@@ -27,16 +28,20 @@ using namespace cloth;
 using namespace cloth::test;
 
 const std::string small = "small/";
+const std::string own = "own";  // method: the scene's
 
 struct Options {
   std::vector<std::string> scenes, methods;
   std::vector<double> steps{1.0 / 60, 1e-3, 1e-4};
   std::string from = "start";
-  double duration = 0;         ///< s; 0: the scene's
-  double part = 1;             ///< of the particles along an edge
-  double damping = 0;          ///< N s/m; 0: the scene's
-  bool rest = false;           ///< look for rest instead of crossings
-  double patience = infinity;  ///< s
+  double duration = 0;  ///< s; 0: the scene's
+  double part = 1;      ///< of the particles along an edge
+  double damping = 0;   ///< N s/m; 0: the scene's
+  std::vector<std::string> ledger_scenes;
+  std::vector<double> ledger_steps{0};  ///< s; 0: the scene's, or the automatic one
+  bool ledger = false;                  ///< look at energy and pace instead of crossings
+  bool rest = false;                    ///< look for rest instead of crossings
+  double patience = infinity;           ///< s
 };
 
 std::vector<std::string> scene_names() {
@@ -105,6 +110,41 @@ void check_rest(const Options& options) {
   }
 }
 
+/// Of any built-in scene, with or without contact, and of the small ones.
+std::vector<std::string> ledger_names() {
+  std::vector<std::string> names;
+  for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
+  for (const std::string& name : contact_scene_names()) names.push_back(small + name);
+  return names;
+}
+
+/// What contact did with the energy, as parts of what was exchanged, and the worst step beside the median
+/// one. Each scene at its own step where none is given.
+void check_ledger(const Options& options) {
+  fmt::print("{:<26} {:<20} {:>9} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>11} {:>12}  {}\n", "Scene",
+             "Method", "Step (s)", "Work (J)", "Positive", "Largest", "Gain", "Error", "Worst/med",
+             "Median (ms)", "Worst at (s)", "Ended");
+  for (const std::string& name : options.ledger_scenes)
+    for (const std::string& method : options.methods)
+      for (const double step : options.ledger_steps) {
+        Scene scene = scene_named(name, options.part);
+        if (method != own) scene.integrator.method = method, scene.integrator.time_step.reset();
+        if (step > 0) scene.integrator.time_step = step;
+        if (!(scene.integrator.time_step = resolved_time_step(scene))) continue;
+        const double duration = options.duration > 0 ? options.duration : scene.duration;
+        const ContactLedger run =
+            ledger_run(scene, is_small(name) ? thrown({0, -2, 0}) : Preparation{}, duration);
+        const double exchanged = run.account.exchanged();
+        fmt::print(
+            "{:<26} {:<20} {:>9.3g} {:>11.3g} {:>9.2g} {:>9.2g} {:>9.2g} {:>9.2g} {:>9.3g} {:>11.3g} "
+            "{:>12.3g}  {}\n",
+            name, scene.integrator.method, *scene.integrator.time_step, run.work, run.positive / exchanged,
+            run.largest_gift / exchanged, run.gain / exchanged, run.account.share(), run.unevenness(),
+            1e3 * run.median_step, run.worst_at, run.stop ? describe(*run.stop) : "as asked");
+        std::fflush(stdout);
+      }
+}
+
 /// Crossings.
 int check_all(const Options& options) {
   int crossings = 0, frames = 0;
@@ -137,9 +177,14 @@ int main(int argument_count, char** arguments) {
   options.scenes = scene_names();
   options.methods = integrator_names();
   CLI::App app("Looks for crossings on every frame of scenes of contact.");
-  app.add_option("--scenes", options.scenes, "Built-in scenes with continuous contact, or small/NAME; all")
-      ->check(CLI::IsMember(options.scenes));
-  app.add_option("--methods", options.methods, "All")->check(CLI::IsMember(options.methods));
+  options.ledger_scenes = ledger_names();
+  std::vector<std::string> methods = options.methods;
+  methods.push_back(own);
+  app.add_option("--scenes", options.scenes,
+                 "Built-in scenes with continuous contact, with --ledger any, or small/NAME; all")
+      ->check(CLI::IsMember(options.ledger_scenes));
+  app.add_option("--methods", options.methods, "All; with --ledger also own, and without it that alone")
+      ->check(CLI::IsMember(methods));
   app.add_option("--steps", options.steps, "In s")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--from", options.from,
                  "start, touch (5 ms before the first one) or a time in s, got to with "
@@ -154,12 +199,21 @@ int main(int argument_count, char** arguments) {
   app.add_option("--part", options.part, "Of the particles along an edge of a built-in scene")
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
+  app.add_flag("--ledger", options.ledger,
+               "Instead: the work of contact, what it gave and the ledger's error as parts of the energy "
+               "exchanged, and the worst step beside the median one in processor time of one thread");
   app.add_flag(
       "--rest", options.rest,
       "Instead: how still each scene lies after 5 s, with the first of the methods at the step auto");
   app.add_option("--damping", options.damping,
                  "With --rest: viscous damping in N s/m instead of the scene's");
   CLI11_PARSE(app, argument_count, arguments);
+  if (options.ledger) {
+    if (app["--scenes"]->count() > 0) options.ledger_scenes = options.scenes;
+    if (app["--steps"]->count() > 0) options.ledger_steps = options.steps;
+    if (app["--methods"]->count() == 0) options.methods = {own};
+    return check_ledger(options), 0;
+  }
   if (options.rest) return check_rest(options), 0;
   return check_all(options) > 0 ? 1 : 0;
 }

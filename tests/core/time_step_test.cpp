@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "contact/continuous_contact.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
@@ -22,9 +23,13 @@ TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysWithinBothLimits) {
       const auto limit = stable_step(method, scene);
       ASSERT_EQ(step.has_value(), limit.has_value());
       if (!step) continue;
+      // contact particle by particle acts at the ends of steps: there error control does not make them long
+      const bool ends_count = !scene.obstacles.empty() && !has_continuous_contact(scene);
+      if (ends_count) scene.integrator.tolerance = 0;
       const double parts = scene.record.interval / *step;
       EXPECT_NEAR(parts, std::round(parts), 1e-9 * parts);
-      const double longest = std::min(0.8 * *limit, 0.95 * guaranteed_step(method, scene).value());
+      const double longest =
+          std::min(0.8 * *stable_step(method, scene), 0.95 * guaranteed_step(method, scene).value());
       EXPECT_LE(*step, longest * (1 + 1e-12));
       // and no longer step does both
       if (parts > 1.5) {

@@ -9,36 +9,15 @@
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
-#include "simulation/energy_account.h"
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 
 namespace cloth::test::contact_energy_test {
 namespace {
 
-/// J; of the steps of a run.
-struct ContactLedger {
-  EnergyAccount account;
-  double work = 0;          ///< of contact
-  double positive = 0;      ///< what the steps that gave something gave
-  double largest_gift = 0;  ///< of a step
-};
-
 ContactLedger ledger_of(const Scene& scene, const Preparation& prepare, double time) {
-  Simulation simulation(scene, prepare);
-  ContactLedger ledger;
-  ledger.account.add(simulation.measure());
-  while (simulation.time() + 0.5 * simulation.time_step() < time) {
-    const auto stop = simulation.step();
-    EXPECT_FALSE(stop) << describe(*stop);
-    if (stop) break;
-    const Measurement now = simulation.measure();
-    const double given = now.ledger.contact - ledger.work;
-    ledger.work = now.ledger.contact;
-    ledger.positive += std::max(given, 0.0);
-    ledger.largest_gift = std::max(ledger.largest_gift, given);
-    ledger.account.add(now);
-  }
+  ContactLedger ledger = ledger_run(scene, prepare, time);
+  EXPECT_FALSE(ledger.stop) << describe(*ledger.stop);
   return ledger;
 }
 
@@ -139,6 +118,37 @@ TEST_P(RestitutionOne, LetsAClothComeToRest) {
 INSTANTIATE_TEST_SUITE_P(Contact, RestitutionOne, ::testing::Values("sphere", "box", "plane"),
                          [](const auto& tested) { return tested.param; });
 
+struct LongStep {
+  std::string method;
+  int iterations = 0;  ///< 0: as many as it takes by itself
+  double most = 0.05;  ///< of the energy exchanged, that may come from nothing
+};
+
+class LongSteps : public ::testing::TestWithParam<std::string> {};
+
+/// At steps far beyond the springs' oscillations a cloth relaxes through an obstacle within a step. Put out
+/// of it particle by particle it would be stretched anew each time, by more than all the energy exchanged.
+/// What the methods of few iterations leave unsolved of a step may come back as a part of it.
+TEST_P(LongSteps, OfContactParticleByParticleMakeNoEnergy) {
+  for (const auto& [method, iterations, most] :
+       {LongStep{"implicit-euler"}, LongStep{"bdf2"}, LongStep{"projective", 60},
+        LongStep{"projective", 10, 0.75}, LongStep{"xpbd", 10}, LongStep{"xpbd", 1, 0.5}})
+    for (const double step : {0.01, 1.0 / 60}) {
+      Scene scene = coarser(builtin_scene(GetParam()), 0.5);
+      scene.integrator = {.method = method, .time_step = step};
+      if (method == "projective") scene.integrator.projective_iterations = iterations;
+      if (method == "xpbd") scene.integrator.xpbd_iterations = iterations;
+      const ContactLedger ledger = ledger_of(scene, {}, 0.6);
+      const std::string where =
+          method + ", " + std::to_string(iterations) + " iterations, at " + std::to_string(step);
+      EXPECT_LT(ledger.gain, most * ledger.account.exchanged()) << where;
+      EXPECT_LT(ledger.work, 0) << where;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, LongSteps, ::testing::Values("ball", "cube", "rectangle", "tablecloth"),
+                         [](const auto& tested) { return tested.param; });
+
 struct BuiltIn {
   std::string name;
   double part = 1;  ///< of its particles along an edge
@@ -158,16 +168,16 @@ TEST_P(TheLedgerOf, ASceneOfContactClosesToTwoPercentOfTheEnergyExchanged) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    BuiltIn, TheLedgerOf,
-    ::testing::Values(BuiltIn{"ball"}, BuiltIn{"bunny", 0.5}, BuiltIn{"corner"}, BuiltIn{"cube"},
-                      BuiltIn{"disc", 0.5}, BuiltIn{"fast-ball"}, BuiltIn{"fold", 0.4}, BuiltIn{"rectangle"},
-                      BuiltIn{"slope"}, BuiltIn{"spikes"}, BuiltIn{"tablecloth"}, BuiltIn{"twist", 0.5}),
-    [](const auto& tested) {
-      std::string name = tested.param.name;
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(BuiltIn, TheLedgerOf,
+                         ::testing::Values(BuiltIn{"ball"}, BuiltIn{"bunny", 0.5}, BuiltIn{"corner"},
+                                           BuiltIn{"cube"}, BuiltIn{"disc", 0.5}, BuiltIn{"fast-ball"},
+                                           BuiltIn{"fold", 0.4}, BuiltIn{"rectangle"}, BuiltIn{"slope"},
+                                           BuiltIn{"spikes"}, BuiltIn{"tablecloth"}, BuiltIn{"twist", 0.5}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace cloth::test::contact_energy_test

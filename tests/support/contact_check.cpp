@@ -5,6 +5,7 @@
 #include <ctime>
 #include <deque>
 #include <stdexcept>
+#include <vector>
 
 #include "measure/energy.h"
 #include "simulation/time_step.h"
@@ -17,6 +18,12 @@ constexpr double sixtieth = 1.0 / 60;  // s
 
 double processor_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 void check_frame(const Simulation& simulation, CheckedRun& run) {
@@ -94,6 +101,32 @@ RestingRun rest_run(const Scene& scene, const RestingWay& way) {
   }
   run.touched = simulation.last_contact().contacts;
   return run;
+}
+
+ContactLedger ledger_run(const Scene& scene, const Preparation& prepare, double duration) {
+  Simulation simulation(scene, prepare);
+  ContactLedger ledger;
+  ledger.account.add(simulation.measure());
+  std::vector<double> costs;
+  const std::int64_t steps = steps_to_cover(duration, simulation.time_step());
+  for (std::int64_t n = 0; n < steps && !ledger.stop; ++n) {
+    const double begin = thread_seconds();
+    ledger.stop = simulation.step();
+    costs.push_back(thread_seconds() - begin);
+    if (costs.back() > ledger.worst_step)
+      ledger.worst_step = costs.back(), ledger.worst_at = simulation.time();
+    const Measurement now = simulation.measure();
+    const double given = now.ledger.contact - ledger.work;
+    ledger.work = now.ledger.contact;
+    ledger.positive += std::max(given, 0.0);
+    ledger.largest_gift = std::max(ledger.largest_gift, given);
+    ledger.gain = std::max(ledger.gain, now.energy_error());
+    ledger.account.add(now);
+  }
+  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
+  std::nth_element(costs.begin(), middle, costs.end());
+  ledger.median_step = *middle;
+  return ledger;
 }
 
 Checkpoint state_at(const Scene& scene, double time) {

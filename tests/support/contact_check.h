@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "simulation/energy_account.h"
 #include "support/contact_scenes.h"
 
 namespace cloth::test {
@@ -51,6 +52,22 @@ struct RestingRun {
 };
 
 RestingRun rest_run(const Scene& scene, const RestingWay& way);
+
+/// What contact did with the energy of a run, and how even its steps were in processor time.
+struct ContactLedger {
+  EnergyAccount account;
+  double work = 0;          ///< J, of contact
+  double positive = 0;      ///< J, what the steps that gave something gave
+  double largest_gift = 0;  ///< J, of a step
+  double gain = 0;          ///< J, the most that the error has been above zero: energy that nothing gave
+  double median_step = 0, worst_step = 0;  ///< s of this thread
+  double worst_at = 0;                     ///< s, in the run
+  std::optional<Divergence> stop;
+
+  double unevenness() const { return median_step > 0 ? worst_step / median_step : 0; }
+};
+
+ContactLedger ledger_run(const Scene& scene, const Preparation& prepare, double duration);
 
 /// A state of a run with Verlet at the step `auto`, at `time` s.
 Checkpoint state_at(const Scene& scene, double time);

@@ -1,0 +1,178 @@
+#include "contact/stiff_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/sums.h"
+#include "contact/at.h"
+#include "integrators/implicit/linear_choice.h"
+#include "integrators/integrator.h"
+
+namespace cloth {
+namespace {
+
+constexpr int most_iterations = 12;
+constexpr int most_trials = 6;         // of a length
+constexpr double accepted_work = 0.5;  // of the residual along a step that is short enough
+constexpr double settled = 1e-3;       // of the first iteration's work: less is not worth another one
+constexpr double on_surface = 1e-9;    // m, above rounding
+
+/// Where a particle that came from `from` belongs if it is inside. Of a box not the nearest face, which in a
+/// long step may be beyond an edge or on the far side, but the one that the straight way there has gone
+/// through.
+std::optional<SurfacePoint> entered(const Obstacle& obstacle, const Vec3& from, const Vec3& position) {
+  auto inside = penetration(obstacle, position);
+  if (!inside || obstacle.shape != Shape::box) return inside;
+  int axis = -1;
+  double latest = -1;  // part of the way
+  for (int k = 0; k < 3; ++k) {
+    const double half = 0.5 * obstacle.size[k];
+    const double side = from[k] < obstacle.center[k] ? -1 : 1;
+    const double before = side * (from[k] - obstacle.center[k]) - half;
+    const double after = side * (position[k] - obstacle.center[k]) - half;
+    if (!(before >= -on_surface) || !(after < before)) continue;
+    if (const double part = std::max(before, 0.0) / (before - after); part > latest) latest = part, axis = k;
+  }
+  if (axis < 0) return inside;
+  const double side = from[axis] < obstacle.center[axis] ? -1 : 1;
+  SurfacePoint face{position, Vec3::Zero()};
+  face.normal[axis] = side;
+  face.point[axis] = obstacle.center[axis] + side * 0.5 * obstacle.size[axis];
+  return face;
+}
+
+/// The point of the surface nearest to one that has moved along it, unless it is beyond an edge.
+std::optional<Vec3> beside(const Obstacle& obstacle, const Vec3& normal, const Vec3& position) {
+  switch (obstacle.shape) {
+    case Shape::sphere: {
+      const Vec3 out = position - obstacle.center;
+      return Vec3(obstacle.center + obstacle.radius * out.normalized());
+    }
+    case Shape::plane:
+      return Vec3(position - normal.dot(position - obstacle.point) * normal);
+    case Shape::box: {
+      const Vec3 out = 0.5 * obstacle.size.cwiseProduct(normal);
+      const Vec3 back = position - normal.dot(position - obstacle.center - out) * normal;
+      const Vec3 beyond = (back - obstacle.center).cwiseAbs() - 0.5 * obstacle.size;
+      if (beyond.maxCoeff() > on_surface) return std::nullopt;
+      return back;
+    }
+    case Shape::mesh:
+      break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// Puts particles out of the obstacles, and those that were held there back on the surface along which they
+/// have moved; notes which are on one.
+void StiffContact::hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position) {
+  for (const HeldParticle& held : active_)
+    if (const auto back = beside(obstacles[held.obstacle], held.normal, position[held.particle]))
+      position.set(held.particle, *back);
+  held_.clear();
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (system.pinned[i]) continue;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      if (const auto out = entered(obstacles[k], begin_[i], position[i])) {
+        position.set(i, out->point);
+        held_.push_back({i, k, out->normal, 0});
+      } else if (const auto on = penetration(grown(obstacles[k], on_surface), position[i])) {
+        held_.push_back({i, k, on->normal, 0});
+      }
+    }
+  }
+}
+
+/// N; and of what is held the part along its normals as its press.
+void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, double weight, double time,
+                                 const Vec3Field& position) {
+  forces.update(position, time);
+  const Vec3Field& force = forces.position_force();
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Vec3 moved = position[i] - wished_[i];
+    residual_.set(i, system.pinned[i]
+                         ? Vec3::Zero()
+                         : Vec3(system.mass[i] / (weight * weight) * moved - (force[i] - wished_force_[i])));
+  }
+  for (HeldParticle& held : held_) held.press = held.normal.dot(residual_[held.particle]);
+}
+
+/// What pulls away from its surface.
+void StiffContact::release() {
+  std::erase_if(held_, [](const HeldParticle& held) { return !(held.press > 0); });
+  active_ = held_;
+}
+
+void StiffContact::keep_along_surfaces(Vec3Field& field) const {
+  for (const HeldParticle& held : held_)
+    field.add(held.particle, -held.normal.dot(field[held.particle]) * held.normal);
+}
+
+/// Held normals get a stiffness far above all else, so that one matrix serves whatever is held.
+bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, double weight,
+                                  const Vec3Field& position) {
+  constexpr double holding = 1e6;
+  constexpr double forcing = 0.01;
+  const LinearisationWeights weights{.position = weight * weight, .velocity = 0, .clamped = true};
+  forces.linearise(position, weights, linearisation_);
+  for (const HeldParticle& held : held_) {
+    const SymmetricBlock node = linearisation_.nodes[held.particle];
+    linearisation_.nodes.add(held.particle,
+                             block_along(0, holding * (node.xx + node.yy + node.zz), held.normal));
+  }
+  along_ = residual_;
+  keep_along_surfaces(along_);
+  for (double& value : along_.flat()) value *= -weight * weight;
+  bool solved = false;
+  if (choose_linear_method(system, weights).method == LinearMethod::cholesky) {
+    solved = factors_.factorise(system, linearisation_);
+    if (solved) factors_.solve(along_, direction_);
+  } else {
+    jacobi_.prepare(system, linearisation_);
+    solved = gradients_.solve(system, linearisation_, jacobi_, along_, forcing, direction_).converged;
+  }
+  keep_along_surfaces(direction_);
+  return solved;
+}
+
+std::vector<HeldParticle> StiffContact::settle(const ClothSystem& system, ForceModel& forces,
+                                               std::span<const Obstacle> obstacles, double weight,
+                                               double time, const Vec3Field& begin, Vec3Field& position) {
+  if (residual_.size() != position.size())
+    residual_ = direction_ = start_ = along_ = Vec3Field(position.size());
+  begin_ = begin;
+  wished_ = position;
+  forces.update(wished_, time);
+  wished_force_ = forces.position_force();
+  active_.clear();
+  hold(system, obstacles, position);
+  find_residual(system, forces, weight, time, position);
+  double first = 0;  // J, negative
+  for (int n = 0; n < most_iterations; ++n) {
+    release();
+    if (!find_direction(system, forces, weight, position)) break;
+    start_ = position;
+    const double before = dot(direction_.flat(), residual_.flat());
+    if (n == 0) first = before;
+    if (before >= settled * first) break;
+    double length = 1;
+    for (int trial = 1;; ++trial) {
+      position = start_;
+      add_scaled(length, direction_, position);
+      hold(system, obstacles, position);
+      find_residual(system, forces, weight, time, position);
+      const double after = dot(direction_.flat(), residual_.flat());
+      if (trial == most_trials || after <= -accepted_work * before) break;
+      length *= 0.5;
+    }
+  }
+  release();
+  const Vec3Field& force = forces.position_force();
+  for (HeldParticle& held : held_)
+    held.press = std::max(0.0, weight * held.normal.dot(wished_force_[held.particle] - force[held.particle]));
+  return held_;
+}
+
+}  // namespace cloth

@@ -68,11 +68,12 @@ int bench(const BenchArguments& arguments) {
                                  }});
   }
   const std::string json = speed::speed_json(result);
-  if (folder.is_open())
-    if (const auto error = folder.finish("bench.json", json)) return report(*error);
+  std::optional<cloth::IoError> failure;
+  if (folder.is_open()) failure = folder.finish("bench.json", json);
   const int printed = print(arguments.json       ? json
                             : arguments.markdown ? speed::speed_markdown(result)
                                                  : speed::speed_text(result));
+  if (failure) return report(*failure);  // what took so long is shown all the same
   if (printed != done) return printed;
   if (!result.reference_agrees()) {
     say(fmt::format(

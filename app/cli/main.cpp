@@ -53,6 +53,13 @@ struct Arguments {
   cli::BenchArguments bench;
 };
 
+/// An empty name, as of a variable that is not set, would leave nothing without a word.
+CLI::Validator is_name() {
+  return CLI::Validator(
+      [](const std::string& name) { return name.empty() ? std::string("must be a name") : std::string(); },
+      "");
+}
+
 void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
   CLI::App* study = app.add_subcommand("work-precision", "Error against run time of every method on a scene");
   study->add_option("scene", arguments.scene, scene_help)->required();
@@ -263,6 +270,9 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   schema->add_flag("--comparison", arguments.comparison_schema, "Of the comparison file instead");
   schema->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
+  for (CLI::App* command : app.get_subcommands({}))
+    for (const char* name : {"--out", "--obj"})
+      if (CLI::Option* option = command->get_option_no_throw(name)) option->check(is_name());
 }
 
 /// What the parser says, and its exit code: help and the version are asked for, all else is bad usage.

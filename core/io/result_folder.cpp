@@ -36,6 +36,12 @@ bool is_there(const fs::path& path) {
   return fs::symlink_status(path, error).type() != fs::file_type::not_found && !error;
 }
 
+/// A file that can be read to its end at once: whoever opens a pipe waits for somebody to write to it.
+bool is_readable(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 /// A list or an index is text that somebody may have changed: a name must stay within its folder.
 bool is_plain(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name != list_name &&
@@ -85,7 +91,7 @@ std::vector<std::string> names_of_old_versions(const std::string& kind) {
 /// What an index file says, if it is one of ours.
 void read_index(const fs::path& folder, const std::string& name, OldResults& old) {
   std::string text;
-  if (!is_there(folder / name) || read_text_file(folder / name, text)) return;
+  if (!is_readable(folder / name) || read_text_file(folder / name, text)) return;
   const auto root = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!root.is_object()) return;
   const auto text_of = [&](const char* key) {
@@ -109,7 +115,7 @@ void read_index(const fs::path& folder, const std::string& name, OldResults& old
 /// A run that an old version began and did not end has neither.
 void look_for_a_record(const fs::path& folder, OldResults& old) {
   std::string text;
-  if (!is_there(folder / "record.csv") || read_text_file(folder / "record.csv", text)) return;
+  if (!is_readable(folder / "record.csv") || read_text_file(folder / "record.csv", text)) return;
   if (text.rfind("time_s,step,kinetic_J,", 0) != 0) return;
   old.kind = "run";
   old.files = names_of_old_versions(old.kind);
@@ -119,7 +125,7 @@ OldResults find_old_results(const fs::path& folder) {
   OldResults old;
   std::string text;
   for (const char* name : index_names) read_index(folder, name, old);
-  if (is_there(folder / list_name) && !read_text_file(folder / list_name, text)) read_list(text, old);
+  if (is_readable(folder / list_name) && !read_text_file(folder / list_name, text)) read_list(text, old);
   if (old.files.empty()) look_for_a_record(folder, old);
   std::erase_if(old.files, [&](const std::string& name) { return !is_there(folder / name); });
   if (old.files.empty()) old.kind.clear();
@@ -129,7 +135,7 @@ OldResults find_old_results(const fs::path& folder) {
 /// The process that a list names last, e.g. "process 4711 on host".
 std::string writer_of(const fs::path& list) {
   std::string text, line, writer = "another process";
-  if (read_text_file(list, text)) return writer;
+  if (!is_readable(list) || read_text_file(list, text)) return writer;
   std::istringstream lines(text);
   while (std::getline(lines, line))
     if (line.rfind("process ", 0) == 0) writer = line;
@@ -209,6 +215,10 @@ std::optional<IoError> ResultFolder::lock(const fs::path& folder, const FolderUs
     made_list_ = !is_there(list);
     descriptor_ = ::open(list.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor_ < 0) return failure(list);
+    if (!is_readable(list)) {
+      ::close(std::exchange(descriptor_, -1));
+      return IoError{list, "is not from this program", true};
+    }
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       ::close(std::exchange(descriptor_, -1));
       return IoError{path_, writer_of(list) + " is writing to this folder"};

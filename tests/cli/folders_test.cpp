@@ -131,6 +131,30 @@ TEST(Folders, TurnASecondWriterAway) {
   EXPECT_EQ(nlohmann::json::parse(content_of(folder / "r/summary.json"))["status"], "stopped");
 }
 
+TEST(Folders, WithAPipeInItAreRefusedAndNotWaitedFor) {
+  for (const char* name : {"record.csv", "summary.json", "study.json", ".clothlab"}) {
+    const TemporaryFolder folder;
+    const CommandResult result = in_folder(
+        folder, "mkfifo " + std::string(name) + "; timeout -s KILL 20 \"$CLI\" " + short_run + "--out .");
+    if (name == std::string("study.json")) {  // no file of a run
+      EXPECT_EQ(result.exit_code, 0) << result.errors;
+      continue;
+    }
+    EXPECT_EQ(result.exit_code, 2) << name << result.errors;
+    EXPECT_TRUE(has(result.errors, "is not from this program")) << result.errors;
+  }
+}
+
+TEST(Folders, HaveAName) {
+  for (const std::string command :
+       {"run pendulum --set duration=0.01 --out ''", "run pendulum --set duration=0.01 --obj ''",
+        "extremes --methods verlet --cases cloth-2x2 --out ''"}) {
+    const CommandResult result = cli(command);
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_TRUE(has(result.errors, "must be a name")) << result.errors;
+  }
+}
+
 TEST(Folders, AreFreeAgainWhenTheirWriterIsKilled) {
   const TemporaryFolder folder;
   const CommandResult result =

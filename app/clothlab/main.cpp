@@ -89,7 +89,8 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (...) {
-    qCritical("clothlab: %s", cloth::failure_in_hand().text.c_str());
-    return 4;
+    const cloth::Failure failure = cloth::failure_in_hand();
+    qCritical("clothlab: %s", failure.text.c_str());
+    return failure.is_defect ? 1 : 4;
   }
 }

@@ -35,6 +35,14 @@ void gather(const LockStep& lockstep, ComparisonRun& run) {
   }
 }
 
+/// Panes meet at multiples of the record interval: one longer than the duration would carry them far beyond
+/// it. As in a run, there are rows at the start and at the end then.
+Comparison with_an_end(const Comparison& comparison) {
+  Comparison result = comparison;
+  result.scene.record.interval = std::min(result.scene.record.interval, result.scene.duration);
+  return result;
+}
+
 void add_sentence(std::string& notice, const std::string& sentence) {
   if (!sentence.empty()) notice += (notice.empty() ? "" : "; ") + sentence;
 }
@@ -81,7 +89,7 @@ bool ComparisonRun::rate_is_kept() const {
 }
 
 ComparisonRun run_comparison(const Comparison& comparison, const ComparisonOptions& options) {
-  LockStep lockstep(comparison);
+  LockStep lockstep(with_an_end(comparison));
   if (options.may_go_on) lockstep.set_stop_test([&] { return !options.may_go_on(); });
   ComparisonRun run;
   run.comparison = as_run(lockstep);

@@ -132,6 +132,14 @@ TEST(Compare, SaysWhereItsPanesMeetOnlyBeyondTheDuration) {
       "no whole number"));
 }
 
+TEST(Compare, EndsWithTheDurationHoweverLongTheRecordInterval) {
+  const CommandResult result = shell(
+      "timeout -s KILL 20 \"$CLI\" compare --scene pendulum --methods verlet,rk4 --duration 0.5 --set "
+      "record.interval=1e9 --json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(nlohmann::json::parse(result.output)["simulated_s"], 0.5);
+}
+
 TEST(Compare, ListsWhatIsBuiltIn) {
   const CommandResult result = cli("compare --list");
   EXPECT_EQ(result.exit_code, 0);

@@ -107,7 +107,9 @@ TEST_P(RestitutionOne, LetsAClothComeToRest) {
         for (Obstacle& obstacle : scene.obstacles) obstacle.restitution = 0;
         const RestingRun inelastic =
             rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
-        still += 10 * inelastic.highest_after;
+        // On a ball it slips on and off, at other times in every run; most with semi-implicit Euler.
+        const bool slips = GetParam() == "sphere" && std::string(method) == "semi-implicit-euler";
+        still += (slips ? 5 : 2) * inelastic.highest_after;
       }
       EXPECT_LT(run.kinetic, still) << where;
       EXPECT_LT(run.highest_after, still) << where << ": it began to move again";

@@ -31,14 +31,14 @@ IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forc
 IntegratorReport SemiImplicitEuler::step(const ClothSystem& system, ForceModel& forces,
                                          const StepTimes& times, ClothState& state, Work& work) {
   if (!constraint_ || !constraint_->holds()) {
-    if (constraint_) constraint_->before_kick(times.step, state);
+    if (constraint_) constraint_->before_kick(times.step, times.step, state);
     if (const auto squares = forces.euler_step(times.begin, times.step, false, state, work)) {
       if (constraint_) constraint_->after_drift(0, state);
       return {.force_evaluations = 1, .speed_squares = squares};
     }
   }
   evaluate(forces, times, state, force_, work);
-  if (constraint_) constraint_->before_kick(times.step, state);
+  if (constraint_) constraint_->before_kick(times.step, times.step, state);
   add_acceleration(system, times.step, force_, state.velocity);
   add_scaled(times.step, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0, state);

@@ -53,10 +53,11 @@ class DriftConstraint {
   virtual ~DriftConstraint() = default;
   /// Whether before_kick() would change the velocity.
   virtual bool holds() const = 0;
-  /// At the step's begin, when the forces are known: their kick of `kick` seconds follows. Adds its own.
-  virtual void before_kick(double kick, ClothState& state) = 0;
+  /// When the forces are known: their kick of `kick` seconds and a drift of `drift` seconds follow. Adds its
+  /// own kick. A step may have several kicks with a drift each.
+  virtual void before_kick(double kick, double drift, ClothState& state) = 0;
   /// After the drift: moves positions to where they may be, changes the velocity, which led there, by
-  /// displacement/h, and adds its part of a closing kick of `closing_kick` seconds.
+  /// displacement/drift, and adds its part of a closing kick of `closing_kick` seconds.
   virtual void after_drift(double closing_kick, ClothState& state) = 0;
   /// Adds that part to a velocity that is made anew from the drift's.
   virtual void close(ClothState& state) = 0;

@@ -22,7 +22,7 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
 
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
-  if (constraint_) constraint_->before_kick(0.5 * h, state);
+  if (constraint_) constraint_->before_kick(0.5 * h, h, state);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);

@@ -106,6 +106,7 @@ IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const
     const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
     forces.update_external(state.position, end);
     ++report.force_evaluations;
+    if (constraint_) constraint_->before_kick(h, h, state);
     predict(system, forces, h, state.velocity);
 
     impulse_.assign(springs, Vec3::Zero());
@@ -116,6 +117,7 @@ IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const
     report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;
 
     add_scaled(h, state.velocity, state.position);
+    if (constraint_) constraint_->after_drift(0, state);
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;

@@ -31,6 +31,11 @@ class Xpbd : public Integrator {
 
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
+  /// Kept at the end of every substep.
+  bool set_drift_constraint(DriftConstraint* constraint) override {
+    constraint_ = constraint;
+    return true;
+  }
 
  private:
   /// W = isotropic * I - along_normal * n n^T, in 1/kg; all 0 where pinned.
@@ -47,6 +52,7 @@ class Xpbd : public Integrator {
                Vec3Field& velocity) const;
 
   int substeps_, iterations_;
+  DriftConstraint* constraint_ = nullptr;
   std::vector<Mobility> mobility_;
   std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run
   double spring_damping_ = 0;  ///< N s/m

@@ -74,7 +74,8 @@ void StepLimiter::pull(double duration, const std::vector<double>& tension, Clot
   add_acceleration(*system_, duration, pull_, state.velocity);
 }
 
-void StepLimiter::before_kick(double kick, ClothState& state) {
+void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
+  time_step_ = drift;
   start_velocity_ = state.velocity;
   opened_ = holds();
   if (!opened_) return;
@@ -88,21 +89,27 @@ void StepLimiter::before_kick(double kick, ClothState& state) {
 /// Brings the positions within the rate and leaves in report_ what is left. False: they were already.
 bool StepLimiter::move(ClothState& state) {
   if (!tensions_ || !opened_) {
-    report_ = {.sweeps = 0, .direct_iterations = 0, .excess = limiter_.excess(state.position)};
+    report_.excess = limiter_.excess(state.position);
     if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
     if (limiter_.accepts(report_.excess)) return false;
   }
   drifted_ = state.position;
   if (!tensions_) {
-    report_ = limiter_.apply(*system_, time_step_, state);
+    add_report(limiter_.apply(*system_, time_step_, state));
     return true;
   }
   if (opened_) tension_ = held_;
   const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position);
-  report_ = {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess};
+  add_report(
+      {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess});
   holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
   add_speed_of_move(state);
   return true;
+}
+
+void StepLimiter::add_report(const LimiterReport& found) {
+  report_.sweeps += found.sweeps, report_.direct_iterations += found.direct_iterations;
+  report_.excess = found.excess;
 }
 
 void StepLimiter::add_speed_of_move(ClothState& state) const {
@@ -125,8 +132,8 @@ void StepLimiter::after_drift(double closing_kick, ClothState& state) {
       const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
       for (std::size_t k = 0; k < change.size(); ++k) change[k] += (to[k] - from[k]) / time_step_;
     }
-    work_ = closing_kick > 0
-                ? work_of_changes(*system_, change_, start_velocity_, 0.5)
+    *work_ += closing_kick > 0
+                  ? work_of_changes(*system_, change_, start_velocity_, 0.5)
                 : 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
                          work_of_changes(*system_, change_, state.velocity, 0));
   }
@@ -160,6 +167,25 @@ bool StepLimiter::after_step(ClothState& state) {
   work_ = 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
                  work_of_changes(*system_, change_, state.velocity, 0));
   return true;
+}
+
+/// In such a step the springs have pulled at lengths that they never had, so that what the limiter brings back
+/// would bounce with more than it came with. The change c of velocities is taken s times, with s as near to 1
+/// as leaves  s^2 sum m c^2/2 + s sum m c . v + potential <= 0,  or where that is least.
+void StepLimiter::restrain(double potential, ClothState& state) {
+  size_like(state.position, change_);
+  const auto change = change_.flat();
+  const std::span<const double> to = state.position.flat(), from = drifted_.flat();
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+  const Vec3Field none(change_.size());
+  const double square = work_of_changes(*system_, change_, none, 0.5);
+  const double linear = work_of_changes(*system_, change_, state.velocity, -1);
+  if (!(square > 0) || square + linear + potential <= 0) return;
+  const double least = -linear / (2 * square), radicand = linear * linear - 4 * square * potential;
+  const double aside = radicand > 0 ? std::sqrt(radicand) / (2 * square) : 0;
+  constexpr double most_share = 2;  // takes a load's whole speed: what dx/h leaves of it is a half
+  const double share = std::clamp(least + std::copysign(aside, 1 - least), 0.0, most_share);
+  add_scaled(share - 1, change_, state.velocity);
 }
 
 void StepLimiter::limit_start(double time_step, ClothState& state) {

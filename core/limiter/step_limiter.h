@@ -29,7 +29,7 @@ class StepLimiter : public DriftConstraint {
   void begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity);
 
   bool holds() const override;
-  void before_kick(double kick, ClothState& state) override;
+  void before_kick(double kick, double drift, ClothState& state) override;
   void after_drift(double closing_kick, ClothState& state) override;
   void close(ClothState& state) override;
   /// After the closing kick: adds its part to work().
@@ -37,6 +37,11 @@ class StepLimiter : public DriftConstraint {
 
   /// For methods that do not call the constraint. Returns whether anything was moved.
   bool after_step(ClothState& state);
+
+  /// After a call of it that moved something, by a method that does not go with its end velocity: as much of
+  /// the change of velocity as does not add to the energy, where the move has added `potential` J to elastic
+  /// and potential energy.
+  void restrain(double potential, ClothState& state);
 
   /// Something else has moved the cloth since: report() tells the excess of these positions.
   void look_again(const Vec3Field& position) { report_.excess = limiter_.excess(position); }
@@ -61,6 +66,7 @@ class StepLimiter : public DriftConstraint {
  private:
   void begin(double time_step);
   bool move(ClothState& state);
+  void add_report(const LimiterReport& found);
   void add_speed_of_move(ClothState& state) const;
   void pull(double duration, const std::vector<double>& tension, ClothState& state);
 
@@ -73,7 +79,7 @@ class StepLimiter : public DriftConstraint {
   bool holds_ = false;                     ///< any of tension_ is above 0
 
   // Of the present step.
-  double time_step_ = 0;  ///< s
+  double time_step_ = 0;  ///< s, of the present drift
   bool drifts_with_end_velocity_ = false;
   double closing_kick_ = 0;     ///< s
   Vec3Field start_velocity_;    ///< m/s, before the first kick

@@ -24,6 +24,7 @@ void EnergyAccount::add(const Measurement& m) {
   if (rows_++ == 0) first_ = energies;
   error_ = m.energy_error();
   raise(largest_error_, std::abs(error_));
+  raise(largest_error_, std::abs(error_ + std::max(0.0, m.ledger.limiter)));
   for (std::size_t k = 0; k < energies.size(); ++k) {
     raise(exchanged_, std::abs(energies[k] - first_[k]));
     raise(largest_energy_, std::abs(energies[k]));

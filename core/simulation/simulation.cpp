@@ -227,9 +227,14 @@ void Simulation::limit_start() {
 void Simulation::limit_deformation() {
   if (!limits_drift_) {
     const bool by_energy = !integrator_->drifts_with_end_velocity();
-    const double before = by_energy ? total_energy() : 0;
+    const Vec3 gravity = gravity_of(scene_);
+    const Energy before = by_energy ? measure_energy(system_, gravity, state_) : Energy{};
     if (limiter_->after_step(state_)) {
-      if (by_energy) ledger_.limiter += total_energy() - before;
+      if (by_energy) {
+        const double gained = measure_energy(system_, gravity, state_).potential() - before.potential();
+        limiter_->restrain(gained, state_);
+        ledger_.limiter += gained + kinetic_energy(system_, state_.velocity) - before.kinetic;
+      }
       integrator_->forget(Change::state);
     }
   }

@@ -33,7 +33,10 @@ std::optional<double> resolved_time_step(const Scene& scene) {
   if (!limit) return std::nullopt;
   const double guaranteed = guaranteed_step(scene.integrator.method, limited).value_or(0);
   if (!(guaranteed > 0)) return std::nullopt;
-  const double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
+  double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
+  // A method that divides its steps by itself follows springs far beyond the rate before the limiter acts.
+  if (scene.deformation && std::isinf(guaranteed) && !stable_at_every_step(scene.integrator.method))
+    longest = std::min(longest, auto_guaranteed_fraction * guaranteed_step("verlet", scene).value_or(infinity));
   const double interval = scene.record.interval;
   if (longest >= interval) return interval;
   return interval / std::ceil(interval / longest);

@@ -91,7 +91,7 @@ bool StepLimiter::move(ClothState& state) {
   if (!tensions_ || !opened_) {
     report_.excess = limiter_.excess(state.position);
     if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
-    if (limiter_.accepts(report_.excess)) return false;
+    if (limiter_.accepts(report_.excess) && (!tensions_ || report_.excess <= aim(state))) return false;
   }
   drifted_ = state.position;
   if (!tensions_) {
@@ -99,12 +99,22 @@ bool StepLimiter::move(ClothState& state) {
     return true;
   }
   if (opened_) tension_ = held_;
-  const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position);
+  const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position, aim(state));
   add_report(
       {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess});
   holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
   add_speed_of_move(state);
   return true;
+}
+
+/// What a solve leaves becomes speed, left/h. Beside the speeds that the cloth has that is to be little, or the
+/// tolerance would heat it: at short steps it asks for more than the rate does.
+double StepLimiter::aim(const ClothState& state) const {
+  constexpr double of_speed = 0.01, least = 0.01;  // of the tolerance
+  const double kinetic = work_of_changes(*system_, state.velocity, state.velocity, -0.5);
+  const double speed = std::sqrt(2 * kinetic / system_->total_mass());
+  const double small = of_speed * time_step_ * speed / tensions_->shortest();
+  return std::clamp(small, least * deformation_.tolerance, deformation_.tolerance);
 }
 
 void StepLimiter::add_report(const LimiterReport& found) {

@@ -66,6 +66,7 @@ class StepLimiter : public DriftConstraint {
  private:
   void begin(double time_step);
   bool move(ClothState& state);
+  double aim(const ClothState& state) const;
   void add_report(const LimiterReport& found);
   void add_speed_of_move(ClothState& state) const;
   void pull(double duration, const std::vector<double>& tension, ClothState& state);

@@ -11,6 +11,7 @@ namespace cloth {
 namespace {
 
 constexpr int most_tension_rounds = 100;
+constexpr int most_rounds_to_aim = 10;  ///< within the tolerance already
 
 /// kappa: of m l/h^2, at which a held tension turns its spring by an angle of 1 within a step.
 constexpr double held_share = 0.5;
@@ -28,6 +29,8 @@ bool is_finite(const Vec3Field& field) {
 TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& system)
     : deformation_(deformation), springs_(tension_springs(deformation, system)) {
   hold_.reserve(springs_.size());
+  for (const TensionSpring& spring : springs_)
+    shortest_ = shortest_ > 0 ? std::min(shortest_, spring.rest_length) : spring.rest_length;
   for (const TensionSpring& spring : springs_) {
     const double lighter = std::max(system.inverse_mass[spring.first], system.inverse_mass[spring.second]);
     hold_.push_back(lighter > 0 ? held_share * spring.limit / lighter : 0);
@@ -96,13 +99,14 @@ std::vector<double> TensionSolver::held(const std::vector<double>& tension, doub
   return result;
 }
 
-/// Rounds until the residual is within the tolerance or there were as many as are worth it.
+/// Rounds until the residual is what is aimed at or there were as many as are worth it.
 void TensionSolver::go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
                           Vec3Field& position, TensionReport& report) {
   rounds_->begin(task, system.inverse_mass, tension, position);
   TensionResidual residual = rounds_->evaluate();
-  int rounds = 0;
+  int rounds = 0, rounds_to_aim = 0;
   while (!residual.within(task.tolerance) && rounds < most_tension_rounds) {
+    if (residual.within(deformation_.tolerance) && ++rounds_to_aim > most_rounds_to_aim) break;
     rounds_->sweep_lines(rounds % 2 == 1);
     ++rounds, ++report.line_sweeps;
     residual = rounds_->evaluate();
@@ -112,7 +116,7 @@ void TensionSolver::go_on(const TensionTask& task, const ClothSystem& system, st
   }
   report.rounds += rounds;
   report.excess = residual.excess, report.slack = residual.slack;
-  report.converged = residual.within(task.tolerance);
+  report.converged = residual.within(deformation_.tolerance);
   if (rounds > 0) rounds_->end(tension, position);
 }
 
@@ -160,7 +164,7 @@ bool TensionSolver::is_loose(const std::vector<double>& tension, Vec3Field& posi
 }
 
 TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
-                                   Vec3Field& position) {
+                                   Vec3Field& position, double aim) {
   TensionReport report;
   if (!is_finite(position)) {
     report.excess = std::nan("");
@@ -171,7 +175,7 @@ TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, 
     return report;
   }
   const TensionTask task{.time_step = time_step,
-                         .tolerance = deformation_.tolerance,
+                         .tolerance = std::min(aim, deformation_.tolerance),
                          .softness = unreachable_ ? soft_springs : 0};
   const Vec3Field start = position;
   const std::vector<double> first = tension;

@@ -12,6 +12,7 @@
 // preconditioner, projected to t >= 0. What rounds do not end, an interior point method starts anew.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -49,9 +50,11 @@ class TensionSolver {
   const std::vector<TensionSpring>& springs() const { return springs_; }
 
   /// Moves positions and changes tensions (N, from what is held to what they are) until excess and slack are
-  /// within the tolerance. Particles move by internal forces alone: the momentum of a free cloth stays.
+  /// within the tolerance, and on to `aim`, which is less, as far as that takes few rounds. Particles move by internal forces alone: the momentum of a free cloth stays.
   TensionReport solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
-                      Vec3Field& position);
+                      Vec3Field& position, double aim = std::numeric_limits<double>::infinity());
+
+  double shortest() const { return shortest_; }  ///< m, rest length
 
   /// The largest (|d| - (1 + rate) L)/L of a limited spring, 0 if none is over.
   double excess(const Vec3Field& position) const;
@@ -81,6 +84,7 @@ class TensionSolver {
   std::optional<GridPlan> grid_;
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for
+  double shortest_ = 0;
   bool unreachable_ = false;
 };
 

@@ -25,18 +25,16 @@ std::int64_t whole_steps(double steps) {
 
 std::optional<double> resolved_time_step(const Scene& scene) {
   if (scene.integrator.time_step) return scene.integrator.time_step;
-  // Error control divides steps as the forces ask for it, but contact particle by particle acts at their
-  // ends.
+  // Error control divides steps as the forces ask for it, but the deformation rate and contact particle by
+  // particle act at their ends.
   Scene limited = scene;
-  if (!scene.obstacles.empty() && !has_continuous_contact(scene)) limited.integrator.tolerance = 0;
+  if (scene.deformation || (!scene.obstacles.empty() && !has_continuous_contact(scene)))
+    limited.integrator.tolerance = 0;
   const auto limit = stable_step(scene.integrator.method, limited);
   if (!limit) return std::nullopt;
   const double guaranteed = guaranteed_step(scene.integrator.method, limited).value_or(0);
   if (!(guaranteed > 0)) return std::nullopt;
-  double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
-  // A method that divides its steps by itself follows springs far beyond the rate before the limiter acts.
-  if (scene.deformation && std::isinf(guaranteed) && !stable_at_every_step(scene.integrator.method))
-    longest = std::min(longest, auto_guaranteed_fraction * guaranteed_step("verlet", scene).value_or(infinity));
+  const double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
   const double interval = scene.record.interval;
   if (longest >= interval) return interval;
   return interval / std::ceil(interval / longest);

@@ -68,15 +68,19 @@ double Simulation::steady_energy_scale() const {
          rounding_floor * elastic_scale_;
 }
 
-/// The same with a longer fall so far, what the hand did and could do, and what entered elsewhere.
+/// The same with a longer fall so far, what the hand did and could ever have done, and what entered elsewhere.
 double Simulation::energy_scale_after(double fallen) const {
   const double drop = total_mass_ * gravity_of(scene_).norm() * system_.diagonal;
-  double hand = std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull);
-  if (pull_) {
-    const Vec3 way = pull_->target - state_.position[static_cast<std::size_t>(pull_->particle)];
-    hand += 0.5 * pull_strength_.stiffness * way.squaredNorm();
-  }
+  const double hand =
+      std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::max(hand_energy_, hand_energy());
   return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(ledger_.contact);
+}
+
+/// J, of the spring by which the hand pulls.
+double Simulation::hand_energy() const {
+  if (!pull_) return 0;
+  const Vec3 way = pull_->target - state_.position[static_cast<std::size_t>(pull_->particle)];
+  return 0.5 * pull_strength_.stiffness * way.squaredNorm();
 }
 
 double Simulation::energy_scale() const {

@@ -340,6 +340,7 @@ Checkpoint Simulation::checkpoint() const {
           .carries = carries_,
           .thickness_carry = thickness_carry_,
           .obstacle_speed = obstacle_speed_,
+          .hand_energy = hand_energy_,
           .contact_impulse = contact_impulse_,
           .contact_memory = contact_memory_,
           .tension = limiter_ ? limiter_->tension() : std::vector<double>(),
@@ -368,6 +369,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
   thickness_carry_ = checkpoint.thickness_carry;
   obstacle_speed_ = checkpoint.obstacle_speed;
+  hand_energy_ = checkpoint.hand_energy;
   contact_impulse_ = checkpoint.contact_impulse;
   contact_memory_ = checkpoint.contact_memory;
   if (checkpoint.method != scene_.integrator.method) end_contact();
@@ -414,6 +416,7 @@ void Simulation::set_brush(const std::optional<BrushGust>& brush) {
 void Simulation::set_pull(const std::optional<Pull>& pull) {
   pull_ = pull;
   if (pull) quantities_.pull = true;
+  hand_energy_ = std::max(hand_energy_, hand_energy());
   forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
   integrator_->forget(Change::forces);
 }

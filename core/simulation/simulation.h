@@ -90,6 +90,7 @@ struct Checkpoint {
   ObstacleCarries carries;
   ThicknessCarry thickness_carry;
   double obstacle_speed = 0;      ///< m/s, the highest so far
+  double hand_energy = 0;         ///< J, the most that the hand's spring has held so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
   ContactMemory contact_memory;
   std::vector<double> tension;  ///< N, of the limited springs, as the limiter holds them
@@ -228,6 +229,7 @@ class Simulation {
   Divergence stop_at_exhaustion(const Pinch& pinch) const;
   double method_limit() const;
   double steady_energy_scale() const;
+  double hand_energy() const;
   double energy_scale_after(double fallen) const;
   bool is_fast(double kinetic) const;
   bool has_run_away() const;
@@ -272,6 +274,7 @@ class Simulation {
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
+  double hand_energy_ = 0;                    ///< J, the most that the hand's spring has held so far
   ObstacleCarries carries_;
   ThicknessCarry thickness_carry_;
   bool was_finite_ = false;   ///< every position was finite after the last step

@@ -57,6 +57,14 @@ TEST(AutomaticStep, OfASoftDampedFlagPulledByAHandDoesNotDiverge) {
   EXPECT_FALSE(divergence) << describe(*divergence);
 }
 
+/// What a hand could give at once counts as long as its work may be in the cloth, not only until the particle
+/// has come to where it is pulled to.
+TEST(AutomaticStep, OfARestingClothThatAHandGrabsFromAfarIsNotStoppedForIt) {
+  const ViolentScene grabbed = violent_scene(7, 550);
+  const ViolentRun run = run_violent(grabbed, grabbed.steps);
+  EXPECT_FALSE(run.divergence) << describe(*run.divergence);
+}
+
 TEST(AutomaticStep, OfRandomViolentScenesDoesNotDiverge) {
   for (std::uint64_t number = 0; number < 60; ++number) {
     const ViolentRun run = run_violent(violent_scene(seed, number), 400);

@@ -17,9 +17,8 @@ double work_of_changes(const ClothSystem& system, const Vec3Field& change, const
   const double* v[] = {velocity.x(), velocity.y(), velocity.z()};
   double work = 0;
   for (int axis = 0; axis < 3; ++axis)
-    work += ordered_sum(change.size(), [m = system.mass.data(), d = by[axis], u = v[axis], share](std::size_t k) {
-      return m[k] * d[k] * (u[k] + share * d[k]);
-    });
+    work += ordered_sum(change.size(), [m = system.mass.data(), d = by[axis], u = v[axis], share](
+                                           std::size_t k) { return m[k] * d[k] * (u[k] + share * d[k]); });
   return work;
 }
 
@@ -107,8 +106,8 @@ bool StepLimiter::move(ClothState& state) {
   return true;
 }
 
-/// What a solve leaves becomes speed, left/h. Beside the speeds that the cloth has that is to be little, or the
-/// tolerance would heat it: at short steps it asks for more than the rate does.
+/// What a solve leaves becomes speed, left/h. Beside the speeds that the cloth has that is to be little, or
+/// the tolerance would heat it: at short steps it asks for more than the rate does.
 double StepLimiter::aim(const ClothState& state) const {
   constexpr double of_speed = 0.01, least = 0.01;  // of the tolerance
   const double kinetic = work_of_changes(*system_, state.velocity, state.velocity, -0.5);
@@ -142,10 +141,9 @@ void StepLimiter::after_drift(double closing_kick, ClothState& state) {
       const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
       for (std::size_t k = 0; k < change.size(); ++k) change[k] += (to[k] - from[k]) / time_step_;
     }
-    *work_ += closing_kick > 0
-                  ? work_of_changes(*system_, change_, start_velocity_, 0.5)
-                : 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
-                         work_of_changes(*system_, change_, state.velocity, 0));
+    *work_ += closing_kick > 0 ? work_of_changes(*system_, change_, start_velocity_, 0.5)
+                               : 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
+                                        work_of_changes(*system_, change_, state.velocity, 0));
   }
   close(state);
 }
@@ -179,9 +177,9 @@ bool StepLimiter::after_step(ClothState& state) {
   return true;
 }
 
-/// In such a step the springs have pulled at lengths that they never had, so that what the limiter brings back
-/// would bounce with more than it came with. The change c of velocities is taken s times, with s as near to 1
-/// as leaves  s^2 sum m c^2/2 + s sum m c . v + potential <= 0,  or where that is least.
+/// In such a step the springs have pulled at lengths that they never had, so that what the limiter brings
+/// back would bounce with more than it came with. The change c of velocities is taken s times, with s as near
+/// to 1 as leaves  s^2 sum m c^2/2 + s sum m c . v + potential <= 0,  or where that is least.
 void StepLimiter::restrain(double potential, ClothState& state) {
   size_like(state.position, change_);
   const auto change = change_.flat();

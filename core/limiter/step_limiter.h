@@ -1,10 +1,10 @@
-// The deformation rate as a stage of the step. Where a method has a drift, the rate is kept at its end (SHAKE:
-// Ryckaert, Ciccotti, Berendsen 1977; RATTLE: Andersen 1983), so that a closing kick takes the forces of the
-// limited shape. A kick by the forces of the overstretched one, which the limiter has already brought back,
-// throws a taut spring back with restitution (omega h)^2/2: more than it came with, beyond 0.71 of the stable
-// step. Tensions that the last step has found act as forces in the kicks of the next one, opening and closing
-// alike, so that only their changes are left to find and a taut cloth at rest has no speed. After other
-// methods the rate is kept at the step's end, from no tension.
+// The deformation rate as a stage of the step. Where a method has a drift, the rate is kept at its end
+// (SHAKE: Ryckaert, Ciccotti, Berendsen 1977; RATTLE: Andersen 1983), so that a closing kick takes the forces
+// of the limited shape. A kick by the forces of the overstretched one, which the limiter has already brought
+// back, throws a taut spring back with restitution (omega h)^2/2: more than it came with, beyond 0.71 of the
+// stable step. Tensions that the last step has found act as forces in the kicks of the next one, opening and
+// closing alike, so that only their changes are left to find and a taut cloth at rest has no speed. After
+// other methods the rate is kept at the step's end, from no tension.
 #pragma once
 
 #include <cstddef>

@@ -50,7 +50,8 @@ class TensionSolver {
   const std::vector<TensionSpring>& springs() const { return springs_; }
 
   /// Moves positions and changes tensions (N, from what is held to what they are) until excess and slack are
-  /// within the tolerance, and on to `aim`, which is less, as far as that takes few rounds. Particles move by internal forces alone: the momentum of a free cloth stays.
+  /// within the tolerance, and on to `aim`, which is less, as far as that takes few rounds. Particles move by
+  /// internal forces alone: the momentum of a free cloth stays.
   TensionReport solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
                       Vec3Field& position, double aim = std::numeric_limits<double>::infinity());
 

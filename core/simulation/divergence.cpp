@@ -68,7 +68,8 @@ double Simulation::steady_energy_scale() const {
          rounding_floor * elastic_scale_;
 }
 
-/// The same with a longer fall so far, what the hand did and could ever have done, and what entered elsewhere.
+/// The same with a longer fall so far, what the hand did and could ever have done, and what entered
+/// elsewhere.
 double Simulation::energy_scale_after(double fallen) const {
   const double drop = total_mass_ * gravity_of(scene_).norm() * system_.diagonal;
   const double hand =

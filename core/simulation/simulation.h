@@ -243,9 +243,9 @@ class Simulation {
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<StepLimiter> limiter_;
-  bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
-  std::optional<ObstacleContact> contact_;                 ///< particle by particle
-  std::unique_ptr<StiffContact> stiff_contact_;            ///< of that, after methods that take long steps
+  bool limits_drift_ = false;                    ///< the method asks the limiter itself, within the step
+  std::optional<ObstacleContact> contact_;       ///< particle by particle
+  std::unique_ptr<StiffContact> stiff_contact_;  ///< of that, after methods that take long steps
   std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
   Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact
   ContactMemory contact_memory_;

@@ -255,8 +255,9 @@ between 50 and 2000, and at most 100 000 force evaluations; nothing depends on t
 |---|---|
 | stable | finite to the end, and no energy from nowhere; it does not say accurate: a method that damps everything is stable |
 | **growth** | finite to the end, but in the second half of the run kinetic, elastic and gravity energy are in the mean above those of the start and all works, by more than 5 % of the energy scale; losses by damping are not counted against a method |
-| **diverged** | stopped: a position or velocity was not finite, or the kinetic energy was ten times the energy scale |
+| **diverged** | stopped: a position or velocity was not finite, or the energy that the ledger leaves unexplained was ten times the energy scale |
 | **failed** | stopped: the equations of an implicit step could not be solved |
+| open | not converged: an iterative method left steps whose equations were not solved, so that the motion is another one; the residual is told |
 | unreach. | the pins make the deformation rate unreachable; the run is finite, and the excess that is left is told |
 | refused | the method has no stable step for the scene, so none was taken |
 

@@ -53,6 +53,29 @@ TEST(EnergyAccount, CountsAWorkAsEnergyExchanged) {
   EXPECT_EQ(account.share(), 0);
 }
 
+/// A rate that is kept only ever takes energy: what a limiter gives, a loss by the method may hide.
+TEST(EnergyAccount, CountsWhatALimiterGaveAsAnError) {
+  EnergyAccount account;
+  Measurement m = row(0, 0, 0);
+  account.add(m);
+  m.ledger.forces.air = 5;
+  m.energy.kinetic = 5;
+  m.ledger.limiter = -1;  // taken
+  m.energy.kinetic = 4;
+  account.add(m);
+  EXPECT_EQ(account.largest_error(), 0);
+  m.ledger.limiter = 1;  // given, and lost again by the method
+  m.energy.kinetic = 5;
+  account.add(m);
+  EXPECT_EQ(account.error(), -1);
+  EXPECT_EQ(account.largest_error(), 1);
+  m.energy.kinetic = 6;  // given, and still there
+  account.add(m);
+  EXPECT_EQ(account.error(), 0);
+  EXPECT_EQ(account.largest_error(), 1);
+  EXPECT_DOUBLE_EQ(account.share(), 1.0 / 6);
+}
+
 TEST(EnergyAccount, TakesRoundingForNoError) {
   EnergyAccount account;
   Measurement still = row(0, 0, 1, 1);

@@ -221,7 +221,9 @@ Part make_part(const Scene& scene, const std::filesystem::path& folder, std::opt
     return true;
   };
   part.study = study_work_precision(scene, options);
-  if (!last) EXPECT_FALSE(recorder.end(part.study, 0));
+  if (!last) {
+    EXPECT_FALSE(recorder.end(part.study, 0));
+  }
   return part;
 }
 

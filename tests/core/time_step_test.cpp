@@ -23,7 +23,8 @@ TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysWithinBothLimits) {
       const auto limit = stable_step(method, scene);
       ASSERT_EQ(step.has_value(), limit.has_value());
       if (!step) continue;
-      // the rate and contact particle by particle act at the ends of steps: error control does not make those long
+      // the rate and contact particle by particle act at the ends of steps: error control does not make those
+      // long
       const bool ends_count =
           scene.deformation || (!scene.obstacles.empty() && !has_continuous_contact(scene));
       if (ends_count) scene.integrator.tolerance = 0;

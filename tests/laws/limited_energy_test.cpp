@@ -86,6 +86,39 @@ TEST(VerletWithARate, MakesNoEnergyOnAFinerClothEither) {
   }
 }
 
+/// What a solve leaves within the tolerance becomes speed, (what is left)/h, and that is not to heat the
+/// cloth.
+TEST(AShortStep, OfALimitedClothMakesNoMoreEnergyThanALongOne) {
+  for (const char* method : {"verlet", "semi-implicit-euler", "xpbd"})
+    for (const double rate : {0.01, 0.001}) {
+      Scene scene = gusty(method, 13, rate, 0);
+      scene.integrator.time_step = std::string(method) == "xpbd" ? 3e-4 : 3e-5;  // ten substeps
+      scene.duration = 0.15;
+      const Account account = account_of(scene);
+      EXPECT_LE(account.rise, 0.01 * account.exchanged) << method << " at " << rate;
+    }
+}
+
+/// Methods that divide their steps must not follow springs far beyond the rate before the limiter acts.
+TEST(TheAutomaticStep, OfAMethodWithInnerStepsLimitsTheSameMotion) {
+  const auto end_of = [](const char* method) {
+    Scene scene = gusty(method, 33, 0.01, 0);
+    scene.integrator.time_step.reset();
+    if (std::string(method) == "xpbd") scene.integrator.xpbd_iterations = 10;
+    scene.integrator.time_step = resolved_time_step(scene).value();
+    Simulation simulation(scene);
+    while (simulation.time() < 0.2 - 1e-9) EXPECT_FALSE(simulation.step());
+    EXPECT_LE(simulation.measure().ledger.limiter, 0) << method;
+    return simulation.measure().energy;
+  };
+  const Energy right = end_of("verlet");
+  for (const char* method : {"dormand-prince", "xpbd"}) {
+    const Energy found = end_of(method);
+    EXPECT_NEAR(found.kinetic, right.kinetic, 0.02 * right.kinetic) << method;
+    EXPECT_NEAR(found.elastic, right.elastic, 0.02 * right.kinetic) << method;
+  }
+}
+
 /// The limiter's impulses act on the velocity with which the step began: so booked, what is left is the
 /// bounded swing of Verlet's own energy.
 TEST(VerletWithARate, AccountsForItsEnergyAtTheLongestAutomaticStep) {

@@ -11,6 +11,7 @@
 #include "study/work_precision_report.h"
 #include "study/work_precision_tables.h"
 #include "support/files.h"
+#include "support/small_studies.h"
 
 namespace cloth::test::study_folder_test {
 namespace {
@@ -25,15 +26,6 @@ WorkPrecisionOptions few_runs() {
   options.horizon = 0.2;
   options.repeats = 2;
   options.steps_per_method = 3;
-  return options;
-}
-
-StabilityOptions few_cells(const Scene& scene) {
-  StabilityOptions options{.methods = {"verlet", "rk4"}};
-  options.x = default_time_axis(scene, options.methods);
-  options.x.count = 4;
-  options.y = {.path = "springs.structural", .low = 50, .high = 500, .count = 3};
-  options.criterion.periods = 20;
   return options;
 }
 
@@ -69,7 +61,7 @@ TEST(StudyFolder, WorkPrecisionComesBackAsItWasWritten) {
 
 TEST(StudyFolder, AStabilityMapComesBackAsItWasWritten) {
   const Scene scene = small_cloth();
-  const StabilityMap map = run_stability_map(scene, few_cells(scene));
+  const StabilityMap map = run_stability_map(scene, small_map(scene));
   const TemporaryFolder folder;
   const auto back = std::get<StabilityMap>(read_back(folder, map).table);
   EXPECT_EQ(stability_csv(back), stability_csv(map));
@@ -121,7 +113,7 @@ TEST(StudyFolder, TheLastPartialWorkPrecisionIsTheFinalOne) {
 
 TEST(StudyFolder, TheLastPartialMapIsTheFinalOne) {
   const Scene scene = small_cloth();
-  StabilityOptions options = few_cells(scene);
+  StabilityOptions options = small_map(scene);
   std::string last;
   int calls = 0;
   options.partial = [&](const StabilityMap& so_far) {
@@ -154,7 +146,7 @@ TEST(StudyStop, EndsEveryStudyAtItsNextStepAndKeepsWhatIsFinished) {
   EXPECT_EQ(finished_runs(study), 2);
 
   const Scene scene = small_cloth();
-  StabilityOptions options = few_cells(scene);
+  StabilityOptions options = small_map(scene);
   options.stop = stop.get_token();  // requested already
   const StabilityMap map = run_stability_map(scene, options);
   EXPECT_FALSE(map.complete);
@@ -167,7 +159,7 @@ TEST(StudyStop, EndsEveryStudyAtItsNextStepAndKeepsWhatIsFinished) {
 
 TEST(StudyStop, AStoppedStudyComesBackFromItsFolderToo) {
   const Scene scene = small_cloth();
-  StabilityOptions options = few_cells(scene);
+  StabilityOptions options = small_map(scene);
   std::stop_source stop;
   options.stop = stop.get_token();
   options.partial = [&](const StabilityMap& so_far) {
@@ -193,7 +185,7 @@ TEST(StudyRuns, AreTheSceneThatWasRun) {
   EXPECT_FALSE(run_of(study, finished_runs(study)));
 
   const Scene scene = small_cloth();
-  const StabilityMap map = run_stability_map(scene, few_cells(scene));
+  const StabilityMap map = run_stability_map(scene, small_map(scene));
   const auto cell = run_of(map, 4 * 3 + 5);  // of the second method
   ASSERT_TRUE(cell);
   EXPECT_EQ(cell->scene.integrator.method, "rk4");

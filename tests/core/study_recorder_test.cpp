@@ -14,6 +14,7 @@
 #include "study/work_precision_report.h"
 #include "study/work_precision_tables.h"
 #include "support/files.h"
+#include "support/small_studies.h"
 
 namespace cloth::test::study_recorder_test {
 namespace {
@@ -24,19 +25,10 @@ Scene small_cloth() {
   return scene;
 }
 
-StabilityOptions map_options(const Scene& scene) {
-  StabilityOptions options{.methods = {"verlet", "rk4"}};
-  options.x = default_time_axis(scene, options.methods);
-  options.x.count = 4;
-  options.y = {.path = "springs.structural", .low = 50, .high = 500, .count = 3};
-  options.criterion.periods = 20;
-  return options;
-}
-
 /// Makes the map in a folder until `cells` more cells are there, as if it were killed then: nothing is ended.
 void make_some_cells(const std::filesystem::path& folder, int cells) {
   const Scene scene = small_cloth();
-  StabilityOptions options = map_options(scene);
+  StabilityOptions options = small_map(scene);
   StudyRecorder recorder;
   ASSERT_FALSE(recorder.begin(folder, plan_stability_map(scene, options), {.command = "a test"}));
   if (recorder.earlier()) options.earlier = &std::get<StabilityMap>(*recorder.earlier());
@@ -53,7 +45,7 @@ void make_some_cells(const std::filesystem::path& folder, int cells) {
 
 TEST(StudyRecorder, OfAMapThatIsKilledAgainAndAgainEndsWithTheSameMap) {
   const Scene scene = small_cloth();
-  const StabilityMap whole = run_stability_map(scene, map_options(scene));
+  const StabilityMap whole = run_stability_map(scene, small_map(scene));
   const TemporaryFolder folder;
   for (int kill = 1; kill <= 5; ++kill) {
     make_some_cells(folder.path(), 4);
@@ -62,7 +54,7 @@ TEST(StudyRecorder, OfAMapThatIsKilledAgainAndAgainEndsWithTheSameMap) {
     EXPECT_FALSE(is_complete(reading.study->table));
     EXPECT_GE(finished_runs(reading.study->table), 4 * kill);
   }
-  StabilityOptions options = map_options(scene);
+  StabilityOptions options = small_map(scene);
   StudyRecorder recorder;
   ASSERT_FALSE(recorder.begin(folder.path(), plan_stability_map(scene, options), {.command = "a test"}));
   ASSERT_TRUE(recorder.earlier());
@@ -87,7 +79,7 @@ TEST(StudyRecorder, RefusesToGoOnWithOtherInputsUnlessItMayOverwrite) {
   const TemporaryFolder folder;
   make_some_cells(folder.path(), 4);
   const Scene scene = small_cloth();
-  StabilityOptions options = map_options(scene);
+  StabilityOptions options = small_map(scene);
   options.criterion.periods = 21;
   Scene other = scene;
   other.cloth.mass *= 2;
@@ -96,7 +88,7 @@ TEST(StudyRecorder, RefusesToGoOnWithOtherInputsUnlessItMayOverwrite) {
   ASSERT_TRUE(of_options);
   EXPECT_TRUE(of_options->refused);
   EXPECT_NE(of_options->text().find("criterion"), std::string::npos) << of_options->text();
-  const auto of_scene = recorder.begin(folder.path(), plan_stability_map(other, map_options(scene)), {});
+  const auto of_scene = recorder.begin(folder.path(), plan_stability_map(other, small_map(scene)), {});
   ASSERT_TRUE(of_scene);
   EXPECT_NE(of_scene->text().find("the scene"), std::string::npos) << of_scene->text();
   EXPECT_GE(finished_runs(read_study(folder.path()).study->table), 4) << "nothing was touched";

@@ -9,6 +9,7 @@
 #include "contact/near_pairs.h"
 #include "geometry/mesh_repair.h"
 #include "support/contact_scenes.h"
+#include "support/meshes.h"
 
 namespace cloth::test::contact_layers_test {
 namespace {
@@ -32,22 +33,9 @@ TriangleMesh sheets(int count, double apart) {
   return mesh;
 }
 
-MeshChoice chosen(const TriangleMesh& surface) {
-  auto mesh = std::make_shared<SceneMesh>();
-  mesh->file = "made.obj";
-  mesh->surface = surface;
-  for (const MeshEdge& edge : unique_edges(surface)) {
-    mesh->edges.push_back({edge.from, edge.to});
-    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
-    if (a >= 0) mesh->hinges.push_back({a, b});
-  }
-  for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
-  return {mesh->file, mesh};
-}
-
 Scene layers(int count, double thickness) {
   Scene scene;
-  scene.cloth.mesh = chosen(sheets(count, std::max(0.01, 1.5 * thickness)));
+  scene.cloth.mesh = mesh_of_scene(sheets(count, std::max(0.01, 1.5 * thickness)));
   scene.cloth.rows = 1;
   scene.cloth.columns = static_cast<int>(scene.cloth.mesh.loaded->surface.vertices.size());
   scene.cloth.origin.setZero();

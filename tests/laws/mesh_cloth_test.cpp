@@ -18,6 +18,7 @@
 #include "simulation/simulation.h"
 #include "simulation/time_step.h"
 #include "support/direct_run.h"
+#include "support/meshes.h"
 #include "support/random.h"
 #include "support/scenes.h"
 #include "support/states.h"
@@ -25,24 +26,9 @@
 namespace cloth::test::mesh_cloth_test {
 namespace {
 
-MeshChoice chosen(const TriangleMesh& surface) {
-  auto mesh = std::make_shared<SceneMesh>();
-  mesh->file = "made.obj";
-  mesh->surface = surface;
-  for (const MeshEdge& edge : unique_edges(surface)) {
-    mesh->edges.push_back({edge.from, edge.to});
-    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
-    if (a >= 0) mesh->hinges.push_back({a, b});
-  }
-  std::sort(mesh->hinges.begin(), mesh->hinges.end());
-  mesh->hinges.erase(std::unique(mesh->hinges.begin(), mesh->hinges.end()), mesh->hinges.end());
-  for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
-  return {mesh->file, mesh};
-}
-
 Scene mesh_scene(const TriangleMesh& surface) {
   Scene scene;
-  scene.cloth.mesh = chosen(surface);
+  scene.cloth.mesh = mesh_of_scene(surface);
   scene.cloth.rows = 1;
   scene.cloth.columns = static_cast<int>(surface.vertices.size());
   scene.cloth.mass = 1e-2 * scene.cloth.columns;

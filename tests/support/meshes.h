@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
+#include "scene/scene.h"
 #include "support/random.h"
 
 namespace cloth::test {
@@ -28,6 +29,9 @@ ClothSystem irregular_triangulation(int rows, int columns, double stiffness, boo
 /// A sheet of rows x columns particles on a grid, pinned at its upper corners, with springs of three
 /// stiffnesses. Numbered at random.
 ClothSystem shuffled_grid(int rows, int columns, Random& random);
+
+/// A surface as the mesh of a scene's cloth, under the name of a file that is not there.
+MeshChoice mesh_of_scene(const TriangleMesh& surface);
 
 /// The order of a shuffle.
 std::vector<int> random_order(int size, Random& random);

@@ -267,7 +267,7 @@ class WindowTest : public QObject {
     QVERIFY(bench.window.notice().text().isEmpty());
     bench.play_until(1);
     bench.pause();
-    QVERIFY2(bench.window.notice().text().contains("energy is not accounted for"),
+    QVERIFY2(bench.window.notice().text().contains("Energy is not accounted for"),
              qPrintable(bench.window.notice().text()));
     bench.action("reset")->trigger();
     bench.settle();

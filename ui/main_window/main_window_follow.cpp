@@ -1,5 +1,6 @@
 // What the window shows of the worker's status.
 #include <QAction>
+#include <QStringList>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +9,18 @@
 #include "widgets/run_actions.h"
 
 namespace clothlab {
+namespace {
+
+/// Notices come a line each, worded to follow a program's name on the command line.
+QString as_sentences(const std::string& notices) {
+  QStringList lines = QString::fromStdString(notices).split('\n', Qt::SkipEmptyParts);
+  const QString mark = lines.size() > 1 ? QStringLiteral("\u2022 ") : QString();
+  for (QString& line : lines)
+    line = mark + line.at(0).toUpper() + line.mid(1) + (line.endsWith('.') ? "" : ".");
+  return lines.join('\n');
+}
+
+}  // namespace
 
 void MainWindow::followStatus(const WorkerStatus& status) {
   follow_playing(*play_, status.playing);
@@ -26,7 +39,7 @@ void MainWindow::followStatus(const WorkerStatus& status) {
     if (status.notice.empty())
       notice_->withdraw("quality");
     else
-      notice_->show("quality", NoticeBar::Level::warning, QString::fromStdString(status.notice));
+      notice_->show("quality", NoticeBar::Level::warning, as_sentences(status.notice));
   }
   followDivergence(status);
   follow_recording(*record_, *notice_, shown_status_, status);

@@ -61,6 +61,11 @@ class DriftConstraint {
   virtual void after_drift(double closing_kick, ClothState& state) = 0;
   /// Adds that part to a velocity that is made anew from the drift's.
   virtual void close(ClothState& state) = 0;
+  /// m/s, what the last step's opening kick and after_drift(), and its closing kick, have changed; null:
+  /// nothing. The constraint's work is that of the one as if it came before all else, of the other as if it
+  /// came last.
+  virtual const Vec3Field* opening_change() const = 0;
+  virtual const Vec3Field* closing_change() const = 0;
 };
 
 class Integrator {

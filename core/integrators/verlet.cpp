@@ -1,5 +1,7 @@
 #include "integrators/verlet.h"
 
+#include "cloth/sums.h"
+
 namespace cloth {
 
 IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
@@ -23,16 +25,37 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
+  if (constraint_ && forces.has_damping()) keep_damping(forces, opening_damping_);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
+  if (constraint_ && forces.has_damping() && constraint_->opening_change())
+    work.damping_loss -= 0.5 * h * dot(opening_damping_.flat(), constraint_->opening_change()->flat());
   forces.update(state.position, times.end);
   ++report.force_evaluations;
   report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
   evaluate(forces, state);
   work += 0.5 * h * power_;
+  work.damping_loss += closing_correction_ = closing_correction(forces, h);
   holds_position_force_ = true;
   return report;
+}
+
+/// - D v of the force that is known.
+void Verlet::keep_damping(const ForceModel& forces, Vec3Field& damping) const {
+  if (damping.size() != force_.size()) damping = Vec3Field(force_.size());
+  const auto to = damping.flat();
+  const std::span<const double> all = force_.flat(), rest = forces.position_force().flat();
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = all[k] - rest[k];
+}
+
+/// Damping works with the velocity at the ends of a step, but without what a constraint's kicks, counted
+/// before and after all others, change there: held tensions and the springs that they answer cancel in the
+/// next kick, and nothing has gone so fast.
+double Verlet::closing_correction(const ForceModel& forces, double step) {
+  if (!constraint_ || !forces.has_damping() || !constraint_->closing_change()) return 0;
+  keep_damping(forces, closing_damping_);
+  return 0.5 * step * dot(closing_damping_.flat(), constraint_->closing_change()->flat());
 }
 
 /// The force and its power; the positions are those of the last update.
@@ -92,6 +115,8 @@ Work Verlet::follow_contact(ForceModel& forces, const StepTimes& times, const Cl
   else
     evaluate(forces, state);
   correction += 0.5 * times.step * power_;
+  correction.damping_loss -= closing_correction_;
+  correction.damping_loss += closing_correction_ = closing_correction(forces, times.step);
   return correction;
 }
 

@@ -37,12 +37,16 @@ class Verlet : public Integrator {
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  private:
+  void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
+  double closing_correction(const ForceModel& forces, double step);
   void evaluate(ForceModel& forces, const ClothState& state);
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
 
   DriftConstraint* constraint_ = nullptr;
   Vec3Field force_;                    ///< p - D v, N; only where something damps
+  Vec3Field opening_damping_, closing_damping_;  ///< - D v at both ends, N; only beside a constraint
+  double closing_correction_ = 0;      ///< J, of the last step
   Work power_;                         ///< at the end of the last step
   bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
   bool holds_force_ = false;           ///< and `force_`, `power_` are those there

@@ -52,7 +52,7 @@ void StepLimiter::begin(double time_step) {
   time_step_ = time_step;
   report_ = {};
   work_ = 0;
-  opened_ = closed_ = false;
+  opened_ = changed_ = closed_ = false;
 }
 
 void StepLimiter::begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity) {
@@ -134,7 +134,8 @@ void StepLimiter::add_speed_of_move(ClothState& state) const {
 void StepLimiter::after_drift(double closing_kick, ClothState& state) {
   const bool moved = move(state);
   closing_kick_ = closing_kick;
-  if (moved || opened_) {
+  changed_ = moved || opened_;
+  if (changed_) {
     size_like(state.position, change_);
     if (!opened_) change_.fill(0);
     if (moved) {

@@ -32,6 +32,8 @@ class StepLimiter : public DriftConstraint {
   void before_kick(double kick, double drift, ClothState& state) override;
   void after_drift(double closing_kick, ClothState& state) override;
   void close(ClothState& state) override;
+  const Vec3Field* opening_change() const override { return changed_ ? &change_ : nullptr; }
+  const Vec3Field* closing_change() const override { return closed_ ? &closing_ : nullptr; }
   /// After the closing kick: adds its part to work().
   void end_step(const ClothState& state);
 
@@ -86,7 +88,7 @@ class StepLimiter : public DriftConstraint {
   Vec3Field start_velocity_;    ///< m/s, before the first kick
   Vec3Field drifted_;           ///< m
   Vec3Field change_, closing_;  ///< m/s, by opening kick and limiting; by the closing kick
-  bool opened_ = false, closed_ = false;
+  bool opened_ = false, changed_ = false, closed_ = false;
   Vec3Field pull_;  ///< N, scratch
   LimiterReport report_;
   std::optional<double> work_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
@@ -132,6 +133,20 @@ TEST(VerletWithARate, AccountsForItsEnergyAtTheLongestAutomaticStep) {
       const Account account = account_of(scene);
       EXPECT_LE(account.worst_error, 0.02 * account.exchanged) << name << " at " << rate;
     }
+}
+
+/// Held tensions and the springs that they answer cancel from kick to kick: damping has not worked with them.
+TEST(VerletWithARate, AccountsForDampingOnAFineClothToo) {
+  for (const auto& [side, rate, damping] : {std::tuple{49, 0.01, 0.01}, {33, 0.001, 0.02}}) {
+    Scene scene = gusty("verlet", side, rate, 0);
+    scene.springs->damping = damping;
+    scene.air->drag = 0.01;
+    scene.integrator.time_step.reset();
+    scene.integrator.time_step = resolved_time_step(scene).value();
+    scene.duration = 0.15;
+    const Account account = account_of(scene);
+    EXPECT_LE(account.worst_error, 0.003 * account.exchanged) << side << " at " << rate;
+  }
 }
 
 /// Contact answers the closing kick of held tensions: their work is counted with the velocity after it.

@@ -3,6 +3,15 @@
 #include "cloth/sums.h"
 
 namespace cloth {
+namespace {
+
+/// More than air and hand, whose work is not booked as a loss by damping.
+bool damps(const ForceModel& forces) {
+  const NodeDamping parts = forces.damping_parts();
+  return parts.isotropic > 0 || parts.along_springs > 0;
+}
+
+}  // namespace
 
 IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                               ClothState& state, Work& work) {
@@ -25,11 +34,12 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
-  if (constraint_ && forces.has_damping()) keep_damping(forces, opening_damping_);
+  const bool corrects = constraint_ && damps(forces);
+  if (corrects) keep_damping(forces, opening_damping_);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
-  if (constraint_ && forces.has_damping() && constraint_->opening_change())
+  if (corrects && constraint_->opening_change())
     work.damping_loss -= 0.5 * h * dot(opening_damping_.flat(), constraint_->opening_change()->flat());
   forces.update(state.position, times.end);
   ++report.force_evaluations;
@@ -53,7 +63,7 @@ void Verlet::keep_damping(const ForceModel& forces, Vec3Field& damping) const {
 /// before and after all others, change there: held tensions and the springs that they answer cancel in the
 /// next kick, and nothing has gone so fast.
 double Verlet::closing_correction(const ForceModel& forces, double step) {
-  if (!constraint_ || !forces.has_damping() || !constraint_->closing_change()) return 0;
+  if (!constraint_ || !damps(forces) || !constraint_->closing_change()) return 0;
   keep_damping(forces, closing_damping_);
   return 0.5 * step * dot(closing_damping_.flat(), constraint_->closing_change()->flat());
 }

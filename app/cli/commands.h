@@ -107,16 +107,6 @@ struct WorkPrecisionArguments {
 };
 int work_precision(const WorkPrecisionArguments& arguments);
 
-struct BenchArguments {
-  std::vector<int> sizes, threads;                   ///< empty: the usual ones
-  std::vector<std::string> methods, features, only;  ///< empty: all
-  int repeats = 15;
-  bool quick = false;
-  std::string folder;
-  bool json = false, markdown = false;
-};
-int bench(const BenchArguments& arguments);
-
 int schema(bool of_comparison);
 int parameters();
 

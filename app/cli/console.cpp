@@ -27,7 +27,7 @@ void write_error(const std::string& text) {
 }
 
 void say(const std::string& message) {
-  write_error("clothlab-cli: " + cloth::printable(message) + "\n");
+  write_error(fmt::format("{}: {}\n", program_name, cloth::printable(message)));
 }
 
 int report(const std::vector<cloth::Problem>& problems) {
@@ -65,8 +65,7 @@ std::string summary_text(const cloth::RunSummary& s, const std::string& folder) 
       "{}: {}, {} steps of {:.6g} s, {:.6g} s simulated in {:.3g} s ({:.3g} ns per particle and step)\n"
       "largest strain {:.4g} %, energy error {:.3g} J at the end, at most {:.2g} % of the energy exchanged\n",
       cloth::name_of(s.status), s.method, s.count.steps, s.time_step, s.simulated, s.wall,
-      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy.error(),
-      100 * s.energy.share());
+      s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy.error(), 100 * s.energy.share());
   if (!folder.empty()) text += fmt::format("results in {}\n", folder);
   return text;
 }
@@ -96,7 +95,9 @@ int refused_for_memory(cloth::Scene scene, const std::vector<std::string>& metho
   return io_failed;
 }
 
-int guarded(const std::function<int()>& command) {
+int run_program(const std::function<int()>& command) {
+  cloth::settle_standard_streams();
+  cloth::end_by_exit_code(program_name, io_failed, defect);
   try {
     return command();
   } catch (...) {

@@ -25,6 +25,9 @@ enum ExitCode {
   interrupted = 130
 };
 
+/// Names the program in its messages; defined beside its main().
+extern const char* const program_name;
+
 /// A scene, or the exit code of a command whose messages are already on standard error.
 struct LoadedScene {
   std::optional<cloth::Scene> scene;
@@ -41,8 +44,8 @@ int report(const std::vector<cloth::Problem>& problems);
 /// What would destroy something is bad usage, all else a failure to read or write.
 int report(const cloth::IoError& error);
 
-/// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe. Control
-/// characters within lines are escaped, in a way that leaves JSON its meaning.
+/// Standard output is written whole or the command fails: exit code 4 on a full disk or a closed pipe.
+/// Control characters within lines are escaped, in a way that leaves JSON its meaning.
 int print(const std::string& text);
 
 /// A run in a few lines; `folder` is where its files are, or empty.
@@ -59,7 +62,8 @@ void write_error(const std::string& text);
 /// of the methods (of the scene's own without any); `done` otherwise.
 int refused_for_memory(cloth::Scene scene, const std::vector<std::string>& methods = {});
 
-/// The command's exit code, or that of the exception which it ended by, with a message.
-int guarded(const std::function<int()>& command);
+/// Runs a program's command with the standard streams open and every way to end it an exit code: the
+/// command's own, or that of the exception which it ended by, with a message.
+int run_program(const std::function<int()>& command);
 
 }  // namespace clothlab::cli

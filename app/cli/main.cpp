@@ -2,17 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-#include <sstream>
-
 #include "commands.h"
 #include "console.h"
-#include "io/printable.h"
-#include "io/process.h"
-#include "io/run_folder.h"
-#include "kernels/instruction_set.h"
+#include "parse.h"
 #include "study/reproduce.h"
-#include "study/speed/speed_study.h"
 
 namespace {
 
@@ -50,15 +43,7 @@ struct Arguments {
   cli::StudyArguments study;
   cli::ReproduceArguments reproduce;
   cli::WorkPrecisionArguments work_precision;
-  cli::BenchArguments bench;
 };
-
-/// An empty name, as of a variable that is not set, would leave nothing without a word.
-CLI::Validator is_name() {
-  return CLI::Validator(
-      [](const std::string& name) { return name.empty() ? std::string("must be a name") : std::string(); },
-      "");
-}
 
 void add_work_precision(CLI::App& app, cli::WorkPrecisionArguments& arguments) {
   CLI::App* study = app.add_subcommand("work-precision", "Error against run time of every method on a scene");
@@ -185,38 +170,6 @@ void add_reproduce(CLI::App& app, cli::ReproduceArguments& arguments) {
   reproduce->add_flag("--json", arguments.json, json_help);
 }
 
-void add_bench(CLI::App& app, cli::BenchArguments& arguments) {
-  CLI::App* bench = app.add_subcommand(
-      "bench", "What a step costs on this machine, beside a plain kernel and the machine's own limits");
-  bench->add_option("--sizes", arguments.sizes, "Particles along an edge, e.g. 64,128; 32 to 512 without")
-      ->delimiter(',')
-      ->check(CLI::Range(4, 2048));
-  bench->add_option("--methods", arguments.methods, "Only these methods, e.g. verlet,rk4")->delimiter(',');
-  bench
-      ->add_option(
-          "--features", arguments.features,
-          "Only these beside the bare step: damping, air, spring-damping, limit-10, limit-1, sphere; "
-          "all without")
-      ->delimiter(',');
-  bench->add_option("--threads", arguments.threads, "Numbers of threads, e.g. 1,2; 1 and all cores without")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 1024));
-  bench->add_option("--repeats", arguments.repeats, "Timings of each row")
-      ->capture_default_str()
-      ->check(CLI::Range(3, 1000));
-  bench
-      ->add_option("--only", arguments.only,
-                   "Only these parts: " + fmt::format("{}", fmt::join(cloth::speed::speed_parts(), ", ")))
-      ->delimiter(',');
-  bench->add_flag("--quick", arguments.quick, "Small sizes and short timings: a look, not a measurement");
-  bench->add_option(
-      "--out", arguments.folder,
-      "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot "
-      "go on after an interruption: the same command begins anew");
-  CLI::Option* json = bench->add_flag("--json", arguments.json, json_help);
-  bench->add_flag("--markdown", arguments.markdown, "Print the tables as Markdown")->excludes(json);
-}
-
 void add_replay(CLI::App& app, cli::ReplayArguments& arguments) {
   CLI::App* replay =
       app.add_subcommand("replay", "Carry out a saved session again and compare its end, to the bit");
@@ -265,23 +218,13 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   add_extremes(app, arguments.extremes);
   add_study(app, arguments.study);
   add_reproduce(app, arguments.reproduce);
-  add_bench(app, arguments.bench);
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the scene file");
   schema->add_flag("--comparison", arguments.comparison_schema, "Of the comparison file instead");
   schema->add_flag("--json", json_help);
   app.add_subcommand("parameters", "Print the reference page of all parameters (Markdown)");
   for (CLI::App* command : app.get_subcommands({}))
     for (const char* name : {"--out", "--obj"})
-      if (CLI::Option* option = command->get_option_no_throw(name)) option->check(is_name());
-}
-
-/// What the parser says, and its exit code: help and the version are asked for, all else is bad usage.
-int answer(const CLI::App& app, const CLI::ParseError& error) {
-  std::ostringstream output, errors;
-  const bool asked_for = app.exit(error, output, errors) == 0;
-  cli::write_error(cloth::printable_lines(errors.str()));
-  if (const int printed = cli::print(output.str()); printed != cli::done) return printed;
-  return asked_for ? cli::done : cli::bad_input;
+      if (CLI::Option* option = command->get_option_no_throw(name)) option->check(cli::is_name());
 }
 
 int run_command(int argc, char** argv) {
@@ -289,19 +232,10 @@ int run_command(int argc, char** argv) {
       "Clothlab on the command line: runs and explains cloth simulation scenes, and studies their methods.",
       "clothlab-cli"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", cloth::version());
   app.footer(footer);
   Arguments arguments;
   add_commands(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return answer(app, error);
-  }
-  if (const std::string problem = cloth::instruction_set_problem(); !problem.empty()) {
-    cli::say(problem);
-    return cli::bad_input;
-  }
+  if (const auto ended = cli::parse(app, argc, argv)) return *ended;
   if (app.got_subcommand("run")) return cli::run(arguments.run);
   if (app.got_subcommand("replay")) return cli::replay(arguments.replay);
   if (app.got_subcommand("scenes")) return cli::scenes(arguments.scenes);
@@ -313,15 +247,14 @@ int run_command(int argc, char** argv) {
   if (app.got_subcommand("study")) return cli::study(arguments.study);
   if (app.got_subcommand("reproduce")) return cli::reproduce(arguments.reproduce);
   if (app.got_subcommand("work-precision")) return cli::work_precision(arguments.work_precision);
-  if (app.got_subcommand("bench")) return cli::bench(arguments.bench);
   if (app.got_subcommand("parameters")) return cli::parameters();
   return cli::schema(arguments.comparison_schema);
 }
 
 }  // namespace
 
+const char* const clothlab::cli::program_name = "clothlab-cli";
+
 int main(int argc, char** argv) {
-  cloth::settle_standard_streams();
-  cloth::end_by_exit_code("clothlab-cli", cli::io_failed, cli::defect);
-  return cli::guarded([&] { return run_command(argc, argv); });
+  return cli::run_program([&] { return run_command(argc, argv); });
 }

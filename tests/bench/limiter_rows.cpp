@@ -6,8 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "bench/speed/speed_scenes.h"
 #include "simulation/simulation.h"
-#include "study/speed/speed_scenes.h"
 
 namespace cloth::speed {
 namespace {

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/speed/interleaved_timing.h"
+#include "bench/speed/reference_kernel.h"
+#include "bench/speed/speed_scenes.h"
 #include "cloth/grid.h"
 #include "cloth/mesh_order.h"
 #include "kernels/mesh_sweep.h"
-#include "study/speed/interleaved_timing.h"
-#include "study/speed/reference_kernel.h"
-#include "study/speed/speed_scenes.h"
 #include "support/meshes.h"
 
 namespace {

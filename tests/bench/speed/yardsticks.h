@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include "study/speed/interleaved_timing.h"
+#include "bench/speed/interleaved_timing.h"
 
 namespace cloth::speed {
 

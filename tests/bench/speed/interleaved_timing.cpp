@@ -1,4 +1,4 @@
-#include "study/speed/interleaved_timing.h"
+#include "bench/speed/interleaved_timing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/speed/contact_costs.h"
+#include "bench/speed/growth.h"
+#include "bench/speed/process_costs.h"
+#include "bench/speed/scene_speeds.h"
+#include "bench/speed/step_costs.h"
 #include "report/machine.h"
-#include "study/speed/contact_costs.h"
-#include "study/speed/growth.h"
-#include "study/speed/process_costs.h"
-#include "study/speed/scene_speeds.h"
-#include "study/speed/step_costs.h"
 
 namespace cloth::speed {
 

@@ -1,4 +1,4 @@
-#include "study/speed/scalar_roots.h"
+#include "bench/speed/scalar_roots.h"
 
 #include <cmath>
 

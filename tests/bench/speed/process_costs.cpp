@@ -1,4 +1,4 @@
-#include "study/speed/process_costs.h"
+#include "bench/speed/process_costs.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,8 +13,8 @@
 #include <malloc.h>
 #endif
 
+#include "bench/speed/speed_scenes.h"
 #include "simulation/simulation.h"
-#include "study/speed/speed_scenes.h"
 
 extern char** environ;
 

@@ -1,9 +1,9 @@
-#include "study/speed/scene_speeds.h"
+#include "bench/speed/scene_speeds.h"
 
 #include <chrono>
 
+#include "bench/speed/step_costs.h"
 #include "simulation/simulation.h"
-#include "study/speed/step_costs.h"
 
 namespace cloth::speed {
 

@@ -1,4 +1,4 @@
-#include "study/speed/reference_kernel.h"
+#include "bench/speed/reference_kernel.h"
 
 #include <algorithm>
 #include <cmath>

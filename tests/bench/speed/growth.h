@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/speed/step_costs.h"
 #include "study/order_estimate.h"
-#include "study/speed/step_costs.h"
 
 namespace cloth::speed {
 

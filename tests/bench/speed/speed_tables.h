@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "study/speed/speed_study.h"
+#include "bench/speed/speed_study.h"
 
 namespace cloth::speed {
 

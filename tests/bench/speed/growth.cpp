@@ -1,4 +1,4 @@
-#include "study/speed/growth.h"
+#include "bench/speed/growth.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "study/speed/step_costs.h"
+#include "bench/speed/step_costs.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "bench/speed/reference_kernel.h"
 #include "integrators/registry.h"
-#include "study/speed/reference_kernel.h"
 
 namespace cloth::speed {
 

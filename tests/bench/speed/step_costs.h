@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "study/speed/interleaved_timing.h"
-#include "study/speed/speed_scenes.h"
-#include "study/speed/yardsticks.h"
+#include "bench/speed/interleaved_timing.h"
+#include "bench/speed/speed_scenes.h"
+#include "bench/speed/yardsticks.h"
 
 namespace cloth::speed {
 

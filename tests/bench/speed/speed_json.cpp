@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "study/speed/speed_tables.h"
+#include "bench/speed/speed_tables.h"
 
 namespace cloth::speed {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/speed/interleaved_timing.h"
+#include "bench/speed/interleaved_timing.h"
 
 namespace cloth::speed {
 

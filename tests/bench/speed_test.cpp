@@ -4,12 +4,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/speed/reference_kernel.h"
+#include "bench/speed/scalar_roots.h"
+#include "bench/speed/speed_study.h"
+#include "bench/speed/speed_tables.h"
 #include "integrators/registry.h"
 #include "report/text_table.h"
-#include "study/speed/reference_kernel.h"
-#include "study/speed/scalar_roots.h"
-#include "study/speed/speed_study.h"
-#include "study/speed/speed_tables.h"
 
 namespace cloth::speed::speed_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/speed/speed_tables.h"
+#include "bench/speed/speed_tables.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "study/speed/speed_study.h"
+#include "bench/speed/speed_study.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// clothlab-cli bench: its tables, its file, its exit codes. Never how fast anything is.
+// clothlab-bench: its tables, its file, its exit codes. Never how fast anything is.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -10,14 +10,21 @@ namespace cloth::test::bench_test {
 namespace {
 
 const std::string few =
-    "bench --quick --sizes 8,12,16 --methods verlet,rk4 --features air --threads 1 --repeats 3 ";
+    "--quick --sizes 8,12,16 --methods verlet,rk4 --features air --threads 1 --repeats 3 ";
+
+const std::string program = "BENCH='" CLOTHLAB_BENCH "'\n";
+
+/// clothlab-bench with these arguments.
+CommandResult bench(const std::string& arguments) {
+  return shell(program + "\"$BENCH\" " + arguments);
+}
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 TEST(Bench, AsJsonHasEveryRowWithItsRatios) {
-  const CommandResult result = cli(few + "--only steps --json");
+  const CommandResult result = bench(few + "--only steps --json");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["complete"], true);
@@ -40,7 +47,7 @@ TEST(Bench, AsJsonHasEveryRowWithItsRatios) {
 }
 
 TEST(Bench, MeasuresScenesMemoryAndStart) {
-  const CommandResult result = cli("bench --quick --only scenes,memory,start --methods verlet --json");
+  const CommandResult result = bench("--quick --only scenes,memory,start --methods verlet --json");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_TRUE(json["rows"].empty());
@@ -55,7 +62,7 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
 }
 
 TEST(Bench, SaysWhatContactAddsToAStep) {
-  const CommandResult result = cli("bench --quick --only contact --repeats 3 --json");
+  const CommandResult result = bench("--quick --only contact --repeats 3 --json");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["complete"], true);
@@ -73,14 +80,14 @@ TEST(Bench, SaysWhatContactAddsToAStep) {
   }
   EXPECT_EQ(json["contact"][5]["scene"], "bunny");
   EXPECT_GE(json["contact"][5]["obstacle_triangles"], 50000);
-  const std::string text = cli("bench --quick --only contact --repeats 3").output;
+  const std::string text = bench("--quick --only contact --repeats 3").output;
   for (const char* part : {"\nContact\n", "With / without", "fold", " triangles", "itself"})
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
 TEST(Bench, PrintsTablesAndLeavesTheFile) {
   const TemporaryFolder folder;
-  const CommandResult result = cli(few + "--only steps --out '" + (folder / "result").string() + "'");
+  const CommandResult result = bench(few + "--only steps --out '" + (folder / "result").string() + "'");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* part : {"\n16 x 16\n", "reference kernel", "wind and normals", "/ divider", "Growth"})
     EXPECT_TRUE(has(result.output, part)) << part << "\n" << result.output;
@@ -89,37 +96,36 @@ TEST(Bench, PrintsTablesAndLeavesTheFile) {
 }
 
 TEST(Bench, AsMarkdownIsTables) {
-  const std::string text = cli(few + "--only steps --markdown").output;
+  const std::string text = bench(few + "--only steps --markdown").output;
   EXPECT_TRUE(has(text, "\n| Method | With | Threads |")) << text;
   EXPECT_TRUE(has(text, "\n## 16 x 16\n")) << text;
 }
 
 TEST(Bench, OfWhatDoesNotExistIsBadUsage) {
-  for (const char* arguments :
-       {"bench --methods heun", "bench --features rain", "bench --only colours", "bench --sizes 3",
-        "bench --sizes many", "bench --threads 0", "bench --repeats 1", "bench --json --markdown"}) {
-    const CommandResult result = cli(arguments);
+  for (const char* arguments : {"--methods heun", "--features rain", "--only colours", "--sizes 3",
+                                "--sizes many", "--threads 0", "--repeats 1", "--json --markdown"}) {
+    const CommandResult result = bench(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments;
     EXPECT_EQ(result.output, "") << arguments;
     EXPECT_NE(result.errors, "") << arguments;
   }
-  EXPECT_TRUE(has(cli("bench --features rain").errors, "spring-damping"));
+  EXPECT_TRUE(has(bench("--features rain").errors, "spring-damping"));
 }
 
 TEST(Bench, ThatCannotBeWrittenExitsWithFour) {
-  EXPECT_EQ(cli(few + "--out /dev/null/x").exit_code, 4);
+  EXPECT_EQ(bench(few + "--out /dev/null/x").exit_code, 4);
 }
 
 TEST(Bench, HasItsFolderForItself) {
   const TemporaryFolder folder;
   const std::string out = "--out '" + (folder / "result").string() + "'";
-  const CommandResult two = shell("\"$CLI\" bench --only steps " + out +
+  const CommandResult two = shell(program + "\"$BENCH\" --only steps " + out +
                                   " > /dev/null &\n"
                                   "run=$!\n"
                                   "until [ -s '" +
                                   (folder / "result/.clothlab").string() +
                                   "' ]; do :; done\n"
-                                  "\"$CLI\" " +
+                                  "\"$BENCH\" " +
                                   few + "--only steps " + out +
                                   "\n"
                                   "echo \"second $?\"\n"
@@ -129,7 +135,7 @@ TEST(Bench, HasItsFolderForItself) {
   EXPECT_TRUE(has(two.output, "second 4")) << two.output;
   EXPECT_TRUE(has(two.errors, "is writing to this folder")) << two.errors;
   EXPECT_FALSE(std::filesystem::exists(folder / "result/.clothlab"));
-  const CommandResult again = cli(few + "--only steps " + out);
+  const CommandResult again = bench(few + "--only steps " + out);
   EXPECT_EQ(again.exit_code, 0) << "its own file is replaced: " << again.errors;
   const CommandResult run = cli("run pendulum --set duration=0.01 " + out);
   EXPECT_EQ(run.exit_code, 2);
@@ -139,7 +145,7 @@ TEST(Bench, HasItsFolderForItself) {
 TEST(Bench, ThatIsInterruptedLeavesAValidFile) {
   const TemporaryFolder folder;
   const std::string out = (folder / "result").string();
-  const CommandResult result = shell("\"$CLI\" bench --only steps --out '" + out +
+  const CommandResult result = shell(program + "\"$BENCH\" --only steps --out '" + out +
                                      "' &\n"
                                      "run=$!\n"
                                      "until [ -d '" +

@@ -1,4 +1,4 @@
-#include "study/speed/contact_costs.h"
+#include "bench/speed/contact_costs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "study/speed/yardsticks.h"
+#include "bench/speed/yardsticks.h"
 
 #include <unistd.h>
 
@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "bench/speed/scalar_roots.h"
 #include "kernels/worker_team.h"
-#include "study/speed/scalar_roots.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define CLOTHLAB_FOR_TARGET(name) __attribute__((target(name)))

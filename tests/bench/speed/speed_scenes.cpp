@@ -1,4 +1,4 @@
-#include "study/speed/speed_scenes.h"
+#include "bench/speed/speed_scenes.h"
 
 #include <algorithm>
 #include <cassert>

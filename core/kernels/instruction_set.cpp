@@ -38,7 +38,7 @@ bool is_supported(InstructionSet set) {
 }
 
 /// Read once: a change of the environment while the program runs has no effect.
-const std::string& wish() {
+const std::string& requested_name() {
   static const std::string text = [] {
     const char* value = std::getenv(instruction_set_variable);
     return std::string(value ? value : "");
@@ -85,10 +85,10 @@ const std::vector<InstructionSet>& supported_instruction_sets() {
 }
 
 std::string instruction_set_problem() {
-  if (wish().empty()) return "";
-  const auto set = instruction_set_named(wish());
+  if (requested_name().empty()) return "";
+  const auto set = instruction_set_named(requested_name());
   if (set && is_supported(*set)) return "";
-  return std::string(instruction_set_variable) + "=" + wish() + ": " +
+  return std::string(instruction_set_variable) + "=" + requested_name() + ": " +
          (set ? "this processor does not have it" : "no such instruction set") +
          "; possible here: " + names_of(supported_instruction_sets());
 }
@@ -96,13 +96,11 @@ std::string instruction_set_problem() {
 InstructionSet active_instruction_set() {
   if (const int value = override_value.load(); value != no_override)
     return static_cast<InstructionSet>(value);
-  const auto set = instruction_set_named(wish());
-  return set && is_supported(*set) ? *set : supported_instruction_sets().back();
-}
-
-bool may_run(std::string_view kernels) {
-  const auto set = instruction_set_named(kernels);
-  return !set || *set <= active_instruction_set();
+  static const InstructionSet chosen = [] {
+    const auto set = instruction_set_named(requested_name());
+    return set && is_supported(*set) ? *set : supported_instruction_sets().back();
+  }();
+  return chosen;
 }
 
 void set_instruction_set(std::optional<InstructionSet> set) {

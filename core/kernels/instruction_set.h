@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kernels/kernel_table.h"
+
 namespace cloth {
 
 enum class InstructionSet { portable, sse2, avx2, avx512 };
@@ -22,17 +24,31 @@ std::optional<InstructionSet> instruction_set_named(std::string_view name);
 /// Those that this binary and this processor have, from `portable` up. Never empty.
 const std::vector<InstructionSet>& supported_instruction_sets();
 
-/// What is wrong with the environment's wish, in one line; empty if nothing is.
+/// What is wrong with the value of the environment variable, in one line; empty if nothing is.
 std::string instruction_set_problem();
 
-/// The set that everything made from now on uses: force models, limiters, solvers. Where the environment's wish cannot be met, the best.
+/// The set that everything made from now on uses: force models, limiters, solvers. The best, where the
+/// environment variable names one that is not supported.
 InstructionSet active_instruction_set();
-
-/// Whether kernels of this name may run: those of a set beyond the active one may not. Kernels that need
-/// nothing beyond the baseline of the processor ("plain", "baseline") always may.
-bool may_run(std::string_view kernels);
 
 /// Overrides the environment; nullopt gives it back. For tests and benchmarks. Precondition: supported.
 void set_instruction_set(std::optional<InstructionSet> set);
+
+/// The table of the active set, see kernel_table.h.
+template <class Kernels>
+const Kernels& active_kernels() {
+  switch (active_instruction_set()) {
+#ifdef CLOTHLAB_X86_KERNELS
+    case InstructionSet::sse2:
+      return Kernels::sse2();
+    case InstructionSet::avx2:
+      return Kernels::avx2();
+    case InstructionSet::avx512:
+      return Kernels::avx512();
+#endif
+    default:
+      return Kernels::portable();
+  }
+}
 
 }  // namespace cloth

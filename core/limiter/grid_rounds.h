@@ -1,9 +1,10 @@
-// TensionRounds for grids: whole families of lines side by side. Rows without a spring that is over its limit
-// or has a tension are left out as far as they lie above and below all that have one.
+// TensionRounds for grids: whole families of lines side by side. Rows above the first and below the last
+// spring that is over its limit or has a tension are left out.
 #pragma once
 
-#include "limiter/grid_plan.h"
-#include "limiter/tension_kernels.h"
+#include <array>
+
+#include "limiter/line_preconditioner.h"
 #include "limiter/tension_rounds.h"
 
 namespace cloth {
@@ -20,62 +21,42 @@ class GridRounds : public TensionRounds {
   void end(std::vector<double>& tension, Vec3Field& position) const override;
 
  private:
-  /// A family's springs, each at the place of the particle that it begins at.
-  struct Family {
-    GridFamily plan;
-    std::ptrdiff_t offset;
-    AlignedDoubles tension;                   ///< m, times h^2 and the largest inverse mass
-    tension::AlignedFloats ax, ay, az, over;  ///< equations
-    tension::AlignedFloats link, pivot;       ///< factors; of rows in lanes
-    tension::AlignedFloats change, residual, solved, direction, product;  ///< of conjugate gradients
-    std::vector<tension::RowLengths> lengths;                             ///< of each row
-    std::vector<tension::RowResidual> residuals;                          ///< of each row, of soft springs
-    std::vector<std::uint8_t> pins;  ///< rows with springs between two pins
-    bool is_row() const { return plan.down == 0; }
-  };
-  struct Interval {
-    int begin = 0, end = 0;  ///< rows
-  };
+  using Values = AlignedFloats FamilyEquations::*;
 
-  tension::SpringRule rule_of(const Family& family) const;
-  tension::Nodes nodes();
-  bool is_active(const Family& family, int row) const;
+  SpringRule rule_of(const FamilyEquations& family) const;
+  GridNodes nodes();
+  bool is_active(const FamilyEquations& family, int row) const;
   void take_weights(const std::vector<double>& inverse_mass);
-  void equate(Family& family, int row);
-  void measure(Family& family, int row);
-  Interval rows_of(const Family& family, Interval rows) const;
-  void sweep_rows(Family& family);
-  void sweep_columns(Family& family);
+  void evaluate_row(FamilyEquations& family, int row);
+  void measure_row(FamilyEquations& family, int row);
+  void sweep_rows(FamilyEquations& family);
+  void sweep_columns(FamilyEquations& family);
+  void sweep(const LineBlock& block, const FamilyEquations& family);
   void find_equations();
-  void factorise();
-  void factorise_lanes(Family& family);
-  void eliminate(Family& family, int row);
-  void precondition_lanes(Family& family, int first_row);
-  int pulls_on(int row, tension::AlignedFloats Family::*value, tension::PullTerm* terms) const;
-  void pull(int row, tension::AlignedFloats Family::*value);
+  int springs_at(int row, Values value, SpringTerm* terms) const;
+  double multiply(Values value, double ridge);
   double advance(double length);
-  double precondition();
   int conjugate_gradients();
   void take_step();
-  double apply(tension::AlignedFloats Family::*value, double ridge);
+  template <class Visit>
+  void each_active_row(const Visit& visit);
+  double clip_step();
+  void move_particles(double length);
 
-  GridPlan plan_;
+  GridEquations equations_;
+  const GridPlan& plan_ = equations_.plan;
+  const TensionKernels& kernels_;
+  LinePreconditioner preconditioner_;
   TensionTask task_;
-  double unit_ = 0;  ///< m/N, h^2 times the largest inverse mass
-  std::vector<Family> families_;
-  std::vector<double> inverse_mass_;  ///< that the weights are of
+  double unit_ = 0;                   ///< m/N, h^2 times the largest inverse mass
+  std::vector<double> inverse_mass_;  ///< 1/kg, of the present weights
   AlignedDoubles x_, y_, z_, weight_;
-  tension::AlignedFloats light_;         ///< weights
-  tension::AlignedFloats sx_, sy_, sz_;  ///< w J^T of what conjugate gradients look at
-  tension::AlignedFloats zero_;          ///< a row
-  Interval moved_;                       ///< rows of particles since the last evaluation
-  Interval active_;                      ///< rows in which active springs begin
-  double shortest_ = 0;                  ///< rest length
-  tension::LineScratch scratch_;
-  AlignedDoubles lanes_weight_;  ///< of all rows, block after block
-  tension::AlignedFloats floats_weight_;
-  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_;              ///< rows side by side
-  tension::AlignedFloats floats_x_, floats_y_, floats_z_, floats_;  ///< rows side by side
+  AlignedFloats sx_, sy_, sz_;  ///< W J^T of what conjugate gradients look at
+  RowInterval moved_;           ///< rows of particles that have moved since the last evaluation
+  double shortest_ = 0;         ///< m, rest length
+  std::array<AlignedFloats, 6> line_scratch_;
+  AlignedDoubles lanes_weight_;                         ///< of all rows in lanes, block after block
+  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_;  ///< rows in lanes
 };
 
 }  // namespace cloth

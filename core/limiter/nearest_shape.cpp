@@ -38,13 +38,6 @@ double NearestShape::largest_excess(const Vec3Field& position) const {
   return largest;
 }
 
-std::size_t NearestShape::working_count(const Vec3Field& position) const {
-  const double near = -nearness * largest_excess(position);
-  return static_cast<std::size_t>(
-      std::count_if(springs_.begin(), springs_.end(),
-                    [&](const LimitedSpring& spring) { return excess_of(spring, position) > near; }));
-}
-
 NearestShapeReport NearestShape::find(const ClothSystem& system, double tolerance, Vec3Field& position,
                                       bool reachable) {
   NearestShapeReport report;

@@ -47,9 +47,6 @@ class NearestShape {
   const std::vector<LimitedSpring>& springs() const { return springs_; }
   const std::vector<double>& multipliers() const { return multipliers_; }
 
-  /// How many springs `find` would start to work on.
-  std::size_t working_count(const Vec3Field& position) const;
-
  private:
   double excess_of(const LimitedSpring& spring, const Vec3Field& position) const;
   double largest_excess(const Vec3Field& position) const;

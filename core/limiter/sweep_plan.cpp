@@ -38,8 +38,7 @@ void append_pieces(const ClothSystem& system, const SpringRun& run, double rate,
       pieces.push_back({.row = {.first = i, .count = 1, .stride = 1, .offset = offset},
                         .ends = *ends,
                         .limit = (1 + rate) * run.rest_length,
-                        .rest_length = run.rest_length,
-                        .stiffness = run.stiffness});
+                        .rest_length = run.rest_length});
     goes_on = ends.has_value();
   }
 }

@@ -16,7 +16,6 @@ struct SpringBatch {
   FreeEnds ends = FreeEnds::both;
   double limit = 0;        ///< m, (1 + rate) times the rest length
   double rest_length = 0;  ///< m
-  double stiffness = 0;    ///< N/m
   int low = 0, high = 0;   ///< rows of particles that the springs end in, from `low` to `high`
 };
 

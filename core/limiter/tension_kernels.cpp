@@ -1,23 +1,23 @@
 #include "limiter/tension_kernels.h"
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <limits>
 
-#include "cloth/vectorised.h"
+#include "kernels/kernel_loops.h"
 
-namespace cloth::tension {
+namespace cloth {
 namespace {
+
+using kernels::in_parts, kernels::larger, kernels::smaller, kernels::size_of;
 
 constexpr int parts = 8;         // of doubles
 constexpr int float_parts = 16;  // of floats
+constexpr double infinity = __builtin_huge_val();
 
 /// 1/sqrt(a) for a >= 0, large but finite for 0: Newton's iteration from a guess that is linear in the
 /// exponent (Lomont 2003), quicker than a root and a division.
 [[gnu::always_inline]] inline double inverse_root(double a) {
-  const auto bits = std::bit_cast<std::uint64_t>(a);
-  double y = std::bit_cast<double>(std::uint64_t{0x5FE6EB50C7B537A9} - (bits >> 1));
+  const auto bits = __builtin_bit_cast(std::uint64_t, a);
+  double y = __builtin_bit_cast(double, std::uint64_t{0x5FE6EB50C7B537A9} - (bits >> 1));
   const double half = 0.5 * a;
   y = y * (1.5 - half * y * y);
   y = y * (1.5 - half * y * y);
@@ -25,25 +25,12 @@ constexpr int float_parts = 16;  // of floats
   return y * (1.5 - half * y * y);
 }
 [[gnu::always_inline]] inline float inverse_root(float a) {
-  const auto bits = std::bit_cast<std::uint32_t>(a);
-  float y = std::bit_cast<float>(std::uint32_t{0x5F375A86} - (bits >> 1));
+  const auto bits = __builtin_bit_cast(std::uint32_t, a);
+  float y = __builtin_bit_cast(float, std::uint32_t{0x5F375A86} - (bits >> 1));
   const float half = 0.5f * a;
   y = y * (1.5f - half * y * y);
   y = y * (1.5f - half * y * y);
   return y * (1.5f - half * y * y);
-}
-
-template <class Number>
-[[gnu::always_inline]] inline Number larger(Number a, Number b) {
-  return a > b ? a : b;
-}
-template <class Number>
-[[gnu::always_inline]] inline Number smaller(Number a, Number b) {
-  return a < b ? a : b;
-}
-template <class Number>
-[[gnu::always_inline]] inline Number size_of(Number a) {
-  return a > 0 ? a : -a;
 }
 
 template <class Number, std::size_t count>
@@ -58,16 +45,6 @@ double sum_of(const Number (&part)[count]) {
   double sum = 0;
   for (const Number p : part) sum += static_cast<double>(p);
   return sum;
-}
-
-/// Visits k = 0 .. count in blocks of `width`, telling each which part of a sum it belongs to.
-template <int width, class Visit>
-[[gnu::always_inline]] inline void in_parts(int count, Visit visit) {
-  int k = 0;
-  for (; k + width <= count; k += width)
-#pragma GCC ivdep
-    for (int part = 0; part < width; ++part) visit(k + part, part);
-  for (; k < count; ++k) visit(k, k % width);
 }
 
 /// The direction of a spring, C, and whether it is over its limit or has a tension. C/limit is
@@ -98,13 +75,11 @@ inline EquationRule equation_rule(const SpringRule& rule) {
           scale * static_cast<float>(dz * rule.per_limit), over, active};
 }
 
-}  // namespace
-
-CLOTH_VECTORISED RowLengths measure_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset,
-                                        const double* tension, int count, bool pins) {
+RowLengths measure_row(const GridNodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset, const double* tension,
+                       int count, bool pins) {
   const double *x = nodes.x + i, *y = nodes.y + i, *z = nodes.z + i, *w = nodes.weight + i;
   double longest[parts] = {}, shortest[parts];
-  std::fill(shortest, shortest + parts, std::numeric_limits<double>::infinity());
+  for (double& part : shortest) part = infinity;
   const auto look = [&](int k, int part) {
     const double dx = x[k + offset] - x[k], dy = y[k + offset] - y[k], dz = z[k + offset] - z[k];
     const double square = dx * dx + dy * dy + dz * dz;
@@ -122,41 +97,32 @@ CLOTH_VECTORISED RowLengths measure_row(const Nodes& nodes, std::ptrdiff_t i, st
   return found;
 }
 
-void LineScratch::resize(std::size_t size) {
-  for (AlignedFloats* field : {&ax, &ay, &az, &link, &pivot, &step})
-    if (field->size() < size) field->resize(size);
-}
-
-namespace {
-
 struct LaneRange {
   int begin, end;
 };
 
 LaneRange lanes_of(const LineBlock& block, int n) {
-  const int begin = std::clamp(block.begin - n * block.shift, 0, block.lanes);
-  return {begin, std::clamp(block.end - n * block.shift, begin, block.lanes)};
+  const int begin = smaller(larger(block.begin - n * block.shift, 0), block.lanes);
+  return {begin, smaller(larger(block.end - n * block.shift, begin), block.lanes)};
 }
 
-/// Lanes that have no spring here are links to nothing.
-void clear_lanes(LineScratch& s, std::size_t row, int begin, int end) {
-  if (begin >= end) return;
-  const auto b = row + static_cast<std::size_t>(begin), e = row + static_cast<std::size_t>(end);
-  for (AlignedFloats* field : {&s.ax, &s.ay, &s.az, &s.link, &s.pivot, &s.step})
-    std::fill(field->begin() + static_cast<std::ptrdiff_t>(b),
-              field->begin() + static_cast<std::ptrdiff_t>(e), 0.0f);
+/// Lanes without a spring here get zeros.
+void clear_lanes(const LineScratch& s, std::ptrdiff_t row, int begin, int end) {
+  float* const fields[] = {s.ax, s.ay, s.az, s.link, s.pivot, s.step};
+  for (float* field : fields)
+    for (std::ptrdiff_t k = row + begin; k < row + end; ++k) field[k] = 0;
 }
 
 /// One row of the forward elimination.
 [[gnu::always_inline]] inline void eliminate_lines(const LineBlock& block, const EquationRule& rule,
                                                    float share, std::ptrdiff_t i, LaneRange lanes,
-                                                   std::size_t row, LineScratch& scratch) {
+                                                   std::ptrdiff_t row, const LineScratch& scratch) {
   const double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i;
   const double *w = block.nodes.weight + i, *t = block.tension + i;
   const std::ptrdiff_t e = block.step, back = -block.lanes;
-  float *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
-  float *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
-  float* step = scratch.step.data() + row;
+  float *ax = scratch.ax + row, *ay = scratch.ay + row, *az = scratch.az + row;
+  float *link = scratch.link + row, *pivot = scratch.pivot + row;
+  float* step = scratch.step + row;
 #pragma GCC ivdep
   for (int k = lanes.begin; k < lanes.end; ++k) {
     const float weight = static_cast<float>(w[k]), both = weight + static_cast<float>(w[k + e]);
@@ -173,13 +139,13 @@ void clear_lanes(LineScratch& s, std::size_t row, int begin, int end) {
 
 /// One row of the back substitution. What a clipped tension leaves to do is known to those before it.
 [[gnu::always_inline]] inline void substitute_lines(const LineBlock& block, std::ptrdiff_t i, LaneRange lanes,
-                                                    std::size_t row, LineScratch& scratch) {
+                                                    std::ptrdiff_t row, const LineScratch& scratch) {
   double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i, *t = block.tension + i;
   const double* w = block.nodes.weight + i;
   const std::ptrdiff_t e = block.step, next = block.lanes;
-  const float *ax = scratch.ax.data() + row, *ay = scratch.ay.data() + row, *az = scratch.az.data() + row;
-  const float *link = scratch.link.data() + row, *pivot = scratch.pivot.data() + row;
-  float* step = scratch.step.data() + row;
+  const float *ax = scratch.ax + row, *ay = scratch.ay + row, *az = scratch.az + row;
+  const float *link = scratch.link + row, *pivot = scratch.pivot + row;
+  float* step = scratch.step + row;
 #pragma GCC ivdep
   for (int k = lanes.begin; k < lanes.end; ++k) {
     const float free = step[k] - pivot[k] * link[k + next] * step[k + next];
@@ -195,30 +161,25 @@ void clear_lanes(LineScratch& s, std::size_t row, int begin, int end) {
   }
 }
 
-}  // namespace
-
-CLOTH_VECTORISED void sweep_block(const LineBlock& block, const SpringRule& rule, LineScratch& scratch) {
-  const auto lanes = static_cast<std::size_t>(block.lanes);
-  scratch.resize((static_cast<std::size_t>(block.count) + 2) * lanes);
+void sweep_block(const LineBlock& block, const SpringRule& rule, const LineScratch& scratch) {
+  const std::ptrdiff_t lanes = block.lanes;
   const EquationRule equation = equation_rule(rule);
   const float share = static_cast<float>(1 + rule.ridge + rule.softness);
   clear_lanes(scratch, 0, 0, block.lanes);
-  clear_lanes(scratch, (static_cast<std::size_t>(block.count) + 1) * lanes, 0, block.lanes);
+  clear_lanes(scratch, (block.count + 1) * lanes, 0, block.lanes);
   for (int n = 0; n < block.count; ++n) {
     const LaneRange here = lanes_of(block, n);
-    const std::size_t row = (static_cast<std::size_t>(n) + 1) * lanes;
+    const std::ptrdiff_t row = (n + 1) * lanes;
     clear_lanes(scratch, row, 0, here.begin);
     clear_lanes(scratch, row, here.end, block.lanes);
     eliminate_lines(block, equation, share, block.first + n * block.step, here, row, scratch);
   }
   for (int n = block.count; n-- > 0;)
-    substitute_lines(block, block.first + n * block.step, lanes_of(block, n),
-                     (static_cast<std::size_t>(n) + 1) * lanes, scratch);
+    substitute_lines(block, block.first + n * block.step, lanes_of(block, n), (n + 1) * lanes, scratch);
 }
 
-CLOTH_VECTORISED void evaluate_row(const Nodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset,
-                                   const double* t, int count, const SpringRule& rule,
-                                   const SpringRows& rows) {
+void evaluate_row(const GridNodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset, const double* t, int count,
+                  const SpringRule& rule, const SpringRows& rows) {
   const double *x = nodes.x + i, *y = nodes.y + i, *z = nodes.z + i, *w = nodes.weight + i;
   const EquationRule equation = equation_rule(rule);
   float *ax = rows.ax, *ay = rows.ay, *az = rows.az, *over = rows.over, *residual = rows.residual;
@@ -244,7 +205,7 @@ RowResidual residual_row(const double* t, const float* over, int count) {
   return found;
 }
 
-CLOTH_VECTORISED void factorise_row(const FactorRow& row, const FactorRow& before, double ridge, int count) {
+void factorise_row(const FactorRow& row, const FactorRow& before, double ridge, int count) {
   const float *ax = row.ax, *ay = row.ay, *az = row.az, *w = row.weight, *we = row.weight_end;
   const float *bx = before.ax, *by = before.ay, *bz = before.az, *pivot_before = before.pivot;
   float *link = row.link, *pivot = row.pivot;
@@ -259,14 +220,13 @@ CLOTH_VECTORISED void factorise_row(const FactorRow& row, const FactorRow& befor
   }
 }
 
-CLOTH_VECTORISED void eliminate_row(const float* residual, const float* link, const float* pivot,
-                                    const float* before, float* solved, int count) {
+void eliminate_row(const float* residual, const float* link, const float* pivot, const float* before,
+                   float* solved, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) solved[k] = (residual[k] - link[k] * before[k]) * pivot[k];
 }
 
-CLOTH_VECTORISED void substitute_row(const float* pivot, const float* link_next, const float* next,
-                                     float* solved, int count) {
+void substitute_row(const float* pivot, const float* link_next, const float* next, float* solved, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) solved[k] -= pivot[k] * link_next[k] * next[k];
 }
@@ -282,19 +242,15 @@ void into_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, 
         to[lane] = lane < rows ? in[lane * stride + c] : Number{};
   }
 }
-template void into_lanes(const float*, std::ptrdiff_t, int, int, float*);
-template void into_lanes(const double*, std::ptrdiff_t, int, int, double*);
 
 template <class Number>
 void out_of_lanes(const Number* in, std::ptrdiff_t stride, int rows, int columns, Number* out) {
   for (int lane = 0; lane < rows; ++lane)
     for (int c = 0; c < columns; ++c) out[lane * stride + c] = in[c * lanes_of_rows + lane];
 }
-template void out_of_lanes(const float*, std::ptrdiff_t, int, int, float*);
-template void out_of_lanes(const double*, std::ptrdiff_t, int, int, double*);
 
-CLOTH_VECTORISED void solve_lanes(const LaneFactors& f, const float* residual, std::ptrdiff_t stride,
-                                  int rows, int count, int across, float* solved) {
+void solve_lanes(const LaneFactors& f, const float* residual, std::ptrdiff_t stride, int rows, int count,
+                 int across, float* solved) {
   float* v = f.scratch;
   into_lanes(residual, stride, rows, count, v);
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(across) * lanes_of_rows;
@@ -316,8 +272,8 @@ CLOTH_VECTORISED void solve_lanes(const LaneFactors& f, const float* residual, s
   out_of_lanes(v, stride, rows, count, solved);
 }
 
-CLOTH_VECTORISED void pull_row(const PullTerm* terms, int term_count, const float* weight, float* sx,
-                               float* sy, float* sz, int count) {
+void transpose_row(const SpringTerm* terms, int term_count, const float* weight, float* sx, float* sy,
+                   float* sz, int count) {
   for (int n = 0; n < term_count; ++n) {
     const float *ax = terms[n].ax, *ay = terms[n].ay, *az = terms[n].az, *value = terms[n].value;
     const float sign = terms[n].sign, begin = n == 0 ? 0.0f : 1.0f;
@@ -333,8 +289,8 @@ CLOTH_VECTORISED void pull_row(const PullTerm* terms, int term_count, const floa
   for (int k = 0; k < count; ++k) sx[k] *= weight[k], sy[k] *= weight[k], sz[k] *= weight[k];
 }
 
-CLOTH_VECTORISED void move_row(const PullTerm* terms, int term_count, double length, const double* weight,
-                               double* x, double* y, double* z, int count) {
+void move_row(const SpringTerm* terms, int term_count, double length, const double* weight, double* x,
+              double* y, double* z, int count) {
   for (int n = 0; n < term_count; ++n) {
     const float *ax = terms[n].ax, *ay = terms[n].ay, *az = terms[n].az, *value = terms[n].value;
     const float sign = terms[n].sign;
@@ -349,7 +305,7 @@ CLOTH_VECTORISED void move_row(const PullTerm* terms, int term_count, double len
   }
 }
 
-CLOTH_VECTORISED double answer_row(const AnswerRow& row, std::ptrdiff_t e, double ridge_share, int count) {
+double matrix_row(const MatrixRow& row, std::ptrdiff_t e, double ridge_share, int count) {
   const float *sx = row.sx, *sy = row.sy, *sz = row.sz, *value = row.value, *w = row.weight;
   const float ridge = static_cast<float>(ridge_share);
   float sum[float_parts] = {};
@@ -362,13 +318,13 @@ CLOTH_VECTORISED double answer_row(const AnswerRow& row, std::ptrdiff_t e, doubl
   return sum_of(sum);
 }
 
-CLOTH_VECTORISED void turn_row(const float* solved, float share, float* direction, int count) {
+void direction_row(const float* solved, float share, float* direction, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) direction[k] = solved[k] + share * direction[k];
 }
 
-CLOTH_VECTORISED float advance_row(float length, const float* direction, const float* product, float* change,
-                                   float* residual, int count) {
+float solution_row(float length, const float* direction, const float* product, float* change, float* residual,
+                   int count) {
   float largest[float_parts] = {};
   in_parts<float_parts>(count, [&](int k, int part) {
     change[k] += length * direction[k];
@@ -379,20 +335,20 @@ CLOTH_VECTORISED float advance_row(float length, const float* direction, const f
   return largest_of(largest);
 }
 
-CLOTH_VECTORISED double dot_row(const float* a, const float* b, int count) {
+double dot_row(const float* a, const float* b, int count) {
   float sum[float_parts] = {};
   in_parts<float_parts>(count, [&](int k, int part) { sum[part] += a[k] * b[k]; });
   return sum_of(sum);
 }
 
-CLOTH_VECTORISED float largest_row(const float* a, int count) {
+float largest_row(const float* a, int count) {
   float largest[float_parts] = {};
   in_parts<float_parts>(count,
                         [&](int k, int part) { largest[part] = larger(size_of(a[k]), largest[part]); });
   return largest_of(largest);
 }
 
-CLOTH_VECTORISED ClippedRow clip_row(const double* t, const float* over, float* change, int count) {
+ClippedRow clip_row(const double* t, const float* over, float* change, int count) {
   float gain[float_parts] = {}, least[float_parts] = {};
   in_parts<float_parts>(count, [&](int k, int part) {
     const float lowest = -static_cast<float>(t[k]), beyond = change[k] - lowest;
@@ -406,8 +362,8 @@ CLOTH_VECTORISED ClippedRow clip_row(const double* t, const float* over, float* 
   return {sum_of(gain), lowest < 0};
 }
 
-CLOTH_VECTORISED void steepest_row(float share, const float* over, const float* w, const float* we,
-                                   const double* t, float* change, int count) {
+void steepest_row(float share, const float* over, const float* w, const float* we, const double* t,
+                  float* change, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) {
     const float both = w[k] + we[k], step = both > 0 ? share * over[k] / both : 0.0f;
@@ -416,7 +372,7 @@ CLOTH_VECTORISED void steepest_row(float share, const float* over, const float* 
   }
 }
 
-CLOTH_VECTORISED void raise_row(double length, const float* change, double* t, int count) {
+void add_row(double length, const float* change, double* t, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) {
     const double raised = t[k] + length * static_cast<double>(change[k]);
@@ -426,8 +382,7 @@ CLOTH_VECTORISED void raise_row(double length, const float* change, double* t, i
   }
 }
 
-CLOTH_VECTORISED void force_row(const ForceRow& row, std::ptrdiff_t e, const double* tension, double* scratch,
-                                int count) {
+void force_row(const ForceRow& row, std::ptrdiff_t e, const double* tension, double* scratch, int count) {
   const double *x = row.x, *y = row.y, *z = row.z;
   double *px = scratch, *py = scratch + count, *pz = scratch + 2 * count;
 #pragma GCC ivdep
@@ -442,4 +397,33 @@ CLOTH_VECTORISED void force_row(const ForceRow& row, std::ptrdiff_t e, const dou
   for (int k = 0; k < count; ++k) row.fx[k + e] -= px[k], row.fy[k + e] -= py[k], row.fz[k + e] -= pz[k];
 }
 
-}  // namespace cloth::tension
+constexpr TensionKernels table{measure_row,
+                               sweep_block,
+                               evaluate_row,
+                               residual_row,
+                               factorise_row,
+                               eliminate_row,
+                               substitute_row,
+                               solve_lanes,
+                               into_lanes<float>,
+                               into_lanes<double>,
+                               out_of_lanes<double>,
+                               transpose_row,
+                               move_row,
+                               matrix_row,
+                               direction_row,
+                               solution_row,
+                               dot_row,
+                               largest_row,
+                               clip_row,
+                               steepest_row,
+                               add_row,
+                               force_row};
+
+}  // namespace
+
+const TensionKernels& TensionKernels::CLOTHLAB_SET() {
+  return table;
+}
+
+}  // namespace cloth

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "cloth/sums.h"
-#include "limiter/tension_kernels.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
@@ -27,7 +27,9 @@ bool is_finite(const Vec3Field& field) {
 }  // namespace
 
 TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& system)
-    : deformation_(deformation), springs_(tension_springs(deformation, system)) {
+    : deformation_(deformation),
+      kernels_(&active_kernels<TensionKernels>()),
+      springs_(tension_springs(deformation, system)) {
   hold_.reserve(springs_.size());
   for (const TensionSpring& spring : springs_)
     shortest_ = shortest_ > 0 ? std::min(shortest_, spring.rest_length) : spring.rest_length;
@@ -84,7 +86,7 @@ void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec
       const double* t =
           tension.data() + family.first_spring + static_cast<std::ptrdiff_t>(row) * family.width();
       if (std::none_of(t, t + width, [](double pull) { return pull > 0; })) continue;
-      tension::force_row(
+      kernels_->force_row(
           {position.x() + i, position.y() + i, position.z() + i, force.x() + i, force.y() + i, force.z() + i},
           offset, t, scratch.data(), width);
     }
@@ -150,13 +152,12 @@ bool TensionSolver::is_loose(const std::vector<double>& tension, Vec3Field& posi
   if (!grid_) return false;
   const double* t = tension.data();
   if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
-  const tension::Nodes nodes{position.x(), position.y(), position.z(),
-                             position.x()};  // weights: not asked for
+  const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights: not asked for
   for (const GridFamily& family : grid_->families) {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
     for (int row = 0; row < family.rows; ++row) {
       const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
-      const double longest = tension::measure_row(nodes, i, offset, t, family.width(), false).longest;
+      const double longest = kernels_->measure_row(nodes, i, offset, t, family.width(), false).longest;
       if (!(longest <= family.limit * family.limit)) return false;
     }
   }

@@ -19,6 +19,7 @@
 
 #include "limiter/grid_plan.h"
 #include "limiter/nearest_shape.h"
+#include "limiter/tension_kernels.h"
 #include "limiter/tension_rounds.h"
 #include "scene/scene.h"
 
@@ -80,6 +81,7 @@ class TensionSolver {
                     Vec3Field& position, TensionReport& report);
 
   Deformation deformation_;
+  const TensionKernels* kernels_;
   std::vector<TensionSpring> springs_;
   std::vector<double> hold_;  ///< N s^2, of each spring: h^2 times the most that is held
   std::optional<GridPlan> grid_;

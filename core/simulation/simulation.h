@@ -16,6 +16,7 @@
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"
 #include "limiter/step_limiter.h"
+#include "limiter/unreachable_rate.h"
 #include "measure/energy.h"
 #include "measure/strain.h"
 #include "simulation/automatic_step.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "kernels/instruction_set.h"
+
 namespace cloth {
 namespace {
 
@@ -123,7 +125,7 @@ void BlockCholesky::add_update(std::size_t child, const double* from, double* co
 }
 
 bool BlockCholesky::factorise(std::span<const double> diagonal, std::span<const double> coupling_blocks) {
-  const DenseKernels& dense = chosen_dense_kernels();
+  const DenseKernels& dense = active_kernels<DenseKernels>();
   std::fill(factors_.begin(), factors_.end(), 0.0);
   std::size_t top = 0;  // of the stack of updates
   for (std::size_t f = 0; f < tree_.fronts.size(); ++f) {
@@ -157,11 +159,27 @@ void add_to(Quad& to, const Quad& from) {
   for (int n = 0; n < 4; ++n) to.of[n] += from.of[n];
 }
 
+auto eliminate_of(const DenseKernels& dense, double*) {
+  return dense.eliminate;
+}
+auto eliminate_of(const DenseKernels& dense, Quad*) {
+  return dense.eliminate_quads;
+}
+auto substitute_of(const DenseKernels& dense, double*) {
+  return dense.substitute;
+}
+auto substitute_of(const DenseKernels& dense, Quad*) {
+  return dense.substitute_quads;
+}
+
 }  // namespace
 
 /// x <- A^-1 x, its numbers in the order of elimination.
 template <class Number>
 void BlockCholesky::solve_ordered(Number* x, std::vector<Number>& below) {
+  const DenseKernels& dense = active_kernels<DenseKernels>();
+  const auto eliminate = eliminate_of(dense, x);
+  const auto substitute = substitute_of(dense, x);
   below.resize(tallest_);
   const auto panel = [&](std::size_t f) {
     const std::size_t m = block_ * at(tree_.fronts[f].height());

@@ -11,7 +11,7 @@
 
 #include <span>
 
-#include "sparse/dense_front.h"
+#include "sparse/dense_kernels.h"
 #include "sparse/elimination_tree.h"
 
 namespace cloth {

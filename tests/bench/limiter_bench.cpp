@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "limiter/sweep_dispatch.h"
+#include "kernels/instruction_set.h"
 #include "limiter_rows.h"
 
 namespace {
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
           "set "
           "{}.\nns per particle and step, {} interleaved repeats; excess: what is left above the "
           "rate.\n",
-          options.developed_time, sweep_kernels().instruction_set, options.repeats);
+          options.developed_time, name_of(active_instruction_set()), options.repeats);
     for (const int size : sizes) {
       const std::vector<LimiterRow> found = measure_limiter(size, options);
       for (const LimiterRow& row : found) rows.push_back(row_json(size, row));
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
       std::fflush(stdout);
     }
     if (as_json)
-      fmt::print("{}\n", json{{"instruction_set", sweep_kernels().instruction_set}, {"rows", rows}}.dump(2));
+      fmt::print("{}\n", json{{"instruction_set", name_of(active_instruction_set())}, {"rows", rows}}.dump(2));
   } catch (const std::exception& error) {
     fmt::print(stderr, "clothlab-limiter-bench: {}\n", error.what());
     return 1;

@@ -5,6 +5,7 @@
 
 #include "cloth/grid.h"
 #include "limiter/deformation_limiter.h"
+#include "limiter/unreachable_rate.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
 #include "support/scenes.h"
@@ -251,49 +252,25 @@ TEST(DirectSolver, StaysFiniteAndSaysSoWherePinsAreOutOfReach) {
   }
 }
 
-Scene hung_by_corners(int size, double rate, double tolerance, const char* solver, std::int64_t max_sweeps) {
-  Scene scene = limited_sheet(size, size, rate, tolerance);
-  scene.deformation->solver = solver;
-  scene.deformation->max_sweeps = max_sweeps;
-  scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
-  return scene;
-}
-
-TEST(AutoSolver, SweepsWhereThatIsEnough) {
-  const Scene scene = hung_by_corners(17, 0.1, 1e-4, "auto", 500);
-  const ClothSystem system = make_grid(scene.cloth, *scene.springs);
-  ClothState state = starting_state(system);
-  state.position.add(144, {0, 0, 1.2 * spacing});
-  const LimiterReport report = DeformationLimiter(*scene.deformation, system).apply(system, step, state);
-  EXPECT_GT(report.sweeps, 0);
-  EXPECT_EQ(report.direct_iterations, 0);
-  EXPECT_LE(report.excess, 1e-4);
-}
-
-/// At a rate of 0 no shape lies within the permitted ones: sweeps close in on it ever more slowly.
-LimiterReport limit_without_any_give(const char* solver, std::int64_t max_sweeps) {
+/// At a rate of 0 no shape lies within the permitted ones: sweeps approach it ever more slowly.
+LimiterReport limit_to_rate_zero(const char* solver) {
   Random random;
-  const Scene scene = hung_by_corners(9, 0, 1e-6, solver, max_sweeps);
+  Scene scene = limited_sheet(9, 9, 0);
+  scene.deformation->solver = solver;
+  scene.deformation->max_sweeps = 500;
+  scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
   ClothState state = overstretched(system, random);
   return DeformationLimiter(*scene.deformation, system).apply(system, step, state);
 }
 
-TEST(AutoSolver, SolvesDirectlyWhereSweepsAreNotEnoughAndDoesNotWaitForThemToRunOut) {
-  const LimiterReport swept = limit_without_any_give("sweeps", 500);
+TEST(DirectSolver, KeepsARateThatSweepsDoNot) {
+  const LimiterReport swept = limit_to_rate_zero("sweeps");
   EXPECT_EQ(swept.sweeps, 500);
   EXPECT_GT(swept.excess, 1e-6);
-  const LimiterReport solved = limit_without_any_give("auto", 500);
+  const LimiterReport solved = limit_to_rate_zero("direct");
   EXPECT_GT(solved.direct_iterations, 0);
-  EXPECT_LT(solved.sweeps, 500);
   EXPECT_LE(solved.excess, 1e-6);
-}
-
-TEST(AutoSolver, KeepsToItsBudget) {
-  const LimiterReport report = limit_without_any_give("auto", 30);
-  EXPECT_EQ(report.sweeps, 30);
-  EXPECT_EQ(report.direct_iterations, 0);
-  EXPECT_GT(report.excess, 1e-6);
 }
 
 TEST(EverySolver, RepeatsTheSameBitsAfterRestore) {

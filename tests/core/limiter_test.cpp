@@ -4,6 +4,7 @@
 
 #include "cloth/grid.h"
 #include "limiter/deformation_limiter.h"
+#include "limiter/unreachable_rate.h"
 #include "measure/strain.h"
 #include "support/scenes.h"
 #include "support/states.h"

@@ -8,8 +8,9 @@
 #include <numeric>
 
 #include "cloth/grid.h"
+#include "kernels/instruction_set.h"
 #include "sparse/block_cholesky.h"
-#include "sparse/dense_front.h"
+#include "sparse/dense_kernels.h"
 #include "support/random.h"
 #include "support/scenes.h"
 
@@ -206,10 +207,12 @@ TEST(DenseKernels, GiveTheSameBitsForEveryInstructionSet) {
     std::vector<double> start(stride * static_cast<std::size_t>(width));
     for (double& value : start) value = random.uniform(-1, 1);
     for (int k = 0; k < width; ++k) start[static_cast<std::size_t>(k) * (stride + 1)] += height;
-    std::map<std::string, std::vector<double>> fronts, updates;
-    for (const DenseKernels& kernels : dense_kernels()) {
-      std::vector<double>& front = fronts[kernels.instruction_set] = start;
-      std::vector<double>& update = updates[kernels.instruction_set];
+    std::map<InstructionSet, std::vector<double>> fronts, updates;
+    for (const InstructionSet set : supported_instruction_sets()) {
+      set_instruction_set(set);
+      const DenseKernels& kernels = active_kernels<DenseKernels>();
+      std::vector<double>& front = fronts[set] = start;
+      std::vector<double>& update = updates[set];
       update.assign(static_cast<std::size_t>(rest) * static_cast<std::size_t>(rest), 1);
       ASSERT_TRUE(kernels.factorise_columns({front.data(), stride}, height, width));
       kernels.subtract_square({update.data(), static_cast<std::size_t>(rest)}, {front.data() + width, stride},
@@ -218,9 +221,10 @@ TEST(DenseKernels, GiveTheSameBitsForEveryInstructionSet) {
         for (int row = 0; row < column; ++row) update[static_cast<std::size_t>(row + column * rest)] = 0;
       for (int column = 0; column < width; ++column)
         for (int row = 0; row < column; ++row) front[static_cast<std::size_t>(row + column * height)] = 0;
-      EXPECT_EQ(front, fronts["plain"]) << kernels.instruction_set << " " << height;
-      EXPECT_EQ(update, updates["plain"]) << kernels.instruction_set << " " << height;
+      EXPECT_EQ(front, fronts[InstructionSet::portable]) << name_of(set) << " " << height;
+      EXPECT_EQ(update, updates[InstructionSet::portable]) << name_of(set) << " " << height;
     }
+    set_instruction_set(std::nullopt);
   }
 }
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cloth/sums.h"
-#include "cloth/vectorised.h"
 #include "integrators/implicit/linear_solver.h"
+#include "kernels/instruction_set.h"
+#include "kernels/vector_kernels.h"
 
 namespace cloth {
 namespace {
@@ -12,18 +12,16 @@ namespace {
 constexpr int most_iterations = 2000;
 constexpr int basis_size = 40;  // of minimal residuals, before a restart
 
-CLOTH_VECTORISED double inner_product(std::span<const double> a, std::span<const double> b) {
-  return cloth::dot(a, b);
+double inner_product(std::span<const double> a, std::span<const double> b) {
+  return active_kernels<VectorKernels>().dot(a.data(), b.data(), a.size());
 }
 
 double dot(const Vec3Field& a, const Vec3Field& b) {
   return inner_product(a.flat(), b.flat());
 }
 
-CLOTH_VECTORISED void add_multiple(double scale, std::span<const double> from, std::span<double> to) {
-  const double* __restrict a = from.data();
-  double* __restrict b = to.data();
-  for (std::size_t k = 0; k < to.size(); ++k) b[k] += scale * a[k];
+void add_multiple(double scale, std::span<const double> from, std::span<double> to) {
+  active_kernels<VectorKernels>().add_multiple(scale, from.data(), to.data(), to.size());
 }
 
 void add_multiple(double scale, const Vec3Field& from, Vec3Field& to) {
@@ -31,10 +29,8 @@ void add_multiple(double scale, const Vec3Field& from, Vec3Field& to) {
 }
 
 /// to = scale * to + from
-CLOTH_VECTORISED void scale_and_add(double scale, std::span<const double> from, std::span<double> to) {
-  const double* __restrict a = from.data();
-  double* __restrict b = to.data();
-  for (std::size_t k = 0; k < to.size(); ++k) b[k] = scale * b[k] + a[k];
+void scale_and_add(double scale, std::span<const double> from, std::span<double> to) {
+  active_kernels<VectorKernels>().scale_and_add(scale, from.data(), to.data(), to.size());
 }
 
 void scale_by(double factor, Vec3Field& field) {

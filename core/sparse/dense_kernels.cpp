@@ -1,11 +1,6 @@
-#include "sparse/dense_front.h"
+#include "sparse/dense_kernels.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "cloth/sums.h"
-#include "cloth/vectorised.h"
-#include "kernels/instruction_set.h"
+#include "kernels/kernel_loops.h"
 
 namespace cloth {
 namespace {
@@ -65,18 +60,19 @@ CLOTH_INLINE void subtract_product(double* c, std::size_t c_stride, const double
       subtract_strip<lanes, 1>(c + j * c_stride, c_stride, a, b + j, stride, rows, depth);
 }
 
-template <int lanes>
-CLOTH_INLINE bool factorise_columns_with(double* front, std::size_t stride, int height, int width) {
+bool factorise_columns(DenseBlock block, int height, int width) {
+  double* front = block.data;
+  const std::size_t stride = block.stride;
   for (int begin = 0; begin < width; begin += tile_columns) {
-    const int end = std::min(begin + tile_columns, width);
+    const int end = kernels::smaller(begin + tile_columns, width);
     double* strip = front + begin + begin * stride;
-    subtract_product<lanes>(strip, stride, front + begin, front + begin, stride, height - begin, end - begin,
-                            begin);
+    subtract_product<kernels::register_width>(strip, stride, front + begin, front + begin, stride,
+                                              height - begin, end - begin, begin);
     for (int j = begin; j < end; ++j) {
       double* column = front + j * stride;
       const double pivot = column[j];
       if (!(pivot > 0)) return false;
-      const double root = std::sqrt(pivot);
+      const double root = __builtin_sqrt(pivot);
       const double inverse = 1 / root;
       column[j] = root;
       for (int i = j + 1; i < height; ++i) column[i] *= inverse;
@@ -91,43 +87,18 @@ CLOTH_INLINE bool factorise_columns_with(double* front, std::size_t stride, int 
 }
 
 /// Rows in stretches that stay in the second cache while the columns pass.
-template <int lanes>
-CLOTH_INLINE void subtract_square_with(double* update, std::size_t update_stride, const double* a,
-                                       std::size_t stride, int size, int width) {
+void subtract_square(DenseBlock update, DenseBlock a, int size, int width) {
   constexpr int stretch = 96;
   for (int top = 0; top < size; top += stretch) {
-    const int bottom = std::min(top + stretch, size);
+    const int bottom = kernels::smaller(top + stretch, size);
     for (int j = 0; j < bottom; j += tile_columns) {
-      const int first = std::max(top, j);
-      subtract_product<lanes>(update + first + j * update_stride, update_stride, a + first, a + j, stride,
-                              bottom - first, std::min(tile_columns, size - j), width);
+      const int first = kernels::larger(top, j);
+      subtract_product<kernels::register_width>(update.data + first + j * update.stride, update.stride,
+                                                a.data + first, a.data + j, a.stride, bottom - first,
+                                                kernels::smaller(tile_columns, size - j), width);
     }
   }
 }
-
-bool factorise_columns_plain(DenseBlock front, int height, int width) {
-  return factorise_columns_with<2>(front.data, front.stride, height, width);
-}
-void subtract_square_plain(DenseBlock update, DenseBlock a, int size, int width) {
-  subtract_square_with<2>(update.data, update.stride, a.data, a.stride, size, width);
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) bool factorise_columns_avx2(DenseBlock front, int height, int width) {
-  return factorise_columns_with<4>(front.data, front.stride, height, width);
-}
-__attribute__((target("avx2"))) void subtract_square_avx2(DenseBlock update, DenseBlock a, int size,
-                                                          int width) {
-  subtract_square_with<4>(update.data, update.stride, a.data, a.stride, size, width);
-}
-__attribute__((target("avx512f"))) bool factorise_columns_avx512(DenseBlock front, int height, int width) {
-  return factorise_columns_with<8>(front.data, front.stride, height, width);
-}
-__attribute__((target("avx512f"))) void subtract_square_avx512(DenseBlock update, DenseBlock a, int size,
-                                                               int width) {
-  subtract_square_with<8>(update.data, update.stride, a.data, a.stride, size, width);
-}
-#endif
 
 CLOTH_INLINE void add_product(double& to, double factor, double from) {
   to += factor * from;
@@ -143,7 +114,7 @@ CLOTH_INLINE void divide(Quad& value, double by) {
 }
 
 template <class Number>
-CLOTH_INLINE void eliminate_with(DenseBlock front, int height, int width, Number* own, Number* below) {
+void eliminate(DenseBlock front, int height, int width, Number* own, Number* below) {
   const int rest = height - width;
   for (int j = 0; j < width; ++j) {
     const double* __restrict column = front.data + static_cast<std::size_t>(j) * front.stride;
@@ -156,36 +127,17 @@ CLOTH_INLINE void eliminate_with(DenseBlock front, int height, int width, Number
   }
 }
 
-std::vector<DenseKernels> find_kernels() {
-  std::vector<DenseKernels> kernels{{"plain", factorise_columns_plain, subtract_square_plain}};
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2"))
-    kernels.push_back({"avx2", factorise_columns_avx2, subtract_square_avx2});
-  if (__builtin_cpu_supports("avx512f"))
-    kernels.push_back({"avx512", factorise_columns_avx512, subtract_square_avx512});
-#endif
-  return kernels;
-}
-
-}  // namespace
-
-CLOTH_VECTORISED void eliminate(DenseBlock front, int height, int width, double* own, double* below) {
-  eliminate_with(front, height, width, own, below);
-}
-CLOTH_VECTORISED void eliminate(DenseBlock front, int height, int width, Quad* own, Quad* below) {
-  eliminate_with(front, height, width, own, below);
-}
-
-CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, double* own, const double* below) {
+void substitute(DenseBlock front, int height, int width, double* own, const double* below) {
   for (int j = width; j-- > 0;) {
     const double* column = front.data + static_cast<std::size_t>(j) * front.stride;
     const auto later = static_cast<std::size_t>(width - j - 1),
                rest = static_cast<std::size_t>(height - width);
-    own[j] -= dot({column + width, rest}, {below, rest}) + dot({column + j + 1, later}, {own + j + 1, later});
+    own[j] -= kernels::dot_product(column + width, below, rest) +
+              kernels::dot_product(column + j + 1, own + j + 1, later);
     own[j] /= column[j];
   }
 }
-CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, Quad* own, const Quad* below) {
+void substitute(DenseBlock front, int height, int width, Quad* own, const Quad* below) {
   for (int j = width; j-- > 0;) {
     const double* column = front.data + static_cast<std::size_t>(j) * front.stride;
     Quad sum[4] = {};  // side by side, since a sum waits for the one before
@@ -202,15 +154,13 @@ CLOTH_VECTORISED void substitute(DenseBlock front, int height, int width, Quad* 
   }
 }
 
-const std::vector<DenseKernels>& dense_kernels() {
-  static const std::vector<DenseKernels> kernels = find_kernels();
-  return kernels;
-}
+constexpr DenseKernels table{factorise_columns, subtract_square, eliminate<double>,
+                             eliminate<Quad>,   substitute,      substitute};
 
-const DenseKernels& chosen_dense_kernels() {
-  const std::vector<DenseKernels>& kernels = dense_kernels();
-  return *std::find_if(kernels.rbegin(), kernels.rend(),
-                       [](const DenseKernels& some) { return may_run(some.instruction_set); });
+}  // namespace
+
+const DenseKernels& DenseKernels::CLOTHLAB_SET() {
+  return table;
 }
 
 }  // namespace cloth

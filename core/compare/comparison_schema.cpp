@@ -13,11 +13,7 @@ using json = nlohmann::ordered_json;
 /// A scene with every block there is, and one obstacle of each shape.
 Scene full_scene(const std::string& method) {
   Scene scene;
-  scene.springs.emplace();
-  scene.damping = 0;
-  scene.gravity = Vec3::Zero();
-  scene.air.emplace().gust.emplace();
-  scene.deformation.emplace();
+  add_every_block(scene);
   for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   scene.integrator.method = method;
   return scene;

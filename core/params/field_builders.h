@@ -1,6 +1,7 @@
 // How a declaration is written down: a member pointer and its facts.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "params/parameter.h"
@@ -78,6 +79,7 @@ Field<Owner> number_or_auto(std::optional<double> Owner::*member, ParameterInfo 
 /// A root value whose absence is absent physics. `get` needs it to be present.
 template <class Owner, class Value>
 Field<Owner> optional_field(std::optional<Value> Owner::*member, ParameterInfo info) {
+  if (std::is_same_v<Value, Vec3>) info.kind = Kind::vector;
   return {with_physical_bound(std::move(info)),
           [member](const Owner& owner) { return ParameterValue((owner.*member).value()); },
           [member](Owner& owner, const ParameterValue& value) { owner.*member = std::get<Value>(value); }};

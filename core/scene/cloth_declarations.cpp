@@ -1,6 +1,9 @@
-// The parameters of a grid cloth; those of a cloth from a mesh are in mesh_declarations.cpp.
+// The parameters of a cloth: of a grid, and of a mesh.
+#include <algorithm>
+
 #include "params/field_builders.h"
-#include "scene/scene_parameters.h"
+#include "scene/blocks.h"
+#include "scene/mesh_field.h"
 
 namespace cloth {
 namespace {
@@ -78,6 +81,26 @@ Fields<ClothSheet> grid_cloth_fields() {
   };
 }
 
+Field<ClothSheet> shared_field(const std::string& key) {
+  const Fields<ClothSheet>& grid = cloth_fields(false);
+  return *std::find_if(grid.begin(), grid.end(),
+                       [&](const Field<ClothSheet>& field) { return field.info.key == key; });
+}
+
+Fields<ClothSheet> mesh_cloth_fields() {
+  Field<ClothSheet> mass = shared_field("mass"), origin = shared_field("origin");
+  mass.info.formula = "m = mass / vertices";
+  origin.info.doc = "How far the mesh is moved from where its file has it.";
+  return {
+      mesh_file(&ClothSheet::mesh,
+                {.key = "mesh",
+                 .label = "Mesh",
+                 .doc = "OBJ file, as seen from the scene's folder, or built-in mesh; its vertices are the "
+                        "particles.",
+                 .cost = EditCost::restart}),
+      std::move(mass), std::move(origin)};
+}
+
 }  // namespace
 
 const Fields<ClothSheet>& cloth_fields(bool is_mesh) {
@@ -85,6 +108,10 @@ const Fields<ClothSheet>& cloth_fields(bool is_mesh) {
   if (!is_mesh) return grid;
   static const Fields<ClothSheet> mesh = mesh_cloth_fields();
   return mesh;
+}
+
+std::vector<Parameter> cloth_parameters(bool is_mesh) {
+  return bound<ClothSheet>("cloth", cloth_fields(is_mesh), [](Scene& s) -> ClothSheet& { return s.cloth; });
 }
 
 }  // namespace cloth

@@ -13,13 +13,7 @@ namespace {
 /// A scene that has every block once.
 Scene full_scene() {
   Scene scene;
-  scene.springs.emplace();
-  scene.damping = 0;
-  scene.gravity = Vec3::Zero();
-  scene.air.emplace().gust.emplace();
-  scene.deformation.emplace();
-  scene.contact.emplace();
-  scene.self_contact.emplace();
+  add_every_block(scene);
   for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
   return scene;
 }

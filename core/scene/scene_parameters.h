@@ -1,5 +1,5 @@
 // The parameters of a scene, seen without knowing its structs: what forms, `--set`, sweeps and the reference
-// page use. Declarations stand in scene_parameters.cpp, once each.
+// page use. Declarations stand in *_declarations.cpp, once each.
 #pragma once
 
 #include <string>
@@ -12,32 +12,21 @@ namespace cloth {
 template <class Owner>
 using Fields = std::vector<Field<Owner>>;
 
-/// The declarations themselves, for the JSON reader and writer and the schema.
+/// Declarations that depend on a choice; those of the other blocks stand in their rows (scene/blocks.h).
 const Fields<ClothSheet>& cloth_fields(bool is_mesh);
-const Fields<SpringMaterial>& spring_fields();
-const Fields<Gust>& gust_fields();
-const Fields<Air>& air_fields();
-const Fields<Deformation>& deformation_fields();
 const Fields<Obstacle>& obstacle_fields(Shape shape);
 const Fields<Obstacle>& motion_fields();  ///< of any obstacle; in a file only where it moves
 const Fields<Keyframe>& keyframe_fields();
-const Fields<ContactSettings>& contact_fields();
-const Fields<SelfContact>& self_contact_fields();
 const Fields<IntegratorChoice>& integrator_fields(const std::string& method);  ///< with its own settings
-const Fields<Recording>& recording_fields();
-const Fields<Scene>& scene_fields();  ///< title, damping, gravity, duration: the keys of the root
-
-/// Of what comes from mesh files (mesh_declarations.cpp).
-Fields<ClothSheet> mesh_cloth_fields();
-Fields<Obstacle> mesh_obstacle_fields();
 
 /// One parameter of a scene, bound to its dotted path ("obstacles.0.friction").
-struct Parameter {
+/// `get` and `set` need its block to be present, but `set` of a block that is one value, "gravity", adds it.
+struct Parameter : Field<Scene> {
   std::string path;
-  ParameterInfo info;
-  std::function<ParameterValue(const Scene&)> get;  ///< the block must be present
-  std::function<void(Scene&, const ParameterValue&)> set;
 };
+
+/// Of a cloth that is a grid or a mesh.
+std::vector<Parameter> cloth_parameters(bool is_mesh);
 
 /// A group of parameters that belongs to one piece of physics. `path` is its identity: "cloth", "springs",
 /// "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "contact",
@@ -52,6 +41,9 @@ struct Block {
 
 /// The blocks that this scene has, in the order of a form.
 std::vector<Block> blocks_of(const Scene& scene);
+
+/// Gives the scene every optional block, obstacles aside, with the values that the Add menu fills in.
+void add_every_block(Scene& scene);
 
 /// Every parameter that this scene has.
 std::vector<Parameter> parameters_of(const Scene& scene);

@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "contact/rigid_motion.h"
 #include "contact/start_check.h"
 #include "io/printable.h"
+#include "scene/blocks.h"
 #include "scene/json_locator.h"
 #include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
-#include "scene/scene_parameters.h"
 
 namespace cloth {
 namespace {
@@ -39,25 +40,20 @@ class SceneReader {
   Scene read(const json& root) {
     Scene scene;
     if (!object(root, "")) return scene;
-    known_keys(root, "",
-               {"format", "title", "cloth", "springs", "damping", "gravity", "air", "deformation",
-                "obstacles", "contact", "self_contact", "integrator", "duration", "record"});
+    known_keys(root, "", known_in("", {"format", "obstacles"}, scene));
     if (const json* format = member(root, "format"); format && *format != scene_format)
       problem("format", *format, fmt::format("must be \"{}\"", scene_format));
 
-    fields(root, "", scene_fields(), scene);
-    if (const json* cloth = member(root, "cloth"))
-      read_cloth(*cloth, scene.cloth);
-    else
+    if (!member(root, "cloth"))
       problems.push_back({"cloth", "", "must be given: a scene needs a cloth", "", 0, 0});
-    block(root, "springs", spring_fields(), scene.springs);
-    block(root, "deformation", deformation_fields(), scene.deformation);
-    if (const json* air = member(root, "air")) read_air(*air, scene.air.emplace());
-    if (const json* obstacles = member(root, "obstacles")) read_obstacles(*obstacles, scene.obstacles);
-    block(root, "contact", contact_fields(), scene.contact);
-    block(root, "self_contact", self_contact_fields(), scene.self_contact);
-    if (const json* integrator = member(root, "integrator")) read_integrator(*integrator, scene.integrator);
-    required_block(root, "record", recording_fields(), scene.record);
+    for (const BlockRow* row : block_rows_of_file()) {
+      if (row->path == "cloth")
+        read_cloth(root, scene.cloth);
+      else if (row->path == "obstacles")
+        read_obstacles(root, scene.obstacles);
+      else
+        read_row(root, *row, scene);
+    }
     return scene;
   }
 
@@ -85,42 +81,75 @@ class SceneReader {
                             0});
   }
 
-  template <class Owner>
-  std::set<std::string> keys_of(const Fields<Owner>& declared, std::set<std::string> also = {}) {
-    for (const Field<Owner>& field : declared) also.insert(field.info.key);
+  template <class List>
+  static std::set<std::string> keys_of(const List& declared, std::set<std::string> also = {}) {
+    for (const auto& field : declared) also.insert(field.info.key);
     return also;
   }
 
-  template <class Owner>
-  void fields(const json& from, const std::string& path, const Fields<Owner>& declared, Owner& owner) {
-    for (const Field<Owner>& field : declared)
+  /// The keys of an object of the file: all parameters and objects that the rows have in it.
+  static std::set<std::string> known_in(const std::string& object, std::set<std::string> also,
+                                        const Scene& scene) {
+    for (const BlockRow& row : block_rows())
+      for (const Parameter& parameter : row.parameters(scene)) {
+        const std::string parent = parent_path(parameter.path);
+        if (parent == object) also.insert(parameter.info.key);
+        if (!parent.empty() && parent_path(parent) == object)
+          also.insert(object.empty() ? parent : parent.substr(object.size() + 1));
+      }
+    return also;
+  }
+
+  template <class List, class Owner>
+  void fields(const json& from, const std::string& path, const List& declared, Owner& owner) {
+    for (const auto& field : declared)
       if (const json* value = member(from, field.info.key))
         if (const auto parsed = parse(*value, joined_path(path, field.info.key), field.info))
           field.set(owner, *parsed);
   }
 
-  template <class Owner>
-  void block(const json& root, const std::string& key, const Fields<Owner>& declared,
-             std::optional<Owner>& owner) {
-    if (member(root, key)) required_block(root, key, declared, owner.emplace());
+  /// The object at `path` below `root`; null if there is none.
+  static const json* object_at(const json& root, const std::string& path) {
+    if (path.empty()) return &root;
+    const json* above = object_at(root, parent_path(path));
+    return above && above->is_object() ? member(*above, path.substr(path.rfind('.') + 1)) : nullptr;
   }
 
-  template <class Owner>
-  void required_block(const json& root, const std::string& key, const Fields<Owner>& declared, Owner& owner) {
-    const json* value = member(root, key);
-    if (!value || !object(*value, key)) return;
-    known_keys(*value, key, keys_of(declared));
-    fields(*value, key, declared, owner);
+  /// The parameters of a block, object by object of the file.
+  void read_row(const json& root, const BlockRow& row, Scene& scene) {
+    if (row.path == "integrator") find_method(root, scene.integrator);
+    std::map<std::string, std::vector<Parameter>> by_object;
+    for (Parameter& parameter : row.parameters(scene)) {
+      const std::string parent = parent_path(parameter.path);
+      by_object[parent].push_back(std::move(parameter));
+    }
+    for (const auto& [path, parameters] : by_object) {
+      const json* from = object_at(root, path);
+      if (!from) continue;
+      if (!path.empty()) {
+        if (row.optional) row.optional->add(scene);
+        if (!object(*from, path)) continue;
+        known_keys(*from, path, known_in(path, {}, scene));
+      }
+      fields(*from, path, parameters, scene);
+    }
   }
 
-  void read_cloth(const json& value, ClothSheet& cloth) {
-    if (!object(value, "cloth")) return;
-    const bool is_mesh = value.contains("mesh");
+  /// The method decides which other settings are known.
+  static void find_method(const json& root, IntegratorChoice& integrator) {
+    const json* method = object_at(root, "integrator.method");
+    if (method && method->is_string()) integrator.method = method->get<std::string>();
+  }
+
+  void read_cloth(const json& root, ClothSheet& cloth) {
+    const json* value = member(root, "cloth");
+    if (!value || !object(*value, "cloth")) return;
+    const bool is_mesh = value->contains("mesh");
     if (is_mesh) cloth.origin.setZero();
-    known_keys(value, "cloth", keys_of(cloth_fields(is_mesh), {"pins"}));
-    fields(value, "cloth", cloth_fields(is_mesh), cloth);
-    if (is_mesh && value["mesh"] == "") problem("cloth.mesh", value["mesh"], "must name a mesh");
-    const json* pins = member(value, "pins");
+    known_keys(*value, "cloth", keys_of(cloth_fields(is_mesh), {"pins"}));
+    fields(*value, "cloth", cloth_fields(is_mesh), cloth);
+    if (is_mesh && (*value)["mesh"] == "") problem("cloth.mesh", (*value)["mesh"], "must name a mesh");
+    const json* pins = member(*value, "pins");
     if (pins && is_mesh) read_vertex_pins(*pins, cloth.pins);
     if (pins && !is_mesh) read_pins(*pins, cloth.pins);
   }
@@ -158,26 +187,10 @@ class SceneReader {
     return value.is_number_integer() && std::abs(value.get<double>()) < 1e9;
   }
 
-  void read_air(const json& value, Air& air) {
-    if (!object(value, "air")) return;
-    known_keys(value, "air", keys_of(air_fields(), {"gust"}));
-    fields(value, "air", air_fields(), air);
-    if (const json* gust = member(value, "gust"); gust && object(*gust, "air.gust")) {
-      known_keys(*gust, "air.gust", keys_of(gust_fields()));
-      fields(*gust, "air.gust", gust_fields(), air.gust.emplace());
-    }
-  }
-
-  /// Which settings are known depends on the method.
-  void read_integrator(const json& value, IntegratorChoice& integrator) {
-    if (!object(value, "integrator")) return;
-    const json* method = member(value, "method");
-    const std::string name = method && method->is_string() ? method->get<std::string>() : integrator.method;
-    known_keys(value, "integrator", keys_of(integrator_fields(name)));
-    fields(value, "integrator", integrator_fields(name), integrator);
-  }
-
-  void read_obstacles(const json& value, std::vector<Obstacle>& obstacles) {
+  void read_obstacles(const json& root, std::vector<Obstacle>& obstacles) {
+    const json* list = member(root, "obstacles");
+    if (!list) return;
+    const json& value = *list;
     if (!value.is_array()) return problem("obstacles", value, "must be a list");
     const std::string shapes = "\"sphere\", \"box\", \"plane\" or \"mesh\"";
     for (std::size_t i = 0; i < value.size(); ++i) {

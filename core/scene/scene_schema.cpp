@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "integrators/registry.h"
+#include "scene/blocks.h"
 #include "scene/scene_json.h"
-#include "scene/scene_parameters.h"
 
 namespace cloth {
 namespace {
@@ -49,9 +49,9 @@ json described(const ParameterInfo& info) {
   return schema;
 }
 
-template <class Owner>
-json object_schema(const Fields<Owner>& fields, json properties = json::object()) {
-  for (const Field<Owner>& field : fields) properties[field.info.key] = described(field.info);
+template <class List>
+json object_schema(const List& fields, json properties = json::object()) {
+  for (const auto& field : fields) properties[field.info.key] = described(field.info);
   return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
 }
 
@@ -112,6 +112,28 @@ json integrator_schema() {
   return {{"type", "object"}, {"anyOf", std::move(list)}};
 }
 
+/// Where the schema of a value or object has its place below `root`; objects on the way are made.
+json& schema_at(json& root, const std::string& path) {
+  const std::string parent = parent_path(path);
+  json& above = parent.empty() ? root : schema_at(root, parent);
+  if (above.is_null()) above = object_schema(Fields<Scene>{});
+  return above["properties"][path.substr(path.rfind('.') + 1)];
+}
+
+/// Of the blocks that are objects, and of the values of the root.
+void put_blocks(json& root, bool objects) {
+  const Scene scene;
+  for (const BlockRow* row : block_rows_of_file()) {
+    if (objects && row->path == "cloth") root["properties"]["cloth"] = cloth_schema();
+    if (objects && row->path == "obstacles") root["properties"]["obstacles"] = obstacles_schema();
+    if (objects && row->path == "integrator") root["properties"]["integrator"] = integrator_schema();
+    if (row->path == "cloth" || row->path == "integrator") continue;
+    for (const Parameter& parameter : row->parameters(scene))
+      if (objects != parent_path(parameter.path).empty())
+        schema_at(root, parameter.path) = described(parameter.info);
+  }
+}
+
 }  // namespace
 
 std::string value_schema_json(const ParameterInfo& info) {
@@ -119,23 +141,11 @@ std::string value_schema_json(const ParameterInfo& info) {
 }
 
 std::string scene_schema() {
-  json properties{{"format", {{"const", scene_format}}}};
-  properties["cloth"] = cloth_schema();
-  properties["springs"] = object_schema(spring_fields());
-  json air = object_schema(air_fields());
-  air["properties"]["gust"] = object_schema(gust_fields());
-  properties["air"] = std::move(air);
-  properties["deformation"] = object_schema(deformation_fields());
-  properties["obstacles"] = obstacles_schema();
-  properties["contact"] = object_schema(contact_fields());
-  properties["self_contact"] = object_schema(self_contact_fields());
-  properties["integrator"] = integrator_schema();
-  properties["record"] = object_schema(recording_fields());
-
-  json schema = object_schema(scene_fields(), std::move(properties));
-  schema["required"] = {"cloth"};
   json root{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Clothlab scene"}};
-  root.update(schema);
+  root.update(object_schema(Fields<Scene>{}, {{"format", {{"const", scene_format}}}}));
+  put_blocks(root, true);
+  put_blocks(root, false);
+  root["required"] = {"cloth"};
   return root.dump(2) + "\n";
 }
 

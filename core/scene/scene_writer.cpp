@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/fnv_hash.h"
+#include "scene/blocks.h"
 #include "scene/scene_json.h"
-#include "scene/scene_parameters.h"
 
 namespace cloth {
 namespace {
@@ -19,16 +19,9 @@ struct ToJson {
   json operator()(const Words& value) const { return value; }
 };
 
-template <class Owner>
-void put_fields(const Fields<Owner>& fields, const Owner& owner, json& into) {
-  for (const Field<Owner>& field : fields) into[field.info.key] = std::visit(ToJson{}, field.get(owner));
-}
-
-template <class Owner>
-json block(const Fields<Owner>& fields, const Owner& owner) {
-  json into = json::object();
-  put_fields(fields, owner, into);
-  return into;
+template <class List, class Owner>
+void put_fields(const List& fields, const Owner& owner, json& into) {
+  for (const auto& field : fields) into[field.info.key] = std::visit(ToJson{}, field.get(owner));
 }
 
 /// Of a mesh the pins are vertices.
@@ -49,37 +42,37 @@ json pins_json(const ClothSheet& cloth) {
 /// What does not move says nothing of motion.
 void put_motion(const Obstacle& obstacle, json& into) {
   if (!obstacle.velocity.isZero(0) || !obstacle.spin.isZero(0)) put_fields(motion_fields(), obstacle, into);
-  for (const Keyframe& key : obstacle.keyframes) into["keyframes"].push_back(block(keyframe_fields(), key));
+  for (const Keyframe& key : obstacle.keyframes)
+    put_fields(keyframe_fields(), key, into["keyframes"].emplace_back(json::object()));
+}
+
+json obstacles_json(const Scene& scene) {
+  json list = json::array();
+  for (const Obstacle& obstacle : scene.obstacles) {
+    json entry{{"shape", name_of(obstacle.shape)}};
+    put_fields(obstacle_fields(obstacle.shape), obstacle, entry);
+    put_motion(obstacle, entry);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/// The place of `path` below `root`, made where it is missing.
+json& object_at(json& root, const std::string& path) {
+  if (path.empty()) return root;
+  return object_at(root, parent_path(path))[path.substr(path.rfind('.') + 1)];
 }
 
 json scene_json(const Scene& scene) {
   json root;
   root["format"] = scene_format;
-  root["title"] = scene.title;
-  root["cloth"] = block(cloth_fields(scene.cloth.is_mesh()), scene.cloth);
-  root["cloth"]["pins"] = pins_json(scene.cloth);
-  if (scene.springs) root["springs"] = block(spring_fields(), *scene.springs);
-  if (scene.damping) root["damping"] = *scene.damping;
-  if (scene.gravity) root["gravity"] = ToJson{}(*scene.gravity);
-  if (scene.air) {
-    root["air"] = block(air_fields(), *scene.air);
-    if (scene.air->gust) root["air"]["gust"] = block(gust_fields(), *scene.air->gust);
+  for (const BlockRow* row : block_rows_of_file()) {
+    if (!row->is_present(scene)) continue;
+    if (row->path == "obstacles") root["obstacles"] = obstacles_json(scene);
+    for (const Parameter& parameter : row->parameters(scene))
+      object_at(root, parameter.path) = std::visit(ToJson{}, parameter.get(scene));
+    if (row->path == "cloth") root["cloth"]["pins"] = pins_json(scene.cloth);
   }
-  if (scene.deformation) root["deformation"] = block(deformation_fields(), *scene.deformation);
-  if (!scene.obstacles.empty()) {
-    root["obstacles"] = json::array();
-    for (const Obstacle& obstacle : scene.obstacles) {
-      json entry{{"shape", name_of(obstacle.shape)}};
-      put_fields(obstacle_fields(obstacle.shape), obstacle, entry);
-      put_motion(obstacle, entry);
-      root["obstacles"].push_back(std::move(entry));
-    }
-  }
-  if (scene.contact) root["contact"] = block(contact_fields(), *scene.contact);
-  if (scene.self_contact) root["self_contact"] = block(self_contact_fields(), *scene.self_contact);
-  root["integrator"] = block(integrator_fields(scene.integrator.method), scene.integrator);
-  root["duration"] = scene.duration;
-  root["record"] = block(recording_fields(), scene.record);
   return root;
 }
 

@@ -1,0 +1,417 @@
+// The blocks of a scene: their parameters, their texts and what the Add menu fills in, each declared once.
+// Designated initialisers keep the order of ParameterInfo's members.
+#include <algorithm>
+
+#include "params/field_builders.h"
+#include "scene/blocks.h"
+
+namespace cloth {
+namespace {
+
+Fields<SpringMaterial> spring_fields() {
+  using S = SpringMaterial;
+  const auto stiffness = [](double S::*member, const char* key, const char* label, const char* doc) {
+    return number(member, {.key = key,
+                           .label = label,
+                           .unit = "N/m",
+                           .doc = doc,
+                           .formula = "F = k (|d| - L) d/|d|",
+                           .scale = Scale::logarithmic,
+                           .minimum = 0,
+                           .slider_minimum = 0,
+                           .slider_maximum = 1e5});
+  };
+  return {
+      stiffness(&S::structural, "structural", "Structural stiffness",
+                "Resistance to stretching along rows and columns; 0 leaves these springs out."),
+      stiffness(&S::shear, "shear", "Shear stiffness",
+                "Resistance to shearing, along the diagonals of each cell; 0 leaves these springs out."),
+      stiffness(&S::flexion, "flexion", "Flexion stiffness",
+                "Resistance to bending, between particles two apart; 0 leaves these springs out."),
+      number(&S::damping,
+             {.key = "damping",
+              .label = "Spring damping",
+              .unit = "N s/m",
+              .doc = "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
+              .formula = "F = k_d ((v_j - v_i) . d/|d|) d/|d|",
+              .scale = Scale::logarithmic,
+              .minimum = 0,
+              .slider_minimum = 0,
+              .slider_maximum = 1}),
+  };
+}
+
+Fields<Gust> gust_fields() {
+  using G = Gust;
+  return {
+      number(&G::amplitude, {.key = "amplitude",
+                             .label = "Gust amplitude",
+                             .doc = "How far the wind's speed swings around its mean, as a fraction of it.",
+                             .formula = "wind * (1 + amplitude * sin(2 pi frequency t))",
+                             .minimum = 0,
+                             .slider_minimum = 0,
+                             .slider_maximum = 2}),
+      number(&G::frequency, {.key = "frequency",
+                             .label = "Gust frequency",
+                             .unit = "Hz",
+                             .doc = "Swings of the wind per second.",
+                             .minimum = 0,
+                             .slider_minimum = 0,
+                             .slider_maximum = 5}),
+  };
+}
+
+Fields<Air> air_fields() {
+  using A = Air;
+  return {
+      number(&A::drag,
+             {.key = "drag",
+              .label = "Air drag",
+              .unit = "N s/m",
+              .doc = "Force of the air per particle and speed along the normal; 0 leaves the air out.",
+              .formula = "F = c_a (n . (u - v)) n",
+              .scale = Scale::logarithmic,
+              .minimum = 0,
+              .slider_minimum = 0,
+              .slider_maximum = 1}),
+      vector(&A::wind, {.key = "wind",
+                        .label = "Wind",
+                        .unit = "m/s",
+                        .doc = "Mean velocity of the air.",
+                        .slider_minimum = -20,
+                        .slider_maximum = 20}),
+  };
+}
+
+Fields<Deformation> deformation_fields() {
+  using D = Deformation;
+  return {
+      number(&D::rate,
+             {.key = "rate",
+              .label = "Deformation rate",
+              .doc = "Largest elongation that limited springs may keep, as a fraction of the rest length.",
+              .formula = "|d| <= (1 + rate) L",
+              .scale = Scale::logarithmic,
+              .minimum = 0,
+              .slider_minimum = 0.001,
+              .slider_maximum = 1}),
+      words(&D::springs, {.key = "springs",
+                          .label = "Limited springs",
+                          .doc = "Which spring families the deformation rate limits.",
+                          .word_sets = {{}, {"structural"}, {"structural", "shear"}}}),
+      number(&D::tolerance,
+             {.key = "tolerance",
+              .label = "Tolerance",
+              .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
+              .scale = Scale::logarithmic,
+              .minimum = 0,
+              .minimum_excluded = true,
+              .slider_minimum = 1e-6,
+              .slider_maximum = 1e-2}),
+      integer(&D::max_sweeps,
+              {.key = "max_sweeps",
+               .label = "Most sweeps",
+               .doc = "Of the solver \"sweeps\": how many per step before the rest is reported as excess.",
+               .scale = Scale::logarithmic,
+               .minimum = 1,
+               .maximum = 1000000,
+               .slider_minimum = 1,
+               .slider_maximum = 1000}),
+      choice(&D::solver,
+             {.key = "solver",
+              .label = "Solver",
+              .doc = "How the rate is kept: by tensions of the limited springs (auto), by sweeps as "
+                     "Provot's, or by the nearest shape that obeys it.",
+              .choices = {"auto", "sweeps", "direct"}}),
+  };
+}
+
+ParameterInfo thickness_info(const char* doc) {
+  return {.key = "thickness",
+          .label = "Thickness",
+          .unit = "m",
+          .doc = doc,
+          .scale = Scale::logarithmic,
+          .minimum = 0,
+          .minimum_excluded = true,
+          .slider_minimum = 1e-4,
+          .slider_maximum = 0.05};
+}
+
+Fields<ContactSettings> contact_fields() {
+  return {
+      number(&ContactSettings::thickness,
+             thickness_info("Distance that contact keeps between cloth and obstacles.")),
+  };
+}
+
+Fields<SelfContact> self_contact_fields() {
+  using S = SelfContact;
+  return {
+      number(&S::thickness,
+             thickness_info("Distance that contact keeps between two layers of the cloth; at most half "
+                            "of the shortest structural spring.")),
+      number(&S::friction, {.key = "friction",
+                            .label = "Friction",
+                            .doc = "Coefficient of friction of the cloth on itself.",
+                            .minimum = 0,
+                            .slider_minimum = 0,
+                            .slider_maximum = 1}),
+  };
+}
+
+Fields<Recording> recording_fields() {
+  using R = Recording;
+  return {
+      number(&R::interval, {.key = "interval",
+                            .label = "Record interval",
+                            .unit = "s",
+                            .doc = "Simulated time between two rows of a recording.",
+                            .cost = EditCost::restart,
+                            .scale = Scale::logarithmic,
+                            .minimum = 0,
+                            .minimum_excluded = true,
+                            .slider_minimum = 1e-4,
+                            .slider_maximum = 1}),
+  };
+}
+
+Field<Scene> title_field() {
+  return text(&Scene::title,
+              {.key = "title", .label = "Title", .doc = "What the scene shows.", .cost = EditCost::live});
+}
+
+Field<Scene> damping_field() {
+  return optional_field(&Scene::damping,
+                        {.key = "damping",
+                         .label = "Viscous damping",
+                         .unit = "N s/m",
+                         .doc = "Resistance to every motion of a particle, free fall included.",
+                         .formula = "F = -c v",
+                         .scale = Scale::logarithmic,
+                         .minimum = 0,
+                         .slider_minimum = 0,
+                         .slider_maximum = 1});
+}
+
+Field<Scene> gravity_field() {
+  return optional_field(&Scene::gravity, {.key = "gravity",
+                                          .label = "Gravity",
+                                          .unit = "m/s^2",
+                                          .doc = "Acceleration of free fall.",
+                                          .formula = "F = m g",
+                                          .slider_minimum = -20,
+                                          .slider_maximum = 20});
+}
+
+Field<Scene> duration_field() {
+  return number(&Scene::duration, {.key = "duration",
+                                   .label = "Duration",
+                                   .unit = "s",
+                                   .doc = "Simulated time of a run on the command line.",
+                                   .scale = Scale::logarithmic,
+                                   .minimum = 0,
+                                   .minimum_excluded = true,
+                                   .slider_minimum = 0.1,
+                                   .slider_maximum = 100});
+}
+
+/// As thick as the default says, or as the cells allow.
+SelfContact starter_self_contact(const Scene& scene) {
+  const ClothSheet& cloth = scene.cloth;
+  const double cell = std::min(cloth.width / (cloth.columns - 1), cloth.height / (cloth.rows - 1));
+  SelfContact self_contact;
+  self_contact.thickness = std::min(self_contact.thickness, 0.4 * cell);
+  return self_contact;
+}
+
+template <class Value>
+auto always(const Value& value) {
+  return [value](const Scene&) { return value; };
+}
+
+Scene& whole(Scene& scene) {
+  return scene;
+}
+
+/// Parameters that are the same for every scene.
+void give_parameters(BlockRow& row, std::vector<Parameter> parameters) {
+  row.parameters = always(std::move(parameters));
+  row.is_present = always(true);
+}
+
+/// What is in the std::optional that `place_of` finds in a scene; null where that does not have what it
+/// belongs to.
+template <class PlaceOf, class Starter>
+void make_optional(BlockRow& row, PlaceOf place_of, Starter starter) {
+  row.is_present = [place_of](const Scene& scene) {
+    const auto* place = place_of(const_cast<Scene&>(scene));
+    return place && place->has_value();
+  };
+  const auto start = [place_of, starter](Scene& scene) {
+    if (auto* place = place_of(scene)) *place = starter(scene);
+  };
+  const auto remove = [place_of](Scene& scene) {
+    if (auto* place = place_of(scene)) place->reset();
+  };
+  const auto suits = [place_of](const Scene& scene) {
+    return place_of(const_cast<Scene&>(scene)) != nullptr;
+  };
+  row.optional = OptionalBlock{start, start, remove, suits};
+}
+
+/// A block that is an object of the file, a struct of the scene.
+template <class Owner, class PlaceOf, class Starter>
+BlockRow object_row(BlockRow row, const Fields<Owner>& fields, PlaceOf place_of, Starter starter) {
+  give_parameters(row, bound<Owner>(row.path, fields,
+                                    [place_of](Scene& scene) -> Owner& { return place_of(scene)->value(); }));
+  make_optional(row, place_of, starter);
+  row.optional->add = [place_of](Scene& scene) {
+    if (auto* place = place_of(scene)) place->emplace();
+  };
+  return row;
+}
+
+/// A block that is one value of the file.
+template <class PlaceOf, class Value>
+BlockRow value_row(BlockRow row, const Field<Scene>& field, PlaceOf place_of, const Value& starter) {
+  give_parameters(row, bound<Scene>("", {field}, whole));
+  make_optional(row, place_of, always(starter));
+  return row;
+}
+
+BlockRow title_row() {
+  BlockRow row{.path = "title", .file_place = 0};
+  give_parameters(row, bound<Scene>("", {title_field()}, whole));
+  return row;
+}
+
+BlockRow run_row() {
+  BlockRow row{.path = "run",
+               .file_place = 12,
+               .title = "Run and record",
+               .doc = "How long a run is and how often it is recorded."};
+  std::vector<Parameter> parameters = bound<Scene>("", {duration_field()}, whole);
+  for (Parameter& parameter :
+       bound<Recording>("record", recording_fields(), [](Scene& s) -> Recording& { return s.record; }))
+    parameters.push_back(std::move(parameter));
+  give_parameters(row, std::move(parameters));
+  return row;
+}
+
+/// Its method decides which parameters it has.
+BlockRow integrator_row() {
+  BlockRow row{.path = "integrator", .file_place = 11, .title = "Integrator", .doc = "How time advances."};
+  row.parameters = [](const Scene& scene) {
+    return bound<IntegratorChoice>("integrator", integrator_fields(scene.integrator.method),
+                                   [](Scene& s) -> IntegratorChoice& { return s.integrator; });
+  };
+  row.is_present = always(true);
+  return row;
+}
+
+BlockRow cloth_row() {
+  BlockRow row{.path = "cloth",
+               .file_place = 1,
+               .title = "Cloth",
+               .doc = "The sheet: how many particles, how large, how heavy.",
+               .mesh_doc = "A mesh: its vertices are particles, its edges springs."};
+  row.parameters = [](const Scene& scene) { return cloth_parameters(scene.cloth.is_mesh()); };
+  row.is_present = always(true);
+  return row;
+}
+
+/// A list: an obstacle's shape decides which parameters it has.
+BlockRow obstacles_row() {
+  BlockRow row{.path = "obstacles", .file_place = 8};
+  row.parameters = always(std::vector<Parameter>{});
+  row.is_present = [](const Scene& scene) { return !scene.obstacles.empty(); };
+  return row;
+}
+
+BlockRow contact_row() {
+  BlockRow row = object_row<ContactSettings>(
+      {.path = "contact",
+       .file_place = 9,
+       .title = "Contact",
+       .doc = "Contact without gaps: no vertex, edge or face comes through."},
+      contact_fields(), [](Scene& s) { return &s.contact; }, always(ContactSettings{}));
+  row.optional->suits = [](const Scene& scene) { return !scene.obstacles.empty(); };
+  return row;
+}
+
+std::vector<BlockRow> force_rows() {
+  return {
+      object_row<SpringMaterial>(
+          {.path = "springs", .file_place = 2, .title = "Springs", .doc = "What holds the cloth together."},
+          spring_fields(), [](Scene& s) { return &s.springs; },
+          always(SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0})),
+      object_row<Deformation>(
+          {.path = "deformation",
+           .file_place = 7,
+           .title = "Deformation rate",
+           .doc = "Provot's limit on how far springs may stretch."},
+          deformation_fields(), [](Scene& s) { return &s.deformation; }, always(Deformation{})),
+      value_row(
+          {.path = "damping",
+           .file_place = 3,
+           .title = "Viscous damping",
+           .doc = "Resistance to every motion."},
+          damping_field(), [](Scene& s) { return &s.damping; }, 0.001),
+      value_row(
+          {.path = "gravity", .file_place = 4, .title = "Gravity", .doc = "The weight of the cloth."},
+          gravity_field(), [](Scene& s) { return &s.gravity; }, Vec3(0, -9.81, 0)),
+      object_row<Air>(
+          {.path = "air",
+           .file_place = 5,
+           .title = "Air and wind",
+           .doc = "Air that drags and blows along the cloth's normals."},
+          air_fields(), [](Scene& s) { return &s.air; },
+          always(Air{.drag = 0.01, .wind = {0, 0, 3}, .gust = std::nullopt})),
+      object_row<Gust>(
+          {.path = "air.gust", .file_place = 6, .title = "Gusts", .doc = "A wind whose speed swings."},
+          gust_fields(), [](Scene& s) { return s.air ? &s.air->gust : nullptr; }, always(Gust{})),
+  };
+}
+
+std::vector<BlockRow> all_rows() {
+  std::vector<BlockRow> rows{integrator_row()};
+  for (BlockRow& row : force_rows()) rows.push_back(std::move(row));
+  rows.push_back(obstacles_row());
+  rows.push_back(contact_row());
+  rows.push_back(object_row<SelfContact>(
+      {.path = "self_contact",
+       .file_place = 10,
+       .title = "Self-contact",
+       .doc = "The cloth does not pass through itself."},
+      self_contact_fields(), [](Scene& s) { return &s.self_contact; }, starter_self_contact));
+  rows.push_back(cloth_row());
+  rows.push_back(run_row());
+  rows.push_back(title_row());
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<BlockRow>& block_rows() {
+  static const std::vector<BlockRow> rows = all_rows();
+  return rows;
+}
+
+const std::vector<const BlockRow*>& block_rows_of_file() {
+  static const auto in_order = [] {
+    std::vector<const BlockRow*> rows;
+    for (const BlockRow& row : block_rows()) rows.push_back(&row);
+    std::sort(rows.begin(), rows.end(),
+              [](const BlockRow* a, const BlockRow* b) { return a->file_place < b->file_place; });
+    return rows;
+  }();
+  return in_order;
+}
+
+std::string parent_path(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+}  // namespace cloth

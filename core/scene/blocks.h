@@ -1,0 +1,59 @@
+// The table of a scene's blocks, a row each (block_declarations.cpp). The reader and the writer of scene
+// files, the JSON Schema, forms, the Add menu, removal and default values all go by it.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene_parameters.h"
+
+namespace cloth {
+
+/// How a block that a scene may do without comes and goes.
+struct OptionalBlock {
+  std::function<void(Scene&)> add;     ///< with the values that a file's empty block has
+  std::function<void(Scene&)> start;   ///< with the values that the Add menu fills in
+  std::function<void(Scene&)> remove;  ///< leaves a scene without it as it is
+  /// Whether the Add menu offers it to a scene that does not have it.
+  std::function<bool(const Scene&)> suits;
+};
+
+struct BlockRow {
+  std::string path;     ///< its identity; its parameters have it before their keys, but for "run" and "title"
+  int file_place = 0;   ///< the rows' ascending order in a file; in the table it is that of a form
+  std::string title{};  ///< of its section in a form; empty: it has none of its own
+  std::string doc{};    ///< one sentence
+  std::string mesh_doc{};  ///< in place of `doc` where the cloth is a mesh
+  /// Bound to a scene like this one, which need not have the block. Empty for "obstacles", a list.
+  std::function<std::vector<Parameter>(const Scene&)> parameters{};
+  std::function<bool(const Scene&)> is_present{};
+  std::optional<OptionalBlock> optional{};  ///< none: every scene has it
+};
+
+/// In the order of a form.
+const std::vector<BlockRow>& block_rows();
+
+/// In the order of a file.
+const std::vector<const BlockRow*>& block_rows_of_file();
+
+/// "springs" of "springs.shear", "" of "damping": the object of a file in which a parameter or block stands.
+std::string parent_path(const std::string& path);
+
+/// Binds the fields of the Owner that `owner_of` finds in a scene.
+template <class Owner, class OwnerOf>
+std::vector<Parameter> bound(const std::string& prefix, const Fields<Owner>& fields, OwnerOf owner_of) {
+  std::vector<Parameter> parameters;
+  for (const Field<Owner>& field : fields)
+    parameters.push_back({{field.info,
+                           [get = field.get, owner_of](const Scene& scene) {
+                             return get(owner_of(const_cast<Scene&>(scene)));
+                           },
+                           [set = field.set, owner_of](Scene& scene, const ParameterValue& value) {
+                             set(owner_of(scene), value);
+                           }},
+                          joined_path(prefix, field.info.key)});
+  return parameters;
+}
+
+}  // namespace cloth

@@ -14,8 +14,8 @@ constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of t
 constexpr double ways_ahead = 4;
 constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and for what hardly moves
 
-double furthest_reach(const Ways& ways) {
-  return std::max(ways.reach, ways.own_reach);
+double furthest_reach(const SweptBounds& swept) {
+  return std::max(swept.reach, swept.own_reach);
 }
 
 /// Where a body is, as far as a turn of a sphere does not matter.
@@ -38,85 +38,85 @@ void ClosePairs::set_team(WorkerTeam* team) {
   parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
 }
 
-void ClosePairs::measure(const Situation& now) {
+void ClosePairs::measure(const PairQuery& now) {
   longest_ = 0;
-  range_.resize(now.ways.particles.size());
+  range_.resize(now.swept.particles.size());
   for (std::size_t i = 0; i < range_.size(); ++i) {
-    const Capsule& way = now.ways.particles[i];
+    const Capsule& way = now.swept.particles[i];
     const double length = (way.to - way.from).norm();
     longest_ = std::max(longest_, length);
     range_[i] = length + way.radius;
   }
-  obstacle_ways_.clear();
+  obstacle_paths_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    obstacle_ways_.push_back(longest_way(bodies_[k], now.passages[k]));
+    obstacle_paths_.push_back(longest_path(bodies_[k], now.paths[k]));
 }
 
-bool ClosePairs::all_stand(const Situation& now) const {
+bool ClosePairs::all_at_rest(const PairQuery& now) const {
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    if (!same_place(bodies_[k], now.passages[k].from(), now.passages[k].to())) return false;
+    if (!same_place(bodies_[k], now.paths[k].from(), now.paths[k].to())) return false;
   return true;
 }
 
 /// Whether the kept pairs are all that matter: nothing has left what they were found for.
-bool ClosePairs::holds(const Situation& now) const {
-  if (kept_range_.size() != range_.size()) return false;
+bool ClosePairs::holds(const PairQuery& now) const {
+  if (cached_range_.size() != range_.size()) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    if (!same_place(bodies_[k], now.poses[k], kept_poses_[k])) return false;
+    if (!same_place(bodies_[k], now.poses[k], cached_poses_[k])) return false;
   for (std::size_t i = 0; i < range_.size(); ++i)
-    if (moved_[i] + range_[i] > kept_range_[i]) return false;
+    if (moved_[i] + range_[i] > cached_range_[i]) return false;
   return true;
 }
 
 /// Finds what is to be kept, and its distances.
-void ClosePairs::look_around(const Situation& now) {
-  const double reach = furthest_reach(now.ways);
-  Ways around = now.ways;
-  kept_range_.resize(range_.size());
+void ClosePairs::collect_candidates(const PairQuery& now) {
+  const double reach = furthest_reach(now.swept);
+  SweptBounds around = now.swept;
+  cached_range_.resize(range_.size());
   for (std::size_t i = 0; i < range_.size(); ++i) {
     const Vec3 here = now.position[i];
     const double length = (around.particles[i].to - around.particles[i].from).norm();
-    kept_range_[i] = range_[i] + std::min(ways_ahead * length, reach) + least_ahead * reach;
-    around.particles[i] = {here, here, kept_range_[i]};
+    cached_range_[i] = range_[i] + std::min(ways_ahead * length, reach) + least_ahead * reach;
+    around.particles[i] = {here, here, cached_range_[i]};
   }
-  search_.find(around, now.passages, kept_);
-  kept_distance_.resize(kept_.size());
-  in_shares(team_, kept_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
+  search_.find(around, now.paths, cached_);
+  cached_distance_.resize(cached_.size());
+  in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      kept_distance_[k] = separate(kept_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
+      cached_distance_[k] = separate(cached_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
   });
-  kept_position_ = now.position;
-  kept_poses_ = now.poses;
+  cached_position_ = now.position;
+  cached_poses_ = now.poses;
   moved_.assign(range_.size(), 0);
 }
 
-double ClosePairs::reach_of(const FeaturePair& pair, const Ways& ways) const {
-  return pair.obstacle == FeaturePair::cloth_itself ? ways.own_reach : ways.reach;
+double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) const {
+  return pair.obstacle == FeaturePair::cloth_itself ? swept.own_reach : swept.reach;
 }
 
 /// What is_far() would say of a kept pair, known without looking at it.
-bool ClosePairs::is_still_far(std::size_t k, const Ways& ways) const {
-  const PairParticles pair = particles_of(kept_[k], cloth_);
+bool ClosePairs::is_known_far(std::size_t k, const SweptBounds& swept) const {
+  const PairParticles pair = particles_of(cached_[k], cloth_);
   const int near = pair.near_count;
   const double moved = largest(moved_, pair, 0, near) + largest(moved_, pair, near, pair.count);
   const double range = largest(range_, pair, 0, near) + largest(range_, pair, near, pair.count);
   constexpr double rounding = 1e-9;
-  return (1 - rounding) * kept_distance_[k] > reach_of(kept_[k], ways) + range + moved;
+  return (1 - rounding) * cached_distance_[k] > reach_of(cached_[k], swept) + range + moved;
 }
 
 /// Whether the pair cannot come within its reach: the ways are too short, or lead along or away.
-bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const Ways& ways) const {
-  const double reach = reach_of(pair, ways);
+bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const SweptBounds& swept) const {
+  const double reach = reach_of(pair, swept);
   double near_range = 0, far_range = 0;
   Interval near, far{s.far_level, s.far_level};
   for (int j = 0; j < s.count; ++j) {
     const std::size_t i = at(s.particle[at(j)]);
     double& range = j < s.near_count ? near_range : far_range;
     range = std::max(range, range_[i]);
-    (j < s.near_count ? near : far).add(along(s.normal, ways.particles[i]));
+    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[i]));
   }
   if (pair.obstacle != FeaturePair::cloth_itself) {
-    far_range = obstacle_ways_[at(pair.obstacle)];
+    far_range = obstacle_paths_[at(pair.obstacle)];
     far.high += far_range;
   }
   if (s.distance > reach + near_range + far_range) return true;
@@ -124,7 +124,7 @@ bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const Ways
 }
 
 template <class Skip>
-void ClosePairs::separate_all(const Situation& now, const std::vector<FeaturePair>& candidates,
+void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
                               const Skip& skip, std::vector<FeaturePair>& pairs,
                               std::vector<Separation>& separations) {
   const int shares =
@@ -135,8 +135,8 @@ void ClosePairs::separate_all(const Situation& now, const std::vector<FeaturePai
           if (skip(k)) continue;
           const FeaturePair& pair = candidates[k];
           const Separation s = separate(pair, cloth_, now.position, bodies_, now.poses,
-                                        near_factor * reach_of(pair, now.ways));
-          if (is_far(pair, s, now.ways)) continue;
+                                        near_factor * reach_of(pair, now.swept));
+          if (is_far(pair, s, now.swept)) continue;
           part.pairs.push_back(pair);
           part.separations.push_back(s);
         }
@@ -150,19 +150,20 @@ void ClosePairs::separate_all(const Situation& now, const std::vector<FeaturePai
 }
 
 /// Keeping serves where the next step will find all where it is now, or nearly so.
-void ClosePairs::find(const Situation& now, std::vector<FeaturePair>& pairs,
+void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
                       std::vector<Separation>& separations) {
   measure(now);
-  if (longest_ > furthest_reach(now.ways) || !all_stand(now)) {
-    search_.find(now.ways, now.passages, found_);
+  if (longest_ > furthest_reach(now.swept) || !all_at_rest(now)) {
+    search_.find(now.swept, now.paths, found_);
     return separate_all(
         now, found_, [](std::size_t) { return false; }, pairs, separations);
   }
-  if (kept_position_.size() == now.position.size())
-    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = (now.position[i] - kept_position_[i]).norm();
-  if (!holds(now)) look_around(now);
+  if (cached_position_.size() == now.position.size())
+    for (std::size_t i = 0; i < moved_.size(); ++i)
+      moved_[i] = (now.position[i] - cached_position_[i]).norm();
+  if (!holds(now)) collect_candidates(now);
   separate_all(
-      now, kept_, [&](std::size_t k) { return is_still_far(k, now.ways); }, pairs, separations);
+      now, cached_, [&](std::size_t k) { return is_known_far(k, now.swept); }, pairs, separations);
 }
 
 }  // namespace cloth

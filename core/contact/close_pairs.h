@@ -12,11 +12,11 @@ namespace cloth {
 /// Pairs nearer than this many thicknesses may hold the thickness; others only bound the motion.
 inline constexpr double near_factor = 1.5;
 
-struct Situation {
+struct PairQuery {
   const Vec3Field& position;  ///< m, of the particles
-  const Ways& ways;
-  const std::vector<Passage>& passages;  ///< of the obstacles in this step
-  const std::vector<Pose>& poses;        ///< where they are now
+  const SweptBounds& swept;
+  const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this step
+  const std::vector<Pose>& poses;               ///< where they are now
 };
 
 class ClosePairs {
@@ -29,10 +29,10 @@ class ClosePairs {
   void set_team(WorkerTeam* team);
 
   /// All pairs that can come within the reach of each other while all stay in their ways.
-  void find(const Situation& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
+  void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
 
   /// What was kept was found for other reaches.
-  void forget() { kept_range_.clear(), search_.forget(); }
+  void forget() { cached_range_.clear(), search_.forget(); }
 
   PairSearch& search() { return search_; }
   const PairSearch& search() const { return search_; }
@@ -43,15 +43,15 @@ class ClosePairs {
     std::vector<Separation> separations;
   };
 
-  void measure(const Situation& now);
-  bool all_stand(const Situation& now) const;
-  bool holds(const Situation& now) const;
-  void look_around(const Situation& now);
-  double reach_of(const FeaturePair& pair, const Ways& ways) const;
-  bool is_still_far(std::size_t kept, const Ways& ways) const;
-  bool is_far(const FeaturePair& pair, const Separation& separation, const Ways& ways) const;
+  void measure(const PairQuery& now);
+  bool all_at_rest(const PairQuery& now) const;
+  bool holds(const PairQuery& now) const;
+  void collect_candidates(const PairQuery& now);
+  double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
+  bool is_known_far(std::size_t kept, const SweptBounds& swept) const;
+  bool is_far(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
   template <class Skip>
-  void separate_all(const Situation& now, const std::vector<FeaturePair>& candidates, const Skip& skip,
+  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const Skip& skip,
                     std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
 
   const Surface& cloth_;
@@ -60,17 +60,17 @@ class ClosePairs {
   WorkerTeam* team_ = nullptr;
   std::vector<Part> parts_{1};  ///< of each thread
 
-  std::vector<double> range_;          ///< m, that each particle may go in this round
-  std::vector<double> obstacle_ways_;  ///< m, at most, of any point of each in this step
-  std::vector<double> moved_;          ///< m, of each particle since the kept pairs were found
-  double longest_ = 0;                 ///< m, of all ways
+  std::vector<double> range_;           ///< m, that each particle may go in this round
+  std::vector<double> obstacle_paths_;  ///< m, at most, of any point of each in this step
+  std::vector<double> moved_;           ///< m, of each particle since the kept pairs were found
+  double longest_ = 0;                  ///< m, of all ways
   std::vector<FeaturePair> found_;
 
-  std::vector<FeaturePair> kept_;
-  std::vector<double> kept_distance_;  ///< m, of each
-  Vec3Field kept_position_;
-  std::vector<double> kept_range_;  ///< m, for which the kept pairs hold
-  std::vector<Pose> kept_poses_;
+  std::vector<FeaturePair> cached_;
+  std::vector<double> cached_distance_;  ///< m, of each
+  Vec3Field cached_position_;
+  std::vector<double> cached_range_;  ///< m, for which the kept pairs hold
+  std::vector<Pose> cached_poses_;
 };
 
 }  // namespace cloth

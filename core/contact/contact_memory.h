@@ -13,16 +13,16 @@ struct ContactMemory {
   std::vector<std::uint8_t> held;
   /// J, of each particle: what the impulse at the end of the step has taken from a kinetic energy that the
   /// one at the beginning of the next step gives back. Only where velocities follow positions.
-  std::vector<double> lent;
+  std::vector<double> deferred;
 
   void resize(std::size_t particles) {
     held.resize(particles, 0);
-    lent.resize(particles, 0.0);
+    deferred.resize(particles, 0.0);
   }
   /// Forgets all; returns what was lent, in J.
   double clear() {
-    const double sum = std::accumulate(lent.begin(), lent.end(), 0.0);
-    held.clear(), lent.clear();
+    const double sum = std::accumulate(deferred.begin(), deferred.end(), 0.0);
+    held.clear(), deferred.clear();
     return sum;
   }
 };

@@ -6,11 +6,11 @@
 namespace cloth {
 namespace {
 
-void add_push(const ContactConstraint& contact, const std::vector<double>& inverse_mass, const Vec3& push,
-              Vec3Field& value) {
+void add_impulse(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+                 const Vec3& impulse, Vec3Field& value) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
     const auto i = static_cast<std::size_t>(contact.particle[k]);
-    value.add(i, contact.weight[k] * inverse_mass[i] * push);
+    value.add(i, contact.weight[k] * inverse_mass[i] * impulse);
   }
 }
 
@@ -18,20 +18,22 @@ void add_push(const ContactConstraint& contact, const std::vector<double>& inver
 double relax(ContactConstraint& contact, const std::vector<double>& inverse_mass, Vec3Field& value) {
   const Vec3 point = contact.point(value);
   const double missing = contact.bound - contact.normal.dot(point);
-  const double push = std::max(contact.push + missing / contact.mobility, 0.0) - contact.push;
-  if (push == 0 && contact.push == 0 && contact.pressed == 0) return 0;
-  contact.push += push;
-  Vec3 total = push * contact.normal;
+  const double change =
+      std::max(contact.normal_impulse + missing / contact.mobility, 0.0) - contact.normal_impulse;
+  if (change == 0 && contact.normal_impulse == 0 && contact.normal_load == 0) return 0;
+  contact.normal_impulse += change;
+  Vec3 total = change * contact.normal;
   if (contact.friction > 0) {
     const Vec3 slip = point - contact.rest;
     const Vec3 across = slip - contact.normal.dot(slip) * contact.normal;
-    Vec3 rub = contact.rub - across / contact.mobility;
-    const double most = contact.friction * std::max(contact.push, contact.pressed), wanted = rub.norm();
-    if (wanted > most) rub *= most / wanted;
-    total += rub - contact.rub;
-    contact.rub = rub;
+    Vec3 friction_impulse = contact.friction_impulse - across / contact.mobility;
+    const double most = contact.friction * std::max(contact.normal_impulse, contact.normal_load),
+                 wanted = friction_impulse.norm();
+    if (wanted > most) friction_impulse *= most / wanted;
+    total += friction_impulse - contact.friction_impulse;
+    contact.friction_impulse = friction_impulse;
   }
-  add_push(contact, inverse_mass, total, value);
+  add_impulse(contact, inverse_mass, total, value);
   return contact.mobility * total.norm();
 }
 
@@ -45,9 +47,10 @@ double mobility_of(const ContactConstraint& contact, const std::vector<double>& 
   return mobility;
 }
 
-void apply_pushes(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
-                  Vec3Field& value) {
-  add_push(contact, inverse_mass, contact.push * contact.normal + contact.rub, value);
+void apply_impulses(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+                    Vec3Field& value) {
+  add_impulse(contact, inverse_mass, contact.normal_impulse * contact.normal + contact.friction_impulse,
+              value);
 }
 
 int solve_contacts(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass, int sweeps,

@@ -24,10 +24,10 @@ struct ContactConstraint {
   double bound = 0;
   Vec3 rest{0, 0, 0};
   double friction = 0;
-  double mobility = 0;  ///< sum of w^2 / m, 1/kg
-  double push = 0;      ///< along the normal so far, >= 0
-  double pressed = 0;   ///< a push that friction may count on in any case
-  Vec3 rub{0, 0, 0};    ///< across it
+  double mobility = 0;             ///< sum of w^2 / m, 1/kg
+  double normal_impulse = 0;       ///< along the normal so far, >= 0
+  double normal_load = 0;          ///< a push that friction may count on in any case
+  Vec3 friction_impulse{0, 0, 0};  ///< across it
 
   Vec3 point(const Vec3Field& value) const {
     Vec3 sum = Vec3::Zero();
@@ -41,8 +41,8 @@ struct ContactConstraint {
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass);
 
 /// Adds what the present pushes and rubs do.
-void apply_pushes(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
-                  Vec3Field& value);
+void apply_impulses(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+                    Vec3Field& value);
 
 /// At most `sweeps` over all, in their order; ends where no point was moved by more than `tolerance`.
 /// Contacts of which no particle can move are left out. Returns the sweeps.

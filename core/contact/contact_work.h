@@ -22,18 +22,20 @@ struct PointSpeeds {
 inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
   const Vec3 mean = 0.5 * (speeds.before + speeds.after), change = speeds.after - speeds.before;
   const double along = contact.normal.dot(change);
-  const double blow = std::clamp(along / contact.mobility, 0.0, contact.push);
+  const double impact = std::clamp(along / contact.mobility, 0.0, contact.normal_impulse);
   double work =
-      blow * contact.normal.dot(mean) + (contact.push - blow) * contact.normal.dot(speeds.gone);
+      impact * contact.normal.dot(mean) + (contact.normal_impulse - impact) * contact.normal.dot(speeds.gone);
 
   const auto across = [&](const Vec3& v) -> Vec3 { return v - contact.normal.dot(v) * contact.normal; };
   const Vec3 turned = across(change);
-  const bool slows = across(speeds.after - contact.rest).squaredNorm() <
-                     across(speeds.before - contact.rest).squaredNorm();
+  const bool slows =
+      across(speeds.after - contact.rest).squaredNorm() < across(speeds.before - contact.rest).squaredNorm();
   Vec3 stopping = Vec3::Zero();
   if (slows && turned.squaredNorm() > 0)
-    stopping = std::clamp(contact.rub.dot(turned) / turned.squaredNorm(), 0.0, 1 / contact.mobility) * turned;
-  work += stopping.dot(mean) + (contact.rub - stopping).dot(speeds.gone);
+    stopping =
+        std::clamp(contact.friction_impulse.dot(turned) / turned.squaredNorm(), 0.0, 1 / contact.mobility) *
+        turned;
+  work += stopping.dot(mean) + (contact.friction_impulse - stopping).dot(speeds.gone);
   return work;
 }
 

@@ -8,7 +8,7 @@
 //
 // Where the particles should go is solved for in each round: as near as possible to where the integrator has
 // put them, in the norm of their masses, with every near pair a thickness apart and Coulomb friction against
-// the slip of the step. Velocities follow by impulses over the same pairs (velocity_answer.cpp).
+// the slip of the step. Velocities follow by impulses over the same pairs (velocity_response.cpp).
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@
 #include "contact/contact_memory.h"
 #include "contact/contact_report.h"
 #include "contact/contact_solver.h"
-#include "contact/obstacle_carry.h"
+#include "contact/obstacle_transition.h"
 
 namespace cloth {
 
@@ -28,7 +28,8 @@ bool has_continuous_contact(const Scene& scene);
 
 /// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest. How far from its
 /// pivot a plane that an edit has turned can touch the cloth follows from the positions.
-double highest_obstacle_speed(const Scene& scene, const ObstacleCarries& carries, const Vec3Field& position);
+double highest_obstacle_speed(const Scene& scene, const ObstacleTransitions& transitions,
+                              const Vec3Field& position);
 
 /// Begin and end of a step, in s.
 struct ContactTimes {
@@ -37,7 +38,7 @@ struct ContactTimes {
 
 /// What the velocities' answer refers to, and how the integrator's velocities follow contact; no function
 /// where they need not.
-struct Settling {
+struct VelocityCoupling {
   const Vec3Field& velocity_before;                            ///< m/s, as the step began
   ContactMemory& memory;                                       ///< of the last step, and then of this one
   std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
@@ -50,8 +51,8 @@ struct Settling {
 class ContinuousContact {
  public:
   /// Obstacles are where scene and carries say they are at `time`, in s.
-  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleCarries carries,
-                    const ThicknessCarry& thickness, double time);
+  ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleTransitions transitions,
+                    const ThicknessTransition& thickness, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
@@ -65,7 +66,7 @@ class ContinuousContact {
   /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
   /// pinch is reported the positions are the last ones that nothing passed.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
-                      ClothState& state, const Settling& settling);
+                      ClothState& state, const VelocityCoupling& coupling);
 
   /// The same to the bit for any team; none: one thread.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
@@ -74,8 +75,8 @@ class ContinuousContact {
   void set_stop_test(std::function<bool()> test) { stop_test_ = std::move(test); }
 
   /// From the next step on.
-  void set_carries(ObstacleCarries carries, const ThicknessCarry& thickness) {
-    carries_ = std::move(carries), thickness_carry_ = thickness;
+  void set_transitions(ObstacleTransitions transitions, const ThicknessTransition& thickness) {
+    transitions_ = std::move(transitions), thickness_transition_ = thickness;
   }
 
   /// Appends the touches of the last step; `position` is what it ended with.
@@ -90,11 +91,11 @@ class ContinuousContact {
   }
 
  private:
-  struct PairMemory {
-    double thickness = 0;  ///< m, to be kept
-    double push = 0;       ///< kg m, of the last round
-    Vec3 rub{0, 0, 0};     ///< kg m
-    int touch = -1;        ///< in touches_
+  struct PairState {
+    double thickness = 0;            ///< m, to be kept
+    double normal_impulse = 0;       ///< kg m, of the last round
+    Vec3 friction_impulse{0, 0, 0};  ///< kg m
+    int touch = -1;                  ///< in touches_
   };
   struct Plane {
     Vec3 point, normal;
@@ -111,24 +112,24 @@ class ContinuousContact {
   void set_thickness(double time);
   bool find_pairs();
   bool may_come_near() const;
-  void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& wished);
+  void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& integrated);
   RoundsEnd go_rounds(const ClothSystem& system, const Vec3Field& from, double step, ContactReport& report);
   void forget_overtaken_touches(const Vec3Field& from, double step);
   void separate_all();
-  void solve_wish(const ClothSystem& system, const Vec3Field& from);
+  void solve_target(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
   double most_missing() const;
   void keep_touches(double step);
   double move_cloth();
-  void bound_by_pairs();
-  void bound_by_ways();
+  void bound_by_planes();
+  void bound_by_swept_volumes();
   double advance_obstacles();
   double turn_limit(std::size_t obstacle) const;
   double shrink_to_planes();
   double reached_gap(const Separation& separation) const;
   double furthest_move(const Vec3Field& before) const;
   double reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const;
-  Plane carried_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
+  Plane moved_plane(int obstacle, const Plane& plane, const std::vector<Pose>& to) const;
   std::optional<std::size_t> blocking_pair() const;
   Pinch pinch(const ClothSystem& system) const;
   int count_touched() const;
@@ -140,17 +141,17 @@ class ContinuousContact {
     double step = 0;            ///< s
   };
   bool find_motion(const ClothSystem& system, const Begin& begin);
-  void take_touches(const Begin& begin, const Settling& settling);
-  double approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const;
-  void answer_velocities(const ClothSystem& system, const Begin& begin, const Settling& settling,
-                         ClothState& state, ContactReport& report);
-  Vec3 impulse_of_pushes(const ClothSystem& system) const;
-  void find_work(const ClothSystem& system, const Settling& settling, const ClothState& state);
-  double recovering_work(const Begin& begin, const Settling& settling) const;
-  Vec3 opening_of(std::size_t particle, const Begin& begin) const;
-  void add_half_steps_work(const ClothSystem& system, const Begin& begin, const Settling& settling,
+  void take_touches(const Begin& begin, const VelocityCoupling& coupling);
+  double approach_of(const Touch& touch, const Begin& begin, const VelocityCoupling& coupling) const;
+  void solve_velocities(const ClothSystem& system, const Begin& begin, const VelocityCoupling& coupling,
+                        ClothState& state, ContactReport& report);
+  Vec3 total_impulse(const ClothSystem& system) const;
+  void find_work(const ClothSystem& system, const VelocityCoupling& coupling, const ClothState& state);
+  double recovering_work(const Begin& begin, const VelocityCoupling& coupling) const;
+  Vec3 start_change_of(std::size_t particle, const Begin& begin) const;
+  void add_half_steps_work(const ClothSystem& system, const Begin& begin, const VelocityCoupling& coupling,
                            const ClothState& state);
-  double lent_to_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
+  double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
   void bounce(const ClothSystem& system, const Begin& begin, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
   int note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state);
@@ -158,56 +159,56 @@ class ContinuousContact {
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
   std::vector<Obstacle> obstacles_;
-  ObstacleCarries carries_;
+  ObstacleTransitions transitions_;
   ClosePairs close_pairs_;
   WorkerTeam* team_ = nullptr;
   std::function<bool()> stop_test_;
-  double mean_edge_ = 0;   ///< m, of the cloth at its start
-  bool is_rough_ = false;  ///< obstacles at rest: see constraint_of()
-  ThicknessCarry thickness_carry_;
+  double mean_edge_ = 0;       ///< m, of the cloth at its start
+  bool is_staggered_ = false;  ///< obstacles at rest: see constraint_of()
+  ThicknessTransition thickness_transition_;
   double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
   double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step
   double gravity_ = 0;                                                       ///< m/s^2
-  double longest_way_ = 0;  ///< m, that one search for pairs serves
+  double longest_path_ = 0;  ///< m, that one search for pairs serves
 
   std::vector<Pose> starts_;  ///< of the next step
 
   // of the step in progress
-  std::vector<Passage> whole_passages_;
+  std::vector<PoseInterpolation> whole_paths_;
   std::vector<Pose> starts_before_;
   std::int64_t substeps_ = 1, substep_ = 0;
-  double looked_at_ = 0;  ///< pairs and particles, of all rounds so far
+  double work_count_ = 0;  ///< pairs and particles, of all rounds so far
   bool has_moved_ = false;
   Vec3Field substep_from_;
   // of the substep in progress
-  std::vector<Passage> passages_;
+  std::vector<PoseInterpolation> paths_;
   std::vector<Pose> poses_, next_poses_, end_poses_;
-  double part_ = 0;   ///< of the obstacles' way that is behind them
-  Vec3Field base_;    ///< m, wished, before contact in this round
-  Vec3Field wish_;    ///< m, wished with contact
-  Vec3Field safe_;    ///< m, reached
-  Vec3Field wished_;  ///< m, where the integrator put the particles
-  std::vector<double> share_;
-  std::vector<double> room_;  ///< of each particle's way, more each time that it was stopped by it
-  Ways ways_;                 ///< where the particles may go until pairs are found anew
+  double part_ = 0;                ///< of the obstacles' way that is behind them
+  Vec3Field free_position_;        ///< m, wished, before contact in this round
+  Vec3Field target_position_;      ///< m, wished with contact
+  Vec3Field position_;             ///< m, reached
+  Vec3Field integrated_position_;  ///< m, where the integrator put the particles
+  std::vector<double> fraction_;
+  std::vector<double> radius_scale_;  ///< of each particle's way, more each time that it was stopped by it
+  SweptBounds swept_;                 ///< where the particles may go until pairs are found anew
   std::vector<FeaturePair> pairs_;
-  std::vector<PairMemory> memory_;
+  std::vector<PairState> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
   std::optional<std::size_t> blocking_pair_;  ///< that stopped an obstacle in this round
-  bool outgrown_ = false;                     ///< a particle was stopped by its way
+  bool reached_bounds_ = false;               ///< a particle was stopped by its way
   bool is_separated_ = false;                 ///< the separations are of where all is now
   bool was_rebased_ = false;                  ///< contacts of earlier rounds are part of what is wished
 
   // of the velocities' answer
-  Vec3Field motion_;                   ///< m/s, mean of the step, without what put too near pairs apart
-  Vec3Field free_velocity_;            ///< m/s, before the answer
-  std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
-  std::vector<double> work_;           ///< J, of each particle
-  std::vector<std::uint8_t> bounced_;  ///< of each particle
-  std::vector<double> lent_to_bounced_;  ///< J, of each particle
+  Vec3Field motion_;                         ///< m/s, mean of the step, without what put too near pairs apart
+  Vec3Field free_velocity_;                  ///< m/s, before the answer
+  std::vector<double> bounce_bound_;         ///< m/s, of each constraint, with restitution
+  std::vector<double> work_;                 ///< J, of each particle
+  std::vector<std::uint8_t> bounced_;        ///< of each particle
+  std::vector<double> deferred_of_bounced_;  ///< J, of each particle
 };
 
 }  // namespace cloth

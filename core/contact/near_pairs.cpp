@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contact/at.h"
-#include "contact/face_meeting.h"
+#include "contact/face_pair_finder.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {
@@ -15,24 +15,24 @@ namespace {
 constexpr std::size_t least_share = 1000, least_queries = 200;
 
 /// How far an even turn bulges out of the chord between its ends, for a point `radius` metres from the axis.
-double bulge(const Passage& passage, double radius) {
-  if (passage.angle() >= 2 * std::numbers::pi) return 2 * radius;
-  return radius * (1 - std::cos(0.5 * passage.angle()));
+double bulge(const PoseInterpolation& path, double radius) {
+  if (path.angle() >= 2 * std::numbers::pi) return 2 * radius;
+  return radius * (1 - std::cos(0.5 * path.angle()));
 }
 
-/// The same for a point at rest, `radius` metres from the pivot at the start, as it is seen from the obstacle:
-/// what the pivot has shifted turns as well, by t (1 - t) times the angle against the chord.
-double seen_bulge(const Passage& passage, double radius) {
-  return bulge(passage, radius) + 0.25 * passage.angle() * (passage.pivot(1) - passage.pivot(0)).norm();
+/// The same for a point at rest, `radius` metres from the pivot at the start, as it is seen from the
+/// obstacle: what the pivot has shifted turns as well, by t (1 - t) times the angle against the chord.
+double seen_bulge(const PoseInterpolation& path, double radius) {
+  return bulge(path, radius) + 0.25 * path.angle() * (path.pivot(1) - path.pivot(0)).norm();
 }
 
 /// Holds the whole way of a point of an obstacle. A point that turns and moves from or to the pivot leaves
 /// the chord by at most an eighth of the second derivative, the turn's and that of both.
-Bounds swept(const Passage& passage, const Vec3& pivot, const Vec3& point, double reach) {
+Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& point, double reach) {
   const double radius = (point - pivot).norm();
-  return bounds_of(passage.from().at(point), passage.to().at(point))
-      .grown(reach + bulge(passage, passage.largest_stretch() * radius) +
-             0.25 * passage.angle() * passage.growth() * radius);
+  return bounds_of(path.from().at(point), path.to().at(point))
+      .grown(reach + bulge(path, path.largest_stretch() * radius) +
+             0.25 * path.angle() * path.growth() * radius);
 }
 
 /// A box as it is seen from an obstacle.
@@ -43,17 +43,17 @@ Bounds seen_from(const Pose& pose, const Bounds& box) {
 }
 
 /// Boxes of the cloth as a mesh meets them on its way, grown by `reach`.
-void seen_from_body(const ObstacleBody& body, const Passage& passage, const std::vector<Bounds>& boxes,
+void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, const std::vector<Bounds>& boxes,
                     double reach, std::vector<Bounds>& seen) {
-  const Vec3 pivot = passage.from().at(body.pivot);
-  const bool at_home = passage.rests() && passage.from() == Pose{};
+  const Vec3 pivot = path.from().at(body.pivot);
+  const bool at_home = path.rests() && path.from() == Pose{};
   seen.resize(boxes.size());
   for (std::size_t f = 0; f < boxes.size(); ++f) {
     const Bounds& box = boxes[f];
-    seen[f] = at_home ? box : seen_from(passage.from(), box);
-    if (!passage.rests()) seen[f].add(seen_from(passage.to(), box));
+    seen[f] = at_home ? box : seen_from(path.from(), box);
+    if (!path.rests()) seen[f].add(seen_from(path.to(), box));
     const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
-    seen[f] = seen[f].grown((reach + seen_bulge(passage, radius)) / passage.least_stretch());
+    seen[f] = seen[f].grown((reach + seen_bulge(path, radius)) / path.least_stretch());
   }
 }
 
@@ -79,35 +79,35 @@ void PairSearch::in_parts(std::size_t count, std::size_t least, std::vector<std:
 /// One search.
 class PairSearch::Step {
  public:
-  Step(PairSearch& search, const Ways& ways, std::vector<FeaturePair>& pairs)
+  Step(PairSearch& search, const SweptBounds& swept, std::vector<FeaturePair>& pairs)
       : search_(search),
         cloth_(search.cloth_),
         particles_(search.particles_),
-        ways_(ways),
-        reach_(ways.reach),
+        swept_(swept),
+        reach_(swept.reach),
         pairs_(pairs) {
     for (const Bounds& box : particles_) whole_.add(box);
   }
 
-  void meet(int obstacle, const Passage& passage) {
+  void meet(int obstacle, const PoseInterpolation& path) {
     obstacle_ = obstacle;
     const ObstacleBody& body = search_.bodies_[at(obstacle)];
     switch (body.shape) {
       case Shape::plane:
-        return meet_plane(body, passage);
+        return meet_plane(body, path);
       case Shape::sphere:
-        return meet_sphere(body, passage);
+        return meet_sphere(body, path);
       case Shape::box:
-        return meet_box(body, passage);
+        return meet_box(body, path);
       case Shape::mesh:
-        return meet_mesh(body, passage);
+        return meet_mesh(body, path);
     }
   }
 
   void meet_itself() {
     std::vector<Capsule>& near = search_.seen_capsules_;
     near.clear();
-    for (const Capsule& way : ways_.particles) near.push_back(way.grown(0.5 * ways_.own_reach));
+    for (const Capsule& way : swept_.particles) near.push_back(way.grown(0.5 * swept_.own_reach));
     std::vector<Slab>& faces = search_.own_faces_;
     faces.resize(cloth_.triangles.size());
     for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -129,34 +129,34 @@ class PairSearch::Step {
   }
   void add(PairKind kind, int feature, int foreign) { pairs_.push_back({obstacle_, kind, feature, foreign}); }
 
-  void meet_plane(const ObstacleBody& body, const Passage& passage) {
-    const Vec3 pivot = passage.from().at(body.pivot);
+  void meet_plane(const ObstacleBody& body, const PoseInterpolation& path) {
+    const Vec3 pivot = path.from().at(body.pivot);
     for (std::size_t i = 0; i < particles_.size(); ++i) {
       const Vec3 middle = 0.5 * (particles_[i].lower + particles_[i].upper);
       const Vec3 half = 0.5 * (particles_[i].upper - particles_[i].lower);
       double lowest = infinity;
-      for (const Pose* pose : {&passage.from(), &passage.to()}) {
+      for (const Pose* pose : {&path.from(), &path.to()}) {
         const Vec3 normal = pose->turn * body.normal;
         lowest = std::min(lowest, normal.dot(middle - pose->at(body.point)) - normal.cwiseAbs().dot(half));
       }
-      if (passage.angle() > 0) lowest -= seen_bulge(passage, (middle - pivot).norm() + half.norm());
+      if (path.angle() > 0) lowest -= seen_bulge(path, (middle - pivot).norm() + half.norm());
       if (lowest < reach_) add(PairKind::vertex_plane, static_cast<int>(i), 0);
     }
   }
 
-  void meet_sphere(const ObstacleBody& body, const Passage& passage) {
-    const double radius = passage.largest_stretch() * body.radius;
-    const Bounds way = swept(passage, body.pivot, body.center, reach_ + radius);
+  void meet_sphere(const ObstacleBody& body, const PoseInterpolation& path) {
+    const double radius = path.largest_stretch() * body.radius;
+    const Bounds way = swept_box(path, body.pivot, body.center, reach_ + radius);
     if (!overlap(whole_, way)) return;
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f)
       if (overlap(box_of_face(f), way)) add(PairKind::face_sphere, f, 0);
   }
 
-  void meet_box(const ObstacleBody& body, const Passage& passage) {
+  void meet_box(const ObstacleBody& body, const PoseInterpolation& path) {
     Bounds way;
     std::array<Bounds, 8> corner;
     for (std::size_t k = 0; k < 8; ++k) {
-      corner[k] = swept(passage, body.pivot, body.vertices[k], reach_);
+      corner[k] = swept_box(path, body.pivot, body.vertices[k], reach_);
       way.add(corner[k]);
     }
     if (!overlap(whole_, way)) return;
@@ -177,26 +177,27 @@ class PairSearch::Step {
     }
   }
 
-  void meet_mesh(const ObstacleBody& body, const Passage& passage) {
+  void meet_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
     const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
     const std::vector<Slab>& faces = search_.mesh_faces_[at(obstacle_)];
-    if (passage.rests()) {
+    if (path.rests()) {
       std::vector<Capsule>& near = search_.seen_capsules_;
       near.clear();
-      const Pose& pose = passage.from();
-      for (const Capsule& way : ways_.particles)
+      const Pose& pose = path.from();
+      for (const Capsule& way : swept_.particles)
         near.push_back(
-            {pose.back(way.from), pose.back(way.to), (way.radius + reach_) / passage.least_stretch()});
+            {pose.back(way.from), pose.back(way.to), (way.radius + reach_) / path.least_stretch()});
       meet_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     } else {
       std::vector<Bounds>& near = search_.seen_;
-      seen_from_body(body, passage, particles_, reach_, near);
+      seen_from_body(body, path, particles_, reach_, near);
       meet_faces<Bounds, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     }
   }
 
   template <class NearRegion, class FarRegion>
-  void meet_faces(const std::vector<BoxPair>& overlaps, const FaceMeeting<NearRegion, FarRegion>& meeting) {
+  void meet_faces(const std::vector<BoxPair>& overlaps,
+                  const FacePairFinder<NearRegion, FarRegion>& meeting) {
     search_.in_parts(overlaps.size(), least_share, search_.pair_parts_, pairs_,
                      [&](std::size_t begin, std::size_t end, std::vector<FeaturePair>& part) {
                        auto own_meeting = meeting;
@@ -208,7 +209,7 @@ class PairSearch::Step {
   PairSearch& search_;
   const Surface& cloth_;
   const std::vector<Bounds>& particles_;
-  const Ways& ways_;
+  const SweptBounds& swept_;
   double reach_;
   std::vector<FeaturePair>& pairs_;
   Bounds whole_;
@@ -247,22 +248,22 @@ void PairSearch::set_team(WorkerTeam* team) {
 /// What the trees have found is kept while every particle stays in its grown box and no mesh moves. It may
 /// say too much; what is in the boxes of this step is told apart afterwards, so that the pairs do not depend
 /// on it.
-void PairSearch::look_in_trees(const Ways& ways, const std::vector<Passage>& passages) {
-  const auto stays = [&](std::size_t i) { return holds(kept_[i], particles_[i]); };
-  bool kept = kept_.size() == particles_.size() && kept_reach_ == ways.reach;
+void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
+  const auto stays = [&](std::size_t i) { return holds(cached_[i], particles_[i]); };
+  bool kept = cached_.size() == particles_.size() && cached_reach_ == swept.reach;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    kept = kept &&
-           (bodies_[k].shape != Shape::mesh || (passages[k].rests() && passages[k].to() == kept_poses_[k]));
+    kept =
+        kept && (bodies_[k].shape != Shape::mesh || (paths[k].rests() && paths[k].to() == cached_poses_[k]));
   for (std::size_t i = 0; kept && i < particles_.size(); ++i) kept = stays(i);
   if (kept) return;
 
-  kept_reach_ = ways.reach;
-  kept_.resize(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) kept_[i] = particles_[i].grown(skin_);
-  kept_poses_.clear();
-  for (const Passage& passage : passages) kept_poses_.push_back(passage.to());
+  cached_reach_ = swept.reach;
+  cached_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) cached_[i] = particles_[i].grown(skin_);
+  cached_poses_.clear();
+  for (const PoseInterpolation& path : paths) cached_poses_.push_back(path.to());
   if (with_itself_) {
-    find_faces(kept_, 0.5 * ways.own_reach);
+    find_faces(cached_, 0.5 * swept.own_reach);
     refit_cloth();
     own_overlaps_.clear();
     in_parts(faces_.size(), least_queries, overlap_parts_, own_overlaps_,
@@ -270,10 +271,10 @@ void PairSearch::look_in_trees(const Ways& ways, const std::vector<Passage>& pas
                cloth_tree_.collect_own(begin, end, part);
              });
   }
-  find_faces(kept_, 0);
+  find_faces(cached_, 0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].shape != Shape::mesh) continue;
-    seen_from_body(bodies_[k], passages[k], faces_, ways.reach, seen_);
+    seen_from_body(bodies_[k], paths[k], faces_, swept.reach, seen_);
     mesh_overlaps_[k].clear();
     in_parts(seen_.size(), least_queries, overlap_parts_, mesh_overlaps_[k],
              [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
@@ -297,15 +298,15 @@ void PairSearch::find_faces(const std::vector<Bounds>& particles, double reach) 
   }
 }
 
-void PairSearch::find(const Ways& ways, const std::vector<Passage>& passages,
+void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
                       std::vector<FeaturePair>& pairs) {
   pairs.clear();
   particles_.clear();
-  for (const Capsule& way : ways.particles) particles_.push_back(box_of(way));
-  if (needs_trees_) look_in_trees(ways, passages);
-  Step step(*this, ways, pairs);
+  for (const Capsule& way : swept.particles) particles_.push_back(box_of(way));
+  if (needs_trees_) look_in_trees(swept, paths);
+  Step step(*this, swept, pairs);
   if (with_itself_) step.meet_itself();
-  for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), passages[k]);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), paths[k]);
 }
 
 int PairSearch::hierarchy_depth(int body) const {

@@ -12,7 +12,7 @@ namespace cloth {
 class WorkerTeam;
 
 /// Where the cloth's particles may be, and how near things count.
-struct Ways {
+struct SweptBounds {
   std::vector<Capsule> particles{};
   double reach = 0;      ///< m, between cloth and obstacles
   double own_reach = 0;  ///< m, of the cloth from itself
@@ -31,10 +31,11 @@ class PairSearch {
 
   /// Every pair comes once; pairs and their order follow from the arguments alone. Features of the cloth that
   /// share a particle are no pair.
-  void find(const Ways& ways, const std::vector<Passage>& passages, std::vector<FeaturePair>& pairs);
+  void find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
+            std::vector<FeaturePair>& pairs);
 
   /// What was kept was found for other reaches.
-  void forget() { kept_.clear(); }
+  void forget() { cached_.clear(); }
 
   /// Levels of a body's hierarchy, or with `FeaturePair::cloth_itself` of the cloth's; 0 where there is none.
   int hierarchy_depth(int body) const;
@@ -48,7 +49,7 @@ class PairSearch {
   template <class Part, class Fill>
   void in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
                 std::vector<Part>& whole, const Fill& fill);
-  void look_in_trees(const Ways& ways, const std::vector<Passage>& passages);
+  void look_in_trees(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
   void refit_cloth();
   void find_faces(const std::vector<Bounds>& particles, double reach);
 
@@ -66,9 +67,9 @@ class PairSearch {
   std::vector<std::vector<FeaturePair>> pair_parts_{1};  ///< of each thread
   std::vector<std::vector<BoxPair>> overlap_parts_{1};
 
-  std::vector<Bounds> kept_;  ///< of the particles, for which the overlaps hold
-  std::vector<Pose> kept_poses_;
-  double kept_reach_ = 0;
+  std::vector<Bounds> cached_;  ///< of the particles, for which the overlaps hold
+  std::vector<Pose> cached_poses_;
+  double cached_reach_ = 0;
   std::vector<BoxPair> own_overlaps_;  ///< of faces of the cloth
   std::vector<std::vector<BoxPair>>
       mesh_overlaps_;  ///< of each body: a face of the cloth and one of the mesh

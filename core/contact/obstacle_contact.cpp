@@ -14,12 +14,12 @@ constexpr double above_rounding = 1e-9;  // m
 
 /// J, of the impulse `change` times the mass on a particle.
 double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds, const Vec3& change,
-                     double press) {
+                     double normal_load) {
   ContactConstraint contact;
   contact.normal = normal;
   contact.mobility = 1 / mass;
-  contact.push = press + std::max(0.0, mass * change.dot(normal));
-  contact.rub = mass * (change - change.dot(normal) * normal);
+  contact.normal_impulse = normal_load + std::max(0.0, mass * change.dot(normal));
+  contact.friction_impulse = mass * (change - change.dot(normal) * normal);
   return work_of(contact, speeds);
 }
 
@@ -79,14 +79,14 @@ Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& 
 }
 
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
-                      double press) {
+                      double normal_load) {
   const double inward = velocity.dot(normal);
   if (!(inward < 0)) return velocity;
   if (obstacle.response == "reflect") return obstacle.friction * (velocity - 2 * inward * normal);
   const Vec3 tangential = velocity - inward * normal;
   const double rebound = obstacle.restitution * approach, change = rebound - inward;
   const double speed = tangential.norm();
-  const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * (change + press) / speed) : 0;
+  const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * (change + normal_load) / speed) : 0;
   return kept * tangential + rebound * normal;
 }
 
@@ -122,10 +122,11 @@ ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity
 /// was held the speed with which the step began. What the step adds to that is load. Slower than twice what
 /// gravity or the load adds in a step is no blow, or a cloth at rest would dance.
 double ObstacleContact::approach_of(std::size_t i, const Vec3& normal, const ContactBegin& begin,
-                                    const Wished& wished) const {
+                                    const Integrated& integrated) const {
   const Vec3 began = begin.velocity[i];
-  const Vec3 speed = begin.memory.held[i] ? began : Vec3((wished.position - begin.position[i]) / begin.step);
-  const double load = normal.dot(began - wished.velocity);
+  const Vec3 speed =
+      begin.memory.held[i] ? began : Vec3((integrated.position - begin.position[i]) / begin.step);
+  const double load = normal.dot(began - integrated.velocity);
   const double approach = -speed.dot(normal);
   return approach > 2 * std::max(gravity_ * begin.step, load) ? approach : 0;
 }
@@ -135,14 +136,14 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
   ContactReport report;
   begin.memory.resize(state.position.size());
   std::span<const HeldParticle> held;
-  if (begin.settled) held = begin.settled->held;
+  if (begin.constrained) held = begin.constrained->held;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (system.pinned[i]) continue;
     Particle particle{i, {state.position[i], state.velocity[i]}, {}, begin.velocity[i]};
     while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
       particle.held = held.first(particle.held.size() + 1);
     held = held.subspan(particle.held.size());
-    if (begin.settled) give_way(particle, *begin.settled, state);
+    if (begin.constrained) give_way(particle, *begin.constrained, state);
     const bool touched = touch(system, particle, begin, state, report);
     if (!touched) begin.memory.held[i] = 0;
   }
@@ -152,24 +153,26 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
 
 /// To where the springs let it go, along the surfaces that hold it: against them it has the speed it came
 /// with.
-void ObstacleContact::give_way(const Particle& particle, const SettledStep& settled, ClothState& state) {
+void ObstacleContact::give_way(const Particle& particle, const ConstrainedStep& constrained,
+                               ClothState& state) {
   const std::size_t i = particle.index;
-  Vec3 moved = settled.position[i] - particle.wished.position;
+  Vec3 moved = constrained.position[i] - particle.integrated.position;
   for (const HeldParticle& held : particle.held) moved -= held.normal.dot(moved) * held.normal;
-  state.position.set(i, settled.position[i]);
-  state.velocity.add(i, moved / settled.weight);
+  state.position.set(i, constrained.position[i]);
+  state.velocity.add(i, moved / constrained.weight);
 }
 
 /// Where the particle belongs and what it is pressed there with, if it touches the obstacle.
 std::optional<ObstacleContact::Touched> ObstacleContact::touched(std::size_t obstacle,
                                                                  const Particle& particle,
-                                                                 const Vec3& position, bool settled) const {
-  if (!settled) {
+                                                                 const Vec3& position,
+                                                                 bool constrained) const {
+  if (!constrained) {
     const auto surface = penetration(obstacles_[obstacle], position);
     return surface ? std::optional(Touched{*surface, 0}) : std::nullopt;
   }
   for (const HeldParticle& held : particle.held)
-    if (held.obstacle == obstacle) return Touched{{position, held.normal}, held.press};
+    if (held.obstacle == obstacle) return Touched{{position, held.normal}, held.normal_load};
   return std::nullopt;
 }
 
@@ -180,15 +183,15 @@ bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const
   const double mass = system.mass[i];
   bool is_touched = false, bounced = false;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const auto place = touched(k, particle, state.position[i], begin.settled != nullptr);
+    const auto place = touched(k, particle, state.position[i], begin.constrained != nullptr);
     if (!place) continue;
-    const auto& [surface, press] = *place;
+    const auto& [surface, normal_load] = *place;
     const Vec3 speed = state.velocity[i];
-    const double approach = approach_of(i, surface.normal, begin, particle.wished);
-    const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, press / mass);
-    Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, press / mass);
+    const double approach = approach_of(i, surface.normal, begin, particle.integrated);
+    const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, normal_load / mass);
+    Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
     const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
-    const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, press);
+    const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, normal_load);
     const double square = 0.5 * mass * (answer - stopped).squaredNorm();
     if (square > 0) {  // gives back no more than was taken
       const double linear = mass * stopped.dot(answer - stopped);

@@ -34,7 +34,7 @@ Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& 
 /// the load of a step, which restitution does not give back. With 0 nothing bounces. What else presses it
 /// against the surface, `press` in m/s, counts for friction.
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
-                      double press = 0);
+                      double normal_load = 0);
 
 /// The obstacle with its surface `length` m further out.
 Obstacle grown(Obstacle obstacle, double length);
@@ -42,12 +42,12 @@ Obstacle grown(Obstacle obstacle, double length);
 /// A particle on an obstacle's surface.
 struct HeldParticle {
   std::size_t particle = 0, obstacle = 0;
-  Vec3 normal{0, 0, 0};  ///< outward
-  double press = 0;      ///< N s, of the springs against the surface, beyond what the particle came with
+  Vec3 normal{0, 0, 0};    ///< outward
+  double normal_load = 0;  ///< N s, of the springs against the surface, beyond what the particle came with
 };
 
 /// Where the particles of a step come to when their springs give way to contact (contact/stiff_contact.h).
-struct SettledStep {
+struct ConstrainedStep {
   Vec3Field position;              ///< m
   double weight = 0;               ///< s; velocities change by displacements over it
   std::vector<HeldParticle> held;  ///< in order of the particles
@@ -55,11 +55,11 @@ struct SettledStep {
 
 /// Of the step that contact follows.
 struct ContactBegin {
-  const Vec3Field& position;             ///< m, as it began
-  const Vec3Field& velocity;             ///< m/s
-  double step = 0;                       ///< s
-  ContactMemory& memory;                 ///< of the last step, and then of this one
-  const SettledStep* settled = nullptr;  ///< without it each particle goes to the nearest surface
+  const Vec3Field& position;                     ///< m, as it began
+  const Vec3Field& velocity;                     ///< m/s
+  double step = 0;                               ///< s
+  ContactMemory& memory;                         ///< of the last step, and then of this one
+  const ConstrainedStep* constrained = nullptr;  ///< without it each particle goes to the nearest surface
 };
 
 /// A particle that moves further in a step than an obstacle is thick: it can pass between two steps unseen.
@@ -99,27 +99,27 @@ class ObstacleContact {
 
  private:
   /// Where and how fast the integrator let a particle go.
-  struct Wished {
+  struct Integrated {
     Vec3 position{0, 0, 0}, velocity{0, 0, 0};  ///< m, m/s
   };
   /// A free particle on its way through a step of contact.
   struct Particle {
     std::size_t index = 0;
-    Wished wished;
+    Integrated integrated;
     std::span<const HeldParticle> held;  ///< of it
     Vec3 before{0, 0, 0};                ///< m/s, as the step began, or what the obstacle before has answered
   };
   struct Touched {
     SurfacePoint surface;
-    double press = 0;  ///< N s
+    double normal_load = 0;  ///< N s
   };
-  static void give_way(const Particle& particle, const SettledStep& settled, ClothState& state);
+  static void give_way(const Particle& particle, const ConstrainedStep& constrained, ClothState& state);
   std::optional<Touched> touched(std::size_t obstacle, const Particle& particle, const Vec3& position,
-                                 bool settled) const;
+                                 bool constrained) const;
   bool touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin, ClothState& state,
              ContactReport& report) const;
   double approach_of(std::size_t particle, const Vec3& normal, const ContactBegin& begin,
-                     const Wished& wished) const;
+                     const Integrated& integrated) const;
 
   std::vector<Obstacle> obstacles_;
   double gravity_ = 0;  ///< m/s^2

@@ -41,26 +41,28 @@ double depth_of(const TriangleMesh& cloth, const Vec3& point, const Vec3& normal
 
 }  // namespace
 
-ObstacleCarry entry_of(const Obstacle& obstacle, const TriangleMesh& cloth, double thickness, double time) {
+ObstacleTransition entry_of(const Obstacle& obstacle, const TriangleMesh& cloth, double thickness,
+                            double time) {
   const Pose pose = pose_of(obstacle, time);
-  ObstacleCarry carry{.begin = time};
-  if (!touches(cloth, obstacle, pose)) return carry;
+  ObstacleTransition transition{.begin = time};
+  if (!touches(cloth, obstacle, pose)) return transition;
   const Vec3 pivot = pivot_of(obstacle), place = pose.at(pivot);
   if (obstacle.shape == Shape::plane) {
     const Vec3 normal = pose.turn * obstacle.normal.normalized();
-    carry.way = -depth_of(cloth, place, normal, thickness) * normal;
-    return carry;
+    transition.way = -depth_of(cloth, place, normal, thickness) * normal;
+    return transition;
   }
   for (const double size : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
-    carry.stretch = Vec3::Constant(size);
-    if (!touches(cloth, obstacle, about(pivot, pose.turn, place, carry.stretch))) return carry;
+    transition.stretch = Vec3::Constant(size);
+    if (!touches(cloth, obstacle, about(pivot, pose.turn, place, transition.stretch))) return transition;
   }
   // Its middle is in the cloth, or hardly beside it: it begins on the side where that is.
   const Nearest there = nearest_of(cloth, place);
-  carry.way = there.normal.dot(there.separation) < 0 ? -thickness * there.normal : thickness * there.normal;
-  const double room = nearest_of(cloth, place + carry.way).distance;
-  carry.stretch = Vec3::Constant(0.5 * std::min(1.0, room / body_of(obstacle).reach));
-  return carry;
+  transition.way =
+      there.normal.dot(there.separation) < 0 ? -thickness * there.normal : thickness * there.normal;
+  const double room = nearest_of(cloth, place + transition.way).distance;
+  transition.stretch = Vec3::Constant(0.5 * std::min(1.0, room / body_of(obstacle).reach));
+  return transition;
 }
 
 }  // namespace cloth

@@ -2,12 +2,13 @@
 // not touch the cloth, and pushes that aside; a plane comes from below it.
 #pragma once
 
-#include "contact/obstacle_carry.h"
+#include "contact/obstacle_transition.h"
 
 namespace cloth {
 
 /// Carries nothing where the obstacle does not touch the cloth. `time` in s; `thickness`, in m, is how far
 /// from the cloth it begins where it has its pivot in it.
-ObstacleCarry entry_of(const Obstacle& obstacle, const TriangleMesh& cloth, double thickness, double time);
+ObstacleTransition entry_of(const Obstacle& obstacle, const TriangleMesh& cloth, double thickness,
+                            double time);
 
 }  // namespace cloth

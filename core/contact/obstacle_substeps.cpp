@@ -15,29 +15,29 @@ constexpr double most_substeps = 1e6;
 
 }  // namespace
 
-double longest_way(const ObstacleBody& body, const Passage& passage) {
-  if (passage.rests()) return 0;
-  const double way = (passage.pivot(1) - passage.pivot(0)).norm() + passage.growth() * body.reach;
-  if (body.shape == Shape::sphere || passage.angle() == 0) return way;
+double longest_path(const ObstacleBody& body, const PoseInterpolation& path) {
+  if (path.rests()) return 0;
+  const double way = (path.pivot(1) - path.pivot(0)).norm() + path.growth() * body.reach;
+  if (body.shape == Shape::sphere || path.angle() == 0) return way;
   return body.shape == Shape::plane ? Bounds::infinity
-                                    : way + passage.angle() * passage.largest_stretch() * body.reach;
+                                    : way + path.angle() * path.largest_stretch() * body.reach;
 }
 
-std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies, const std::vector<Passage>& passages,
-                          double edge) {
+std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies,
+                          const std::vector<PoseInterpolation>& paths, double edge) {
   double substeps = 1;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (bodies[k].shape != Shape::sphere) substeps = std::max(substeps, passages[k].angle() / most_turn);
+    if (bodies[k].shape != Shape::sphere) substeps = std::max(substeps, paths[k].angle() / most_turn);
     if (bodies[k].shape == Shape::mesh)
-      substeps = std::max(substeps, longest_way(bodies[k], passages[k]) / (most_way_part * edge));
+      substeps = std::max(substeps, longest_path(bodies[k], paths[k]) / (most_way_part * edge));
   }
   return static_cast<std::int64_t>(std::ceil(std::min(substeps, most_substeps)));
 }
 
-bool comes_near(const ObstacleBody& body, const Passage& passage, const Bounds& cloth, double reach) {
+bool comes_near(const ObstacleBody& body, const PoseInterpolation& path, const Bounds& cloth, double reach) {
   if (body.shape == Shape::plane) return true;
-  const Bounds way = bounds_of(passage.pivot(0), passage.pivot(1));
-  return overlap(way.grown(passage.largest_stretch() * body.reach + reach), cloth);
+  const Bounds way = bounds_of(path.pivot(0), path.pivot(1));
+  return overlap(way.grown(path.largest_stretch() * body.reach + reach), cloth);
 }
 
 }  // namespace cloth

@@ -13,13 +13,13 @@
 namespace cloth {
 
 /// Substeps for these ways of a whole step, 1 for most; `edge` is a mean one of the cloth, in m.
-std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies, const std::vector<Passage>& passages,
-                          double edge);
+std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies,
+                          const std::vector<PoseInterpolation>& paths, double edge);
 
 /// Whether an obstacle can come within `reach` metres of a box around the cloth.
-bool comes_near(const ObstacleBody& body, const Passage& passage, const Bounds& cloth, double reach);
+bool comes_near(const ObstacleBody& body, const PoseInterpolation& path, const Bounds& cloth, double reach);
 
 /// m, at most, of any point on its way; of a plane that turns infinite.
-double longest_way(const ObstacleBody& body, const Passage& passage);
+double longest_path(const ObstacleBody& body, const PoseInterpolation& path);
 
 }  // namespace cloth

@@ -16,7 +16,7 @@ Pose pose_between(const Vec3& pivot, const std::vector<Keyframe>& keys, double t
   if (next == keys.begin()) return pose_at_key(keys.front());
   if (next == keys.end()) return pose_at_key(keys.back());
   const Keyframe& last = *std::prev(next);
-  return Passage(pivot, pose_at_key(last), pose_at_key(*next))
+  return PoseInterpolation(pivot, pose_at_key(last), pose_at_key(*next))
       .at((time - last.time) / (next->time - last.time));
 }
 
@@ -75,7 +75,7 @@ double highest_speed(const Obstacle& obstacle, double reach) {
   return highest;
 }
 
-Passage::Passage(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun)
+PoseInterpolation::PoseInterpolation(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun)
     : from_(from), to_(to), pivot_(pivot), pivot_from_(from.at(pivot)), pivot_to_(to.at(pivot)) {
   if (from.turn != to.turn) {
     const Eigen::AngleAxisd turn(to.turn * from.turn.transpose());
@@ -85,7 +85,7 @@ Passage::Passage(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3
   if (spun.norm() > std::numbers::pi) add_whole_turns(spun);
 }
 
-void Passage::add_whole_turns(const Vec3& spun) {
+void PoseInterpolation::add_whole_turns(const Vec3& spun) {
   constexpr double whole = 2 * std::numbers::pi, rounding = 1e-9;
   if (angle_ < rounding || whole - angle_ < rounding) axis_ = spun.normalized();
   angle_ += whole * std::round((spun.dot(axis_) - angle_) / whole);
@@ -94,7 +94,7 @@ void Passage::add_whole_turns(const Vec3& spun) {
   axis_ = -axis_;
 }
 
-Pose Passage::at(double part) const {
+Pose PoseInterpolation::at(double part) const {
   if (part <= 0) return from_;
   if (part >= 1) return to_;
   const Vec3 stretch = from_.stretch + part * (to_.stretch - from_.stretch);

@@ -1,5 +1,5 @@
 // Where an obstacle is: by its own motion, a function of time alone, it turns and shifts; what an edit has
-// made larger or smaller is stretched as well until it has its size (contact/obstacle_carry).
+// made larger or smaller is stretched as well until it has its size (contact/obstacle_transition).
 #pragma once
 
 #include <algorithm>
@@ -42,12 +42,12 @@ double highest_speed(const Obstacle& obstacle, double reach);
 
 /// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the stretch
 /// evenly.
-class Passage {
+class PoseInterpolation {
  public:
-  Passage() = default;
+  PoseInterpolation() = default;
   /// The short way; but where the obstacle has turned by `spun`, in rad along the axis, on the way, by as
   /// many whole turns more as come nearest to that.
-  Passage(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun = Vec3::Zero());
+  PoseInterpolation(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun = Vec3::Zero());
 
   Pose at(double part) const;  ///< in [0, 1]; the ends are the given poses to the bit
   bool rests() const { return from_ == to_ && angle_ == 0; }

@@ -52,7 +52,7 @@ double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
 }  // namespace
 
 /// How much of its way each particle can go without leaving its side of any plane.
-void ContinuousContact::bound_by_pairs() {
+void ContinuousContact::bound_by_planes() {
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Separation& s = separations_[k];
     const double room = s.gap() - kept_gap(s.gap(), memory_[k].thickness);
@@ -60,7 +60,7 @@ void ContinuousContact::bound_by_pairs() {
     std::array<double, 4> ahead{};
     for (int j = 0; j < s.count; ++j) {
       const auto i = at(s.particle[at(j)]);
-      ahead[at(j)] = s.normal.dot(wish_[i] - safe_[i]);
+      ahead[at(j)] = s.normal.dot(target_position_[i] - position_[i]);
       if (j < s.near_count)
         near_way = std::max(near_way, -ahead[at(j)]);
       else
@@ -72,50 +72,50 @@ void ContinuousContact::bound_by_pairs() {
     for (int j = 0; j < s.count; ++j) {
       const auto i = at(s.particle[at(j)]);
       const bool is_near = j < s.near_count;
-      const double level = s.normal.dot(safe_[i]);
+      const double level = s.normal.dot(position_[i]);
       const double slack =
           is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
       const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
       if (s.gap() <= 0 && (way > 0 || !meets_solid(pairs_[k])))
-        share_[i] = 0;  // an edit has put it there: of a solid the way out is open
+        fraction_[i] = 0;  // an edit has put it there: of a solid the way out is open
       else if (way > slack)
-        share_[i] = std::min(share_[i], std::max(slack, 0.0) / way);
+        fraction_[i] = std::min(fraction_[i], std::max(slack, 0.0) / way);
     }
   }
 }
 
-void ContinuousContact::bound_by_ways() {
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    const double part = part_inside(ways_.particles[i], safe_[i], wish_[i]);
-    if (share_[i] <= part) continue;
-    share_[i] = part;
-    room_[i] = std::min(most_room, more_room * room_[i]);
-    outgrown_ = true;
+void ContinuousContact::bound_by_swept_volumes() {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const double part = part_inside(swept_.particles[i], position_[i], target_position_[i]);
+    if (fraction_[i] <= part) continue;
+    fraction_[i] = part;
+    radius_scale_[i] = std::min(most_room, more_room * radius_scale_[i]);
+    reached_bounds_ = true;
   }
 }
 
 /// Moves the particles; returns what is left of the longest way, in m.
 double ContinuousContact::move_cloth() {
-  share_.assign(safe_.size(), 1.0);
-  outgrown_ = false;
-  bound_by_pairs();
-  bound_by_ways();
+  fraction_.assign(position_.size(), 1.0);
+  reached_bounds_ = false;
+  bound_by_planes();
+  bound_by_swept_volumes();
   double left = 0;
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    if (share_[i] == 1) {
-      safe_.set(i, wish_[i]);
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    if (fraction_[i] == 1) {
+      position_.set(i, target_position_[i]);
       continue;
     }
-    const Vec3 way = wish_[i] - safe_[i];
-    left = std::max(left, (1 - share_[i]) * way.norm());
-    safe_.add(i, share_[i] * way);
+    const Vec3 way = target_position_[i] - position_[i];
+    left = std::max(left, (1 - fraction_[i]) * way.norm());
+    position_.add(i, fraction_[i] * way);
   }
   return left;
 }
 
 /// A plane that an obstacle takes along; the turn of a sphere takes none.
-ContinuousContact::Plane ContinuousContact::carried_plane(int obstacle, const Plane& plane,
-                                                          const std::vector<Pose>& to) const {
+ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plane& plane,
+                                                        const std::vector<Pose>& to) const {
   const ObstacleBody& body = bodies_[at(obstacle)];
   const Pose &from = poses_[at(obstacle)], &end = to[at(obstacle)];
   if (body.shape == Shape::sphere && end.stretch == from.stretch)
@@ -130,25 +130,26 @@ ContinuousContact::Plane ContinuousContact::carried_plane(int obstacle, const Pl
 /// A part of the step in which a turning obstacle's points leave the chords of their ways by less than a
 /// quarter of the smallest gap: the second derivative of the way is at most angle^2 radius + 2 angle shift.
 double ContinuousContact::turn_limit(std::size_t obstacle) const {
-  const Passage& passage = passages_[obstacle];
-  if (!(passage.angle() > 0) || bodies_[obstacle].shape == Shape::sphere) return 1;
-  const Vec3 pivot = passage.pivot(part_);
+  const PoseInterpolation& path = paths_[obstacle];
+  if (!(path.angle() > 0) || bodies_[obstacle].shape == Shape::sphere) return 1;
+  const Vec3 pivot = path.pivot(part_);
   double gap = infinity, radius = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (pairs_[k].obstacle != static_cast<int>(obstacle)) continue;
     gap = std::min(gap, reached_gap(separations_[k]));
     for (int j = 0; j < separations_[k].near_count; ++j)
-      radius = std::max(radius, (safe_[at(separations_[k].particle[at(j)])] - pivot).norm());
+      radius = std::max(radius, (position_[at(separations_[k].particle[at(j)])] - pivot).norm());
   }
-  const double shift = (passage.pivot(1) - passage.pivot(0)).norm();
-  const double bend = passage.angle() * (passage.angle() * radius + 2 * shift);
+  const double shift = (path.pivot(1) - path.pivot(0)).norm();
+  const double bend = path.angle() * (path.angle() * radius + 2 * shift);
   return bend > 0 ? std::sqrt(2 * std::max(gap, 0.0) / bend) : 1;
 }
 
 /// The gap of a pair after the cloth has moved, in m.
 double ContinuousContact::reached_gap(const Separation& s) const {
   double level = infinity;
-  for (int j = 0; j < s.near_count; ++j) level = std::min(level, s.normal.dot(safe_[at(s.particle[at(j)])]));
+  for (int j = 0; j < s.near_count; ++j)
+    level = std::min(level, s.normal.dot(position_[at(s.particle[at(j)])]));
   return level - s.far_level;
 }
 
@@ -177,17 +178,17 @@ double ContinuousContact::shrink_to_planes() {
   double shrink = 1;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const FeaturePair& pair = pairs_[k];
-    if (pair.obstacle == FeaturePair::cloth_itself || passages_[at(pair.obstacle)].rests()) continue;
+    if (pair.obstacle == FeaturePair::cloth_itself || paths_[at(pair.obstacle)].rests()) continue;
     const Separation& s = separations_[k];
     const Vec3 on_plane = s.far_point + (s.far_level - s.normal.dot(s.far_point)) * s.normal;
-    const Plane carried = carried_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
-    const double grown = passages_[at(pair.obstacle)].grows()
+    const Plane carried = moved_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
+    const double grown = paths_[at(pair.obstacle)].grows()
                              ? reach_along(carried.normal, pair, next_poses_[at(pair.obstacle)]) -
                                    carried.normal.dot(carried.point)
                              : 0;  // beyond the plane
     double gap = infinity;
     for (int j = 0; j < s.near_count; ++j)
-      gap = std::min(gap, carried.normal.dot(safe_[at(s.particle[at(j)])] - carried.point) - grown);
+      gap = std::min(gap, carried.normal.dot(position_[at(s.particle[at(j)])] - carried.point) - grown);
     const double now = reached_gap(s), kept = kept_gap(now, memory_[k].thickness);
     if (gap >= kept) continue;
     const double factor = caution * std::max(now - kept, 0.0) / (now - gap);
@@ -201,11 +202,11 @@ double ContinuousContact::shrink_to_planes() {
 double ContinuousContact::advance_obstacles() {
   double advance = 1 - part_;
   blocking_pair_.reset();
-  for (std::size_t k = 0; k < passages_.size(); ++k) advance = std::min(advance, turn_limit(k));
+  for (std::size_t k = 0; k < paths_.size(); ++k) advance = std::min(advance, turn_limit(k));
   while (advance > least_advance) {
     const bool to_end = advance >= 1 - part_;
-    for (std::size_t k = 0; k < passages_.size(); ++k)
-      next_poses_[k] = passages_[k].at(to_end ? 1 : part_ + advance);
+    for (std::size_t k = 0; k < paths_.size(); ++k)
+      next_poses_[k] = paths_[k].at(to_end ? 1 : part_ + advance);
     const double shrink = shrink_to_planes();
     if (shrink >= 1) {
       poses_ = next_poses_;
@@ -222,8 +223,7 @@ std::optional<std::size_t> ContinuousContact::blocking_pair() const {
   if (blocking_pair_) return blocking_pair_;
   std::optional<std::size_t> nearest;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    if (pairs_[k].obstacle == FeaturePair::cloth_itself || passages_[at(pairs_[k].obstacle)].rests())
-      continue;
+    if (pairs_[k].obstacle == FeaturePair::cloth_itself || paths_[at(pairs_[k].obstacle)].rests()) continue;
     if (!nearest || separations_[k].distance < separations_[*nearest].distance) nearest = k;
   }
   return nearest;

@@ -10,7 +10,7 @@
 #include "contact/obstacle_body.h"
 #include "contact/obstacle_contact.h"
 #include "geometry/box_tree.h"
-#include "geometry/triangle_meeting.h"
+#include "geometry/triangle_intersection.h"
 
 namespace cloth {
 namespace {
@@ -34,7 +34,7 @@ bool meets_box(const Corners& triangle, const OrientedBox& box) {
   }
   const std::array<Vec3, 8> corner = corners(box);
   return std::any_of(box_edges.begin(), box_edges.end(), [&](const auto& edge) {
-    return meeting_of(corner[at(edge[0])], corner[at(edge[1])], triangle) != Meeting::apart;
+    return intersection_of(corner[at(edge[0])], corner[at(edge[1])], triangle) != Intersection::apart;
   });
 }
 
@@ -72,15 +72,16 @@ class TouchSearch {
 
   /// The first place where the cloth passes through itself; where it does not, the first where it touches
   /// itself.
-  std::optional<OwnMeeting> own_meeting() const {
+  std::optional<SelfIntersection> own_meeting() const {
     std::vector<BoxPair> overlaps;
     BoxTree(boxes()).collect_own(overlaps);
-    std::optional<OwnMeeting> first;
+    std::optional<SelfIntersection> first;
     for (const BoxPair& both : overlaps) {
-      const Meeting meeting = own_meeting_of(both);
-      if (meeting == Meeting::passing) return OwnMeeting{true, cloth_.triangles[at(both.query)][0]};
-      if (meeting == Meeting::touching && !first)
-        first = OwnMeeting{false, cloth_.triangles[at(both.query)][0]};
+      const Intersection meeting = own_meeting_of(both);
+      if (meeting == Intersection::crossing)
+        return SelfIntersection{true, cloth_.triangles[at(both.query)][0]};
+      if (meeting == Intersection::touching && !first)
+        first = SelfIntersection{false, cloth_.triangles[at(both.query)][0]};
     }
     return first;
   }
@@ -90,7 +91,7 @@ class TouchSearch {
     return {vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])]};
   }
   /// Of two faces; what they share is no meeting.
-  Meeting own_meeting_of(const BoxPair& both) const {
+  Intersection own_meeting_of(const BoxPair& both) const {
     Triangle a = cloth_.triangles[at(both.query)], b = cloth_.triangles[at(both.index)];
     const auto is_shared_by = [](const Triangle& other) {
       return [&other](int vertex) { return std::find(other.begin(), other.end(), vertex) != other.end(); };
@@ -98,9 +99,9 @@ class TouchSearch {
     const auto shared = std::partition(a.begin(), a.end(), is_shared_by(b)) - a.begin();
     std::partition(b.begin(), b.end(), is_shared_by(a));
     const Corners of_a = corners_of(cloth_.vertices, a), of_b = corners_of(cloth_.vertices, b);
-    if (shared == 0) return meeting_of(of_a, of_b);
-    if (shared == 1) return meeting_beyond_corner(of_a, of_b);
-    return shared == 2 ? meeting_beyond_edge(of_a[0], of_a[1], of_a[2], of_b[2]) : Meeting::apart;
+    if (shared == 0) return intersection_of(of_a, of_b);
+    if (shared == 1) return intersection_beyond_corner(of_a, of_b);
+    return shared == 2 ? intersection_beyond_edge(of_a[0], of_a[1], of_a[2], of_b[2]) : Intersection::apart;
   }
 
   static Bounds box_of(const Corners& t) { return bounds_of(t[0], t[1], t[2]); }
@@ -121,8 +122,9 @@ class TouchSearch {
     std::vector<BoxPair> overlaps;
     BoxTree(boxes).collect(this->boxes(), overlaps);
     for (const BoxPair& both : overlaps)
-      if (meeting_of(corners_of(cloth_.vertices, cloth_.triangles[at(both.query)]),
-                     corners_of(vertices, body.surface.triangles[at(both.index)])) != Meeting::apart)
+      if (intersection_of(corners_of(cloth_.vertices, cloth_.triangles[at(both.query)]),
+                          corners_of(vertices, body.surface.triangles[at(both.index)])) !=
+          Intersection::apart)
         return both.query;
     return std::nullopt;
   }
@@ -158,7 +160,7 @@ class StartCheck {
             cloth_.triangles[at(*face)][0]);
     }
     if (scene_.self_contact) {
-      const std::optional<OwnMeeting> meeting = search.own_meeting();
+      const std::optional<SelfIntersection> meeting = search.own_meeting();
       if (meeting)
         add("self_contact",
             meeting->passes ? "the cloth starts passing through itself" : "the cloth starts touching itself",
@@ -188,7 +190,7 @@ class StartCheck {
   void check_own_distance() {
     const double thickness = scene_.self_contact->thickness;
     Vec3Field position(cloth_.vertices.size());
-    Ways around{.own_reach = thickness};
+    SweptBounds around{.own_reach = thickness};
     for (std::size_t i = 0; i < cloth_.vertices.size(); ++i) {
       position.set(i, cloth_.vertices[i]);
       around.particles.push_back({cloth_.vertices[i], cloth_.vertices[i], 0});
@@ -237,7 +239,7 @@ bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& po
   return TouchSearch(cloth).first_in(obstacle, pose).has_value();
 }
 
-std::optional<OwnMeeting> find_own_meeting(const TriangleMesh& cloth) {
+std::optional<SelfIntersection> find_self_intersection(const TriangleMesh& cloth) {
   return TouchSearch(cloth).own_meeting();
 }
 

@@ -20,10 +20,10 @@ std::vector<Problem> find_start_problems(const Scene& scene);
 bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose);
 
 /// Where a cloth has points in common with itself. Signs are exact: a flat cloth has none, however it lies.
-struct OwnMeeting {
+struct SelfIntersection {
   bool passes = false;  ///< through itself; else it only touches itself
   int particle = 0;     ///< of a face that does
 };
-std::optional<OwnMeeting> find_own_meeting(const TriangleMesh& cloth);
+std::optional<SelfIntersection> find_self_intersection(const TriangleMesh& cloth);
 
 }  // namespace cloth

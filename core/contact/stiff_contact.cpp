@@ -14,7 +14,7 @@ namespace {
 constexpr int most_iterations = 12;
 constexpr int most_trials = 6;         // of a length
 constexpr double accepted_work = 0.5;  // of the residual along a step that is short enough
-constexpr double settled = 1e-3;       // of the first iteration's work: less is not worth another one
+constexpr double least_work = 1e-3;    // of the first iteration's work: less is not worth another one
 constexpr double on_surface = 1e-9;    // m, above rounding
 
 /// Where a particle that came from `from` belongs if it is inside. Of a box not the nearest face, which in a
@@ -91,17 +91,17 @@ void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, 
   forces.update(position, time);
   const Vec3Field& force = forces.position_force();
   for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 moved = position[i] - wished_[i];
-    residual_.set(i, system.pinned[i]
-                         ? Vec3::Zero()
-                         : Vec3(system.mass[i] / (weight * weight) * moved - (force[i] - wished_force_[i])));
+    const Vec3 moved = position[i] - integrated_position_[i];
+    residual_.set(i, system.pinned[i] ? Vec3::Zero()
+                                      : Vec3(system.mass[i] / (weight * weight) * moved -
+                                             (force[i] - integrated_force_[i])));
   }
-  for (HeldParticle& held : held_) held.press = held.normal.dot(residual_[held.particle]);
+  for (HeldParticle& held : held_) held.normal_load = held.normal.dot(residual_[held.particle]);
 }
 
 /// What pulls away from its surface.
 void StiffContact::release() {
-  std::erase_if(held_, [](const HeldParticle& held) { return !(held.press > 0); });
+  std::erase_if(held_, [](const HeldParticle& held) { return !(held.normal_load > 0); });
   active_ = held_;
 }
 
@@ -137,15 +137,15 @@ bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces,
   return solved;
 }
 
-std::vector<HeldParticle> StiffContact::settle(const ClothSystem& system, ForceModel& forces,
-                                               std::span<const Obstacle> obstacles, double weight,
-                                               double time, const Vec3Field& begin, Vec3Field& position) {
+std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceModel& forces,
+                                              std::span<const Obstacle> obstacles, double weight, double time,
+                                              const Vec3Field& begin, Vec3Field& position) {
   if (residual_.size() != position.size())
     residual_ = direction_ = start_ = along_ = Vec3Field(position.size());
   begin_ = begin;
-  wished_ = position;
-  forces.update(wished_, time);
-  wished_force_ = forces.position_force();
+  integrated_position_ = position;
+  forces.update(integrated_position_, time);
+  integrated_force_ = forces.position_force();
   active_.clear();
   hold(system, obstacles, position);
   find_residual(system, forces, weight, time, position);
@@ -156,7 +156,7 @@ std::vector<HeldParticle> StiffContact::settle(const ClothSystem& system, ForceM
     start_ = position;
     const double before = dot(direction_.flat(), residual_.flat());
     if (n == 0) first = before;
-    if (before >= settled * first) break;
+    if (before >= least_work * first) break;
     double length = 1;
     for (int trial = 1;; ++trial) {
       position = start_;
@@ -171,7 +171,8 @@ std::vector<HeldParticle> StiffContact::settle(const ClothSystem& system, ForceM
   release();
   const Vec3Field& force = forces.position_force();
   for (HeldParticle& held : held_)
-    held.press = std::max(0.0, weight * held.normal.dot(wished_force_[held.particle] - force[held.particle]));
+    held.normal_load =
+        std::max(0.0, weight * held.normal.dot(integrated_force_[held.particle] - force[held.particle]));
   return held_;
 }
 

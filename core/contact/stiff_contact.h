@@ -25,9 +25,9 @@ class StiffContact {
  public:
   /// Moves `position`, as the step has left it, out of the obstacles. `weight` in s. Returns where it is
   /// held, in order of the particles.
-  std::vector<HeldParticle> settle(const ClothSystem& system, ForceModel& forces,
-                                   std::span<const Obstacle> obstacles, double weight, double time,
-                                   const Vec3Field& begin, Vec3Field& position);
+  std::vector<HeldParticle> solve(const ClothSystem& system, ForceModel& forces,
+                                  std::span<const Obstacle> obstacles, double weight, double time,
+                                  const Vec3Field& begin, Vec3Field& position);
 
  private:
   void hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position);
@@ -38,7 +38,7 @@ class StiffContact {
   bool find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                       const Vec3Field& position);
 
-  Vec3Field begin_, wished_, wished_force_;  ///< m, N
+  Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
   Vec3Field residual_, direction_, start_, along_;
   std::vector<HeldParticle> held_, active_;  ///< on a surface; pressed against it
   Linearisation linearisation_;

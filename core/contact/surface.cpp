@@ -38,7 +38,8 @@ void add_edges(Surface& surface) {
       surface.edges.push_back({half.low, half.high});
       surface.beside_edge.push_back({beside, -1});
       surface.triangle_of_edge.push_back(half.triangle);
-      surface.charges[triangle] = static_cast<Charge>(surface.charges[triangle] | 1 << (3 + half.corner));
+      surface.represented[triangle] =
+          static_cast<RepresentedFeatures>(surface.represented[triangle] | 1 << (3 + half.corner));
     } else if (surface.beside_edge.back()[1] < 0) {
       surface.beside_edge.back()[1] = beside;
     }
@@ -66,14 +67,14 @@ void add_neighbours(Surface& surface, std::size_t vertices) {
 Surface make_surface(int vertices, std::vector<Triangle> triangles) {
   Surface surface;
   surface.triangles = std::move(triangles);
-  surface.charges.assign(surface.triangles.size(), 0);
+  surface.represented.assign(surface.triangles.size(), 0);
   surface.triangle_of_vertex.assign(static_cast<std::size_t>(vertices), -1);
   for (std::size_t f = 0; f < surface.triangles.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       int& owner = surface.triangle_of_vertex[static_cast<std::size_t>(surface.triangles[f][k])];
       if (owner >= 0) continue;
       owner = static_cast<int>(f);
-      surface.charges[f] = static_cast<Charge>(surface.charges[f] | 1 << k);
+      surface.represented[f] = static_cast<RepresentedFeatures>(surface.represented[f] | 1 << k);
     }
   add_edges(surface);
   add_neighbours(surface, static_cast<std::size_t>(vertices));

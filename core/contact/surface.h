@@ -14,7 +14,7 @@ namespace cloth {
 /// + 1. Every vertex and every edge has exactly one such triangle ("representative triangles", Curtis,
 /// Tamstorf and Manocha, "Fast Collision Detection for Deformable Models using Representative-Triangles",
 /// 2008).
-using Charge = std::uint8_t;
+using RepresentedFeatures = std::uint8_t;
 
 struct Surface {
   std::vector<Triangle> triangles;
@@ -22,17 +22,17 @@ struct Surface {
   std::vector<std::array<int, 2>>
       beside_edge;                           ///< the third vertices of an edge's first two triangles, or -1
   std::vector<std::array<int, 3>> edges_of;  ///< of each triangle: from vertex k to k + 1
-  std::vector<Charge> charges;               ///< of each triangle
-  std::vector<int> first_neighbour;          ///< of each vertex in `neighbours`, and one more
-  std::vector<int> neighbours;               ///< vertices that share an edge with it
-  std::vector<int> triangle_of_vertex;       ///< the one that answers for it, -1 where there is none
+  std::vector<RepresentedFeatures> represented;  ///< of each triangle
+  std::vector<int> first_neighbour;              ///< of each vertex in `neighbours`, and one more
+  std::vector<int> neighbours;                   ///< vertices that share an edge with it
+  std::vector<int> triangle_of_vertex;           ///< the one that answers for it, -1 where there is none
   std::vector<int> triangle_of_edge;
 
-  bool answers_for_vertex(int triangle, int k) const {
-    return charges[static_cast<std::size_t>(triangle)] >> k & 1;
+  bool represents_vertex(int triangle, int k) const {
+    return represented[static_cast<std::size_t>(triangle)] >> k & 1;
   }
-  bool answers_for_edge(int triangle, int k) const {
-    return charges[static_cast<std::size_t>(triangle)] >> (3 + k) & 1;
+  bool represents_edge(int triangle, int k) const {
+    return represented[static_cast<std::size_t>(triangle)] >> (3 + k) & 1;
   }
 };
 

@@ -16,7 +16,7 @@ constexpr double straight_enough = -0.5;
 /// Which spring goes on behind each spring's first and second end.
 using Followers = std::vector<std::array<std::size_t, 2>>;
 
-struct Meeting {
+struct Junction {
   double cosine;     ///< of the angle between the two springs, -1: straight on
   std::size_t a, b;  ///< springs
 };
@@ -33,7 +33,7 @@ Followers followers_of(const std::vector<TensionSpring>& springs, const ClothSys
     around[springs[s].second].push_back(s);
   }
   Followers followers(springs.size(), {no_spring, no_spring});
-  std::vector<Meeting> meetings;
+  std::vector<Junction> meetings;
   for (std::size_t particle = 0; particle < around.size(); ++particle) {
     const std::vector<std::size_t>& here = around[particle];
     const auto away = [&](std::size_t s) {
@@ -48,8 +48,8 @@ Followers followers_of(const std::vector<TensionSpring>& springs, const ClothSys
         if (cosine < straight_enough) meetings.push_back({cosine, here[k], here[l]});
       }
     std::stable_sort(meetings.begin(), meetings.end(),
-                     [](const Meeting& m, const Meeting& n) { return m.cosine < n.cosine; });
-    for (const Meeting& meeting : meetings) {
+                     [](const Junction& m, const Junction& n) { return m.cosine < n.cosine; });
+    for (const Junction& meeting : meetings) {
       std::size_t& after_a = followers[meeting.a][end_at(springs[meeting.a], particle)];
       std::size_t& after_b = followers[meeting.b][end_at(springs[meeting.b], particle)];
       if (after_a != no_spring || after_b != no_spring) continue;

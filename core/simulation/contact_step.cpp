@@ -11,13 +11,13 @@ void Simulation::resolve_contact(const StepTimes& times) {
   last_contact_ = {};
   if (!contact_->touches(system_, state_)) return end_contact();
   ContactBegin begin{position_before_, velocity_before_, times.step, contact_memory_};
-  SettledStep settled;
+  ConstrainedStep constrained;
   if (stiff_contact_ && !contact_->is_inside(system_, position_before_)) {
-    settled.weight = stage_weight(scene_.integrator.method).value_or(1) * times.step;
-    settled.position = state_.position;
-    settled.held = stiff_contact_->settle(system_, *forces_, contact_->obstacles(), settled.weight, times.end,
-                                          position_before_, settled.position);
-    begin.settled = &settled;
+    constrained.weight = stage_weight(scene_.integrator.method).value_or(1) * times.step;
+    constrained.position = state_.position;
+    constrained.held = stiff_contact_->solve(system_, *forces_, contact_->obstacles(), constrained.weight,
+                                             times.end, position_before_, constrained.position);
+    begin.constrained = &constrained;
   }
   last_contact_ = contact_->apply(system_, begin, state_);
   book_contact(times);
@@ -32,22 +32,22 @@ void Simulation::resolve_continuous_contact(const StepTimes& times) {
   }
   const ContactTimes contact_times{times.begin, times.end, times.step};
   if (!continuous_contact_->is_near(position_before_, contact_times, state_)) return end_contact();
-  Settling settling{velocity_before_, contact_memory_, {}, {}, {}};
-  settling.potential = [&](const Vec3Field& position) {
+  VelocityCoupling coupling{velocity_before_, contact_memory_, {}, {}, {}};
+  coupling.potential = [&](const Vec3Field& position) {
     ClothState there;
     there.position = position, there.velocity = Vec3Field(position.size());
     return measure_energy(system_, gravity_of(scene_), there).total();
   };
   const bool follows = integrator_->velocity_follows_positions();
   if (follows)
-    settling.positions = [&](const Vec3Field& motion) {
+    coupling.positions = [&](const Vec3Field& motion) {
       integrator_->follow_positions(system_, *forces_, times, motion, state_);
     };
   if (follows && forces_->has_damping())
-    settling.velocities = [&](const Vec3Field& motion) {
+    coupling.velocities = [&](const Vec3Field& motion) {
       integrator_->follow_velocities(system_, *forces_, times, motion, state_);
     };
-  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, settling);
+  last_contact_ = continuous_contact_->apply(system_, position_before_, contact_times, state_, coupling);
   if (last_contact_.interrupted) return;
   if (!last_contact_.acted) return end_contact();
   book_contact(times);

@@ -26,7 +26,7 @@ std::vector<Problem> new_start_needed(const ClothSheet& before, const ClothSheet
 
 /// Contact keeps apart what it finds apart.
 std::vector<Problem> own_meeting_now(const Simulation& simulation) {
-  const std::optional<OwnMeeting> meeting = find_own_meeting(simulation.cloth_mesh());
+  const std::optional<SelfIntersection> meeting = find_self_intersection(simulation.cloth_mesh());
   if (!meeting) return {};
   const Vec3 place = simulation.state().position[static_cast<std::size_t>(meeting->particle)];
   return {{"self_contact", "",

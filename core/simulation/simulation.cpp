@@ -70,7 +70,7 @@ void Simulation::assemble() {
   continuous_contact_.reset();
   if (has_continuous_contact(scene_))
     continuous_contact_ =
-        std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_carry_, state_.time);
+        std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_transition_, state_.time);
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
   stiff_contact_.reset();
@@ -219,20 +219,20 @@ TriangleMesh Simulation::cloth_mesh() const {
 }
 
 /// Of the obstacles that an edit makes other ones than they are.
-ObstacleCarries Simulation::find_carries(const Scene& edited) const {
+ObstacleTransitions Simulation::find_transitions(const Scene& edited) const {
   if (!has_continuous_contact(edited)) return {};
   if (continuous_contact_ && edited.obstacles == scene_.obstacles) return carries_;
   const std::vector<Pose> poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{};
-  return carries_after({scene_.obstacles, poses, carries_}, edited, state_.time, cloth_mesh());
+  return transitions_after({scene_.obstacles, poses, carries_}, edited, state_.time, cloth_mesh());
 }
 
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
-  carries_ = find_carries(scene);
-  thickness_carry_ = continuous_contact_ && has_continuous_contact(scene)
-                         ? thickness_after(scene_, thickness_carry_, scene, state_.time)
-                         : ThicknessCarry{};
+  carries_ = find_transitions(scene);
+  thickness_transition_ = continuous_contact_ && has_continuous_contact(scene)
+                              ? thickness_after(scene_, thickness_transition_, scene, state_.time)
+                              : ThicknessTransition{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -256,10 +256,10 @@ std::size_t Checkpoint::bytes() const {
   std::size_t numbers =
       tension.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
-  numbers += contact_memory.lent.size();
+  numbers += contact_memory.deferred.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
          contact_memory.held.size() + sizeof(Pose) * obstacle_poses.size() +
-         sizeof(ObstacleCarry) * carries.size();
+         sizeof(ObstacleTransition) * carries.size();
 }
 
 Checkpoint Simulation::checkpoint() const {
@@ -279,7 +279,7 @@ Checkpoint Simulation::checkpoint() const {
           .last_contact = last_contact_,
           .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
           .carries = carries_,
-          .thickness_carry = thickness_carry_,
+          .thickness_transition = thickness_transition_,
           .obstacle_speed = obstacle_speed_,
           .hand_energy = hand_energy_,
           .contact_impulse = contact_impulse_,
@@ -307,15 +307,15 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   rate_breach_ = checkpoint.rate_breach;
   last_contact_ = checkpoint.last_contact;
   const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
-  carries_ = same_obstacles ? checkpoint.carries : ObstacleCarries{};
-  thickness_carry_ = checkpoint.thickness_carry;
+  carries_ = same_obstacles ? checkpoint.carries : ObstacleTransitions{};
+  thickness_transition_ = checkpoint.thickness_transition;
   obstacle_speed_ = checkpoint.obstacle_speed;
   hand_energy_ = checkpoint.hand_energy;
   contact_impulse_ = checkpoint.contact_impulse;
   contact_memory_ = checkpoint.contact_memory;
   if (checkpoint.method != scene_.integrator.method) end_contact();
   if (continuous_contact_) {
-    continuous_contact_->set_carries(carries_, thickness_carry_);
+    continuous_contact_->set_transitions(carries_, thickness_transition_);
     restore_obstacles(checkpoint.obstacle_poses);
     continuous_contact_->forget_touches();
   }
@@ -330,7 +330,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
 void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
   std::vector<Pose> of_scene;
   for (std::size_t k = 0; k < scene_.obstacles.size(); ++k)
-    of_scene.push_back(carried_pose(scene_.obstacles, carries_, k, state_.time));
+    of_scene.push_back(pose_in_transition(scene_.obstacles, carries_, k, state_.time));
   continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
 }
 
@@ -364,7 +364,7 @@ void Simulation::set_pull(const std::optional<Pull>& pull) {
 
 Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {
   if (continuous_contact_ && time == state_.time) return continuous_contact_->poses()[obstacle];
-  return carried_pose(scene_.obstacles, carries_, obstacle, time);
+  return pose_in_transition(scene_.obstacles, carries_, obstacle, time);
 }
 
 void Simulation::append_contact_marks(std::vector<ContactMark>& marks) const {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <optional>
 
-#include "contact/obstacle_carry.h"
 #include "contact/obstacle_contact.h"
+#include "contact/obstacle_transition.h"
 #include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
@@ -88,8 +88,8 @@ struct Checkpoint {
   LimiterReport last_limit;
   ContactReport last_contact;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
-  ObstacleCarries carries;
-  ThicknessCarry thickness_carry;
+  ObstacleTransitions carries;
+  ThicknessTransition thickness_transition;
   double obstacle_speed = 0;      ///< m/s, the highest so far
   double hand_energy = 0;         ///< J, the most that the hand's spring has held so far
   Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
@@ -219,7 +219,7 @@ class Simulation {
   void resolve_contact(const StepTimes& times);
   void book_contact(const StepTimes& times);
   void end_contact();
-  ObstacleCarries find_carries(const Scene& edited) const;
+  ObstacleTransitions find_transitions(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
   void resolve_continuous_contact(const StepTimes& times);
   void take_back_step();
@@ -276,8 +276,8 @@ class Simulation {
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
   double hand_energy_ = 0;                    ///< J, the most that the hand's spring has held so far
-  ObstacleCarries carries_;
-  ThicknessCarry thickness_carry_;
+  ObstacleTransitions carries_;
+  ThicknessTransition thickness_transition_;
   bool was_finite_ = false;   ///< every position was finite after the last step
   ClothState before_unseen_;  ///< to go back to
 };

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "geometry/triangle_meeting.h"
+#include "geometry/triangle_intersection.h"
 #include "support/crossings.h"
 #include "support/exact_sign.h"
 #include "support/random.h"
@@ -118,10 +118,10 @@ TEST(TrianglesMeet, WhereTheCheckerOfCrossingsFindsACommonPoint) {
           Eigen::AngleAxisd(random.uniform(0, 3), random.vector(1).normalized()).matrix();
       for (std::size_t k = 0; k < 3; ++k) a[k] = tilt * a[k], b[k] = tilt * b[k];
     }
-    const Meeting meeting = meeting_of(a, b);
-    ASSERT_EQ(meeting != Meeting::apart, crossing_by_checker(a, b)) << "round " << round;
-    ASSERT_EQ(meeting, meeting_of(b, a)) << "round " << round;
-    met += meeting != Meeting::apart, passing += meeting == Meeting::passing;
+    const Intersection meeting = intersection_of(a, b);
+    ASSERT_EQ(meeting != Intersection::apart, crossing_by_checker(a, b)) << "round " << round;
+    ASSERT_EQ(meeting, intersection_of(b, a)) << "round " << round;
+    met += meeting != Intersection::apart, passing += meeting == Intersection::crossing;
   }
   EXPECT_GT(met, 10000);
   EXPECT_GT(passing, 2000);
@@ -133,19 +133,21 @@ TEST(TrianglesPass, AsSoonAsACornerIsBeyondTheOther) {
   const auto tip_at = [](double height) {
     return Corners{Vec3(0.25, height, 0.25), Vec3(0.2, 1, 0.3), Vec3(0.3, 1, 0.3)};
   };
-  EXPECT_EQ(meeting_of(floor, tip_at(1e-300)), Meeting::apart);
-  EXPECT_EQ(meeting_of(floor, tip_at(0)), Meeting::touching);
-  EXPECT_EQ(meeting_of(floor, tip_at(-1e-17)), Meeting::passing);
+  EXPECT_EQ(intersection_of(floor, tip_at(1e-300)), Intersection::apart);
+  EXPECT_EQ(intersection_of(floor, tip_at(0)), Intersection::touching);
+  EXPECT_EQ(intersection_of(floor, tip_at(-1e-17)), Intersection::crossing);
 }
 
 TEST(TrianglesThatShare, MeetBeyondWhatTheyShareOnly) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, -1, 0), over(0.2, 0.3, 0);
-  EXPECT_EQ(meeting_beyond_edge(a, b, c, d), Meeting::apart);
-  EXPECT_EQ(meeting_beyond_edge(a, b, c, over), Meeting::touching) << "folded flat";
-  EXPECT_EQ(meeting_beyond_edge(a, b, c, over + Vec3(0, 0, 1e-300)), Meeting::apart);
-  EXPECT_EQ(meeting_beyond_corner({a, b, c}, {a, d, Vec3(0, -1, 0)}), Meeting::apart);
-  EXPECT_EQ(meeting_beyond_corner({a, b, c}, {a, Vec3(0.3, 0.3, 1), Vec3(0.3, 0.3, -1)}), Meeting::passing);
-  EXPECT_EQ(meeting_beyond_corner({a, b, c}, {a, Vec3(0.3, 0.3, 1), Vec3(0.3, 0.3, 0)}), Meeting::touching);
+  EXPECT_EQ(intersection_beyond_edge(a, b, c, d), Intersection::apart);
+  EXPECT_EQ(intersection_beyond_edge(a, b, c, over), Intersection::touching) << "folded flat";
+  EXPECT_EQ(intersection_beyond_edge(a, b, c, over + Vec3(0, 0, 1e-300)), Intersection::apart);
+  EXPECT_EQ(intersection_beyond_corner({a, b, c}, {a, d, Vec3(0, -1, 0)}), Intersection::apart);
+  EXPECT_EQ(intersection_beyond_corner({a, b, c}, {a, Vec3(0.3, 0.3, 1), Vec3(0.3, 0.3, -1)}),
+            Intersection::crossing);
+  EXPECT_EQ(intersection_beyond_corner({a, b, c}, {a, Vec3(0.3, 0.3, 1), Vec3(0.3, 0.3, 0)}),
+            Intersection::touching);
 }
 
 }  // namespace

@@ -224,8 +224,8 @@ TEST(AnEditThatLetsABoxGrow, IsHalfDoneAfterHalfOfItsTime) {
   scene.obstacles[0].size = {0.32, 0.16, 0.08};
   simulation.edit(scene);
   EXPECT_EQ(simulation.obstacle_pose(0, 0).stretch, Vec3(0.5, 1, 2));
-  EXPECT_LT((simulation.obstacle_pose(0, 0.5 * carry_time).stretch - Vec3(0.75, 1, 1.5)).norm(), 1e-12);
-  EXPECT_EQ(simulation.obstacle_pose(0, carry_time), Pose{});
+  EXPECT_LT((simulation.obstacle_pose(0, 0.5 * transition_time).stretch - Vec3(0.75, 1, 1.5)).norm(), 1e-12);
+  EXPECT_EQ(simulation.obstacle_pose(0, transition_time), Pose{});
 }
 
 TEST(AnEditOfASpin, TurnsABallNoFurtherThanItsSpin) {
@@ -304,7 +304,7 @@ TEST(ACheckpointOfContact, SaysWhatItTakesInMemory) {
   EXPECT_EQ(simulation.checkpoint().bytes(), one + 10 * sizeof(Pose));
   scene.obstacles[0].center.y() -= 0.1;
   simulation.edit(scene);
-  EXPECT_EQ(simulation.checkpoint().bytes(), one + 10 * sizeof(Pose) + 11 * sizeof(ObstacleCarry));
+  EXPECT_EQ(simulation.checkpoint().bytes(), one + 10 * sizeof(Pose) + 11 * sizeof(ObstacleTransition));
 }
 
 TEST(ACheckpointOfContact, HasTheImpulseInIt) {

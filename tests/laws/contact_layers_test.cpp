@@ -56,7 +56,7 @@ Scene layers(int count, double thickness) {
 /// m, the least of features that share no particle.
 double least_own_distance(const Simulation& simulation, double within) {
   const Vec3Field& position = simulation.state().position;
-  Ways around{.own_reach = within};
+  SweptBounds around{.own_reach = within};
   for (std::size_t i = 0; i < position.size(); ++i) around.particles.push_back({position[i], position[i], 0});
   const Surface surface = make_surface(static_cast<int>(position.size()), simulation.cloth_mesh().triangles);
   std::vector<FeaturePair> pairs;

@@ -38,7 +38,7 @@ struct Drag {
     return {0, 0, -reach * there};
   }
 };
-constexpr Drag gentle{"gently", 24, 0.016}, sudden{"at_once", 2, 1.02 * carry_time};
+constexpr Drag gentle{"gently", 24, 0.016}, sudden{"at_once", 2, 1.02 * transition_time};
 
 struct Case {
   Shape shape;
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle, ::testing::ValuesIn(all_drags
   return name;
 });
 
-TEST(ObstacleCarry, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
+TEST(ObstacleTransition, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
   Scene scene = hung_cloth(Shape::sphere, "verlet");
   scene.obstacles[0].velocity = {0.2, 0, 0};
   Simulation simulation(scene);
@@ -109,7 +109,7 @@ TEST(ObstacleCarry, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
   simulation.edit(scene);
   const Vec3 center = scene.obstacles[0].center;
   EXPECT_LT((simulation.obstacle_pose(0, edited).at(center) - before).norm(), 1e-15);
-  const double half = edited + 0.5 * carry_time, end = edited + carry_time;
+  const double half = edited + 0.5 * transition_time, end = edited + transition_time;
   const Vec3 moving = scene.obstacles[0].velocity;
   EXPECT_LT(
       (simulation.obstacle_pose(0, half).at(center) - (center + half * moving - Vec3(0, 0.05, 0.15))).norm(),
@@ -117,7 +117,7 @@ TEST(ObstacleCarry, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
   EXPECT_EQ(simulation.obstacle_pose(0, end).at(center), pose_of(scene.obstacles[0], end).at(center));
 }
 
-TEST(ObstacleCarry, AnEditOfAVelocityDoesNotMoveTheObstacleEither) {
+TEST(ObstacleTransition, AnEditOfAVelocityDoesNotMoveTheObstacleEither) {
   Scene scene = hung_cloth(Shape::box, "verlet");
   scene.obstacles[0].velocity = {0, 0, 0.1};
   Simulation simulation(scene);
@@ -129,7 +129,7 @@ TEST(ObstacleCarry, AnEditOfAVelocityDoesNotMoveTheObstacleEither) {
   EXPECT_LT((simulation.obstacle_pose(0, simulation.time()).at(center) - before).norm(), 1e-15);
 }
 
-TEST(ObstacleCarry, GoesOnFromACheckpointToTheBit) {
+TEST(ObstacleTransition, GoesOnFromACheckpointToTheBit) {
   Scene scene = hung_cloth(Shape::sphere, "semi-implicit-euler");
   Simulation first(scene), second(scene);
   scene.obstacles[0].center.z() -= 0.25;
@@ -137,7 +137,7 @@ TEST(ObstacleCarry, GoesOnFromACheckpointToTheBit) {
   second.edit(scene);
   for (int step = 0; step < 10; ++step) ASSERT_FALSE(first.step());
   const Checkpoint checkpoint = first.checkpoint();
-  ASSERT_LT(first.time(), carry_time) << "on the way";
+  ASSERT_LT(first.time(), transition_time) << "on the way";
   for (int step = 0; step < 40; ++step) ASSERT_FALSE(first.step());
   second.restore(checkpoint);
   for (int step = 0; step < 40; ++step) ASSERT_FALSE(second.step());
@@ -145,14 +145,14 @@ TEST(ObstacleCarry, GoesOnFromACheckpointToTheBit) {
   EXPECT_TRUE(std::ranges::equal(first.state().velocity.flat(), second.state().velocity.flat()));
 }
 
-TEST(ObstacleCarry, CountsForTheHighestSpeedOfAnObstacle) {
+TEST(ObstacleTransition, CountsForTheHighestSpeedOfAnObstacle) {
   const Scene scene = hung_cloth(Shape::sphere, "verlet");
   EXPECT_EQ(highest_obstacle_speed(scene, {}, {}), 0);
-  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleCarry{.way = {0, 0, 0.1}}}, {}), 0.1 / carry_time,
-              1e-12);
+  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleTransition{.way = {0, 0, 0.1}}}, {}),
+              0.1 / transition_time, 1e-12);
 }
 
-TEST(ObstacleCarry, IsNotThereWhereObstaclesAreTestedParticleByParticle) {
+TEST(ObstacleTransition, IsNotThereWhereObstaclesAreTestedParticleByParticle) {
   Scene scene = hung_cloth(Shape::sphere, "verlet");
   scene.contact.reset();
   Simulation simulation(scene);
@@ -173,7 +173,7 @@ TEST(ContactMarks, AreTheTouchesOfTheLastStep) {
   const Obstacle& ball = scene.obstacles[0];
   for (const ContactMark& mark : marks) {
     const Vec3 out = mark.point - ball.center;
-    EXPECT_GT(mark.push, 0);
+    EXPECT_GT(mark.normal_impulse, 0);
     EXPECT_NEAR(mark.normal.norm(), 1, 1e-12);
     EXPECT_GT(mark.normal.dot(out.normalized()), 0.9);
     EXPECT_NEAR(out.norm(), ball.radius + scene.contact->thickness, 2 * scene.contact->thickness);

@@ -85,7 +85,7 @@ ObstacleBody random_body(Shape shape, Random& random) {
   return body;
 }
 
-Passage random_passage(const ObstacleBody& body, Random& random) {
+PoseInterpolation random_interpolation(const ObstacleBody& body, Random& random) {
   constexpr double most_angle = 3;  // rad
   if (random.coin() && random.coin()) return {body.pivot, Pose{}, Pose{}};
   const Pose from = random_pose(body, most_angle, random);

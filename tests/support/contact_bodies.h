@@ -10,7 +10,7 @@ namespace cloth::test {
 ObstacleBody random_body(Shape shape, Random& random);
 
 /// At rest where the body is, at rest elsewhere, or shifted; maybe turned by up to 3 rad and grown as well.
-Passage random_passage(const ObstacleBody& body, Random& random);
+PoseInterpolation random_interpolation(const ObstacleBody& body, Random& random);
 
 /// rows x columns particles, and where they are: in a sheet of 0.4 m with folds and bumps about the origin.
 struct Sheet {

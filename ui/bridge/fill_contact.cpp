@@ -34,11 +34,11 @@ void ContactFiller::fill_marks(const cloth::Simulation& simulation, ContactPictu
   marks_.clear();
   simulation.append_contact_marks(marks_);
   double strongest = 0;
-  for (const cloth::ContactMark& mark : marks_) strongest = std::max(strongest, mark.push);
+  for (const cloth::ContactMark& mark : marks_) strongest = std::max(strongest, mark.normal_impulse);
   for (const cloth::ContactMark& mark : marks_) {
     append(mark.point, picture.marks);
     append(mark.normal, picture.marks);
-    picture.marks.push_back(strongest > 0 ? static_cast<float>(mark.push / strongest) : 1.0F);
+    picture.marks.push_back(strongest > 0 ? static_cast<float>(mark.normal_impulse / strongest) : 1.0F);
   }
 }
 

@@ -25,8 +25,8 @@ TEST(ContactSolver, PushesToTheBoundAndNoFurther) {
   solve_contacts(contacts, {1, 1}, 10, 0, value);
   EXPECT_EQ(value[0], Vec3(1, 0, 3));
   EXPECT_EQ(value[1], Vec3(1, 2, 3));
-  EXPECT_EQ(contacts[0].push, 2);
-  EXPECT_EQ(contacts[1].push, 0);
+  EXPECT_EQ(contacts[0].normal_impulse, 2);
+  EXPECT_EQ(contacts[1].normal_impulse, 0);
 }
 
 TEST(ContactSolver, RubsUpToFrictionTimesThePush) {
@@ -82,7 +82,7 @@ TEST(ContactSolver, TakesAPushBackThatAnotherMadeNeedless) {
   std::vector<ContactConstraint> contacts{steep, flat};
   solve_contacts(contacts, {1}, 100, 0, value);
   EXPECT_LE((value[0] - Vec3(0, 2, 0)).norm(), 1e-12) << value[0].transpose();
-  EXPECT_EQ(contacts[0].push, 0);
+  EXPECT_EQ(contacts[0].normal_impulse, 0);
 }
 
 }  // namespace

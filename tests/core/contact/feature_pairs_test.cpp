@@ -1,13 +1,13 @@
 // What separate() says of two features, for random pairs of every kind: a plane that really parts them, and
 // which of the pairs around a point is the nearest.
 #include "contact/feature_pairs.h"
-#include "geometry/bounds.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/bounds.h"
 #include "support/contact_bodies.h"
 #include "support/crossings.h"
 
@@ -64,7 +64,7 @@ Setting random_setting(Random& random) {
   setting.sheet = random_sheet(4, 4, random);
   for (const Shape shape : all_shapes) {
     setting.bodies.push_back(random_body(shape, random));
-    setting.poses.push_back(random_passage(setting.bodies.back(), random).at(random.uniform(0, 1)));
+    setting.poses.push_back(random_interpolation(setting.bodies.back(), random).at(random.uniform(0, 1)));
   }
   return setting;
 }
@@ -150,7 +150,7 @@ TEST(TheNearestPair, AmongTheFacesThatAParticleSeesOfAConvexMeshIsOne) {
     body.vertices = box.vertices;
     body.surface = make_surface(8, box.triangles);
     setting.bodies = {body};
-    setting.poses = {random_passage(body, random).from()};
+    setting.poses = {random_interpolation(body, random).from()};
     const Vec3 out = 0.3 * random.vector(1).normalized() + Vec3(0, random.uniform(-0.2, 0.2), 0);
     if (out.cwiseAbs().cwiseQuotient(Vec3(0.1, 0.2, 0.15)).maxCoeff() < 1.01) continue;
     setting.sheet.position.set(0, setting.poses[0].at(out));

@@ -23,10 +23,10 @@ struct Motion {
   double margin = 0;                // m
   double reach = 0, own_reach = 0;  // m
 
-  Ways ways() const {
-    Ways ways{.reach = reach, .own_reach = own_reach};
-    for (std::size_t i = 0; i < from.size(); ++i) ways.particles.push_back({from[i], to[i], margin});
-    return ways;
+  SweptBounds swept() const {
+    SweptBounds swept{.reach = reach, .own_reach = own_reach};
+    for (std::size_t i = 0; i < from.size(); ++i) swept.particles.push_back({from[i], to[i], margin});
+    return swept;
   }
   Vec3 at(int i, double part) const {
     const auto n = static_cast<std::size_t>(i);
@@ -71,7 +71,7 @@ std::vector<int> foreign_particles(const FeaturePair& pair, const Surface& cloth
 
 /// The least distance that the features of a pair are seen to have within the step, in m.
 double least_distance(const FeaturePair& pair, const Surface& cloth, const Motion& motion,
-                      const std::vector<ObstacleBody>& bodies, const std::vector<Passage>& passages) {
+                      const std::vector<ObstacleBody>& bodies, const std::vector<PoseInterpolation>& paths) {
   constexpr int moments = 6;
   const auto points = [&](const std::vector<int>& particles, double part) {
     std::vector<Vec3> all;
@@ -85,7 +85,7 @@ double least_distance(const FeaturePair& pair, const Surface& cloth, const Motio
     least = std::min(least, pair.obstacle == FeaturePair::cloth_itself
                                 ? distance(near, points(foreign_particles(pair, cloth), part))
                                 : distance_to_obstacle(pair, near, bodies[at(pair.obstacle)],
-                                                       passages[at(pair.obstacle)].at(part)));
+                                                       paths[at(pair.obstacle)].at(part)));
   }
   return least;
 }
@@ -104,26 +104,27 @@ std::set<FeaturePair> told_apart(const std::vector<FeaturePair>& pairs) {
   return set;
 }
 
-struct Meeting {
+struct Intersection {
   std::vector<ObstacleBody> bodies;
-  std::vector<Passage> passages;
+  std::vector<PoseInterpolation> paths;
   Sheet sheet;
 };
 
-Meeting random_meeting(Random& random) {
-  Meeting meeting;
+Intersection random_meeting(Random& random) {
+  Intersection meeting;
   meeting.sheet = random_sheet(random.integer(3, 6), random.integer(3, 6), random);
   for (const Shape shape : all_shapes) {
     if (random.coin()) continue;
     meeting.bodies.push_back(random_body(shape, random));
-    meeting.passages.push_back(random_passage(meeting.bodies.back(), random));
+    meeting.paths.push_back(random_interpolation(meeting.bodies.back(), random));
   }
   return meeting;
 }
 
 /// Whether a pair comes within reach of each other on its way, or could at the borders of its capsules.
-bool comes_near(const FeaturePair& pair, const Meeting& meeting, const Motion& motion, double* distance) {
-  *distance = least_distance(pair, meeting.sheet.surface, motion, meeting.bodies, meeting.passages);
+bool comes_near(const FeaturePair& pair, const Intersection& meeting, const Motion& motion,
+                double* distance) {
+  *distance = least_distance(pair, meeting.sheet.surface, motion, meeting.bodies, meeting.paths);
   return *distance < (pair.obstacle == FeaturePair::cloth_itself ? motion.own_reach + 2 * motion.margin
                                                                  : motion.reach + motion.margin);
 }
@@ -132,8 +133,8 @@ struct Looked {
   std::size_t near = 0, far = 0;
 };
 
-void expect_none_missed(const std::vector<FeaturePair>& pairs, const Meeting& meeting, const Motion& motion,
-                        Looked& looked, bool with_itself = true) {
+void expect_none_missed(const std::vector<FeaturePair>& pairs, const Intersection& meeting,
+                        const Motion& motion, Looked& looked, bool with_itself = true) {
   const std::set<FeaturePair> found = told_apart(pairs);
   for (const FeaturePair& pair : all_pairs(meeting.sheet.surface, meeting.bodies, with_itself)) {
     double distance = 0;
@@ -151,11 +152,10 @@ TEST(NearPairs, MissNoneOfAllPairsThatComeNear) {
   Looked looked;
   for (int trial = 0; trial < 60; ++trial) {
     SCOPED_TRACE(trial);
-    const Meeting meeting = random_meeting(random);
+    const Intersection meeting = random_meeting(random);
     const Motion motion = random_motion(meeting.sheet.position, random.coin() ? 0.01 : 0.1, random);
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02)
-        .find(motion.ways(), meeting.passages, pairs);
+    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02).find(motion.swept(), meeting.paths, pairs);
     expect_none_missed(pairs, meeting, motion, looked);
   }
   EXPECT_GT(looked.near, 2000u);
@@ -167,21 +167,21 @@ TEST(NearPairs, MissNoneThatAnObstacleSweepsOverAsItTurnsAndShifts) {
   Looked looked;
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE(trial);
-    Meeting meeting;
+    Intersection meeting;
     meeting.bodies = {random_body(random.coin() ? Shape::mesh : Shape::plane, random)};
     const ObstacleBody& body = meeting.bodies[0];
     const Pose to = about(body.pivot, turn_by(random.uniform(0.5, 2) * random.vector(1).normalized()),
                           body.pivot + random.vector(0.3));
-    meeting.passages = {{body.pivot, Pose{}, to}};
+    meeting.paths = {{body.pivot, Pose{}, to}};
     // a small cloth at rest where something of the obstacle comes by
     const Vec3 part_of_it = body.vertices.empty() ? body.point : body.vertices[0];
-    const Vec3 place = meeting.passages[0].at(random.integer(1, 5) / 6.0).at(part_of_it);
+    const Vec3 place = meeting.paths[0].at(random.integer(1, 5) / 6.0).at(part_of_it);
     meeting.sheet = random_sheet(3, 3, random);
     for (std::size_t i = 0; i < meeting.sheet.position.size(); ++i)
       meeting.sheet.position.set(i, place + 0.01 * meeting.sheet.position[i]);
     Motion motion{meeting.sheet.position, meeting.sheet.position, 1e-4, 1e-3, 0};
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, false, 0).find(motion.ways(), meeting.passages, pairs);
+    PairSearch(meeting.sheet.surface, meeting.bodies, false, 0).find(motion.swept(), meeting.paths, pairs);
     expect_none_missed(pairs, meeting, motion, looked, false);
     if (HasFatalFailure()) return;
   }
@@ -191,11 +191,10 @@ TEST(NearPairs, MissNoneThatAnObstacleSweepsOverAsItTurnsAndShifts) {
 TEST(NearPairs, ComeOnceAndAreOfFeaturesThatExist) {
   Random random;
   for (int trial = 0; trial < 60; ++trial) {
-    const Meeting meeting = random_meeting(random);
+    const Intersection meeting = random_meeting(random);
     const Motion motion = random_motion(meeting.sheet.position, 0.05, random);
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02)
-        .find(motion.ways(), meeting.passages, pairs);
+    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02).find(motion.swept(), meeting.paths, pairs);
     const std::set<FeaturePair> found = told_apart(pairs);
     EXPECT_EQ(found.size(), pairs.size()) << "some came twice";
     const std::vector<FeaturePair> all = all_pairs(meeting.sheet.surface, meeting.bodies, true);
@@ -206,24 +205,25 @@ TEST(NearPairs, ComeOnceAndAreOfFeaturesThatExist) {
 
 TEST(NearPairs, OfObstaclesFarAwayAreNone) {
   Random random;
-  Meeting meeting;
+  Intersection meeting;
   meeting.sheet = random_sheet(4, 4, random);
   for (const Shape shape : {Shape::sphere, Shape::box, Shape::mesh}) {
     meeting.bodies.push_back(random_body(shape, random));
-    meeting.passages.emplace_back(Vec3::Zero(), Pose{}, Pose{});
-    meeting.passages.back() = Passage(meeting.bodies.back().pivot, {Eigen::Matrix3d::Identity(), {0, 9, 0}},
-                                      {Eigen::Matrix3d::Identity(), {3, 5, 0}});
+    meeting.paths.emplace_back(Vec3::Zero(), Pose{}, Pose{});
+    meeting.paths.back() =
+        PoseInterpolation(meeting.bodies.back().pivot, {Eigen::Matrix3d::Identity(), {0, 9, 0}},
+                          {Eigen::Matrix3d::Identity(), {3, 5, 0}});
   }
   std::vector<FeaturePair> pairs{FeaturePair{}};
   PairSearch(meeting.sheet.surface, meeting.bodies, false, 0)
-      .find(random_motion(meeting.sheet.position, 0, random).ways(), meeting.passages, pairs);
+      .find(random_motion(meeting.sheet.position, 0, random).swept(), meeting.paths, pairs);
   EXPECT_TRUE(pairs.empty());
 }
 
 /// Forty steps, mostly small ones, in which reach and obstacles change now and then.
 template <class Look>
 void walk(Random& random, const Look& look) {
-  Meeting meeting = random_meeting(random);
+  Intersection meeting = random_meeting(random);
   Motion motion{meeting.sheet.position, meeting.sheet.position, 0.003, 0.005, 0.005};
   look(meeting, motion, true);
   for (int step = 0; step < 40; ++step) {
@@ -233,7 +233,7 @@ void walk(Random& random, const Look& look) {
     motion.reach = motion.own_reach = change == 0 ? random.uniform(0.001, 0.01) : reach;
     motion.margin = 0.0005;
     if (change < 3 && !meeting.bodies.empty())
-      meeting.passages[0] = random_passage(meeting.bodies[0], random);
+      meeting.paths[0] = random_interpolation(meeting.bodies[0], random);
     look(meeting, motion, false);
     if (::testing::Test::HasFatalFailure()) return;
   }
@@ -245,12 +245,12 @@ TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKept) {
   for (int trial = 0; trial < 20; ++trial) {
     constexpr double skin = 0.02;
     std::unique_ptr<PairSearch> keeping;
-    walk(random, [&](const Meeting& meeting, const Motion& motion, bool begins) {
+    walk(random, [&](const Intersection& meeting, const Motion& motion, bool begins) {
       if (begins) keeping = std::make_unique<PairSearch>(meeting.sheet.surface, meeting.bodies, true, skin);
       std::vector<FeaturePair> pairs, fresh;
-      keeping->find(motion.ways(), meeting.passages, pairs);
+      keeping->find(motion.swept(), meeting.paths, pairs);
       PairSearch(meeting.sheet.surface, meeting.bodies, true, skin)
-          .find(motion.ways(), meeting.passages, fresh);
+          .find(motion.swept(), meeting.paths, fresh);
       ASSERT_EQ(pairs, fresh);
       compared += pairs.size();
     });
@@ -258,9 +258,9 @@ TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKept) {
   EXPECT_GT(compared, 10000u);
 }
 
-std::vector<Pose> poses_at_begin(const Meeting& meeting) {
+std::vector<Pose> poses_at_begin(const Intersection& meeting) {
   std::vector<Pose> poses;
-  for (const Passage& passage : meeting.passages) poses.push_back(passage.from());
+  for (const PoseInterpolation& path : meeting.paths) poses.push_back(path.from());
   return poses;
 }
 
@@ -271,12 +271,12 @@ TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
   for (int trial = 0; trial < 12; ++trial) {
     SCOPED_TRACE(trial);
     std::unique_ptr<ClosePairs> keeping;
-    walk(random, [&](const Meeting& meeting, const Motion& motion, bool begins) {
+    walk(random, [&](const Intersection& meeting, const Motion& motion, bool begins) {
       const Surface& cloth = meeting.sheet.surface;
       if (begins) keeping = std::make_unique<ClosePairs>(cloth, meeting.bodies, true, 0.02);
-      const Ways ways = motion.ways();
+      const SweptBounds swept = motion.swept();
       const std::vector<Pose> poses = poses_at_begin(meeting);
-      const Situation now{motion.from, ways, meeting.passages, poses};
+      const PairQuery now{motion.from, swept, meeting.paths, poses};
       std::vector<FeaturePair> pairs, fresh;
       std::vector<Separation> separations, fresh_separations;
       keeping->find(now, pairs, separations);

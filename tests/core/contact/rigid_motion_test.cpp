@@ -51,12 +51,12 @@ TEST(APassage, EndsAtItsPosesToTheBit) {
   Obstacle obstacle = ball();
   obstacle.spin = {1, 2, 3}, obstacle.velocity = {3, 2, 1};
   const Pose from = pose_of(obstacle, 0.1), to = pose_of(obstacle, 0.2);
-  const Passage passage(obstacle.center, from, to);
-  EXPECT_EQ(passage.at(0), from);
-  EXPECT_EQ(passage.at(1), to);
-  EXPECT_FALSE(passage.rests());
-  EXPECT_NEAR(passage.angle(), 0.1 * std::sqrt(14.0), 1e-12);
-  const Pose there = pose_of(obstacle, 0.15), between = passage.at(0.5);
+  const PoseInterpolation path(obstacle.center, from, to);
+  EXPECT_EQ(path.at(0), from);
+  EXPECT_EQ(path.at(1), to);
+  EXPECT_FALSE(path.rests());
+  EXPECT_NEAR(path.angle(), 0.1 * std::sqrt(14.0), 1e-12);
+  const Pose there = pose_of(obstacle, 0.15), between = path.at(0.5);
   EXPECT_LE((there.turn - between.turn).norm(), 1e-13);
   EXPECT_LE((there.shift - between.shift).norm(), 1e-13);
 }
@@ -66,12 +66,12 @@ TEST(APassage, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
   for (const Vec3& spin : {Vec3(10, 40, 20), Vec3(0, -63, 0), Vec3(0, 20 * pi, 0), Vec3(-35, 0, 0)}) {
     obstacle.spin = spin;
     const double begin = 0.3, step = 0.1;
-    const Passage passage(obstacle.center, pose_of(obstacle, begin), pose_of(obstacle, begin + step),
-                          step * spin);
-    EXPECT_NEAR(passage.angle(), step * spin.norm(), 1e-12);
-    EXPECT_FALSE(passage.rests());
+    const PoseInterpolation path(obstacle.center, pose_of(obstacle, begin), pose_of(obstacle, begin + step),
+                                 step * spin);
+    EXPECT_NEAR(path.angle(), step * spin.norm(), 1e-12);
+    EXPECT_FALSE(path.rests());
     for (const double part : {0.1, 0.25, 0.5, 0.9}) {
-      const Pose there = pose_of(obstacle, begin + part * step), between = passage.at(part);
+      const Pose there = pose_of(obstacle, begin + part * step), between = path.at(part);
       EXPECT_LE((there.turn - between.turn).norm(), 1e-12) << spin.transpose() << ", part " << part;
       EXPECT_LE((there.shift - between.shift).norm(), 1e-12);
     }

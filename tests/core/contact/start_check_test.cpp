@@ -157,32 +157,33 @@ TriangleMesh two_sheets(double place, double bottom) {
   return mesh;
 }
 
-TEST(OwnMeeting, TellsPassingFromTouchingByTheLastBit) {
+TEST(SelfIntersection, TellsPassingFromTouchingByTheLastBit) {
   constexpr double cell = 0.1, place = 0.17;
-  EXPECT_FALSE(find_own_meeting(two_sheets(place, 1e-9 * cell)));
-  EXPECT_FALSE(find_own_meeting(two_sheets(place, 1e-300)));
-  const auto touching = find_own_meeting(two_sheets(place, 0));
+  EXPECT_FALSE(find_self_intersection(two_sheets(place, 1e-9 * cell)));
+  EXPECT_FALSE(find_self_intersection(two_sheets(place, 1e-300)));
+  const auto touching = find_self_intersection(two_sheets(place, 0));
   ASSERT_TRUE(touching);
   EXPECT_FALSE(touching->passes);
   for (const double bottom : {-1e-18, -1e-9 * cell, -0.1 * cell, -0.15}) {
-    const auto passing = find_own_meeting(two_sheets(place, bottom));
+    const auto passing = find_self_intersection(two_sheets(place, bottom));
     ASSERT_TRUE(passing) << bottom;
     EXPECT_TRUE(passing->passes) << bottom;
   }
-  EXPECT_TRUE(find_own_meeting(two_sheets(0.2, -0.2))) << "edges cross in a vertex, nowhere within a face";
+  EXPECT_TRUE(find_self_intersection(two_sheets(0.2, -0.2)))
+      << "edges cross in a vertex, nowhere within a face";
 }
 
-TEST(OwnMeeting, IsThereWhereACellIsFoldedOntoItsNeighbourAndNowhereElse) {
+TEST(SelfIntersection, IsThereWhereACellIsFoldedOntoItsNeighbourAndNowhereElse) {
   Vec3Field position(9);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       position.set(static_cast<std::size_t>(3 * row + column), {0.1 * column, 0, 0.1 * row});
-  EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
+  EXPECT_FALSE(find_self_intersection(grid_triangles(3, 3, position)));
   for (int row = 0; row < 3; ++row)
     position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 1e-9, 0.1 * row});
-  EXPECT_FALSE(find_own_meeting(grid_triangles(3, 3, position)));
+  EXPECT_FALSE(find_self_intersection(grid_triangles(3, 3, position)));
   for (int row = 0; row < 3; ++row) position.set(static_cast<std::size_t>(3 * row + 2), {0.01, 0, 0.1 * row});
-  const auto folded = find_own_meeting(grid_triangles(3, 3, position));
+  const auto folded = find_self_intersection(grid_triangles(3, 3, position));
   ASSERT_TRUE(folded);
   EXPECT_FALSE(folded->passes);
 }

@@ -1,4 +1,4 @@
-#include "geometry/triangle_meeting.h"
+#include "geometry/triangle_intersection.h"
 
 #include <algorithm>
 
@@ -76,42 +76,45 @@ bool is_clearly_beside(const Corners& of, const std::array<Vec3, N>& other) {
   return is_parted_by(normal.cross(other[0] - other[N - 1]), of, other);
 }
 
-Meeting edge_meeting(const Vec3& p, const Vec3& q, const Corners& triangle) {
-  return is_clearly_beside(triangle, std::array{p, q}) ? Meeting::apart : meeting_of(p, q, triangle);
+Intersection edge_meeting(const Vec3& p, const Vec3& q, const Corners& triangle) {
+  return is_clearly_beside(triangle, std::array{p, q}) ? Intersection::apart
+                                                       : intersection_of(p, q, triangle);
 }
 
 }  // namespace
 
-Meeting meeting_of(const Vec3& p, const Vec3& q, const Corners& t) {
+Intersection intersection_of(const Vec3& p, const Vec3& q, const Corners& t) {
   const int before = side_of_plane(t[0], t[1], t[2], p), after = side_of_plane(t[0], t[1], t[2], q);
-  if (before * after > 0) return Meeting::apart;
-  if (before == 0 && after == 0) return touches_in_plane(p, q, t) ? Meeting::touching : Meeting::apart;
+  if (before * after > 0) return Intersection::apart;
+  if (before == 0 && after == 0)
+    return touches_in_plane(p, q, t) ? Intersection::touching : Intersection::apart;
   const int first = side_of_plane(p, q, t[0], t[1]), second = side_of_plane(p, q, t[1], t[2]),
             third = side_of_plane(p, q, t[2], t[0]);
-  if (!is_one_sided(first, second, third)) return Meeting::apart;
+  if (!is_one_sided(first, second, third)) return Intersection::apart;
   const bool is_within = first != 0 && second != 0 && third != 0;
-  return is_within && before != 0 && after != 0 ? Meeting::passing : Meeting::touching;
+  return is_within && before != 0 && after != 0 ? Intersection::crossing : Intersection::touching;
 }
 
-Meeting meeting_of(const Corners& a, const Corners& b) {
-  if (is_clearly_beside(a, b) || is_clearly_beside(b, a)) return Meeting::apart;
-  Meeting worst = Meeting::apart;
+Intersection intersection_of(const Corners& a, const Corners& b) {
+  if (is_clearly_beside(a, b) || is_clearly_beside(b, a)) return Intersection::apart;
+  Intersection worst = Intersection::apart;
   for (std::size_t k = 0; k < 3; ++k)
-    worst = std::max({worst, meeting_of(a[k], a[(k + 1) % 3], b), meeting_of(b[k], b[(k + 1) % 3], a)});
+    worst =
+        std::max({worst, intersection_of(a[k], a[(k + 1) % 3], b), intersection_of(b[k], b[(k + 1) % 3], a)});
   return worst;
 }
 
-Meeting meeting_beyond_corner(const Corners& a, const Corners& b) {
+Intersection intersection_beyond_corner(const Corners& a, const Corners& b) {
   return std::max(edge_meeting(a[1], a[2], b), edge_meeting(b[1], b[2], a));
 }
 
-Meeting meeting_beyond_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+Intersection intersection_beyond_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 edge = b - a, one = edge.cross(c - a), other = edge.cross(d - a);
-  if (one.dot(other) < 0) return Meeting::apart;  // the angle between them is more than a right one
-  if (side_of_plane(a, b, c, d) != 0) return Meeting::apart;
+  if (one.dot(other) < 0) return Intersection::apart;  // the angle between them is more than a right one
+  if (side_of_plane(a, b, c, d) != 0) return Intersection::apart;
   const int axis = axis_that_sees(a, b, c);
-  return axis >= 0 && turn_around(axis, a, b, c) == turn_around(axis, a, b, d) ? Meeting::touching
-                                                                               : Meeting::apart;
+  return axis >= 0 && turn_around(axis, a, b, c) == turn_around(axis, a, b, d) ? Intersection::touching
+                                                                               : Intersection::apart;
 }
 
 }  // namespace cloth

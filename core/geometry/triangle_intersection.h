@@ -13,18 +13,18 @@ using Corners = std::array<Vec3, 3>;
 /// In this order of severity. Passing: an edge of the one has its ends on both sides of the other's plane and
 /// crosses it within the other, not on its boundary. Touching: all other common points, also those of
 /// triangles that overlap in one plane.
-enum class Meeting { apart, touching, passing };
+enum class Intersection { apart, touching, crossing };
 
 /// Of the segment from p to q and a triangle; one without area is what its edges are.
-Meeting meeting_of(const Vec3& p, const Vec3& q, const Corners& triangle);
+Intersection intersection_of(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 /// Of two triangles that share no corner.
-Meeting meeting_of(const Corners& a, const Corners& b);
+Intersection intersection_of(const Corners& a, const Corners& b);
 
 /// Of two that share their first corner and nothing else that counts.
-Meeting meeting_beyond_corner(const Corners& a, const Corners& b);
+Intersection intersection_beyond_corner(const Corners& a, const Corners& b);
 
 /// Of the triangles (a, b, c) and (a, b, d): touching where they lie upon each other, folded flat.
-Meeting meeting_beyond_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+Intersection intersection_beyond_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace cloth

@@ -14,10 +14,10 @@ namespace cloth {
 /// Regions of particles, and of the vertices of an obstacle's mesh or of the cloth, all as the obstacle sees
 /// them. Each feature is met by the triangle that answers for it, so that no pair comes twice.
 template <class NearRegion, class FarRegion>
-class FaceMeeting {
+class FacePairFinder {
  public:
-  FaceMeeting(int obstacle, const Surface& near, std::span<const NearRegion> near_vertices,
-              const Surface& far, std::span<const FarRegion> far_vertices, std::span<const Slab> far_faces)
+  FacePairFinder(int obstacle, const Surface& near, std::span<const NearRegion> near_vertices,
+                 const Surface& far, std::span<const FarRegion> far_vertices, std::span<const Slab> far_faces)
       : obstacle_(obstacle),
         near_(near),
         far_(far),
@@ -56,10 +56,10 @@ class FaceMeeting {
 
   void meet_vertices(const Slab& far, std::vector<FeaturePair>& pairs) const {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (near_sides_[k] == 0 && near_.answers_for_vertex(face_, static_cast<int>(k)) &&
+      if (near_sides_[k] == 0 && near_.represents_vertex(face_, static_cast<int>(k)) &&
           !(is_own() && has(other_, own_[k])) && overlap(boxes_[k], far.box))
         pairs.push_back({obstacle_, PairKind::vertex_face, own_[k], foreign_});
-      if (far_sides_[k] != 0 || !far_.answers_for_vertex(foreign_, static_cast<int>(k))) continue;
+      if (far_sides_[k] != 0 || !far_.represents_vertex(foreign_, static_cast<int>(k))) continue;
       if ((is_own() && has(own_, other_[k])) || !overlap(slab_.box, box_of(other_vertex(k)))) continue;
       if (is_own())
         pairs.push_back({obstacle_, PairKind::vertex_face, other_[k], face_});
@@ -70,10 +70,10 @@ class FaceMeeting {
 
   void meet_edges(const Slab& far, std::vector<FeaturePair>& pairs) const {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (edge_beyond(near_sides_, k) || !near_.answers_for_edge(face_, static_cast<int>(k))) continue;
+      if (edge_beyond(near_sides_, k) || !near_.represents_edge(face_, static_cast<int>(k))) continue;
       if (!overlap(edge_boxes_[k], far.box)) continue;
       for (std::size_t j = 0; j < 3; ++j) {
-        if (edge_beyond(far_sides_, j) || !far_.answers_for_edge(foreign_, static_cast<int>(j))) continue;
+        if (edge_beyond(far_sides_, j) || !far_.represents_edge(foreign_, static_cast<int>(j))) continue;
         if (is_own() && edges_share(k, j)) continue;
         const Bounds box = bounds_of(box_of(other_vertex(j)), box_of(other_vertex((j + 1) % 3)));
         if (overlap(edge_boxes_[k], box))

@@ -24,78 +24,80 @@ double kinetic_change(double mass, const Vec3& now, const Vec3& then) {
 
 }  // namespace
 
-/// The mean velocity of the step. What began it nearer than its thickness was put apart, and that is no motion:
-/// as one it would leave at the missing distance over the step. There the motion is solved for anew, with the
-/// distance at which the step began as the one to keep. Returns whether there was such a pair.
+/// The mean velocity of the step. What began it nearer than its thickness was put apart, and that is no
+/// motion: as one it would leave at the missing distance over the step. There the motion is solved for anew,
+/// with the distance at which the step began as the one to keep. Returns whether there was such a pair.
 bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begin) {
-  if (motion_.size() != safe_.size()) motion_ = Vec3Field(safe_.size());
-  for (std::size_t i = 0; i < safe_.size(); ++i)
-    motion_.set(i, (safe_[i] - begin.position[i]) / begin.step);
+  if (motion_.size() != position_.size()) motion_ = Vec3Field(position_.size());
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    motion_.set(i, (position_[i] - begin.position[i]) / begin.step);
   constraints_.clear();
   std::vector<double> gaps;  // m, beyond the thickness as the step began
   for (const Touch& touch : touches_) {
-    if (!(touch.contact.push > 0) || !(touch.contact.mobility > 0)) continue;
+    if (!(touch.contact.normal_impulse > 0) || !(touch.contact.mobility > 0)) continue;
     ContactConstraint contact = touch.contact;
     gaps.push_back(contact.normal.dot(contact.rest) - contact.bound);
     contact.bound = contact.normal.dot(touch.velocity) - std::max(gaps.back(), 0.0) / begin.step;
     contact.rest = touch.velocity;
-    contact.push = 0, contact.rub.setZero();
+    contact.normal_impulse = 0, contact.friction_impulse.setZero();
     constraints_.push_back(contact);
   }
   const auto is_missing = [&](double gap) { return gap < -arrived_length(); };
   if (substeps_ > 1 || std::none_of(gaps.begin(), gaps.end(), is_missing)) return false;
-  Vec3Field solved(safe_.size());
-  for (std::size_t i = 0; i < safe_.size(); ++i) solved.set(i, (wished_[i] - begin.position[i]) / begin.step);
+  Vec3Field solved(position_.size());
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    solved.set(i, (integrated_position_[i] - begin.position[i]) / begin.step);
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, solved);
   Islands islands(constraints_, system.inverse_mass);
-  std::vector<std::uint8_t> recovers(safe_.size(), 0);
+  std::vector<std::uint8_t> recovers(position_.size(), 0);
   for (std::size_t c = 0; c < gaps.size(); ++c)
     if (is_missing(gaps[c]))
       recovers[at(islands.of(Islands::first_free(constraints_[c], system.inverse_mass)))] = 1;
-  for (std::size_t i = 0; i < safe_.size(); ++i)
+  for (std::size_t i = 0; i < position_.size(); ++i)
     if (recovers[at(islands.of(static_cast<int>(i)))]) motion_.set(i, solved[i]);
   return true;
 }
 
 /// J, of putting apart what began too near: against the mean of the forces where the step began and where it
 /// ends, which is what the half kicks do along the motion.
-double ContinuousContact::recovering_work(const Begin& begin, const Settling& settling) const {
-  Vec3Field moved = begin.position, led = safe_;
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    const Vec3 put = safe_[i] - begin.position[i] - begin.step * motion_[i];
+double ContinuousContact::recovering_work(const Begin& begin, const VelocityCoupling& coupling) const {
+  Vec3Field moved = begin.position, led = position_;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Vec3 put = position_[i] - begin.position[i] - begin.step * motion_[i];
     moved.add(i, put), led.add(i, -put);
   }
-  return 0.5 * (settling.potential(moved) - settling.potential(begin.position) + settling.potential(safe_) -
-                settling.potential(led));
+  return 0.5 * (coupling.potential(moved) - coupling.potential(begin.position) +
+                coupling.potential(position_) - coupling.potential(led));
 }
 
 /// m/s: what contact adds to the velocity that leads through the step.
-Vec3 ContinuousContact::opening_of(std::size_t i, const Begin& begin) const {
-  return motion_[i] - (wished_[i] - begin.position[i]) / begin.step;
+Vec3 ContinuousContact::start_change_of(std::size_t i, const Begin& begin) const {
+  return motion_[i] - (integrated_position_[i] - begin.position[i]) / begin.step;
 }
 
 /// m/s, of the touch's two sides, negative where they come nearer; 0 if that is no blow. What nothing held
-/// before comes as fast as the integrator lets it go in this step. What was held comes as fast as it went when
-/// the step began: what the step adds to that is load. Slower than a few times what gravity or the load adds
-/// in a step is no blow, or a cloth at rest would dance.
-double ContinuousContact::approach_of(const Touch& touch, const Begin& begin, const Settling& settling) const {
+/// before comes as fast as the integrator lets it go in this step. What was held comes as fast as it went
+/// when the step began: what the step adds to that is load. Slower than a few times what gravity or the load
+/// adds in a step is no blow, or a cloth at rest would dance.
+double ContinuousContact::approach_of(const Touch& touch, const Begin& begin,
+                                      const VelocityCoupling& coupling) const {
   const ContactConstraint& contact = touch.contact;
   bool was_held = false;
   for (int k = 0; k < contact.count; ++k)
-    was_held = was_held || (contact.weight[at(k)] != 0 && settling.memory.held[at(contact.particle[at(k)])]);
-  const double began = contact.normal.dot(contact.point(settling.velocity_before) - touch.velocity);
-  const double goes = contact.normal.dot(contact.point(wished_) - contact.rest) / begin.step;
+    was_held = was_held || (contact.weight[at(k)] != 0 && coupling.memory.held[at(contact.particle[at(k)])]);
+  const double began = contact.normal.dot(contact.point(coupling.velocity_before) - touch.velocity);
+  const double goes = contact.normal.dot(contact.point(integrated_position_) - contact.rest) / begin.step;
   const double coming = was_held ? began : goes;
   const double least = std::max(2 * gravity_ * begin.step, 4 * (began - goes));
   return coming < -least ? coming : 0;
 }
 
 /// The touching pairs, with what their velocities must answer without restitution, and with it.
-void ContinuousContact::take_touches(const Begin& begin, const Settling& settling) {
+void ContinuousContact::take_touches(const Begin& begin, const VelocityCoupling& coupling) {
   constraints_.clear();
   bounce_bound_.clear();
   for (const Touch& touch : touches_) {
-    if (!(touch.contact.push > 0) || !(touch.contact.mobility > 0)) continue;
+    if (!(touch.contact.normal_impulse > 0) || !(touch.contact.mobility > 0)) continue;
     ContactConstraint contact = touch.contact;
     double restitution = 0;
     if (touch.obstacle != FeaturePair::cloth_itself) {
@@ -103,87 +105,88 @@ void ContinuousContact::take_touches(const Begin& begin, const Settling& settlin
       restitution = body.reflects ? body.friction : body.restitution;
     }
     contact.bound = contact.normal.dot(touch.velocity);
-    const double coming = restitution > 0 ? approach_of(touch, begin, settling) : 0;
+    const double coming = restitution > 0 ? approach_of(touch, begin, coupling) : 0;
     bounce_bound_.push_back(contact.bound - restitution * coming);
     contact.rest = touch.velocity;
-    contact.push = 0, contact.rub.setZero();
+    contact.normal_impulse = 0, contact.friction_impulse.setZero();
     constraints_.push_back(contact);
   }
 }
 
-void ContinuousContact::answer_velocities(const ClothSystem& system, const Begin& begin,
-                                          const Settling& settling, ClothState& state,
-                                          ContactReport& report) {
-  const bool follows = static_cast<bool>(settling.positions);
-  settling.memory.resize(safe_.size());
-  if (find_motion(system, begin)) report.work += recovering_work(begin, settling);
-  if (follows) settling.positions(motion_);
-  take_touches(begin, settling);
+void ContinuousContact::solve_velocities(const ClothSystem& system, const Begin& begin,
+                                         const VelocityCoupling& coupling, ClothState& state,
+                                         ContactReport& report) {
+  const bool follows = static_cast<bool>(coupling.positions);
+  coupling.memory.resize(position_.size());
+  if (find_motion(system, begin)) report.work += recovering_work(begin, coupling);
+  if (follows) coupling.positions(motion_);
+  take_touches(begin, coupling);
   free_velocity_ = state.velocity;
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
-  if (settling.velocities) {
-    settling.velocities(motion_);
+  if (coupling.velocities) {
+    coupling.velocities(motion_);
     free_velocity_ = state.velocity;
     for (const ContactConstraint& contact : constraints_)
-      apply_pushes(contact, system.inverse_mass, state.velocity);
+      apply_impulses(contact, system.inverse_mass, state.velocity);
     solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
   }
-  work_.assign(safe_.size(), 0.0);
+  work_.assign(position_.size(), 0.0);
   if (follows)
-    add_half_steps_work(system, begin, settling, state);
+    add_half_steps_work(system, begin, coupling, state);
   else
-    find_work(system, settling, state);
+    find_work(system, coupling, state);
   bounce(system, begin, follows, state);
-  report.impulse = impulse_of_pushes(system);
+  report.impulse = total_impulse(system);
   if (follows)
-    for (std::size_t i = 0; i < safe_.size(); ++i)
-      if (!system.pinned[i]) report.impulse += system.mass[i] * opening_of(i, begin);
+    for (std::size_t i = 0; i < position_.size(); ++i)
+      if (!system.pinned[i]) report.impulse += system.mass[i] * start_change_of(i, begin);
   report.held_back = note_held_back(system, begin, state);
-  remember(system, state, follows, settling.memory);
+  remember(system, state, follows, coupling.memory);
   for (const double work : work_) report.work += work;
 }
 
 /// N s.
-Vec3 ContinuousContact::impulse_of_pushes(const ClothSystem& system) const {
+Vec3 ContinuousContact::total_impulse(const ClothSystem& system) const {
   Vec3 impulse = Vec3::Zero();
   for (const ContactConstraint& contact : constraints_) {
     double weight = 0;
     for (int k = 0; k < contact.count; ++k)
       if (!system.pinned[at(contact.particle[at(k)])]) weight += contact.weight[at(k)];
-    impulse += weight * (contact.push * contact.normal + contact.rub);
+    impulse += weight * (contact.normal_impulse * contact.normal + contact.friction_impulse);
   }
   return impulse;
 }
 
 /// Of contacts that act on a velocity which the integrator has finished.
-void ContinuousContact::find_work(const ClothSystem& system, const Settling& settling,
+void ContinuousContact::find_work(const ClothSystem& system, const VelocityCoupling& coupling,
                                   const ClothState& state) {
   for (const ContactConstraint& contact : constraints_) {
-    const PointSpeeds speeds{contact.point(settling.velocity_before), contact.point(state.velocity),
+    const PointSpeeds speeds{contact.point(coupling.velocity_before), contact.point(state.velocity),
                              contact.point(motion_)};
     work_[at(Islands::first_free(contact, system.inverse_mass))] += work_of(contact, speeds);
   }
 }
 
-/// Of contacts that act at the begin of the step, on the velocity which leads through it, and at its end, each
-/// as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet in one
-/// state this is the impulse times the mean of the velocities of the steps before and after, under which the
-/// energy of a leapfrog closes; what c took of the load's half kick l, m |l|^2/2, and the next o gives back, is
-/// lent meanwhile.
+/// Of contacts that act at the begin of the step, on the velocity which leads through it, and at its end,
+/// each as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet
+/// in one state this is the impulse times the mean of the velocities of the steps before and after, under
+/// which the energy of a leapfrog closes; what c took of the load's half kick l, m |l|^2/2, and the next o
+/// gives back, is lent meanwhile.
 void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Begin& begin,
-                                            const Settling& settling, const ClothState& state) {
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
+                                            const VelocityCoupling& coupling, const ClothState& state) {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
     if (system.pinned[i]) continue;
     const double mass = system.mass[i];
-    const Vec3 opening = opening_of(i, begin);
-    work_[i] = mass * opening.dot(settling.velocity_before[i] + 0.5 * opening) +
-               kinetic_change(mass, free_velocity_[i], state.velocity[i]) - settling.memory.lent[i];
+    const Vec3 opening = start_change_of(i, begin);
+    work_[i] = mass * opening.dot(coupling.velocity_before[i] + 0.5 * opening) +
+               kinetic_change(mass, free_velocity_[i], state.velocity[i]) - coupling.memory.deferred[i];
   }
 }
 
 /// J, of a particle: what the next step will give back, which is what stopped only the load of the half step;
 /// a blow is lost. `stopped` in m/s is the velocity after the impulse.
-double ContinuousContact::lent_to_load(const ClothSystem& system, std::size_t i, const Vec3& stopped) const {
+double ContinuousContact::deferred_by_load(const ClothSystem& system, std::size_t i,
+                                           const Vec3& stopped) const {
   const Vec3 impulse = stopped - free_velocity_[i];
   const double speed = impulse.norm();
   if (!(speed > 0)) return 0;
@@ -196,11 +199,10 @@ double ContinuousContact::lent_to_load(const ClothSystem& system, std::size_t i,
 /// obstacles.
 void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bool follows,
                                ClothState& state) {
-  bounced_.assign(safe_.size(), 0);
-  lent_to_bounced_.assign(safe_.size(), 0.0);
+  bounced_.assign(position_.size(), 0);
+  deferred_of_bounced_.assign(position_.size(), 0.0);
   bool any = false;
-  for (std::size_t c = 0; c < constraints_.size(); ++c)
-    any = any || bounce_bound_[c] > constraints_[c].bound;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) any = any || bounce_bound_[c] > constraints_[c].bound;
   if (!any) return;
   const std::vector<ContactConstraint> still = constraints_;
   const Vec3Field stopped = state.velocity;
@@ -208,8 +210,8 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
 
   Islands islands(constraints_, system.inverse_mass);
-  std::vector<Vec3> carried(safe_.size(), Vec3::Zero());
-  std::vector<std::uint8_t> touched(safe_.size(), 0);
+  std::vector<Vec3> carried(position_.size(), Vec3::Zero());
+  std::vector<std::uint8_t> touched(position_.size(), 0);
   for (const ContactConstraint& contact : constraints_)
     for (int k = 0; k < contact.count; ++k) {
       const auto i = at(contact.particle[at(k)]);
@@ -221,55 +223,57 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
     double taken = 0, square = 0, linear = 0;  ///< J
     double part = 1;
   };
-  std::vector<Share> shares(safe_.size());
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
+  std::vector<Share> shares(position_.size());
+  for (std::size_t i = 0; i < position_.size(); ++i) {
     if (!touched[i]) continue;
     const double mass = system.mass[i];
     const Vec3 change = state.velocity[i] - stopped[i];
     Vec3 impulse = stopped[i] - free_velocity_[i];
-    if (follows) impulse += opening_of(i, begin);
+    if (follows) impulse += start_change_of(i, begin);
     Share& share = shares[at(islands.of(static_cast<int>(i)))];
-    if (follows) lent_to_bounced_[i] = lent_to_load(system, i, stopped[i]);
-    share.taken -= work_[i] - mass * impulse.dot(carried[i]) + lent_to_bounced_[i];
+    if (follows) deferred_of_bounced_[i] = deferred_by_load(system, i, stopped[i]);
+    share.taken -= work_[i] - mass * impulse.dot(carried[i]) + deferred_of_bounced_[i];
     share.square += 0.5 * mass * change.squaredNorm();
     share.linear += mass * change.dot(stopped[i] - carried[i]);
   }
   for (Share& share : shares)
     if (share.square > 0) share.part = part_within(share.square, share.linear, std::max(share.taken, 0.0));
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
     if (!touched[i]) continue;
     const Share& share = shares[at(islands.of(static_cast<int>(i)))];
     bounced_[i] = share.square > 0;
-    if (share.part < 1)
-      state.velocity.set(i, stopped[i] + share.part * (state.velocity[i] - stopped[i]));
+    if (share.part < 1) state.velocity.set(i, stopped[i] + share.part * (state.velocity[i] - stopped[i]));
     work_[i] += kinetic_change(system.mass[i], stopped[i], state.velocity[i]);
   }
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const int first = Islands::first_free(constraints_[c], system.inverse_mass);
     const double part = shares[at(islands.of(first))].part;
-    constraints_[c].push = still[c].push + part * (constraints_[c].push - still[c].push);
-    constraints_[c].rub = still[c].rub + part * (constraints_[c].rub - still[c].rub);
+    constraints_[c].normal_impulse =
+        still[c].normal_impulse + part * (constraints_[c].normal_impulse - still[c].normal_impulse);
+    constraints_[c].friction_impulse =
+        still[c].friction_impulse + part * (constraints_[c].friction_impulse - still[c].friction_impulse);
   }
 }
 
 void ContinuousContact::remember(const ClothSystem& system, const ClothState& state, bool follows,
                                  ContactMemory& memory) {
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
     const Vec3 impulse = state.velocity[i] - free_velocity_[i];
     memory.held[i] = !bounced_[i] && !impulse.isZero(0);
-    memory.lent[i] = 0;
+    memory.deferred[i] = 0;
     if (follows && !system.pinned[i])
-      memory.lent[i] = bounced_[i] ? lent_to_bounced_[i] : lent_to_load(system, i, state.velocity[i]);
-    work_[i] += memory.lent[i];
+      memory.deferred[i] =
+          bounced_[i] ? deferred_of_bounced_[i] : deferred_by_load(system, i, state.velocity[i]);
+    work_[i] += memory.deferred[i];
   }
 }
 
 int ContinuousContact::note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state) {
   int held = 0;
-  for (std::size_t i = 0; i < safe_.size(); ++i) {
-    if ((wish_[i] - safe_[i]).norm() <= arrived_length()) continue;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    if ((target_position_[i] - position_[i]).norm() <= arrived_length()) continue;
     ++held;
-    const Vec3 gone = (safe_[i] - begin.position[i]) / begin.step, speed = state.velocity[i];
+    const Vec3 gone = (position_[i] - begin.position[i]) / begin.step, speed = state.velocity[i];
     if (!(gone.norm() < speed.norm())) continue;
     state.velocity.set(i, gone);
     if (!system.pinned[i]) work_[i] += kinetic_change(system.mass[i], speed, gone);

@@ -7,7 +7,6 @@
 #include "commands.h"
 #include "console.h"
 #include "integrators/implicit/linear_choice.h"
-#include "integrators/implicit_methods.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
@@ -45,7 +44,7 @@ std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vec
   const cloth::ClothSystem system =
       cloth::make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
   for (const MethodLimit& method : methods) {
-    const auto weight = cloth::stage_weight(method.facts.name);
+    const auto weight = method.facts.stage_weight;
     const auto step = scene.integrator.time_step ? scene.integrator.time_step : method.auto_step;
     if (!weight || !step) continue;
     const double h = *weight * *step;

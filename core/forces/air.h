@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "forces/force.h"
-#include "forces/hand.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -14,9 +13,12 @@ class AirForce : public Force {
  public:
   explicit AirForce(const Air& air) : air_(air) {}
 
-  void set_brush(const std::optional<BrushGust>& brush) { brush_ = brush; }
-  bool has_brush() const { return brush_.has_value(); }
-  const Air& air() const { return air_; }
+  void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
+  SweptIn join(SweepTerms& terms) const override {
+    if (brush_) return SweptIn::nothing;
+    terms.air = &air_;
+    return SweptIn::whole_steps;
+  }
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;

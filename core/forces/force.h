@@ -5,10 +5,15 @@
 // so a force is written once as p, D, its energy and its power, and an integrator may treat D v as it likes.
 #pragma once
 
+#include <optional>
+
 #include "cloth/cloth_system.h"
+#include "forces/hand.h"
 #include "forces/linearisation.h"
 
 namespace cloth {
+
+struct Air;
 
 /// Power of the non-conservative forces, or its integral: work. Signed into the cloth, except the loss. W or
 /// J.
@@ -34,9 +39,27 @@ struct NodeDamping {
   double along_springs = 0;   ///< N s/m of every spring; the part of D that couples particles
 };
 
+/// What the passes of the kernels (kernels/spring_sweep.h) compute in one go with the springs' elasticity.
+struct SweepTerms {
+  bool uniform_mass = false;  ///< given: all particles have the same mass
+  Vec3 gravity{0, 0, 0};      ///< m/s^2
+  double damping = 0;         ///< N s/m, viscous
+  double spring_damping = 0;  ///< N s/m, along every spring
+  const Air* air = nullptr;
+};
+
+/// Which passes of the kernels compute a force: none, those of whole explicit steps, or evaluations as well.
+enum class SweptIn { nothing, whole_steps, every_pass };
+
 class Force {
  public:
   virtual ~Force() = default;
+
+  /// Adds this force to what the kernels compute, and says in which passes they do; see SweepTerms.
+  virtual SweptIn join(SweepTerms&) const { return SweptIn::nothing; }
+
+  /// The wind brush, of which only the air takes notice.
+  virtual void set_brush(const std::optional<BrushGust>&) {}
 
   /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
   /// Where those ask for `position`, it is the same once more: few forces keep it.

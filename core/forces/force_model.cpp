@@ -1,9 +1,8 @@
 #include "forces/force_model.h"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 
+#include "cloth/sums.h"
 #include "forces/air.h"
 #include "forces/gravity.h"
 #include "forces/pull_force.h"
@@ -11,6 +10,7 @@
 #include "forces/viscous.h"
 #include "kernels/grid_sweep.h"
 #include "kernels/mesh_sweep.h"
+#include "scene/scene.h"
 
 namespace cloth {
 namespace {
@@ -29,227 +29,101 @@ void subtract_from(const Vec3Field& a, Vec3Field& b) {
   for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] - to[k];
 }
 
+std::unique_ptr<SpringSweep> sweep_for(const ClothSystem& system) {
+  if (const auto grid = recognise_grid(system))
+    return std::make_unique<GridSweep>(system, *grid, common_mass(system));
+  if (suits_mesh_layout(system)) return std::make_unique<MeshSweep>(system, common_mass(system));
+  return nullptr;
+}
+
 }  // namespace
 
+/// The list of forces: each under the condition that the scene has it.
 ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(&system) {
-  const auto keep = [this](auto force) {
-    auto* const kept = force.get();
-    forces_.push_back(std::move(force));
-    return kept;
-  };
-  if (scene.gravity && scene.gravity->squaredNorm() > 0) {
-    gravity_ = *scene.gravity;
-    gravity_force_ = keep(std::make_unique<Gravity>(gravity_));
+  const bool springs = !system.springs.empty();
+  if (scene.gravity && scene.gravity->squaredNorm() > 0)
+    forces_.push_back(std::make_unique<Gravity>(*scene.gravity));
+  if (springs) forces_.push_back(std::make_unique<SpringForce>());
+  if (springs && scene.springs->damping > 0) {
+    forces_.push_back(std::make_unique<SpringDamping>(system, scene.springs->damping));
+    dampers_ = forces_.back().get();
   }
-  if (!system.springs.empty()) spring_force_ = keep(std::make_unique<SpringForce>());
-  if (!system.springs.empty() && scene.springs->damping > 0)
-    spring_damping_ = keep(std::make_unique<SpringDamping>(scene.springs->damping));
-  if (scene.damping && *scene.damping > 0) {
-    viscous_ = *scene.damping;
-    viscous_force_ = keep(std::make_unique<ViscousDamping>(viscous_));
-  }
-  if (scene.air && scene.air->drag > 0) air_ = keep(std::make_unique<AirForce>(*scene.air));
-  note_kinds();
+  if (scene.damping && *scene.damping > 0)
+    forces_.push_back(std::make_unique<ViscousDamping>(*scene.damping));
+  if (scene.air && scene.air->drag > 0) forces_.push_back(std::make_unique<AirForce>(*scene.air));
   system_changed();
 }
 
 void ForceModel::system_changed() {
-  sweep_.reset();
-  weight_ = Vec3::Zero();
-  if (const auto grid = recognise_grid(*system_))
-    sweep_ = std::make_unique<GridSweep>(*system_, *grid, common_mass(*system_));
-  else if (suits_mesh_layout(*system_))
-    sweep_ = std::make_unique<MeshSweep>(*system_, common_mass(*system_));
-  if (sweep_) {
-    sweep_->set_team(team_, thread_use_);
-    if (sweep_->has_common_mass()) weight_ = sweep_->mass() * gravity_;
-  }
-  beside_sweep_.clear();
-  for (const auto& force : forces_)
-    if (force.get() != spring_force_ && force.get() != viscous_force_ && force.get() != spring_damping_ &&
-        !(force.get() == gravity_force_ && can_step()))
-      beside_sweep_.push_back(force.get());
+  sweep_ = sweep_for(*system_);
+  sort_forces();
 }
 
-ForceModel::~ForceModel() = default;
-ForceModel::ForceModel(ForceModel&&) noexcept = default;
-ForceModel& ForceModel::operator=(ForceModel&&) noexcept = default;
-
-void ForceModel::add(std::unique_ptr<Force> force) {
-  beside_sweep_.push_back(force.get());
-  forces_.push_back(std::move(force));
-  note_kinds();
-}
-
-void ForceModel::note_kinds() {
+/// Which forces the kernels compute, and which kinds there are.
+void ForceModel::sort_forces() {
+  swept_ = {.uniform_mass = sweep_ && sweep_->has_common_mass()};
+  const bool takes_air = sweep_ && sweep_->takes_air();
+  apart_.clear();
+  apart_from_steps_.clear();
   has_damping_ = has_power_ = pull_ != nullptr;
   for (const auto& force : forces_) {
+    const SweptIn swept = force->join(swept_);
+    if (swept != SweptIn::every_pass) apart_.push_back(force.get());
+    const bool in_steps = swept == SweptIn::every_pass || (swept == SweptIn::whole_steps && takes_air);
+    if (!in_steps) apart_from_steps_.push_back(force.get());
     NodeDamping damping;
     const bool coupled = !force->add_node_damping(damping);
     if (coupled || damping.isotropic > 0 || damping.along_normal > 0) has_damping_ = has_power_ = true;
   }
+  if (!takes_air) swept_.air = nullptr;
+}
+
+void ForceModel::add(std::unique_ptr<Force> force) {
+  forces_.push_back(std::move(force));
+  sort_forces();
 }
 
 void ForceModel::update(const Vec3Field& position, double time) {
-  ++evaluations_;
-  if (sweep_) {
-    if (has_load())
-      update_load(position, time);
-    else if (position_force_.size() != position.size())
-      position_force_ = Vec3Field(position.size());
-    if (spring_damping_) spring_damping_->update(*system_, position, time, position_force_);
-    sweep_->evaluate({weight_, 0, has_load() ? &position_force_ : nullptr}, position, position_force_);
+  if (!sweep_) {
+    clear(position_force_, position.size());
+    for (const auto& force : forces_) force->update(*system_, position, time, position_force_);
+    if (pull_) pull_->update(*system_, position, time, position_force_);
     return;
   }
-  clear(position_force_, position.size());
-  for (const auto& force : forces_) force->update(*system_, position, time, position_force_);
-  if (pull_) pull_->update(*system_, position, time, position_force_);
+  const bool has_load = pull_ || !apart_.empty();
+  if (has_load) {
+    clear(position_force_, position.size());
+    for (Force* force : apart_) force->update(*system_, position, time, position_force_);
+    if (pull_) pull_->update(*system_, position, time, position_force_);
+  } else if (position_force_.size() != position.size()) {
+    position_force_ = Vec3Field(position.size());
+  }
+  sweep_->evaluate({weight(), 0, has_load ? &position_force_ : nullptr}, position, position_force_);
 }
 
-/// p of what the sweep does not compute.
-void ForceModel::update_load(const Vec3Field& position, double time) {
-  clear(position_force_, position.size());
-  for (Force* force : beside_sweep_) force->update(*system_, position, time, position_force_);
-  if (pull_) pull_->update(*system_, position, time, position_force_);
+Vec3 ForceModel::weight() const {
+  return swept_.uniform_mass ? Vec3(sweep_->mass() * swept_.gravity) : Vec3(Vec3::Zero());
 }
 
-/// Whether whole steps of Euler's and Kutta's compute the air on their way, so that nothing is a load.
-bool ForceModel::sweeps_air() const {
-  return air_ && !air_->has_brush() && !pull_ && beside_sweep_.size() == 1 && can_step() &&
-         sweep_->takes_air();
-}
-
-SweptAir ForceModel::swept_air(std::span<const double> times) const {
-  SweptAir air;
-  if (!sweeps_air()) return air;
-  air.drag = air_->air().drag;
-  for (std::size_t k = 0; k < times.size(); ++k) air.wind[k] = wind_at(air_->air(), times[k]);
-  return air;
-}
-
-/// What acts beside the elasticity of springs in a whole step whose forces are taken at `times`.
-SweepLoads ForceModel::sweep_loads(std::span<const double> times) const {
-  return {weight_, viscous_, steps_with_load() ? &position_force_ : nullptr,
-          spring_damping_ ? spring_damping_->damping() : 0, swept_air(times)};
-}
-
-bool ForceModel::can_step() const {
-  return sweep_ && sweep_->has_common_mass();
-}
-
-std::optional<double> ForceModel::euler_step(double time, double step, bool drift_first, ClothState& state,
-                                             Work& work) {
-  if (!can_step()) return std::nullopt;
-  ++evaluations_;
+Work ForceModel::step_load(const Vec3Field& position, const Vec3Field& velocity, double time,
+                           Vec3Field& load) {
+  clear(load, position.size());
+  clear(product_, position.size());
   Work power;
-  if (steps_with_load()) {
-    update_load(state.position, time);
-    clear(product_, state.position.size());
-    for (const Force* force : beside_sweep_) {
-      force->add_damping(state.position, state.velocity, product_);
-      force->add_power(state.position, state.velocity, power);
-    }
-    if (pull_) {
-      pull_->add_damping(state.position, state.velocity, product_);
-      pull_->add_power(state.position, state.velocity, power);
-    }
-    const auto load = position_force_.flat();
-    const auto damping = product_.flat();
-    for (std::size_t k = 0; k < load.size(); ++k) load[k] -= damping[k];
-  }
-  StepSums sums;
-  sweep_->euler(step, drift_first, sweep_loads({&time, 1}), {&sums, 1}, state);
-  power.damping_loss += viscous_ * sums.before + sums.dampers;
-  power.air += sums.air;
-  if (has_power_) work += step * power;
-  return sums.after;
-}
-
-bool ForceModel::gains_steps_at_once() const {
-  const bool is_steady = !air_ || !air_->air().gust;
-  return can_step() && !steps_with_load() && is_steady && sweep_->gains_steps_at_once();
-}
-
-void ForceModel::euler_steps(double step, bool drift_first, std::span<double> squares, ClothState& state,
-                             Work& work) {
-  assert(gains_steps_at_once());
-  evaluations_ += static_cast<std::int64_t>(squares.size());
-  std::vector<StepSums> of_steps(squares.size());
-  constexpr std::array any_time{0.0};
-  sweep_->euler(step, drift_first, sweep_loads(any_time), of_steps, state);
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    const StepSums& sums = of_steps[k];
-    squares[k] = sums.after;
-    if (has_power_)
-      work += step * Work{.damping_loss = viscous_ * sums.before + sums.dampers, .air = sums.air};
-  }
-}
-
-std::optional<double> ForceModel::verlet_step(double step, ClothState& state, Work& power) {
-  if (!steps_verlet()) return std::nullopt;
-  ++evaluations_;
-  const double squares = sweep_->verlet(step, sweep_loads({}), position_force_, state);
-  power = power_after(squares);
-  return squares;
-}
-
-void ForceModel::verlet_steps(double step, std::span<double> squares, ClothState& state) {
-  assert(steps_verlet());
-  evaluations_ += static_cast<std::int64_t>(squares.size());
-  sweep_->verlet_steps(step, sweep_loads({}), squares, position_force_, state);
-}
-
-std::optional<double> ForceModel::runge_kutta_step(const std::array<double, 4>& times, double step,
-                                                   ClothState& state, Work& work) {
-  if (!can_step() || steps_with_load()) return std::nullopt;
-  double squares = 0;
-  sweep_runge_kutta(times, step, {&squares, 1}, state, work);
-  return squares;
-}
-
-void ForceModel::runge_kutta_steps(double step, std::span<double> squares, ClothState& state, Work& work) {
-  assert(gains_steps_at_once());
-  constexpr std::array<double, 4> any_times{};
-  sweep_runge_kutta(any_times, step, squares, state, work);
-}
-
-void ForceModel::sweep_runge_kutta(const std::array<double, 4>& times, double step, std::span<double> squares,
-                                   ClothState& state, Work& work) {
-  evaluations_ += 4 * static_cast<std::int64_t>(squares.size());
-  constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-  stage_sums_.resize(squares.size());
-  sweep_->runge_kutta(step, sweep_loads(times), stage_sums_, state);
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    const StageSums& sums = stage_sums_[k];
-    double loss = 0, given = 0;
-    for (std::size_t s = 0; s < weights.size(); ++s) {
-      loss += weights[s] * (viscous_ * sums.squares[s] + sums.dampers[s]);
-      given += weights[s] * sums.air[s];
-    }
-    work.damping_loss += step * loss;
-    work.air += step * given;
-    squares[k] = sums.after;
-  }
-}
-
-void ForceModel::copy(const ClothState& from, ClothState& to) {
-  if (sweep_)
-    sweep_->copy(from, to);
-  else
-    to = from;
-}
-
-void ForceModel::set_team(WorkerTeam* team, ThreadUse use) {
-  team_ = team, thread_use_ = use;
-  if (sweep_) sweep_->set_team(team, use);
-}
-
-int ForceModel::threads() const {
-  return sweep_ ? sweep_->threads() : 1;
+  const auto add = [&](Force& force) {
+    force.update(*system_, position, time, load);
+    force.add_damping(position, velocity, product_);
+    force.add_power(position, velocity, power);
+  };
+  for (Force* force : apart_from_steps_) add(*force);
+  if (pull_) add(*pull_);
+  const auto to = load.flat();
+  const auto damping = product_.flat();
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] -= damping[k];
+  return power;
 }
 
 void ForceModel::update_external(const Vec3Field& position, double time) {
-  ++evaluations_;
   clear(position_force_, position.size());
   for (const auto& force : forces_)
     if (!force->is_internal()) force->update(*system_, position, time, position_force_);
@@ -263,8 +137,10 @@ NodeDamping ForceModel::damping_parts() const {
   return parts;
 }
 
-bool ForceModel::is_swept(const Force& force) const {
-  return sweeps_dampers() && &force == spring_damping_;
+bool ForceModel::couples_particles() const {
+  NodeDamping unused;
+  return std::any_of(forces_.begin(), forces_.end(),
+                     [&](const auto& force) { return !force->add_node_damping(unused); });
 }
 
 /// product = D v of the dampers along springs where a sweep computes them, else 0. Returns what they take, in
@@ -273,10 +149,24 @@ double ForceModel::swept_dampers(const Vec3Field& position, const Vec3Field& vel
                                  Vec3Field& product) const {
   if (sweeps_dampers()) {
     if (product.size() != velocity.size()) product = Vec3Field(velocity.size());
-    return sweep_->damp(spring_damping_->damping(), position, velocity, product);
+    return sweep_->damp(swept_.spring_damping, position, velocity, product);
   }
   clear(product, velocity.size());
   return 0;
+}
+
+double ForceModel::coupled_damping(const Vec3Field& position, const Vec3Field& velocity,
+                                   Vec3Field& product) const {
+  const double dampers = swept_dampers(position, velocity, product);
+  bool is_all = sweeps_dampers() && !pull_;
+  for (const auto& force : forces_) {
+    NodeDamping unused;
+    if (is_swept_damper(*force) || force->add_node_damping(unused)) continue;
+    force->add_damping(position, velocity, product);
+    is_all = false;
+  }
+  if (pull_) pull_->add_damping(position, velocity, product);
+  return is_all ? dampers : dot(velocity.flat(), product.flat());
 }
 
 /// product = D v. Returns the part of swept_dampers().
@@ -284,7 +174,7 @@ double ForceModel::damping_product(const Vec3Field& position, const Vec3Field& v
                                    Vec3Field& product) const {
   const double dampers = swept_dampers(position, velocity, product);
   for (const auto& force : forces_)
-    if (!is_swept(*force)) force->add_damping(position, velocity, product);
+    if (!is_swept_damper(*force)) force->add_damping(position, velocity, product);
   if (pull_) pull_->add_damping(position, velocity, product);
   return dampers;
 }
@@ -300,34 +190,29 @@ void ForceModel::force(const Vec3Field& position, const Vec3Field& velocity, Vec
 
 Work ForceModel::force_and_power(const Vec3Field& position, const Vec3Field& velocity,
                                  Vec3Field& result) const {
-  if (!sweeps_dampers()) {
+  if (!has_damping_) {
     force(position, velocity, result);
     return has_power_ ? power(position, velocity) : Work{};
   }
   Work power{.damping_loss = damping_product(position, velocity, result)};
   subtract_from(position_force_, result);
-  power += power_beside_dampers(position, velocity);
+  add_power_beside_dampers(position, velocity, power);
   return power;
 }
 
 Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) const {
   Work power;
   if (sweeps_dampers()) power.damping_loss = swept_dampers(position, velocity, product_);
-  power += power_beside_dampers(position, velocity);
+  add_power_beside_dampers(position, velocity, power);
   return power;
 }
 
 /// Without that of dampers along springs where a sweep computes them.
-Work ForceModel::power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity) const {
-  Work power;
-  if (can_step() && !has_load()) {  // to the bits of a whole step
-    if (viscous_ > 0) power.damping_loss = viscous_ * sweep_->squares(velocity);
-    return power;
-  }
+void ForceModel::add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity,
+                                          Work& power) const {
   for (const auto& force : forces_)
-    if (!is_swept(*force)) force->add_power(position, velocity, power);
+    if (!is_swept_damper(*force)) force->add_power(position, velocity, power);
   if (pull_) pull_->add_power(position, velocity, power);
-  return power;
 }
 
 void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights& weights,
@@ -359,14 +244,15 @@ void ForceModel::asymmetric_product(const Vec3Field& position, const Vec3Field& 
 }
 
 void ForceModel::set_brush(const std::optional<BrushGust>& brush) {
-  if (air_) air_->set_brush(brush);
+  for (const auto& force : forces_) force->set_brush(brush);
+  sort_forces();
 }
 
 void ForceModel::set_pull(const std::optional<Pull>& pull, double stiffness, double damping) {
   pull_ = pull && !system_->pinned[static_cast<std::size_t>(pull->particle)]
               ? std::make_unique<PullForce>(*pull, stiffness, damping)
               : nullptr;
-  note_kinds();
+  sort_forces();
 }
 
 }  // namespace cloth

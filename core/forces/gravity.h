@@ -9,6 +9,11 @@ class Gravity : public Force {
  public:
   explicit Gravity(const Vec3& acceleration) : acceleration_(acceleration) {}
 
+  SweptIn join(SweepTerms& terms) const override {
+    if (!terms.uniform_mass) return SweptIn::nothing;
+    terms.gravity = acceleration_;
+    return SweptIn::every_pass;
+  }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
 
  private:

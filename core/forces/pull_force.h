@@ -2,10 +2,7 @@
 // x) - c v.
 #pragma once
 
-#include <optional>
-
 #include "forces/force.h"
-#include "forces/hand.h"
 
 namespace cloth {
 

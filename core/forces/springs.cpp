@@ -120,9 +120,7 @@ std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field&
   return energy;
 }
 
-void SpringDamping::update(const ClothSystem& system, const Vec3Field&, double, Vec3Field&) {
-  system_ = &system;
-}
+void SpringDamping::update(const ClothSystem&, const Vec3Field&, double, Vec3Field&) {}
 
 void SpringDamping::add_damping(const Vec3Field& position, const Vec3Field& velocity,
                                 Vec3Field& product) const {

@@ -9,6 +9,7 @@ namespace cloth {
 
 class SpringForce : public Force {
  public:
+  SweptIn join(SweepTerms&) const override { return SweptIn::every_pass; }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override;
@@ -21,10 +22,13 @@ std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field&
 /// Spring damping: F_i = k_d ((v_j - v_i) . d/|d|) d/|d| on every spring; 0 where |d| = 0.
 class SpringDamping : public Force {
  public:
-  explicit SpringDamping(double damping) : damping_(damping) {}
+  /// `damping` in N s/m; `system` must outlive the force.
+  SpringDamping(const ClothSystem& system, double damping) : system_(&system), damping_(damping) {}
 
-  double damping() const { return damping_; }
-
+  SweptIn join(SweepTerms& terms) const override {
+    terms.spring_damping = damping_;
+    return SweptIn::every_pass;
+  }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
@@ -37,8 +41,8 @@ class SpringDamping : public Force {
                               const Vec3Field& direction, Vec3Field& product) const override;
 
  private:
+  const ClothSystem* system_;
   double damping_;  ///< N s/m
-  const ClothSystem* system_ = nullptr;
 };
 
 }  // namespace cloth

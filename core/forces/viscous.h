@@ -9,6 +9,10 @@ class ViscousDamping : public Force {
  public:
   explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
 
+  SweptIn join(SweepTerms& terms) const override {
+    terms.damping = coefficient_;
+    return SweptIn::every_pass;
+  }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
   bool add_node_damping(NodeDamping& damping) const override;

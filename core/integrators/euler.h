@@ -1,4 +1,4 @@
-// The two one-evaluation Euler methods.
+// The two Euler methods with one evaluation of the force.
 #pragma once
 
 #include "integrators/integrator.h"
@@ -10,9 +10,6 @@ class ExplicitEuler : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
-  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
-                                ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;
@@ -28,11 +25,6 @@ class SemiImplicitEuler : public Integrator {
     constraint_ = constraint;
     return true;
   }
-  bool gains_unseen(const ForceModel& forces) const override {
-    return forces.gains_steps_at_once() && !constraint_;
-  }
-  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
-                                ClothState& state, Work& work) override;
 
  private:
   DriftConstraint* constraint_ = nullptr;

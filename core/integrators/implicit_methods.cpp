@@ -3,25 +3,13 @@
 #include <utility>
 
 namespace cloth {
-namespace {
-
-constexpr double euler_weight = 1, midpoint_weight = 0.5, bdf2_weight = 2.0 / 3;
-
-}  // namespace
-
-std::optional<double> stage_weight(const std::string& method) {
-  if (method == "implicit-euler") return euler_weight;
-  if (method == "implicit-midpoint") return midpoint_weight;
-  if (method == "bdf2") return bdf2_weight;
-  return std::nullopt;
-}
 
 IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                      ClothState& state, Work& work) {
   IntegratorReport report;
   velocity_ = state.velocity;
   stage_.solve(system, forces,
-               {.weight = euler_weight * times.step,
+               {.weight = stage_weight * times.step,
                 .time = times.end,
                 .position = &state.position,
                 .velocity = &state.velocity},
@@ -37,7 +25,7 @@ IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forc
 IntegratorReport ImplicitMidpoint::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                         ClothState& state, Work& work) {
   IntegratorReport report;
-  const double half = midpoint_weight * times.step;
+  const double half = stage_weight * times.step;
   velocity_ = state.velocity;
   stage_.solve(
       system, forces,
@@ -76,7 +64,7 @@ IntegratorReport Bdf2::step(const ClothSystem& system, ForceModel& forces, const
 IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                  ClothState& state, Work& work) {
   IntegratorReport report;
-  const double weight = bdf2_weight * times.step;
+  const double weight = stage_weight * times.step;
   const auto extrapolate = [](const Vec3Field& now, const Vec3Field& before, Vec3Field& known) {
     known = now;
     const auto from = before.flat();

@@ -5,13 +5,10 @@
 
 namespace cloth {
 
-/// What the equations of an implicit method weight forces with, as a part of the step: 1, 1/2 and 2/3.
-/// Nothing for a method that solves no such equations.
-std::optional<double> stage_weight(const std::string& method);
-
 /// v' = v + h a(x', v', t'), x' = x + h v': order 1, damps every oscillation by omega h/2.
 class ImplicitEuler : public Integrator {
  public:
+  static constexpr double stage_weight = 1;  ///< of the step, with which the equations count forces
   ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
@@ -25,6 +22,7 @@ class ImplicitEuler : public Integrator {
 /// v' = v + h a((x + x')/2, (v + v')/2, t + h/2): order 2, keeps the energy of linear oscillations.
 class ImplicitMidpoint : public Integrator {
  public:
+  static constexpr double stage_weight = 0.5;
   ImplicitMidpoint(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
@@ -39,6 +37,7 @@ class ImplicitMidpoint : public Integrator {
 /// or an edit has changed the state is a step of implicit Euler, since the history then bends.
 class Bdf2 : public Integrator {
  public:
+  static constexpr double stage_weight = 2.0 / 3;
   Bdf2(double tolerance, int most_iterations)
       : stage_(tolerance, most_iterations),
         midpoint_(tolerance, most_iterations),

@@ -36,7 +36,7 @@ struct IntegratorReport {
   std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, where it is known
 };
 
-/// What has changed behind an integrator's back.
+/// What something other than the integrator has changed.
 enum class Change { forces, state };
 
 /// What a method carries from one step to the next beside the state, as far as later bits depend on it.
@@ -47,7 +47,7 @@ struct IntegratorMemory {
 };
 
 /// What the positions must obey whatever the forces say, as a method that kicks and then drifts asks for it.
-/// Nothing of it is a force of the model, but what it needed in the last step it may hold as one in the next.
+/// It is no force of the model, but the tension that the last step needed may act as one in the next.
 class DriftConstraint {
  public:
   virtual ~DriftConstraint() = default;
@@ -77,12 +77,12 @@ class Integrator {
   virtual IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                 ClothState& state, Work& work) = 0;
 
-  /// Whether several steps of which nobody sees the states in between would now cost less than one by one.
-  virtual bool gains_unseen(const ForceModel&) const { return false; }
-  /// As many steps of length `step` as there are `speed_squares`, to the same bits. Gives each step's
-  /// speed_squares, and the report that each of them would give. Precondition: gains_unseen().
-  virtual IntegratorReport unseen_steps(ForceModel&, double /*step*/, std::span<double> /*speed_squares*/,
-                                        ClothState&, Work&) {
+  /// Whether a batch of steps, whose states in between are not needed, now costs less than single steps.
+  virtual bool gains_from_batches(const ForceModel&) const { return false; }
+  /// A batch: as many steps of length `step` as there are `speed_squares`, to the same bits. Gives each
+  /// step's speed_squares, and the report that each of them would give. Precondition: gains_from_batches().
+  virtual IntegratorReport step_many(ForceModel&, double /*step*/, std::span<double> /*speed_squares*/,
+                                     ClothState&, Work&) {
     return {};
   }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <functional>
+#include <cmath>
 
 #include "integrators/dormand_prince.h"
 #include "integrators/euler.h"
+#include "integrators/fused_steppers.h"
 #include "integrators/implicit_methods.h"
 #include "integrators/projective.h"
 #include "integrators/rk4.h"
@@ -16,47 +17,154 @@
 namespace cloth {
 namespace {
 
+using Stepper = std::unique_ptr<Integrator>;
+
 struct Entry {
   MethodFacts facts;
-  std::function<std::unique_ptr<Integrator>(const IntegratorChoice&)> make;
+  Stepper (*make)(const IntegratorChoice&);
+  bool (*suits_fused)(const ForceModel&, bool constrained) = nullptr;
+  Stepper (*make_fused)() = nullptr;
 };
 
 template <class Method>
-std::unique_ptr<Integrator> made(const IntegratorChoice&) {
+Stepper made(const IntegratorChoice&) {
   return std::make_unique<Method>();
 }
 
 template <class Method>
-std::unique_ptr<Integrator> made_with_newton(const IntegratorChoice& choice) {
+Stepper made_with_newton(const IntegratorChoice& choice) {
   return std::make_unique<Method>(choice.tolerance, static_cast<int>(choice.newton_iterations));
 }
 
+using Family = OscillatorStep::Family;
+
+const OscillatorStep implicit_euler_step{.divisors = {}, .implicit = 1};
+
+// Limits in closed form: Jury's test on the matrices of measure/amplification.h.
+
+double explicit_euler_limit(double omega, double c) {
+  const double discriminant = 0.25 * c * c - omega * omega;
+  return discriminant < 0 ? c / (omega * omega) : 2 / (0.5 * c + std::sqrt(discriminant));
+}
+
+double semi_implicit_euler_limit(double omega, double c) {
+  return 4 / (std::sqrt(c * c + 4 * omega * omega) + c);
+}
+
+double verlet_limit(double omega, double) {
+  return omega > 0 ? 2 / omega : infinity;
+}
+
+/// One entry holds all that is known of a method.
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
-      {{"explicit-euler", "Explicit Euler", 1, 1, "Euler 1768"}, made<ExplicitEuler>},
-      {{"semi-implicit-euler", "Semi-implicit Euler", 1, 1, "Provot 1995; report, Eqs. (5)-(7)"},
-       made<SemiImplicitEuler>},
-      {{"verlet", "Verlet", 2, 1, "Verlet 1967; report, Eq. (14)", true}, made<Verlet>},
-      {{"rk4", "Runge-Kutta 4", 4, 4, "Kutta 1901; report, Eqs. (8)-(13)"}, made<Rk4>},
-      {{"dormand-prince", "Dormand-Prince 5(4)", 5, 0, "Dormand and Prince 1980", true,
-        MethodSettings::error_control},
-       [](const IntegratorChoice& choice) { return std::make_unique<DormandPrince>(choice.tolerance); }},
-      {{"implicit-euler", "Implicit Euler", 1, 0, "Baraff and Witkin 1998", false, MethodSettings::newton},
+      {{.name = "explicit-euler",
+        .title = "Explicit Euler",
+        .order = 1,
+        .evaluations_per_step = 1,
+        .source = "Euler 1768",
+        .oscillator = {.divisors = {1}},
+        .limit = explicit_euler_limit},
+       made<ExplicitEuler>,
+       FusedEuler::suits,
+       []() -> Stepper { return std::make_unique<FusedEuler>(true); }},
+      {{.name = "semi-implicit-euler",
+        .title = "Semi-implicit Euler",
+        .order = 1,
+        .evaluations_per_step = 1,
+        .source = "Provot 1995; report, Eqs. (5)-(7)",
+        .oscillator = {.family = Family::semi_implicit_euler},
+        .limit = semi_implicit_euler_limit,
+        .may_heat = true,
+        .bounds_jointly = true},
+       made<SemiImplicitEuler>,
+       FusedSemiImplicitEuler::suits,
+       []() -> Stepper { return std::make_unique<FusedSemiImplicitEuler>(); }},
+      {{.name = "verlet",
+        .title = "Verlet",
+        .order = 2,
+        .evaluations_per_step = 1,
+        .source = "Verlet 1967; report, Eq. (14)",
+        .keeps_force = true,
+        .oscillator = {.family = Family::verlet},
+        .limit = verlet_limit,
+        .may_heat = true},
+       made<Verlet>,
+       FusedVerlet::suits,
+       []() -> Stepper { return std::make_unique<FusedVerlet>(); }},
+      {{.name = "rk4",
+        .title = "Runge-Kutta 4",
+        .order = 4,
+        .evaluations_per_step = kutta_stages,
+        .source = "Kutta 1901; report, Eqs. (8)-(13)",
+        .oscillator = {.divisors = {1, 2, 3, 4}}},
+       made<Rk4>,
+       FusedRk4::suits,
+       []() -> Stepper { return std::make_unique<FusedRk4>(); }},
+      {{.name = "dormand-prince",
+        .title = "Dormand-Prince 5(4)",
+        .order = 5,
+        .evaluations_per_step = 0,
+        .source = "Dormand and Prince 1980",
+        .settings = MethodSettings::error_control,
+        .keeps_force = true,
+        .oscillator = {.divisors = {1, 2, 3, 4, 5, 5}},  // ... + z^5/120 + z^6/600
+        .controls_error = true},
+       [](const IntegratorChoice& choice) -> Stepper {
+         return std::make_unique<DormandPrince>(choice.tolerance);
+       }},
+      {{.name = "implicit-euler",
+        .title = "Implicit Euler",
+        .order = 1,
+        .evaluations_per_step = 0,
+        .source = "Baraff and Witkin 1998",
+        .settings = MethodSettings::newton,
+        .oscillator = implicit_euler_step,
+        .a_stable = true,
+        .stage_weight = ImplicitEuler::stage_weight},
        made_with_newton<ImplicitEuler>},
-      {{"implicit-midpoint", "Implicit midpoint", 2, 0, "Volino and Magnenat-Thalmann 2005", false,
-        MethodSettings::newton},
+      {{.name = "implicit-midpoint",
+        .title = "Implicit midpoint",
+        .order = 2,
+        .evaluations_per_step = 0,
+        .source = "Volino and Magnenat-Thalmann 2005",
+        .settings = MethodSettings::newton,
+        .oscillator = {.divisors = {2}, .implicit = 0.5},
+        .a_stable = true,
+        .stage_weight = ImplicitMidpoint::stage_weight},
        made_with_newton<ImplicitMidpoint>},
-      {{"bdf2", "BDF2", 2, 0, "Curtiss and Hirschfelder 1952; Choi and Ko 2002", false,
-        MethodSettings::newton},
+      {{.name = "bdf2",
+        .title = "BDF2",
+        .order = 2,
+        .evaluations_per_step = 0,
+        .source = "Curtiss and Hirschfelder 1952; Choi and Ko 2002",
+        .settings = MethodSettings::newton,
+        .oscillator = {.family = Family::bdf2},
+        .a_stable = true,
+        .stage_weight = Bdf2::stage_weight},
        made_with_newton<Bdf2>},
-      {{"projective", "Projective dynamics", 1, 0, "Liu et al. 2013; Liu, Bouaziz, Kavan 2017", false,
-        MethodSettings::projective},
-       [](const IntegratorChoice& choice) {
+      // On a linear oscillator the converged iterations of the next two (compliance 1/k) are implicit Euler.
+      {{.name = "projective",
+        .title = "Projective dynamics",
+        .order = 1,
+        .evaluations_per_step = 0,
+        .source = "Liu et al. 2013; Liu, Bouaziz, Kavan 2017",
+        .settings = MethodSettings::projective,
+        .oscillator = implicit_euler_step,
+        .a_stable = true},
+       [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations));
        }},
-      {{"xpbd", "XPBD", 1, 0, "Macklin, Müller, Chentanez 2016; Macklin et al. 2019", false,
-        MethodSettings::xpbd},
-       [](const IntegratorChoice& choice) {
+      {{.name = "xpbd",
+        .title = "XPBD",
+        .order = 1,
+        .evaluations_per_step = 0,
+        .source = "Macklin, Müller, Chentanez 2016; Macklin et al. 2019",
+        .settings = MethodSettings::xpbd,
+        .oscillator = implicit_euler_step,
+        .a_stable = true,
+        .iterates_to_residual = false},
+       [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
                                        static_cast<int>(choice.xpbd_iterations));
        }},
@@ -96,6 +204,17 @@ const MethodFacts& facts_of(const std::string& name) {
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice) {
   return entry_of(choice.method).make(choice);
+}
+
+bool suits_fused_stepper(const std::string& method, const ForceModel& forces, bool constrained) {
+  const Entry& entry = entry_of(method);
+  return entry.suits_fused && entry.suits_fused(forces, constrained);
+}
+
+std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const ForceModel& forces,
+                                         bool constrained) {
+  return suits_fused_stepper(choice.method, forces, constrained) ? entry_of(choice.method).make_fused()
+                                                                 : make_integrator(choice);
 }
 
 }  // namespace cloth

@@ -5,16 +5,17 @@
 #include <array>
 
 #include "integrators/integrator.h"
+#include "kernels/kutta.h"
 
 namespace cloth {
+
+/// s, of the method's evaluations of the force.
+std::array<double, kutta_stages> kutta_times(const StepTimes& times);
 
 class Rk4 : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override { return forces.gains_steps_at_once(); }
-  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
-                                ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;

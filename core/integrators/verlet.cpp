@@ -21,16 +21,6 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
     forces.update(state.position, times.begin);
     ++report.force_evaluations;
   }
-  if (forces.steps_verlet() && !constraint_) {
-    if (!holds_position_force_ && forces.has_power()) power_ = forces.power(state.position, state.velocity);
-    work += 0.5 * h * power_;
-    report.speed_squares = forces.verlet_step(h, state, power_);
-    work += 0.5 * h * power_;
-    ++report.force_evaluations;
-    holds_position_force_ = true;
-    return report;
-  }
-
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
@@ -68,7 +58,6 @@ double Verlet::closing_correction(const ForceModel& forces, double step) {
   return 0.5 * step * dot(closing_damping_.flat(), constraint_->closing_change()->flat());
 }
 
-/// The force and its power; the positions are those of the last update.
 void Verlet::evaluate(ForceModel& forces, const ClothState& state) {
   if (forces.has_damping())
     power_ = forces.force_and_power(state.position, state.velocity, force_);
@@ -86,7 +75,8 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
 int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step,
                             ClothState& state) {
   holds_force_ = false;
-  if (forces.has_damping()) return forces.centred_velocity(half_step, state.position, state.velocity, force_);
+  if (forces.has_damping())
+    return solver_.solve(system, forces, half_step, state.position, state.velocity, force_);
   add_acceleration(system, half_step, forces.position_force(), state.velocity);
   return 0;
 }
@@ -120,31 +110,11 @@ Work Verlet::follow_contact(ForceModel& forces, const StepTimes& times, const Cl
   Work correction = -0.5 * times.step * power_;
   forces.update(state.position, times.end);
   holds_position_force_ = true;
-  if (forces.steps_verlet())
-    power_ = forces.power(state.position, state.velocity);
-  else
-    evaluate(forces, state);
+  evaluate(forces, state);
   correction += 0.5 * times.step * power_;
   correction.damping_loss -= closing_correction_;
   correction.damping_loss += closing_correction_ = closing_correction(forces, times.step);
   return correction;
-}
-
-/// The velocity at the end of a step and at the half of the next are made in one pass, so that the force need
-/// not be kept: a third less to bring from memory.
-IntegratorReport Verlet::unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
-                                      ClothState& state, Work& work) {
-  forces.verlet_steps(step, speed_squares, state);
-  if (forces.has_power())
-    for (const double squares : speed_squares) {
-      work += 0.5 * step * power_;
-      power_ = forces.power_after(squares);
-      work += 0.5 * step * power_;
-    }
-  IntegratorReport report;
-  report.force_evaluations = 1;
-  report.speed_squares = speed_squares.back();
-  return report;
 }
 
 }  // namespace cloth

@@ -11,6 +11,7 @@
 // ratio.
 #pragma once
 
+#include "forces/velocity_solver.h"
 #include "integrators/integrator.h"
 
 namespace cloth {
@@ -19,11 +20,6 @@ class Verlet : public Integrator {
  public:
   IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                         ClothState& state, Work& work) override;
-  bool gains_unseen(const ForceModel& forces) const override {
-    return holds_position_force_ && forces.steps_verlet() && !constraint_;
-  }
-  IntegratorReport unseen_steps(ForceModel& forces, double step, std::span<double> speed_squares,
-                                ClothState& state, Work& work) override;
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
     return true;
@@ -36,20 +32,25 @@ class Verlet : public Integrator {
   Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
+ protected:
+  /// The power, and the force where something damps; the positions are those of the last update.
+  virtual void evaluate(ForceModel& forces, const ClothState& state);
+
+  Work power_;                         ///< at the end of the last step
+  bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
+
  private:
   void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
   double closing_correction(const ForceModel& forces, double step);
-  void evaluate(ForceModel& forces, const ClothState& state);
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
 
   DriftConstraint* constraint_ = nullptr;
-  Vec3Field force_;                    ///< p - D v, N; only where something damps
+  Vec3Field force_;                              ///< p - D v, N; only where something damps
   Vec3Field opening_damping_, closing_damping_;  ///< - D v at both ends, N; only beside a constraint
-  double closing_correction_ = 0;      ///< J, of the last step
-  Work power_;                         ///< at the end of the last step
-  bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
-  bool holds_force_ = false;           ///< and `force_`, `power_` are those there
+  double closing_correction_ = 0;                ///< J, of the last step
+  bool holds_force_ = false;                     ///< `force_` and `power_` are those at the state
+  VelocitySolver solver_;
 };
 
 }  // namespace cloth

@@ -267,7 +267,7 @@ template <Law law>
 void runge_kutta_rows(const Pass& pass) {
   const Springs springs(pass);
   const int rows = pass.grid.rows;
-  constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * stage_count;
+  constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * kutta_stages;
   constexpr int first_sum_row = first_ring_row + 3 * stage_ring * 2,
                 first_air_row = first_sum_row + sum_ring * 2;
   const auto stage_row = [&](int stage, int row, int field) {  // of stages 1, 2, 3
@@ -280,9 +280,9 @@ void runge_kutta_rows(const Pass& pass) {
     return row_of(pass, field == 0 ? pass.position : pass.velocity, row);
   };
 
-  int start[stage_count], begin[stage_count], end[stage_count];  // rows that add, rows that are done
-  for (int s = 0; s < stage_count; ++s) {
-    const int reach = 2 * (stage_count - 1 - s);
+  int start[kutta_stages], begin[kutta_stages], end[kutta_stages];  // rows that add, rows that are done
+  for (int s = 0; s < kutta_stages; ++s) {
+    const int reach = 2 * (kutta_stages - 1 - s);
     begin[s] = pass.first - reach < 0 ? 0 : pass.first - reach;
     start[s] = first_row_of_springs(begin[s]);
     end[s] = pass.last + reach > rows ? rows : pass.last + reach;
@@ -290,18 +290,18 @@ void runge_kutta_rows(const Pass& pass) {
   const auto chain = [&](int s) {
     return RowChain<law>(pass, springs, {2 * s, first_air_row + 2 * s, s}, start[s]);
   };
-  RowChain<law> chains[stage_count] = {chain(0), chain(1), chain(2), chain(3)};
+  RowChain<law> chains[kutta_stages] = {chain(0), chain(1), chain(2), chain(3)};
 
-  for (int front = start[0]; front < pass.last + 2 * (stage_count - 1); ++front)
-    for (int s = 0; s < stage_count; ++s) {
+  for (int front = start[0]; front < pass.last + 2 * (kutta_stages - 1); ++front)
+    for (int s = 0; s < kutta_stages; ++s) {
       const int row = front - 2 * s;
       if (row < start[s] || row >= end[s]) continue;
       const bool own = row >= begin[s];
       StageUpdate update{};
       if (own) {
-        const bool is_last = s + 1 == stage_count;
-        update.weight = Lanes::set(pass.step * stage_weight[s]);
-        update.ahead = Lanes::set(pass.step * stage_ahead[s]);
+        const bool is_last = s + 1 == kutta_stages;
+        update.weight = Lanes::set(pass.step * kutta[s].weight);
+        update.ahead = Lanes::set(is_last ? 0 : pass.step * kutta[s + 1].node);
         update.damping = Lanes::set(pass.damping);
         update.is_last = is_last;
         update.stage_velocity = s == 0 ? state_row(row, 1) : stage_row(s, row, 1);
@@ -333,7 +333,7 @@ void runge_kutta_rows(const Pass& pass) {
       store_sum(pass, stage_squares + s, row, update.squares);
       if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, powers.dampers);
       if (pass.air_drag > 0) store_sum(pass, stage_air + s, row, powers.air);
-      if (s + 1 == stage_count) store_sum(pass, squares_of_result, row, update.after);
+      if (s + 1 == kutta_stages) store_sum(pass, squares_of_result, row, update.after);
     }
 }
 

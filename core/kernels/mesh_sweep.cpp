@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "cloth/sums.h"
+#include "kernels/kutta.h"
 
 namespace cloth {
 namespace {
@@ -206,14 +207,13 @@ void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
 
 void MeshSweep::runge_kutta_step(MeshPass& pass, double step, const FieldPointers& x,
                                  const FieldPointers& v) {
-  constexpr std::array weights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}, ahead{0.5, 0.5, 1.0, 0.0};
   const FieldPointers sum_x = pointers(sum_.position), sum_v = pointers(sum_.velocity),
                       next_x = pointers(stage_.position), next_v = pointers(stage_.velocity);
-  for (int s = 0; s < 4; ++s) {
-    const bool first = s == 0, last = s == 3;
+  for (int s = 0; s < kutta_stages; ++s) {
+    const bool first = s == 0, last = s + 1 == kutta_stages;
     pass.position = first ? x : next_x, pass.velocity = first ? v : next_v;
-    pass.stage = {.weight = step * weights[static_cast<std::size_t>(s)],
-                  .ahead = step * ahead[static_cast<std::size_t>(s)],
+    pass.stage = {.weight = step * kutta[s].weight,
+                  .ahead = last ? 0 : step * kutta[s + 1].node,
                   .is_last = last,
                   .sum_position = first ? x : sum_x,
                   .sum_velocity = first ? v : sum_v,

@@ -3,6 +3,7 @@
 // every instruction set, after its Lanes.
 #pragma once
 
+#include "kernels/kutta.h"
 #include "kernels/lane_vectors.h"
 
 namespace cloth::kernels {
@@ -138,10 +139,6 @@ struct StageUpdate {
     store<Edge>(next_sum_velocity, j, count, sum_v);
   }
 };
-
-inline constexpr int stage_count = 4;
-inline constexpr double stage_weight[stage_count] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6},
-                        stage_ahead[stage_count] = {0.5, 0.5, 1, 0};
 
 }  // namespace
 }  // namespace cloth::kernels

@@ -7,6 +7,8 @@
 #include <complex>
 #include <limits>
 
+#include "scene/method_facts.h"
+
 namespace cloth {
 namespace {
 
@@ -36,49 +38,14 @@ Motion scaled(double factor, const Motion& motion) {
   return {factor * motion.fast, factor * motion.slow};
 }
 
-enum class Family { runge_kutta, semi_implicit_euler, verlet, bdf2 };
-
-/// Of the Runge-Kutta family: R(z) = (1 + z/a (1 + z/b (1 + ...))) / (1 - implicit z), `divisors` a, b, ...
-struct StepFormula {
-  std::string name;
-  Family family = Family::runge_kutta;
-  std::vector<double> divisors = {};
-  double implicit = 0;
-};
-
-/// Stability functions: Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2 and IV.3. On a
-/// linear oscillator the converged iterations of `projective` and `xpbd` (compliance 1/k) are implicit Euler.
-const std::vector<StepFormula>& formulas() {
-  static const std::vector<StepFormula> list{
-      {"explicit-euler", Family::runge_kutta, {1}},
-      {"semi-implicit-euler", Family::semi_implicit_euler},
-      {"verlet", Family::verlet},
-      {"rk4", Family::runge_kutta, {1, 2, 3, 4}},
-      {"dormand-prince", Family::runge_kutta, {1, 2, 3, 4, 5, 5}},  // ... + z^5/120 + z^6/600
-      {"implicit-euler", Family::runge_kutta, {}, 1},
-      {"implicit-midpoint", Family::runge_kutta, {2}, 0.5},
-      {"bdf2", Family::bdf2},
-      {"projective", Family::runge_kutta, {}, 1},
-      {"xpbd", Family::runge_kutta, {}, 1},
-  };
-  return list;
-}
-
-const StepFormula& formula_of(const std::string& name) {
-  const auto found = std::find_if(formulas().begin(), formulas().end(),
-                                  [&](const StepFormula& formula) { return formula.name == name; });
-  assert(found != formulas().end());
-  return *found;
-}
-
-Complex stability_function(const StepFormula& formula, Complex z) {
+Complex stability_function(const OscillatorStep& formula, Complex z) {
   Complex value = 1;
   for (auto divisor = formula.divisors.rbegin(); divisor != formula.divisors.rend(); ++divisor)
     value = 1.0 + z / *divisor * value;
   return formula.implicit == 0 ? value : value / (1.0 - formula.implicit * z);
 }
 
-Matrix2d runge_kutta_matrix(const StepFormula& formula, const Matrix2d& z) {
+Matrix2d runge_kutta_matrix(const OscillatorStep& formula, const Matrix2d& z) {
   Matrix2d value = Matrix2d::Identity();
   for (auto divisor = formula.divisors.rbegin(); divisor != formula.divisors.rend(); ++divisor)
     value = Matrix2d::Identity() + z / *divisor * value;
@@ -122,27 +89,27 @@ std::array<Complex, 2> eigenvalues_of(const Matrix2d& m) {
   return roots(1, -m.trace(), m.determinant());
 }
 
-std::vector<Complex> eigenvalues(const StepFormula& formula, const Motion& z) {
+std::vector<Complex> eigenvalues(const OscillatorStep& formula, const Motion& z) {
   std::array<Complex, 2> r{};
   switch (formula.family) {
-    case Family::runge_kutta:
+    case OscillatorStep::Family::runge_kutta:
       return {stability_function(formula, z.fast), stability_function(formula, z.slow)};
-    case Family::bdf2: {
+    case OscillatorStep::Family::bdf2: {
       r = roots(3.0 - 2.0 * z.fast, -4, 1);
       const auto slow = roots(3.0 - 2.0 * z.slow, -4, 1);
       return {r[0], r[1], slow[0], slow[1]};
     }
-    case Family::semi_implicit_euler:
+    case OscillatorStep::Family::semi_implicit_euler:
       r = eigenvalues_of(semi_implicit_euler_matrix(z.stiffness(), z.damping()));
       break;
-    case Family::verlet:
+    case OscillatorStep::Family::verlet:
       r = eigenvalues_of(verlet_matrix(z.stiffness(), z.damping()));
       break;
   }
   return {r[0], r[1]};
 }
 
-double spectral_radius(const StepFormula& formula, const Motion& z) {
+double spectral_radius(const OscillatorStep& formula, const Motion& z) {
   double largest = 0;
   for (const Complex& r : eigenvalues(formula, z)) largest = std::max(largest, std::abs(r));
   return largest;
@@ -150,41 +117,32 @@ double spectral_radius(const StepFormula& formula, const Motion& z) {
 
 }  // namespace
 
-const std::vector<std::string>& amplified_methods() {
-  static const auto names = [] {
-    std::vector<std::string> list;
-    for (const StepFormula& formula : formulas()) list.push_back(formula.name);
-    return list;
-  }();
-  return names;
-}
-
 Eigen::MatrixXd amplification_matrix(const std::string& method, double w, double zeta) {
-  const StepFormula& formula = formula_of(method);
+  const OscillatorStep& formula = facts_of(method).oscillator;
   const double d = 2 * zeta * w;
   Matrix2d z;
   z << 0, 1, -w * w, -d;
   switch (formula.family) {
-    case Family::semi_implicit_euler:
+    case OscillatorStep::Family::semi_implicit_euler:
       return semi_implicit_euler_matrix(w * w, d);
-    case Family::verlet:
+    case OscillatorStep::Family::verlet:
       return verlet_matrix(w * w, d);
-    case Family::bdf2:
+    case OscillatorStep::Family::bdf2:
       return bdf2_matrix(z);
-    case Family::runge_kutta:
+    case OscillatorStep::Family::runge_kutta:
       break;
   }
   return runge_kutta_matrix(formula, z);
 }
 
 double amplification(const std::string& method, double w, double zeta) {
-  return spectral_radius(formula_of(method), motion_of(w * w, 2 * zeta * w));
+  return spectral_radius(facts_of(method).oscillator, motion_of(w * w, 2 * zeta * w));
 }
 
 OscillatorError oscillator_error(const std::string& method, double w, double zeta) {
   const Motion z = motion_of(w * w, 2 * zeta * w);
   const Complex exact = std::exp(z.fast);
-  const auto r = eigenvalues(formula_of(method), z);
+  const auto r = eigenvalues(facts_of(method).oscillator, z);
   const Complex principal = *std::min_element(r.begin(), r.end(), [&](const Complex& a, const Complex& b) {
     return std::abs(a - exact) < std::abs(b - exact);
   });
@@ -200,7 +158,7 @@ double scanned_limit(const std::string& method, double omega, double c) {
   // threshold. The slowest growth in use, Dormand-Prince's beyond its limit, passes 1e-14 within 1e-10 of
   // that limit.
   constexpr double threshold = 1 + 1e-14;
-  const StepFormula& formula = formula_of(method);
+  const OscillatorStep& formula = facts_of(method).oscillator;
   const Motion motion = motion_of(omega * omega, c);
   const double modulus_of_motion = std::abs(motion.fast);
   assert(modulus_of_motion > 0);

@@ -7,15 +7,11 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <vector>
 
 namespace cloth {
 
-/// The methods whose step is known here. Theory only: a method need not be in the registry.
-const std::vector<std::string>& amplified_methods();
-
 /// The matrix of one step: 2 x 2 on (x, h v); for bdf2 the 4 x 4 companion on (x', h v', x, h v), the new and
-/// the old state. Precondition: `method` is one of amplified_methods().
+/// the old state. Precondition of all here: `method` is one of integrator_names().
 Eigen::MatrixXd amplification_matrix(const std::string& method, double w, double zeta);
 
 /// Its spectral radius. Accurate to some 1e-15 but near a double eigenvalue (Verlet at w = 2), where it is

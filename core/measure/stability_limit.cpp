@@ -2,16 +2,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
 #include "measure/amplification.h"
 #include "measure/resting_frequency.h"
 #include "measure/spectrum.h"
+#include "scene/method_facts.h"
 
 namespace cloth {
 namespace {
@@ -100,7 +99,7 @@ double laplacian_stiffness(const SpringMaterial& material) {
 /// Whether `method` chooses its own steps in this scene, so that none that is given is too long: the
 /// one place that decides it.
 bool adapts_its_steps(const std::string& method, const Scene& scene) {
-  return method == "dormand-prince" && scene.integrator.tolerance > 0;
+  return facts_of(method).controls_error && scene.integrator.tolerance > 0;
 }
 
 }  // namespace
@@ -189,21 +188,14 @@ DampingRates damping_rates(const Scene& scene) {
 }
 
 bool stable_at_every_step(const std::string& method) {
-  static constexpr std::array<std::string_view, 5> methods{"implicit-euler", "implicit-midpoint", "bdf2",
-                                                           "projective", "xpbd"};
-  return std::find(methods.begin(), methods.end(), method) != methods.end();
+  return facts_of(method).a_stable;
 }
 
 double oscillator_limit(const std::string& method, double omega, double c) {
   if (omega == 0 && c == 0) return infinity;
-  if (stable_at_every_step(method)) return infinity;
-  if (method == "verlet") return omega > 0 ? 2 / omega : infinity;
-  if (method == "semi-implicit-euler") return 4 / (std::sqrt(c * c + 4 * omega * omega) + c);
-  if (method == "explicit-euler") {
-    const double discriminant = 0.25 * c * c - omega * omega;
-    return discriminant < 0 ? c / (omega * omega) : 2 / (0.5 * c + std::sqrt(discriminant));
-  }
-  return scanned_limit(method, omega, c);
+  const MethodFacts& facts = facts_of(method);
+  if (facts.a_stable) return infinity;
+  return facts.limit ? facts.limit(omega, c) : scanned_limit(method, omega, c);
 }
 
 std::optional<double> stable_step(const std::string& method, double largest_omega,
@@ -230,10 +222,15 @@ std::optional<double> stable_step(const std::string& method, const Scene& scene)
 
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene) {
   const auto apart = step_below(method, scene, guaranteed_frequency);
-  if (method != "semi-implicit-euler" || scene.cloth.is_mesh() || !scene.springs ||
+  if (!facts_of(method).bounds_jointly || scene.cloth.is_mesh() || !scene.springs ||
       !(scene.springs->damping > 0))
     return apart;
   return joint_euler_step(scene);
+}
+
+double explicit_step_limit(const Scene& scene) {
+  const double omega = scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
+  return omega > 0 ? 2 / omega : infinity;
 }
 
 double provot_step(const Scene& scene) {

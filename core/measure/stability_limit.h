@@ -55,6 +55,10 @@ std::optional<double> stable_step(const std::string& method, const Scene& scene)
 /// crumpling makes energy grow exponentially. What a step is compared with.
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene);
 
+/// 2 / omega in s at the guaranteed frequency: no explicit method with one evaluation of the force stands a
+/// longer step. infinity without springs.
+double explicit_step_limit(const Scene& scene);
+
 /// Provot's criterion (1995): pi sqrt(m/k), k the largest stiffness; 3 to 5 times too long for a grid.
 /// infinity without springs.
 double provot_step(const Scene& scene);

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "integrators/registry.h"
+#include "scene/method_facts.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {

@@ -1,8 +1,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "integrators/registry.h"
 #include "scene/blocks.h"
+#include "scene/method_facts.h"
 #include "scene/scene_json.h"
 
 namespace cloth {

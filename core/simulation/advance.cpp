@@ -1,4 +1,4 @@
-// Several steps of which only the last state is looked at.
+// Several steps in batches, and the length of a step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
     std::int64_t part = std::min(steps, most_at_once);
     if (watches_step_) part = std::min(part, ledger_interval - state_.step % ledger_interval);
     if (automatic_.next_change >= 0) part = std::min(part, automatic_.next_change - state_.step);
-    const std::int64_t taken = advance_unseen(part);
+    const std::int64_t taken = advance_batch(part);
     steps -= taken;
     if (taken > 0) watch_step(false);
     for (std::int64_t n = taken; n < part; ++n, --steps) {
@@ -35,18 +35,18 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
 
 /// Takes `count` steps at once, or none: where the scene needs every state, where the method cannot, and
 /// where one of the steps has to be looked at more closely.
-std::int64_t Simulation::advance_unseen(std::int64_t count) {
+std::int64_t Simulation::advance_batch(std::int64_t count) {
   if (count < fewest || limiter_ || contact_ || continuous_contact_ || !was_finite_ ||
-      !integrator_->gains_unseen(*forces_))
+      !integrator_->gains_from_batches(*forces_))
     return 0;
   std::array<double, most_at_once> squares{};
   const std::span<double> of_steps(squares.data(), static_cast<std::size_t>(count));
-  forces_->copy(state_, before_unseen_);
+  forces_->sweep()->copy(state_, before_batch_);
   const Work work = ledger_.forces;
   const IntegratorReport report =
-      integrator_->unseen_steps(*forces_, time_step_, of_steps, state_, ledger_.forces);
+      integrator_->step_many(*forces_, time_step_, of_steps, state_, ledger_.forces);
   if (!std::all_of(of_steps.begin(), of_steps.end(), [this](double s) { return is_surely_slow(s); })) {
-    state_ = before_unseen_;
+    state_ = before_batch_;
     ledger_.forces = work;
     integrator_->forget(Change::state);
     return 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "measure/stability_limit.h"
+#include "scene/method_facts.h"
 
 namespace cloth {
 namespace {
@@ -15,7 +16,7 @@ constexpr int most_shortenings = 4;
 
 bool is_step_watched(const Scene& scene) {
   const std::string& method = scene.integrator.method;
-  if (scene.integrator.time_step || (method != "verlet" && method != "semi-implicit-euler")) return false;
+  if (scene.integrator.time_step || !facts_of(method).may_heat) return false;
   return std::isfinite(guaranteed_step(method, scene).value_or(infinity));
 }
 

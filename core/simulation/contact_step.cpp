@@ -1,8 +1,8 @@
 // Contact at the end of a step, and its part of the ledger.
 #include "contact/continuous_contact.h"
 #include "contact/stiff_contact.h"
-#include "integrators/implicit_methods.h"
 #include "measure/energy.h"
+#include "scene/method_facts.h"
 #include "simulation/simulation.h"
 
 namespace cloth {
@@ -13,7 +13,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
   ContactBegin begin{position_before_, velocity_before_, times.step, contact_memory_};
   ConstrainedStep constrained;
   if (stiff_contact_ && !contact_->is_inside(system_, position_before_)) {
-    constrained.weight = stage_weight(scene_.integrator.method).value_or(1) * times.step;
+    constrained.weight = facts_of(scene_.integrator.method).stage_weight.value_or(1) * times.step;
     constrained.position = state_.position;
     constrained.held = stiff_contact_->solve(system_, *forces_, contact_->obstacles(), constrained.weight,
                                              times.end, position_before_, constrained.position);

@@ -47,7 +47,6 @@ Simulation::Simulation(const Scene& scene, Preparation prepare)
   state_ = starting_state(system_);
   if (prepare_) prepare_(system_, state_);
   take_step_of_scene();
-  integrator_ = make_integrator(scene_.integrator);
   assemble();
   limit_start();
   ledger_.initial = total_energy();
@@ -58,14 +57,13 @@ Simulation::~Simulation() = default;
 
 void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
-  forces_->set_team(team_.get(), thread_use_);
+  share_work();
   const std::vector<double> tension = limiter_ ? limiter_->tension() : std::vector<double>();
   limiter_.reset();
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_)) {
     limiter_.emplace(*scene_.deformation, system_);
     limiter_->set_tension(tension);
   }
-  limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
   contact_.reset();
   continuous_contact_.reset();
   if (has_continuous_contact(scene_))
@@ -74,8 +72,7 @@ void Simulation::assemble() {
   else if (!scene_.obstacles.empty())
     contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
   stiff_contact_.reset();
-  if (contact_ && time_step_ > guaranteed_step("verlet", scene_).value_or(infinity))
-    stiff_contact_ = std::make_unique<StiffContact>();
+  if (contact_ && time_step_ > explicit_step_limit(scene_)) stiff_contact_ = std::make_unique<StiffContact>();
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
   if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
   find_unreachable();
@@ -128,7 +125,6 @@ void Simulation::limit_pull(const std::optional<PullStrength>& most) {
   if (most == most_pull_) return;
   most_pull_ = most;
   apply_hand();
-  integrator_->forget(Change::forces);
 }
 
 void Simulation::apply_hand() {
@@ -139,6 +135,19 @@ void Simulation::apply_hand() {
   }
   forces_->set_brush(brush_);
   forces_->set_pull(pull_, pull_strength_.stiffness, pull_strength_.damping);
+  choose_stepper();
+}
+
+/// Whenever forces or constraints have become others. Methods that remember more than forces have no fused
+/// stepper, so that nothing is lost where one takes over from the other.
+void Simulation::choose_stepper() {
+  const bool fused = suits_fused_stepper(scene_.integrator.method, *forces_, limiter_.has_value());
+  if (!integrator_ || fused != is_fused_)
+    integrator_ = make_stepper(scene_.integrator, *forces_, limiter_.has_value());
+  else
+    integrator_->forget(Change::forces);
+  is_fused_ = fused;
+  limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
 }
 
 std::optional<Divergence> Simulation::step() {
@@ -245,7 +254,7 @@ void Simulation::edit(const Scene& scene) {
     if (system_.pinned[i]) state_.velocity.set(i, Vec3::Zero());
 
   take_step_of_scene();
-  if (new_method) integrator_ = make_integrator(scene_.integrator);
+  if (new_method) integrator_.reset();
   assemble();
   if (new_method || !(contact_ || continuous_contact_)) end_contact();
   integrator_->forget(Change::state);
@@ -335,23 +344,27 @@ void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
 }
 
 void Simulation::set_threads(int threads, ThreadUse use) {
+  auto team = threads > 1 ? std::make_unique<WorkerTeam>(threads) : nullptr;
   thread_use_ = use;
-  forces_->set_team(nullptr);
-  if (continuous_contact_) continuous_contact_->set_team(nullptr);
-  team_ = threads > 1 ? std::make_unique<WorkerTeam>(threads) : nullptr;
-  forces_->set_team(team_.get(), thread_use_);
+  team_.swap(team);
+  share_work();
+}
+
+/// Among the threads of the team, if there is one.
+void Simulation::share_work() {
+  if (forces_->sweep()) forces_->sweep()->set_team(team_.get(), thread_use_);
   if (continuous_contact_) continuous_contact_->set_team(team_.get());
 }
 
 int Simulation::threads() const {
-  return forces_->threads();
+  return forces_->sweep() ? forces_->sweep()->threads() : 1;
 }
 
 void Simulation::set_brush(const std::optional<BrushGust>& brush) {
   brush_ = brush;
   if (brush && quantities_.air) quantities_.brush = true;
   forces_->set_brush(brush);
-  integrator_->forget(Change::forces);
+  choose_stepper();
 }
 
 void Simulation::set_pull(const std::optional<Pull>& pull) {
@@ -359,7 +372,7 @@ void Simulation::set_pull(const std::optional<Pull>& pull) {
   if (pull) quantities_.pull = true;
   hand_energy_ = std::max(hand_energy_, hand_energy());
   forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
-  integrator_->forget(Change::forces);
+  choose_stepper();
 }
 
 Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {

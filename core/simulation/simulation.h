@@ -115,9 +115,9 @@ class Simulation {
   /// One step; or, where the new state is not finite or has run away, why. The state is then the bad one.
   std::optional<Divergence> step();
 
-  /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit,
-  /// but the states in between are not to be seen, which makes some methods cheaper. Fewer also where the
-  /// stop test interrupted one.
+  /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit.
+  /// Where nothing needs the states in between, steps are taken in batches, which some methods do faster.
+  /// Fewer also where the stop test interrupted one.
   std::optional<Divergence> advance(std::int64_t steps);
 
   /// Asked within a step that takes long, where contact is continuous; once it says so the step is not taken:
@@ -202,7 +202,7 @@ class Simulation {
 
  private:
   void assemble();
-  std::int64_t advance_unseen(std::int64_t most);
+  std::int64_t advance_batch(std::int64_t count);
   void begin_step_length();
   void watch_step(bool at_once);
   void shorten_step();
@@ -211,6 +211,8 @@ class Simulation {
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
   void apply_hand();
+  void choose_stepper();
+  void share_work();
   void find_unreachable();
   void limit_start();
   void limit_deformation();
@@ -243,6 +245,7 @@ class Simulation {
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
+  bool is_fused_ = false;  ///< `integrator_` is a fused stepper
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;                    ///< the method asks the limiter itself, within the step
   std::optional<ObstacleContact> contact_;       ///< particle by particle
@@ -279,7 +282,7 @@ class Simulation {
   ObstacleTransitions carries_;
   ThicknessTransition thickness_transition_;
   bool was_finite_ = false;   ///< every position was finite after the last step
-  ClothState before_unseen_;  ///< to go back to
+  ClothState before_batch_;  ///< to go back to
 };
 
 }  // namespace cloth

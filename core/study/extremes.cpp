@@ -84,7 +84,7 @@ class CellRun {
     if (simulation_.unreachable_rate()) return ExtremeStatus::unreachable;
     if (growth() > growth_threshold) return ExtremeStatus::energy_growth;
     // XPBD does not solve a substep's equations, it visits each spring: its one visit is its residual.
-    const bool open = simulation_.scene().integrator.method != "xpbd" &&
+    const bool open = facts_of(simulation_.scene().integrator.method).iterates_to_residual &&
                       simulation_.count().largest_residual > residual_threshold;
     return open ? ExtremeStatus::not_converged : ExtremeStatus::stable;
   }

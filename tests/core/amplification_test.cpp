@@ -1,4 +1,5 @@
 #include "measure/amplification.h"
+#include "scene/method_facts.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ double spectral_radius(const Eigen::MatrixXd& matrix) {
 
 TEST(Amplification, IsTheSpectralRadiusOfTheMatrix) {
   Random random;
-  for (const std::string& method : amplified_methods())
+  for (const std::string& method : integrator_names())
     for (int trial = 0; trial < 200; ++trial) {
       const double w = std::pow(10, random.uniform(-2, 2)), zeta = random.uniform(0, 2);
       const double expected = spectral_radius(amplification_matrix(method, w, zeta));
@@ -174,7 +175,7 @@ const std::map<std::string, Leading> table{{"explicit-euler", {-1.0 / 3, 2, -1.0
                                            {"xpbd", {-1.0 / 3, 2, 1.0 / 2, 1}}};
 
 TEST(OscillatorError, LeadsWithTheTablesCoefficients) {
-  ASSERT_EQ(table.size(), amplified_methods().size());
+  ASSERT_EQ(table.size(), integrator_names().size());
   for (const auto& [method, leading] : table)
     for (const double w : {0.1, 0.07, 0.05, 0.02}) {
       const OscillatorError error = oscillator_error(method, w);
@@ -187,7 +188,7 @@ TEST(OscillatorError, LeadsWithTheTablesCoefficients) {
 }
 
 TEST(OscillatorError, IsThatOfThePoweredMatrix) {  // many steps, from the matrix alone
-  for (const std::string& method : amplified_methods())
+  for (const std::string& method : integrator_names())
     for (const double zeta : {0.0, 0.05}) {
       const double w = 0.3;
       const OscillatorError error = oscillator_error(method, w, zeta);

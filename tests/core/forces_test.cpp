@@ -45,7 +45,7 @@ TEST(SpringDamping, ByRunsIsTheSumOverTheSprings) {
     const ClothSystem system = make_grid(scene.cloth, *scene.springs);
     ClothState state = crumpled_state(system, 0.04, 0.3, random);
     state.position.set(1, state.position[0]);  // a spring of no length
-    SpringDamping damping(0.7);
+    SpringDamping damping(system, 0.7);
     Vec3Field product(state.position.size()), none(state.position.size()), expected;
     damping.update(system, state.position, 0, none);
     damping.add_damping(state.position, state.velocity, product);

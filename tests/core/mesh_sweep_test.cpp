@@ -270,7 +270,7 @@ TEST_P(MeshSprings, StepToTheSameBitsOnAnyNumberOfThreads) {
         for (const int threads : {2, 3}) {
           WorkerTeam team(threads);
           DirectRun shared(system, scene, exactly(method));
-          shared.forces.set_team(&team, ThreadUse::always);
+          shared.forces.sweep()->set_team(&team, ThreadUse::always);
           shared.advance(5, 1e-4);
           EXPECT_EQ(shared.state, alone.state) << method << ", " << threads;
           EXPECT_EQ(shared.work.damping_loss, alone.work.damping_loss) << method;
@@ -305,10 +305,10 @@ TEST_P(MeshSprings, ManyStepsAtOnceAreTheStepsOneByOneToTheBit) {
       DirectRun single(system, scene, exactly(method)), many(system, scene, exactly(method));
       constexpr double step = 1e-4;
       single.advance(1, step), many.advance(1, step);
-      ASSERT_TRUE(many.integrator().gains_unseen(many.forces)) << method;
+      ASSERT_TRUE(many.integrator().gains_from_batches(many.forces)) << method;
       std::array<double, 10> squares{};
       single.advance(10, step);
-      many.integrator().unseen_steps(many.forces, step, squares, many.state, many.work);
+      many.integrator().step_many(many.forces, step, squares, many.state, many.work);
       EXPECT_TRUE(same_bits(single.state.position, many.state.position)) << method;
       EXPECT_TRUE(same_bits(single.state.velocity, many.state.velocity)) << method;
       EXPECT_EQ(single.work.damping_loss, many.work.damping_loss) << method;

@@ -124,12 +124,6 @@ TEST(ImplicitMethods, HaveNoLimit) {
   for (const auto& [method, limits] : table) EXPECT_FALSE(stable_at_every_step(method)) << method;
 }
 
-TEST(StableStep, KnowsEveryMethodOfTheRegistry) {
-  const auto& known = amplified_methods();
-  for (const std::string& method : integrator_names())
-    EXPECT_NE(std::find(known.begin(), known.end(), method), known.end()) << method;
-}
-
 TEST(GuaranteedStep, IsShorterByTheRatioOfTheFrequencies) {
   Scene scene;
   scene.cloth = bare_sheet(10, 10, 1, 1).cloth;

@@ -20,16 +20,20 @@ DirectRun::DirectRun(const Scene& scene, const IntegratorChoice& choice)
     : DirectRun(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})), scene, choice) {}
 
 DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoice& choice)
-    : system(std::move(made)),
-      state(starting_state(system)),
-      forces(scene, system),
-      integrator_(make_integrator(choice)) {}
+    : system(std::move(made)), state(starting_state(system)), forces(scene, system), choice_(choice) {}
+
+Integrator& DirectRun::integrator() {
+  const bool fused = suits_fused_stepper(choice_.method, forces, false);
+  if (!integrator_ || fused != is_fused_) integrator_ = make_stepper(choice_, forces, false);
+  is_fused_ = fused;
+  return *integrator_;
+}
 
 void DirectRun::advance(int steps, double step) {
   for (int n = 0; n < steps; ++n) {
     const auto now = static_cast<double>(state.step);
     const StepTimes times{now * step, (now + 1) * step, step};
-    const IntegratorReport report = integrator_->step(system, forces, times, state, work);
+    const IntegratorReport report = integrator().step(system, forces, times, state, work);
     if (report.failure) throw std::runtime_error(report.failure->cause);
     force_evaluations += report.force_evaluations;
     inner_steps += report.inner_steps;

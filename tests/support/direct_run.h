@@ -5,6 +5,7 @@
 #include <string>
 
 #include "integrators/integrator.h"
+#include "scene/scene.h"
 
 namespace cloth::test {
 
@@ -28,7 +29,8 @@ class DirectRun {
   /// The acceleration of every particle at the present state, in m/s^2; zero on pins.
   Vec3Field acceleration();
 
-  Integrator& integrator() { return *integrator_; }
+  /// The stepper that suits the forces now.
+  Integrator& integrator();
 
   ClothSystem system;
   ClothState state;
@@ -37,6 +39,8 @@ class DirectRun {
   int force_evaluations = 0, inner_steps = 0, rejected_steps = 0;
 
  private:
+  IntegratorChoice choice_;
+  bool is_fused_ = false;
   std::unique_ptr<Integrator> integrator_;
 };
 

@@ -1,11 +1,10 @@
-// The damping centred in time: (m + weight D) v = m known + weight p. Where D couples no particles (viscous
-// damping, air) every particle has a 3x3 system with a closed solution; spring damping couples them and takes
-// a few steps of conjugate gradients, preconditioned by the closed solution of the rest. What is done between
-// two products with D goes through the particles in strips that stay in the nearest cache.
+// What is done between two products with D goes through the particles in strips that stay in the nearest
+// cache.
+#include "forces/velocity_solver.h"
+
 #include <algorithm>
 
 #include "cloth/sums.h"
-#include "forces/force_model.h"
 #include "forces/node_matrix.h"
 
 namespace cloth {
@@ -56,72 +55,58 @@ void advance(double length, const Strip<const double>& d, const Strip<double>& v
 
 }  // namespace
 
-int ForceModel::centred_velocity(double weight, const Vec3Field& position, Vec3Field& velocity,
-                                 Vec3Field& force) {
-  NodeDamping local;
-  bool coupled = false;
-  for (const auto& each : forces_) coupled = !each->add_node_damping(local) || coupled;
-  if (pull_) pull_->add_node_damping(local);
-  if (coupled) return solve_coupled(weight, local, position, velocity, force);
-  solve_per_node(weight, local, velocity);
+int VelocitySolver::solve(const ClothSystem& system, const ForceModel& forces, double weight,
+                          const Vec3Field& position, Vec3Field& velocity, Vec3Field& force) {
+  const NodeDamping local = forces.damping_parts();
+  if (forces.couples_particles())
+    return solve_coupled(system, forces, weight, local, position, velocity, force);
+  solve_by_particle(system, forces.position_force(), weight, local, velocity);
   return 0;
 }
 
-void ForceModel::solve_per_node(double weight, const NodeDamping& damping, Vec3Field& velocity) {
-  const NodeMatrix matrix(*system_, weight, damping, inverse_diagonal_);
+void VelocitySolver::solve_by_particle(const ClothSystem& system, const Vec3Field& position_force,
+                                       double weight, const NodeDamping& damping, Vec3Field& velocity) {
+  const NodeMatrix matrix(system, weight, damping, inverse_diagonal_);
   const bool holds = damping.held_particle >= 0;
   const auto held = static_cast<std::size_t>(std::max(damping.held_particle, 0));
-  const Vec3 of_held = system_->mass[held] * velocity[held] + weight * position_force_[held];
+  const Vec3 of_held = system.mass[held] * velocity[held] + weight * position_force[held];
 
   OwnStrip own;
   for_each_strip(velocity.size(), [&](std::size_t first, std::size_t count) {
     const Strip<double> v = strip_of(velocity, first, count), rhs = own.of(count);
-    right_hand_side(system_->mass.data() + first, weight, v, read_strip(position_force_, first, count), rhs);
+    right_hand_side(system.mass.data() + first, weight, v, read_strip(position_force, first, count), rhs);
     matrix.solve(first, rhs, v);
   });
   if (holds) {
     const Vec3 n = damping.normal ? (*damping.normal)[held] : Vec3::Zero();
-    const double diagonal = system_->mass[held] + weight * (damping.isotropic + damping.held_isotropic);
+    const double diagonal = system.mass[held] + weight * (damping.isotropic + damping.held_isotropic);
     const double along = weight * damping.along_normal;
     velocity.set(held, (of_held - along / (diagonal + along) * n.dot(of_held) * n) / diagonal);
   }
 }
 
-/// product = the part of D v that couples particles, and the hand's. Returns what it takes, in W.
-double ForceModel::coupled_product(const Vec3Field& position, const Vec3Field& velocity,
-                                   Vec3Field& product) const {
-  const double dampers = swept_dampers(position, velocity, product);
-  bool is_all = sweeps_dampers() && !pull_;
-  for (const auto& force : forces_) {
-    NodeDamping unused;
-    if (is_swept(*force) || force->add_node_damping(unused)) continue;
-    force->add_damping(position, velocity, product);
-    is_all = false;
-  }
-  if (pull_) pull_->add_damping(position, velocity, product);
-  return is_all ? dampers : cloth::dot(velocity.flat(), product.flat());
-}
-
 /// `product` holds a force for the guess.
-int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec3Field& position,
-                              Vec3Field& velocity, Vec3Field& product) {
+int VelocitySolver::solve_coupled(const ClothSystem& system, const ForceModel& forces, double weight,
+                                  const NodeDamping& local, const Vec3Field& position, Vec3Field& velocity,
+                                  Vec3Field& product) {
   const std::size_t size = velocity.size();
   if (residual_.size() != size) residual_ = direction_ = Vec3Field(size);
-  const NodeMatrix matrix(*system_, weight, local, inverse_diagonal_);
+  const NodeMatrix matrix(system, weight, local, inverse_diagonal_);
   OwnStrip own;
 
   double goal = 0;
   for_each_strip(size, [&](std::size_t first, std::size_t count) {
     const Strip<double> v = strip_of(velocity, first, count), r = strip_of(residual_, first, count),
                         z = own.of(count);
-    right_hand_side(system_->mass.data() + first, weight, v, read_strip(position_force_, first, count), r);
+    right_hand_side(system.mass.data() + first, weight, v, read_strip(forces.position_force(), first, count),
+                    r);
     matrix.solve(first, r, z);
     goal += dot(r, z);
-    accelerate(weight, system_->inverse_mass.data() + first, read_strip(product, first, count), v);
+    accelerate(weight, system.inverse_mass.data() + first, read_strip(product, first, count), v);
   });
   goal *= tolerance * tolerance;
 
-  coupled_product(position, velocity, product);
+  forces.coupled_damping(position, velocity, product);
   double slope = 0, curvature = 0;
   for_each_strip(size, [&](std::size_t first, std::size_t count) {
     const Strip<double> r = strip_of(residual_, first, count), d = strip_of(direction_, first, count);
@@ -134,7 +119,7 @@ int ForceModel::solve_coupled(double weight, const NodeDamping& local, const Vec
 
   int iterations = 0;
   while (iterations < max_iterations && slope > goal) {
-    curvature += weight * coupled_product(position, direction_, product);
+    curvature += weight * forces.coupled_damping(position, direction_, product);
     if (!(curvature > 0)) break;
     const double length = slope / curvature;
     double next_slope = 0;

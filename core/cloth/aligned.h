@@ -1,4 +1,4 @@
-// Storage that begins at a cache line, so that whole vectors of the kernels do not straddle two.
+// Arrays aligned to cache lines, so that vector registers do not straddle two of them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// What a run does not change: particles, springs, masses, pins. And what it does: positions and velocities.
+// The constant part of an assembled cloth (springs, masses, pins) and its state (positions, velocities,
+// time).
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ inline constexpr std::array<SpringFamily, 3> spring_families{SpringFamily::struc
                                                              SpringFamily::flexion};
 const char* name_of(SpringFamily family);
 
-/// `count` springs of one kind: spring s joins particle first + s to particle first + s + offset. A grid is a
-/// few long runs, so its kernels need no index pairs; a general mesh is runs of length one.
+/// `count` springs with equal properties: spring s joins particle first + s to particle first + s + offset. A
+/// grid is a few long runs, so that its kernels need no index pairs; a general mesh is runs of length one.
 struct SpringRun {
   SpringFamily family = SpringFamily::structural;
   int first = 0;
@@ -27,10 +28,10 @@ struct SpringRun {
   bool operator==(const SpringRun&) const = default;
 };
 
-/// A grid of rows x columns particles, or the vertices of a mesh: one row, and triangles.
+/// A grid of rows x columns particles, or a mesh: one row, and triangles.
 struct ClothSystem {
   int rows = 0, columns = 0;
-  std::vector<Triangle> triangles;   ///< of a mesh; none: a grid, whose cells triangles_of() cuts in two
+  std::vector<Triangle> triangles;   ///< of a mesh; empty: a grid, see triangles_of()
   std::vector<SpringRun> springs;    ///< in the order structural, shear, flexion
   std::vector<double> mass;          ///< kg, one of each particle
   std::vector<double> inverse_mass;  ///< 1/kg; 0 where pinned

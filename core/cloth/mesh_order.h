@@ -1,5 +1,5 @@
-// A numbering of particles in which springs join numbers close to each other, so that what a spring needs is
-// in the cache and few threads meet at a particle. For whoever makes a cloth from a general mesh.
+// Numberings of the particles of a general mesh with a small bandwidth: the ends of a spring are close in
+// memory, and few particles are shared between threads.
 #pragma once
 
 #include <vector>
@@ -15,15 +15,15 @@ using ParticleOrder = std::vector<int>;
 /// path through it (George and Liu 1979).
 ParticleOrder small_bandwidth_order(const ClothSystem& system);
 
-/// The same, and then, among every 64 in a row, those with few springs first: so that neighbours in the
-/// numbering have equally many (the sorting windows of Kreutzer et al. 2014).
+/// The same, then sorted by the number of springs within every 64 consecutive particles, so that neighbours
+/// in the numbering have equally many (the sorting windows of Kreutzer et al. 2014).
 ParticleOrder order_for_sweeps(const ClothSystem& system);
 
 /// The order that undoes `order`.
 ParticleOrder inverse_of(const ParticleOrder& order);
 
 /// The same cloth with its particles in this order: springs one by one, by family and then by their ends. A
-/// grid is none any more: it becomes one row.
+/// grid becomes a mesh of one row.
 ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order);
 ClothState renumbered(const ClothState& state, const ParticleOrder& order);
 Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order);

@@ -9,8 +9,7 @@ namespace cloth {
 /// = (r,c), b = (r,c+1), c = (r+1,c+1), d = (r+1,c): weighted by area, and zero where that sum is zero.
 void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal);
 
-/// How the normals change where the positions change by `direction`, to first order; zero where there is no
-/// normal.
+/// The directional derivative of the normals along `direction`; zero where there is no normal.
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
                              Vec3Field& change);
 

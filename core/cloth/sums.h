@@ -1,5 +1,5 @@
-// Sums in a fixed order that the compiler may still vectorise: eight partial sums, added pairwise at the end.
-// The same bits for the same input on every machine.
+// Sums in a fixed order that still vectorises: eight partial sums, added pairwise at the end. The same bits
+// for the same input on every machine.
 #pragma once
 
 #include <array>

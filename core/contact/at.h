@@ -1,4 +1,4 @@
-// Particles, triangles and edges are counted in int; the standard containers want std::size_t.
+// Converts the int indices of particles, triangles and edges to the std::size_t of the standard containers.
 #pragma once
 
 #include <cstddef>

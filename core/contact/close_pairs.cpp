@@ -10,15 +10,15 @@ namespace cloth {
 namespace {
 
 constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of their own
-/// Kept pairs are found for so many more ways like this one, at most for a reach more.
+/// Candidates are found for this many more displacements like the present one, at most for one more reach.
 constexpr double ways_ahead = 4;
-constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and for what hardly moves
+constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and small motions
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
 }
 
-/// Where a body is, as far as a turn of a sphere does not matter.
+/// Equal poses, where the rotation of a sphere does not matter.
 bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
   return a == b ||
          (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
@@ -42,10 +42,10 @@ void ClosePairs::measure(const PairQuery& now) {
   longest_ = 0;
   range_.resize(now.swept.particles.size());
   for (std::size_t i = 0; i < range_.size(); ++i) {
-    const Capsule& way = now.swept.particles[i];
-    const double length = (way.to - way.from).norm();
+    const Capsule& capsule = now.swept.particles[i];
+    const double length = (capsule.to - capsule.from).norm();
     longest_ = std::max(longest_, length);
-    range_[i] = length + way.radius;
+    range_[i] = length + capsule.radius;
   }
   obstacle_paths_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
@@ -58,7 +58,7 @@ bool ClosePairs::all_at_rest(const PairQuery& now) const {
   return true;
 }
 
-/// Whether the kept pairs are all that matter: nothing has left what they were found for.
+/// Whether the candidates still contain all pairs.
 bool ClosePairs::holds(const PairQuery& now) const {
   if (cached_range_.size() != range_.size()) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
@@ -68,7 +68,7 @@ bool ClosePairs::holds(const PairQuery& now) const {
   return true;
 }
 
-/// Finds what is to be kept, and its distances.
+/// Finds the candidates and their distances.
 void ClosePairs::collect_candidates(const PairQuery& now) {
   const double reach = furthest_reach(now.swept);
   SweptBounds around = now.swept;
@@ -94,7 +94,7 @@ double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) c
   return pair.obstacle == FeaturePair::cloth_itself ? swept.own_reach : swept.reach;
 }
 
-/// What is_far() would say of a kept pair, known without looking at it.
+/// Whether is_far() holds for a candidate, from its cached distance.
 bool ClosePairs::is_known_far(std::size_t k, const SweptBounds& swept) const {
   const PairParticles pair = particles_of(cached_[k], cloth_);
   const int near = pair.near_count;
@@ -104,7 +104,7 @@ bool ClosePairs::is_known_far(std::size_t k, const SweptBounds& swept) const {
   return (1 - rounding) * cached_distance_[k] > reach_of(cached_[k], swept) + range + moved;
 }
 
-/// Whether the pair cannot come within its reach: the ways are too short, or lead along or away.
+/// Whether the pair cannot come within its reach: the displacements are too short, or lead along or away.
 bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const SweptBounds& swept) const {
   const double reach = reach_of(pair, swept);
   double near_range = 0, far_range = 0;
@@ -149,7 +149,7 @@ void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePai
   }
 }
 
-/// Keeping serves where the next step will find all where it is now, or nearly so.
+/// Candidates are cached where the next step will find nearly the same positions.
 void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
                       std::vector<Separation>& separations) {
   measure(now);

@@ -1,22 +1,22 @@
-// The pairs of features that can come within the thickness of each other in a round, and how they lie.
+// The pairs of features that can come within the thickness of each other in a round, and their separations.
 //
-// Which they are follows from where everything is and may go, and from nothing else. What was found once is
-// kept for some rounds all the same: a pair whose distance was known cannot be nearer by more than its
-// particles have moved since (lists with a skin; Verlet, "Computer experiments on classical fluids", 1967).
+// The result depends on the present positions and swept bounds only. Candidates are cached for some rounds: a
+// pair whose distance was computed cannot have become nearer by more than its particles have moved since
+// (neighbour lists with a skin; Verlet 1967).
 #pragma once
 
 #include "contact/near_pairs.h"
 
 namespace cloth {
 
-/// Pairs nearer than this many thicknesses may hold the thickness; others only bound the motion.
+/// Pairs nearer than this many thicknesses become contact constraints; others only bound the motion.
 inline constexpr double near_factor = 1.5;
 
 struct PairQuery {
   const Vec3Field& position;  ///< m, of the particles
   const SweptBounds& swept;
-  const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this step
-  const std::vector<Pose>& poses;               ///< where they are now
+  const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this substep
+  const std::vector<Pose>& poses;               ///< of the obstacles now
 };
 
 class ClosePairs {
@@ -25,13 +25,13 @@ class ClosePairs {
   ClosePairs(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin)
       : cloth_(cloth), bodies_(bodies), search_(cloth, bodies, with_itself, skin) {}
 
-  /// The same to the bit for any team; none: one thread.
+  /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
 
-  /// All pairs that can come within the reach of each other while all stay in their ways.
+  /// All pairs that can come within the reach of each other while everything stays in its swept bounds.
   void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
 
-  /// What was kept was found for other reaches.
+  /// Drops the cached candidates: the reaches have changed.
   void forget() { cached_range_.clear(), search_.forget(); }
 
   PairSearch& search() { return search_; }
@@ -60,16 +60,16 @@ class ClosePairs {
   WorkerTeam* team_ = nullptr;
   std::vector<Part> parts_{1};  ///< of each thread
 
-  std::vector<double> range_;           ///< m, that each particle may go in this round
-  std::vector<double> obstacle_paths_;  ///< m, at most, of any point of each in this step
-  std::vector<double> moved_;           ///< m, of each particle since the kept pairs were found
-  double longest_ = 0;                  ///< m, of all ways
+  std::vector<double> range_;           ///< m, furthest displacement of each particle in this round
+  std::vector<double> obstacle_paths_;  ///< m, furthest displacement of any point of each in this substep
+  std::vector<double> moved_;           ///< m, of each particle since the candidates were found
+  double longest_ = 0;                  ///< m, longest of the particles' displacements
   std::vector<FeaturePair> found_;
 
   std::vector<FeaturePair> cached_;
   std::vector<double> cached_distance_;  ///< m, of each
   Vec3Field cached_position_;
-  std::vector<double> cached_range_;  ///< m, for which the kept pairs hold
+  std::vector<double> cached_range_;  ///< m, displacements for which the candidates hold
   std::vector<Pose> cached_poses_;
 };
 

@@ -1,4 +1,4 @@
-// Where contact acts, for whoever wants to see it.
+// Contact points, for display.
 #pragma once
 
 #include "cloth/vec3_field.h"
@@ -7,8 +7,8 @@ namespace cloth {
 
 struct ContactMark {
   Vec3 point{0, 0, 0};        ///< m, of the cloth
-  Vec3 normal{0, 1, 0};       ///< the way the cloth is pushed, of length one
-  double normal_impulse = 0;  ///< kg m, of the last step; 0 where contact does not say
+  Vec3 normal{0, 1, 0};       ///< unit vector, from the obstacle to the cloth
+  double normal_impulse = 0;  ///< kg m, of the last step; 0 where it is not known
 };
 
 }  // namespace cloth

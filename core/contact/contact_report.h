@@ -1,4 +1,4 @@
-// What contact did in a step.
+// The outcome of contact in a step.
 #pragma once
 
 #include <optional>
@@ -7,27 +7,27 @@
 
 namespace cloth {
 
-/// An obstacle could not go its way without passing through cloth that cannot give way.
+/// An obstacle could not move on without passing through cloth that cannot move out of its way.
 struct Pinch {
   int obstacle = 0;
   int particle = 0;
   Vec3 place{0, 0, 0};  ///< m
-  /// What the cloth is held by there, as far as it is known; another obstacle is `holding_obstacle`.
+  /// What holds the cloth there, as far as it is known; Holder::obstacle refers to `holding_obstacle`.
   enum class Holder { unknown, pin, obstacle, itself } holder = Holder::unknown;
   int holding_obstacle = -1;
 };
 
 struct ContactReport {
-  bool acted = false;  ///< the state is another one than without contact
-  int contacts = 0;    ///< particles that were touched; particle by particle, once for each obstacle
-  int held_back = 0;   ///< particles that did not get where they should: something was in the way to the end
+  bool acted = false;     ///< contact has changed the state
+  int contacts = 0;       ///< particles in contact; without continuous contact counted once for each obstacle
+  int held_back = 0;      ///< particles that did not reach their target position within the rounds
   double work = 0;        ///< J, given to the cloth by contact's impulses
-  Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only continuous contact says it
+  Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only of continuous contact
   int rounds = 0;         ///< of continuous contact
-  std::size_t pairs = 0;  ///< of features near each other, of the last round
+  std::size_t pairs = 0;  ///< pairs of near features in the last round
   std::optional<Pinch> pinch;
-  bool exhausted = false;    ///< the obstacles' ways were too much work: like a pinch, at the same place
-  bool interrupted = false;  ///< the stop test ended it: the positions are of no use
+  bool exhausted = false;    ///< the bound on the work of a step was reached; treated like a pinch
+  bool interrupted = false;  ///< the stop test ended it: the positions are not usable
 };
 
 }  // namespace cloth

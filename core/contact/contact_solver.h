@@ -1,11 +1,11 @@
-// Contact as inequalities with friction, solved one after the other until nothing changes (projected
-// Gauss-Seidel; Erleben, "Stable, robust, and versatile multibody dynamics animation", 2005; the friction of
-// positions as in Mueller et al., "Position based dynamics", 2007).
+// Contact constraints with Coulomb friction, solved by projected Gauss-Seidel (Erleben 2005); friction on
+// positions as in position-based dynamics (Mueller et al. 2007).
 //
-// A contact asks of the point sum w x of its particles
+// A constraint on the point sum w x of its particles:
 //     normal . (sum w x) >= bound
-// and rubs against every change across the normal from `rest`, with up to friction times its push. The same
-// serves positions (m; pushes in kg m) and velocities (m/s; pushes in N s).
+// Friction opposes the tangential displacement of that point from `rest`; its impulse is at most the friction
+// coefficient times the normal impulse. Values are positions (m, impulses in kg m) or velocities (m/s,
+// impulses in N s).
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@ namespace cloth {
 struct ContactConstraint {
   int count = 0;
   std::array<int, 4> particle{};
-  std::array<double, 4> weight{};  ///< negative on the other side of a cloth that touches itself
+  std::array<double, 4> weight{};  ///< negative for particles on the far side of a self-contact
   Vec3 normal{0, 1, 0};
   double bound = 0;
   Vec3 rest{0, 0, 0};
   double friction = 0;
   double mobility = 0;             ///< sum of w^2 / m, 1/kg
-  double normal_impulse = 0;       ///< along the normal so far, >= 0
-  double normal_load = 0;          ///< a push that friction may count on in any case
-  Vec3 friction_impulse{0, 0, 0};  ///< across it
+  double normal_impulse = 0;       ///< accumulated, >= 0
+  double normal_load = 0;          ///< least normal impulse that bounds friction
+  Vec3 friction_impulse{0, 0, 0};  ///< accumulated, tangential
 
   Vec3 point(const Vec3Field& value) const {
     Vec3 sum = Vec3::Zero();
@@ -40,12 +40,12 @@ struct ContactConstraint {
 
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass);
 
-/// Adds what the present pushes and rubs do.
+/// Adds the effect of the accumulated impulses to `value`.
 void apply_impulses(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
                     Vec3Field& value);
 
-/// At most `sweeps` over all, in their order; ends where no point was moved by more than `tolerance`.
-/// Contacts of which no particle can move are left out. Returns the sweeps.
+/// At most `sweeps` sweeps over the contacts in their order; ends when no point moved by more than
+/// `tolerance`. Contacts without a free particle are skipped. Returns the sweeps.
 int solve_contacts(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass, int sweeps,
                    double tolerance, Vec3Field& value);
 

@@ -1,5 +1,5 @@
-// The work of one contact's impulses in a step whose velocities are not made with where contact let the
-// particles go.
+// The work of one contact's impulses, for methods whose velocities do not follow from the corrected
+// positions.
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,16 @@
 
 namespace cloth {
 
-/// Of a contact's point, in m/s: as the step began, with contact's answer at its end, and the mean of the way
-/// that it went.
+/// Velocities of a contact's point, in m/s: at the beginning of the step, at its end after contact, and the
+/// mean of its displacement over the step.
 struct PointSpeeds {
   Vec3 before{0, 0, 0}, after{0, 0, 0}, gone{0, 0, 0};
 };
 
-/// J. An impulse that changes the point's speed acts in a moment: its work is that with the mean of the
-/// speeds before and after. What it has beyond that carries a load that acted all the step long: its work is
-/// that along the way the point went. So a cloth that lies still gets none, whatever speed the integrator had
-/// given it in a step.
+/// J. The part of the impulse that changes the point's velocity acts instantaneously: its work is taken with
+/// the mean of the velocities before and after. The rest balances a load that acted during the whole step:
+/// its work is taken along the point's displacement. So a cloth at rest gets no work, whatever velocity the
+/// integrator gave it.
 inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
   const Vec3 mean = 0.5 * (speeds.before + speeds.after), change = speeds.after - speeds.before;
   const double along = contact.normal.dot(change);

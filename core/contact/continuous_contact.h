@@ -1,14 +1,13 @@
-// Contact that lets nothing through. A step's motion is followed from where the particles were: pair by pair
-// a plane parts the features, and a particle goes only as far as it stays on its side of the planes of all
-// its pairs. Since each side of a plane is convex, no vertex, edge or face can pass another on the way, at
-// any speed and step; obstacles that move carry their planes along. What is left of the way is gone in
-// further rounds, with new planes. (Displacements bounded by distance: Wu et al., "A Safe and Fast Repulsion
-// Method for GPU-based Cloth Self Collisions", 2020; Chen et al., "Offset Geometric Contact", 2025. Here
-// planes instead of balls leave every motion along and away from an obstacle free.)
+// Continuous contact: no vertex, edge or face passes another, at any speed and step (conservative
+// advancement). A plane separates the two features of each near pair, and a particle moves toward its target
+// only as far as it stays on its side of all its planes. Each side of a plane is convex, so that the features
+// cannot pass each other on the way. Moving obstacles move their planes with them. The remaining displacement
+// follows in further rounds, with new planes. (Displacements are bounded by distance in Wu et al. 2020 and
+// Chen et al. 2025; planes instead of balls do not restrict motion along and away from an obstacle.)
 //
-// Where the particles should go is solved for in each round: as near as possible to where the integrator has
-// put them, in the norm of their masses, with every near pair a thickness apart and Coulomb friction against
-// the slip of the step. Velocities follow by impulses over the same pairs (velocity_response.cpp).
+// The target positions are solved for in each round: as near as possible to the integrator's positions, in
+// the norm of the masses, with every near pair a thickness apart and Coulomb friction against the slip of the
+// step. Velocities follow by impulses over the same pairs (velocity_response.cpp).
 #pragma once
 
 #include <functional>
@@ -23,55 +22,57 @@
 
 namespace cloth {
 
-/// Whether the scene's contact is this one; otherwise obstacles are tested particle by particle.
+/// Whether the scene uses continuous contact; otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
-/// m/s, the highest of any point of an obstacle that can touch something; 0 where all rest. How far from its
-/// pivot a plane that an edit has turned can touch the cloth follows from the positions.
+/// m/s, highest speed of any point of an obstacle that can touch the cloth; 0 where all are at rest. For a
+/// plane that an edit has turned, the relevant distance from its pivot follows from the positions.
 double highest_obstacle_speed(const Scene& scene, const ObstacleTransitions& transitions,
                               const Vec3Field& position);
 
-/// Begin and end of a step, in s.
+/// Beginning, end and length of a step, in s.
 struct ContactTimes {
   double begin = 0, end = 0, step = 0;
 };
 
-/// What the velocities' answer refers to, and how the integrator's velocities follow contact; no function
-/// where they need not.
+/// What the velocity solve needs from the caller. The functions are empty for methods whose velocities do not
+/// follow from the corrected positions.
 struct VelocityCoupling {
-  const Vec3Field& velocity_before;                            ///< m/s, as the step began
-  ContactMemory& memory;                                       ///< of the last step, and then of this one
+  const Vec3Field& velocity_before;                            ///< m/s, at the beginning of the step
+  ContactMemory& memory;                                       ///< in: of the last step; out: of this one
   std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
-  /// Called once the positions are in the state, before velocities answer; `motion` in m/s has led there.
+  /// Called once the corrected positions are in the state, before the velocity solve; `motion`, in m/s, is
+  /// the displacement over the step.
   std::function<void(const Vec3Field& motion)> positions;
   std::function<void(const Vec3Field& motion)>
-      velocities;  ///< once they have answered; they answer once more
+      velocities;  ///< called after the velocity solve, which is then repeated
 };
 
 class ContinuousContact {
  public:
-  /// Obstacles are where scene and carries say they are at `time`, in s.
+  /// Obstacles have their poses of `time`, in s.
   ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleTransitions transitions,
                     const ThicknessTransition& thickness, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
-  /// Where the obstacles are as the next step begins.
+  /// Of the obstacles at the beginning of the next step.
   const std::vector<Pose>& poses() const { return starts_; }
   void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
 
-  /// Whether anything is near enough in this step for `apply` to have work. To be asked first.
+  /// Whether anything is near enough in this step for `apply` to have work. Call it before `apply`.
   bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
 
-  /// Brings `state` from what the integrator wished to what can be reached from the positions `from`. Where a
-  /// pinch is reported the positions are the last ones that nothing passed.
+  /// Replaces the integrator's positions in `state` by positions that can be reached from `from` without
+  /// crossings, and its velocities accordingly. Where a pinch is reported the positions are the last ones
+  /// without a crossing.
   ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
                       ClothState& state, const VelocityCoupling& coupling);
 
-  /// The same to the bit for any team; none: one thread.
+  /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
 
-  /// Asked in every round; where it says so the step is not carried out.
+  /// Called in every round; when it returns true the step is abandoned.
   void set_stop_test(std::function<bool()> test) { stop_test_ = std::move(test); }
 
   /// From the next step on.
@@ -79,9 +80,9 @@ class ContinuousContact {
     transitions_ = std::move(transitions), thickness_transition_ = thickness;
   }
 
-  /// Appends the touches of the last step; `position` is what it ended with.
+  /// Appends the contacts of the last step; `position` is its result.
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
-  /// The last step is another one than was computed last: there are no touches to tell of.
+  /// The state is not the one that was computed last: there are no contacts to report.
   void forget_touches() { touches_.clear(); }
 
   /// See PairSearch.
@@ -92,7 +93,7 @@ class ContinuousContact {
 
  private:
   struct PairState {
-    double thickness = 0;            ///< m, to be kept
+    double thickness = 0;            ///< m, distance to keep
     double normal_impulse = 0;       ///< kg m, of the last round
     Vec3 friction_impulse{0, 0, 0};  ///< kg m
     int touch = -1;                  ///< in touches_
@@ -103,8 +104,8 @@ class ContinuousContact {
   struct Touch {
     ContactConstraint contact;
     int obstacle = FeaturePair::cloth_itself;
-    Vec3 velocity{0, 0, 0};    ///< m/s, of the obstacle there
-    std::int64_t substep = 0;  ///< in which it pushed
+    Vec3 velocity{0, 0, 0};    ///< m/s, of the obstacle at the contact
+    std::int64_t substep = 0;  ///< in which its impulse was last above 0
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
@@ -133,7 +134,7 @@ class ContinuousContact {
   std::optional<std::size_t> blocking_pair() const;
   Pinch pinch(const ClothSystem& system) const;
   int count_touched() const;
-  /// m: what is left of a way that counts as none.
+  /// m: a remaining displacement below this counts as none.
   double arrived_length() const { return 1e-3 * thickness_; }
 
   struct Begin {
@@ -164,12 +165,12 @@ class ContinuousContact {
   WorkerTeam* team_ = nullptr;
   std::function<bool()> stop_test_;
   double mean_edge_ = 0;       ///< m, of the cloth at its start
-  bool is_staggered_ = false;  ///< obstacles at rest: see constraint_of()
+  bool is_staggered_ = false;  ///< see stagger.h
   ThicknessTransition thickness_transition_;
-  double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; as the scene has them
+  double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; of the scene
   double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step
   double gravity_ = 0;                                                       ///< m/s^2
-  double longest_path_ = 0;  ///< m, that one search for pairs serves
+  double longest_path_ = 0;  ///< m, displacement that one search for pairs covers
 
   std::vector<Pose> starts_;  ///< of the next step
 
@@ -183,31 +184,32 @@ class ContinuousContact {
   // of the substep in progress
   std::vector<PoseInterpolation> paths_;
   std::vector<Pose> poses_, next_poses_, end_poses_;
-  double part_ = 0;                ///< of the obstacles' way that is behind them
-  Vec3Field free_position_;        ///< m, wished, before contact in this round
-  Vec3Field target_position_;      ///< m, wished with contact
-  Vec3Field position_;             ///< m, reached
+  double part_ = 0;                ///< of the obstacles' paths that they have completed
+  Vec3Field free_position_;        ///< m, target without contact in this round
+  Vec3Field target_position_;      ///< m, target with contact
+  Vec3Field position_;             ///< m, reached so far
   Vec3Field integrated_position_;  ///< m, where the integrator put the particles
   std::vector<double> fraction_;
-  std::vector<double> radius_scale_;  ///< of each particle's way, more each time that it was stopped by it
-  SweptBounds swept_;                 ///< where the particles may go until pairs are found anew
+  std::vector<double>
+      radius_scale_;   ///< of each capsule, larger each time that the capsule stopped its particle
+  SweptBounds swept_;  ///< particles stay in these until the next search for pairs
   std::vector<FeaturePair> pairs_;
   std::vector<PairState> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
-  std::optional<std::size_t> blocking_pair_;  ///< that stopped an obstacle in this round
-  bool reached_bounds_ = false;               ///< a particle was stopped by its way
-  bool is_separated_ = false;                 ///< the separations are of where all is now
-  bool was_rebased_ = false;                  ///< contacts of earlier rounds are part of what is wished
+  std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round
+  bool reached_bounds_ = false;               ///< a capsule stopped its particle in this round
+  bool is_separated_ = false;                 ///< the separations are those of the present positions
+  bool was_rebased_ = false;                  ///< free_position_ contains contacts of earlier rounds
 
-  // of the velocities' answer
-  Vec3Field motion_;                         ///< m/s, mean of the step, without what put too near pairs apart
-  Vec3Field free_velocity_;                  ///< m/s, before the answer
-  std::vector<double> bounce_bound_;         ///< m/s, of each constraint, with restitution
-  std::vector<double> work_;                 ///< J, of each particle
-  std::vector<std::uint8_t> bounced_;        ///< of each particle
+  // of the velocity solve
+  Vec3Field motion_;                   ///< m/s, mean of the step, without the recovery of too near pairs
+  Vec3Field free_velocity_;            ///< m/s, before the velocity solve
+  std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
+  std::vector<double> work_;           ///< J, of each particle
+  std::vector<std::uint8_t> bounced_;  ///< of each particle
   std::vector<double> deferred_of_bounced_;  ///< J, of each particle
 };
 

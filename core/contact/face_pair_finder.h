@@ -1,5 +1,5 @@
-// Which features of a face of the cloth and of a face that it must not pass can meet: those that neither
-// their boxes nor the normals of the two faces part.
+// Pairs of features (vertex-face, edge-edge) of two faces that can meet: those that are not separated by
+// their bounding boxes or by the normals of the two faces.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace cloth {
 
-/// Regions of particles, and of the vertices of an obstacle's mesh or of the cloth, all as the obstacle sees
-/// them. Each feature is met by the triangle that answers for it, so that no pair comes twice.
+/// Regions of particles, and of the vertices of an obstacle's mesh or of the cloth, all in the obstacle's
+/// coordinates. Each feature is taken from its representative triangle, so that no pair is found twice.
 template <class NearRegion, class FarRegion>
 class FacePairFinder {
  public:
@@ -25,7 +25,7 @@ class FacePairFinder {
         far_vertices_(far_vertices),
         far_faces_(far_faces) {}
 
-  /// Appends the pairs of `face` and `foreign`; soonest where a face comes several times in a row.
+  /// Appends the pairs of `face` and `foreign`; fastest where consecutive calls have the same `face`.
   void meet(int face, int foreign, std::vector<FeaturePair>& pairs) {
     if (face != face_) take(face);
     const Slab& far = far_faces_[at(foreign)];

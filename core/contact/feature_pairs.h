@@ -1,5 +1,5 @@
-// A feature of the cloth (vertex, edge, face) and one of what it must not pass, and the plane that parts
-// them.
+// Narrow phase: a pair of a cloth feature (vertex, edge, face) and a feature of an obstacle or of the cloth
+// itself, and the plane that separates them.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace cloth {
 
-/// The cloth's feature is named first. Spheres and planes are met whole by faces and vertices; a box by
-/// vertices as a solid, by edges with its edges and by faces with its corners; a mesh and the cloth itself by
-/// their features.
+/// The cloth's feature is named first. Spheres pair with faces and planes with vertices, each as a whole; a
+/// box pairs with vertices as a solid, with edges by its edges and with faces by its corners; a mesh and the
+/// cloth itself by their features.
 enum class PairKind : std::uint8_t {
   vertex_plane,
   vertex_box,
@@ -33,7 +33,7 @@ struct FeaturePair {
   auto operator<=>(const FeaturePair&) const = default;
 };
 
-/// Of the near feature, then of a far one of the cloth.
+/// Of the near feature, then of a far feature of the cloth itself.
 struct PairParticles {
   int near_count = 0, count = 0;
   std::array<int, 4> particle{};
@@ -41,9 +41,9 @@ struct PairParticles {
 
 PairParticles particles_of(const FeaturePair& pair, const Surface& cloth);
 
-/// How two convex features lie to each other. Every point of the near feature is at least at `near_level`
-/// along the normal, every point of the far one at most at `far_level`: where near_level > far_level any
-/// plane between parts them, however exact the closest points are.
+/// The relative position of two convex features. Along the normal every point of the near feature is at
+/// `near_level` or above and every point of the far one at `far_level` or below: where near_level > far_level
+/// any plane between separates them, even if the closest points are inexact.
 struct Separation {
   int near_count = 0,
       count = 0;  ///< particles: those of the near feature, then those of a far one of the cloth
@@ -54,15 +54,15 @@ struct Separation {
   Vec3 far_point{0, 0, 0};  ///< m, the closest one of an obstacle
   double distance = 0;      ///< m, between the closest points
   double near_level = 0, far_level = 0;  ///< m along the normal
-  /// No neighbouring feature is closer, as far as this side can say: the pair holds the thickness, others
-  /// only bound the motion.
+  /// No neighbouring feature is closer, as far as this side can tell: the pair becomes a contact constraint.
+  /// Others only bound the motion.
   bool nearest = false;
 
   double gap() const { return near_level - far_level; }
 };
 
-/// Positions in m; `poses` of the bodies, in their order. Whether a pair is the nearest is only looked into
-/// up to the distance `within`, in m.
+/// Positions in m; `poses` of the bodies, in their order. `nearest` is only determined up to the distance
+/// `within`, in m.
 Separation separate(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within);
 

@@ -1,4 +1,4 @@
-// Which particles contacts tie together, directly or through others.
+// Groups of particles that are connected by contacts, directly or through other particles (union-find).
 #pragma once
 
 #include <numeric>
@@ -12,7 +12,7 @@ namespace cloth {
 
 class Islands {
  public:
-  /// Particles that cannot move tie nothing together.
+  /// Particles that cannot move do not connect.
   Islands(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass)
       : parent_(inverse_mass.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
@@ -24,7 +24,7 @@ class Islands {
     }
   }
 
-  /// The particle that stands for the island of `i`.
+  /// The particle that represents the island of `i`.
   int of(int i) {
     while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
     return i;

@@ -107,7 +107,7 @@ class PairSearch::Step {
   void meet_itself() {
     std::vector<Capsule>& near = search_.seen_capsules_;
     near.clear();
-    for (const Capsule& way : swept_.particles) near.push_back(way.grown(0.5 * swept_.own_reach));
+    for (const Capsule& capsule : swept_.particles) near.push_back(capsule.grown(0.5 * swept_.own_reach));
     std::vector<Slab>& faces = search_.own_faces_;
     faces.resize(cloth_.triangles.size());
     for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -146,32 +146,32 @@ class PairSearch::Step {
 
   void meet_sphere(const ObstacleBody& body, const PoseInterpolation& path) {
     const double radius = path.largest_stretch() * body.radius;
-    const Bounds way = swept_box(path, body.pivot, body.center, reach_ + radius);
-    if (!overlap(whole_, way)) return;
+    const Bounds box_of_path = swept_box(path, body.pivot, body.center, reach_ + radius);
+    if (!overlap(whole_, box_of_path)) return;
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f)
-      if (overlap(box_of_face(f), way)) add(PairKind::face_sphere, f, 0);
+      if (overlap(box_of_face(f), box_of_path)) add(PairKind::face_sphere, f, 0);
   }
 
   void meet_box(const ObstacleBody& body, const PoseInterpolation& path) {
-    Bounds way;
+    Bounds box_of_path;
     std::array<Bounds, 8> corner;
     for (std::size_t k = 0; k < 8; ++k) {
       corner[k] = swept_box(path, body.pivot, body.vertices[k], reach_);
-      way.add(corner[k]);
+      box_of_path.add(corner[k]);
     }
-    if (!overlap(whole_, way)) return;
+    if (!overlap(whole_, box_of_path)) return;
     for (std::size_t i = 0; i < particles_.size(); ++i)
-      if (overlap(particles_[i], way)) add(PairKind::vertex_box, static_cast<int>(i), 0);
+      if (overlap(particles_[i], box_of_path)) add(PairKind::vertex_box, static_cast<int>(i), 0);
     for (int e = 0; e < static_cast<int>(cloth_.edges.size()); ++e) {
       const Bounds box = box_of_edge(e);
-      if (!overlap(box, way)) continue;
+      if (!overlap(box, box_of_path)) continue;
       for (std::size_t k = 0; k < 12; ++k)
         if (overlap(box, bounds_of(corner[at(box_edges[k][0])], corner[at(box_edges[k][1])])))
           add(PairKind::edge_edge, e, static_cast<int>(k));
     }
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f) {
       const Bounds box = box_of_face(f);
-      if (!overlap(box, way)) continue;
+      if (!overlap(box, box_of_path)) continue;
       for (std::size_t k = 0; k < 8; ++k)
         if (overlap(box, corner[k])) add(PairKind::face_vertex, f, static_cast<int>(k));
     }
@@ -184,9 +184,9 @@ class PairSearch::Step {
       std::vector<Capsule>& near = search_.seen_capsules_;
       near.clear();
       const Pose& pose = path.from();
-      for (const Capsule& way : swept_.particles)
-        near.push_back(
-            {pose.back(way.from), pose.back(way.to), (way.radius + reach_) / path.least_stretch()});
+      for (const Capsule& capsule : swept_.particles)
+        near.push_back({pose.back(capsule.from), pose.back(capsule.to),
+                        (capsule.radius + reach_) / path.least_stretch()});
       meet_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     } else {
       std::vector<Bounds>& near = search_.seen_;
@@ -302,7 +302,7 @@ void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolat
                       std::vector<FeaturePair>& pairs) {
   pairs.clear();
   particles_.clear();
-  for (const Capsule& way : swept.particles) particles_.push_back(box_of(way));
+  for (const Capsule& capsule : swept.particles) particles_.push_back(box_of(capsule));
   if (needs_trees_) look_in_trees(swept, paths);
   Step step(*this, swept, pairs);
   if (with_itself_) step.meet_itself();

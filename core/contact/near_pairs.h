@@ -1,6 +1,6 @@
-// Which features can meet within a step: those that neither boxes nor the normals of their triangles part. A
-// particle stays in its capsule until the pairs are found anew, and the box of an obstacle's feature holds
-// its whole way, so that no pair is missed at any speed.
+// Broad phase: the pairs of features that can meet within a round. Particles are bounded by capsules, which
+// they do not leave until the next search, and obstacles' features by boxes around their whole paths, so that
+// no pair is missed at any speed.
 #pragma once
 
 #include "contact/feature_pairs.h"
@@ -11,30 +11,30 @@ namespace cloth {
 
 class WorkerTeam;
 
-/// Where the cloth's particles may be, and how near things count.
+/// Swept bounds of the particles, and the distances up to which pairs count.
 struct SweptBounds {
   std::vector<Capsule> particles{};
   double reach = 0;      ///< m, between cloth and obstacles
   double own_reach = 0;  ///< m, of the cloth from itself
 };
 
-/// Keeps hierarchies where a scene needs them: of meshes from the start, of the cloth from the first search
-/// on.
+/// Builds hierarchies of bounding boxes where a scene needs them: of meshes at construction, of the cloth in
+/// the first search.
 class PairSearch {
  public:
-  /// Both stay the caller's and must outlive this. What hierarchies found serves again while no particle
-  /// leaves its box by more than `skin`, in m.
+  /// `cloth` and `bodies` must outlive this. Overlaps of the hierarchies are reused while no particle leaves
+  /// its box by more than `skin`, in m.
   PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin);
 
-  /// The pairs are the same for any team; none: one thread.
+  /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
 
-  /// Every pair comes once; pairs and their order follow from the arguments alone. Features of the cloth that
-  /// share a particle are no pair.
+  /// Every pair once; pairs and their order depend on the arguments only. Features of the cloth that share a
+  /// particle are no pair.
   void find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
             std::vector<FeaturePair>& pairs);
 
-  /// What was kept was found for other reaches.
+  /// Drops the cached overlaps: the reaches have changed.
   void forget() { cached_.clear(); }
 
   /// Levels of a body's hierarchy, or with `FeaturePair::cloth_itself` of the cloth's; 0 where there is none.

@@ -1,4 +1,4 @@
-// How far particles and obstacles may go in a round: no feature leaves its side of the plane of any pair.
+// How far particles and obstacles may move in a round: no feature leaves its side of the plane of any pair.
 #include <algorithm>
 #include <cmath>
 
@@ -10,38 +10,39 @@ namespace {
 
 /// Features never come closer than this part of the thickness.
 constexpr double least_part = 1e-3;
-/// Of a gap a round may use up this part: enough that few rounds are needed, and something is always left.
+/// The part of a gap that a round may use up: few rounds suffice, and a gap always remains.
 constexpr double used_part = 0.5;
-/// A way that stopped its particle is so much wider the next time, up to the most.
+/// Factor by which the radius of a capsule grows each time that it stopped its particle, and the factor's
+/// bound.
 constexpr double more_room = 2, most_room = 8;
-constexpr double least_advance = 1e-9;  ///< of a step; less is none
-/// What must be left of a gap after a round.
+constexpr double least_advance = 1e-9;  ///< of a step; less counts as none
+/// The gap that must remain after a round.
 double kept_gap(double gap, double thickness) {
   const double least = least_part * thickness;
   if (gap <= least) return gap;
   return std::max(least, (1 - used_part) * std::min(gap, thickness));
 }
 
-/// The near side of these is told from the far one however deep a particle is.
+/// Solids: inside and outside are distinguished at any depth.
 bool meets_solid(const FeaturePair& pair) {
   return pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box ||
          pair.kind == PairKind::face_sphere;
 }
 
-/// How much of the straight way from `start`, which is inside, to `end` stays in a cylinder whose rims lie on
-/// the capsule: about its axis, as long as it is narrower.
+/// The part of the straight line from `start`, which is inside, to `end` that stays in a cylinder inscribed
+/// in the capsule, about the same axis.
 double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
   const double room = capsule.radius / std::sqrt(2.0);
   const Vec3 line = capsule.to - capsule.from;
   const double length = line.norm();
   const Vec3 axis = length > 0 ? Vec3(line / length) : Vec3::UnitX();
   const auto across = [&](const Vec3& x) -> Vec3 { return x - axis.dot(x) * axis; };
-  const Vec3 here = start - capsule.from, way = end - start;
+  const Vec3 here = start - capsule.from, step = end - start;
   double part = 1;
-  const double along = axis.dot(way), from = axis.dot(here);
+  const double along = axis.dot(step), from = axis.dot(here);
   const double ahead = along > 0 ? length + room - from : room + from;
   if (std::abs(along) > ahead) part = std::max(ahead, 0.0) / std::abs(along);
-  const Vec3 aside = across(here), drift = across(way);
+  const Vec3 aside = across(here), drift = across(step);
   if ((aside + drift).squaredNorm() <= room * room) return part;
   // |aside + t drift| = room
   const double a = drift.squaredNorm(), b = aside.dot(drift), c = aside.squaredNorm() - room * room;
@@ -51,35 +52,35 @@ double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
 
 }  // namespace
 
-/// How much of its way each particle can go without leaving its side of any plane.
+/// Bounds the fraction of its displacement that each particle can take without leaving its side of any plane.
 void ContinuousContact::bound_by_planes() {
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Separation& s = separations_[k];
     const double room = s.gap() - kept_gap(s.gap(), memory_[k].thickness);
-    double near_way = 0, far_way = 0;  // m, towards each other
+    double near_step = 0, far_step = 0;  // m, towards each other
     std::array<double, 4> ahead{};
     for (int j = 0; j < s.count; ++j) {
       const auto i = at(s.particle[at(j)]);
       ahead[at(j)] = s.normal.dot(target_position_[i] - position_[i]);
       if (j < s.near_count)
-        near_way = std::max(near_way, -ahead[at(j)]);
+        near_step = std::max(near_step, -ahead[at(j)]);
       else
-        far_way = std::max(far_way, ahead[at(j)]);
+        far_step = std::max(far_step, ahead[at(j)]);
     }
-    if (s.gap() > 0 && near_way + far_way <= room) continue;
+    if (s.gap() > 0 && near_step + far_step <= room) continue;
     const double near_room =
-        near_way + far_way > 0 ? std::max(room, 0.0) * near_way / (near_way + far_way) : 0;
+        near_step + far_step > 0 ? std::max(room, 0.0) * near_step / (near_step + far_step) : 0;
     for (int j = 0; j < s.count; ++j) {
       const auto i = at(s.particle[at(j)]);
       const bool is_near = j < s.near_count;
       const double level = s.normal.dot(position_[i]);
       const double slack =
           is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
-      const double way = is_near ? -ahead[at(j)] : ahead[at(j)];
-      if (s.gap() <= 0 && (way > 0 || !meets_solid(pairs_[k])))
-        fraction_[i] = 0;  // an edit has put it there: of a solid the way out is open
-      else if (way > slack)
-        fraction_[i] = std::min(fraction_[i], std::max(slack, 0.0) / way);
+      const double step = is_near ? -ahead[at(j)] : ahead[at(j)];
+      if (s.gap() <= 0 && (step > 0 || !meets_solid(pairs_[k])))
+        fraction_[i] = 0;  // inside because of an edit: may only move out of a solid
+      else if (step > slack)
+        fraction_[i] = std::min(fraction_[i], std::max(slack, 0.0) / step);
     }
   }
 }
@@ -94,7 +95,7 @@ void ContinuousContact::bound_by_swept_volumes() {
   }
 }
 
-/// Moves the particles; returns what is left of the longest way, in m.
+/// Moves the particles; returns the longest remaining displacement, in m.
 double ContinuousContact::move_cloth() {
   fraction_.assign(position_.size(), 1.0);
   reached_bounds_ = false;
@@ -106,14 +107,14 @@ double ContinuousContact::move_cloth() {
       position_.set(i, target_position_[i]);
       continue;
     }
-    const Vec3 way = target_position_[i] - position_[i];
-    left = std::max(left, (1 - fraction_[i]) * way.norm());
-    position_.add(i, fraction_[i] * way);
+    const Vec3 step = target_position_[i] - position_[i];
+    left = std::max(left, (1 - fraction_[i]) * step.norm());
+    position_.add(i, fraction_[i] * step);
   }
   return left;
 }
 
-/// A plane that an obstacle takes along; the turn of a sphere takes none.
+/// A plane moved along with its obstacle; the rotation of a sphere does not move planes.
 ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plane& plane,
                                                         const std::vector<Pose>& to) const {
   const ObstacleBody& body = bodies_[at(obstacle)];
@@ -127,8 +128,9 @@ ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plan
   return {end.at(from.back(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
 }
 
-/// A part of the step in which a turning obstacle's points leave the chords of their ways by less than a
-/// quarter of the smallest gap: the second derivative of the way is at most angle^2 radius + 2 angle shift.
+/// The part of the step in which the points of a rotating obstacle leave the chords of their paths by less
+/// than a quarter of the smallest gap: the second derivative of a path is at most angle^2 radius + 2 angle
+/// shift.
 double ContinuousContact::turn_limit(std::size_t obstacle) const {
   const PoseInterpolation& path = paths_[obstacle];
   if (!(path.angle() > 0) || bodies_[obstacle].shape == Shape::sphere) return 1;
@@ -153,8 +155,8 @@ double ContinuousContact::reached_gap(const Separation& s) const {
   return level - s.far_level;
 }
 
-/// How far the feature of an obstacle that is not a plane reaches along the normal, in m. Where a shape grows
-/// each of its points goes straight, so that between two poses it reaches no further than in one of them.
+/// The extent of an obstacle's feature along the normal, in m, except for planes. The points of a growing
+/// shape move straight, so that between two poses its extent is at most that at one of them.
 double ContinuousContact::reach_along(const Vec3& normal, const FeaturePair& pair, const Pose& pose) const {
   const ObstacleBody& body = bodies_[at(pair.obstacle)];
   const auto vertex = [&](int i) { return normal.dot(pose.at(body.vertices[at(i)])); };
@@ -171,8 +173,8 @@ double ContinuousContact::reach_along(const Vec3& normal, const FeaturePair& pai
   return furthest;
 }
 
-/// By what factor the advance to `next_poses_` must be shorter for the cloth to stay beyond every carried
-/// plane.
+/// The factor by which the advance to `next_poses_` must be shortened for the cloth to stay beyond every
+/// moved plane.
 double ContinuousContact::shrink_to_planes() {
   constexpr double caution = 0.9;
   double shrink = 1;
@@ -181,14 +183,14 @@ double ContinuousContact::shrink_to_planes() {
     if (pair.obstacle == FeaturePair::cloth_itself || paths_[at(pair.obstacle)].rests()) continue;
     const Separation& s = separations_[k];
     const Vec3 on_plane = s.far_point + (s.far_level - s.normal.dot(s.far_point)) * s.normal;
-    const Plane carried = moved_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
-    const double grown = paths_[at(pair.obstacle)].grows()
-                             ? reach_along(carried.normal, pair, next_poses_[at(pair.obstacle)]) -
-                                   carried.normal.dot(carried.point)
-                             : 0;  // beyond the plane
+    const Plane moved = moved_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
+    const double grown =
+        paths_[at(pair.obstacle)].grows()
+            ? reach_along(moved.normal, pair, next_poses_[at(pair.obstacle)]) - moved.normal.dot(moved.point)
+            : 0;  // beyond the plane
     double gap = infinity;
     for (int j = 0; j < s.near_count; ++j)
-      gap = std::min(gap, carried.normal.dot(position_[at(s.particle[at(j)])] - carried.point) - grown);
+      gap = std::min(gap, moved.normal.dot(position_[at(s.particle[at(j)])] - moved.point) - grown);
     const double now = reached_gap(s), kept = kept_gap(now, memory_[k].thickness);
     if (gap >= kept) continue;
     const double factor = caution * std::max(now - kept, 0.0) / (now - gap);
@@ -197,8 +199,7 @@ double ContinuousContact::shrink_to_planes() {
   return shrink;
 }
 
-/// Moves the obstacles as far as the cloth, where it is now, lets them; returns how far, as a part of the
-/// step.
+/// Moves the obstacles as far as the present cloth allows; returns how far, as a part of the step.
 double ContinuousContact::advance_obstacles() {
   double advance = 1 - part_;
   blocking_pair_.reset();
@@ -218,7 +219,7 @@ double ContinuousContact::advance_obstacles() {
   return 0;
 }
 
-/// The pair that an obstacle that moves could not pass: the nearest, unless the planes have said which.
+/// The pair that stopped a moving obstacle: that of the last advance, else the nearest.
 std::optional<std::size_t> ContinuousContact::blocking_pair() const {
   if (blocking_pair_) return blocking_pair_;
   std::optional<std::size_t> nearest;
@@ -229,8 +230,8 @@ std::optional<std::size_t> ContinuousContact::blocking_pair() const {
   return nearest;
 }
 
-/// Where an obstacle could not go on, at a pinned particle if the pair has one; else by what is on the other
-/// side of the cloth there.
+/// Describes where an obstacle could not move on, and what holds the cloth: a pinned particle of the pair if
+/// there is one, else the contact on the other side of the cloth.
 Pinch ContinuousContact::pinch(const ClothSystem& system) const {
   const std::optional<std::size_t> blocking = blocking_pair();
   if (!blocking) return {};

@@ -1,7 +1,6 @@
-// A triangle whose vertices may be anywhere in some region, and how it lies along an axis: what tells quickly
-// that two triangles cannot meet. An axis along which one lies wholly above the other parts them (separating
-// axes; Gottschalk, Lin and Manocha, "OBBTree", 1996); boxes try the axes of space, slabs the normals of the
-// triangles.
+// Bounds of triangles whose vertices may be anywhere in a region each: fast tests that two triangles cannot
+// meet. They use separating axes (Gottschalk et al. 1996): bounding boxes test the coordinate axes, slabs the
+// triangles' normals.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace cloth {
 
-/// All within `radius` of a segment: where a particle may be in a round.
+/// All points within `radius` of a segment: bounds a particle in a round.
 struct Capsule {
   Vec3 from{0, 0, 0}, to{0, 0, 0};  ///< m
   double radius = 0;                ///< m
@@ -20,7 +19,7 @@ struct Capsule {
 };
 
 struct Interval {
-  double low = Bounds::infinity, high = -Bounds::infinity;  ///< without points it is empty
+  double low = Bounds::infinity, high = -Bounds::infinity;  ///< empty by default
 
   void add(const Interval& other) {
     low = std::min(low, other.low);
@@ -49,7 +48,7 @@ inline const Vec3& middle_of(const Vec3& point) {
   return point;
 }
 
-/// Where all of a region lies along an axis of length one.
+/// The extent of a region along a unit axis.
 inline Interval along(const Vec3& axis, const Bounds& box) {
   const double middle = axis.dot(middle_of(box));
   const double half = 0.5 * axis.cwiseAbs().dot(box.upper - box.lower);
@@ -66,10 +65,10 @@ inline Interval along(const Vec3& axis, const Vec3& point) {
 
 struct Slab {
   Bounds box;
-  Vec3 normal{0, 0, 0};  ///< of length one, of the middles of the vertices' regions; zero without area
-  Interval extent;       ///< of the whole triangle along it
+  Vec3 normal{0, 0, 0};  ///< unit normal of the triangle of the regions' centres; zero without area
+  Interval extent;       ///< of the whole triangle along the normal
 
-  /// 1 for what lies wholly above the triangle, -1 below, 0 where that cannot be told.
+  /// 1 where `other` lies wholly above the triangle, -1 below, 0 otherwise.
   int side_of(const Interval& other) const {
     return (other.low > extent.high ? 1 : 0) - (other.high < extent.low ? 1 : 0);
   }
@@ -87,7 +86,7 @@ Slab slab_of(const Region& a, const Region& b, const Region& c) {
   return slab;
 }
 
-/// Of a triangle's three vertices.
+/// side_of() of a triangle's three vertices.
 using Sides = std::array<int, 3>;
 
 inline bool all_beyond(const Sides& sides) {

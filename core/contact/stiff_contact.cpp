@@ -14,12 +14,12 @@ namespace {
 constexpr int most_iterations = 12;
 constexpr int most_trials = 6;         // of a length
 constexpr double accepted_work = 0.5;  // of the residual along a step that is short enough
-constexpr double least_work = 1e-3;    // of the first iteration's work: less is not worth another one
+constexpr double least_work = 1e-3;    // of the first iteration's work: stops below
 constexpr double on_surface = 1e-9;    // m, above rounding
 
-/// Where a particle that came from `from` belongs if it is inside. Of a box not the nearest face, which in a
-/// long step may be beyond an edge or on the far side, but the one that the straight way there has gone
-/// through.
+/// The surface point for a particle that moved inside from `from`. Of a box it is not on the nearest face,
+/// which after a long step may be beyond an edge or on the far side, but on the face that the straight path
+/// went through.
 std::optional<SurfacePoint> entered(const Obstacle& obstacle, const Vec3& from, const Vec3& position) {
   auto inside = penetration(obstacle, position);
   if (!inside || obstacle.shape != Shape::box) return inside;
@@ -65,8 +65,8 @@ std::optional<Vec3> beside(const Obstacle& obstacle, const Vec3& normal, const V
 
 }  // namespace
 
-/// Puts particles out of the obstacles, and those that were held there back on the surface along which they
-/// have moved; notes which are on one.
+/// Moves particles out of the obstacles, and the active ones back to the surface along which they have moved;
+/// lists the particles on a surface.
 void StiffContact::hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position) {
   for (const HeldParticle& held : active_)
     if (const auto back = beside(obstacles[held.obstacle], held.normal, position[held.particle]))
@@ -85,7 +85,7 @@ void StiffContact::hold(const ClothSystem& system, std::span<const Obstacle> obs
   }
 }
 
-/// N; and of what is held the part along its normals as its press.
+/// N; its normal component becomes the normal load of the particles in contact.
 void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, double weight, double time,
                                  const Vec3Field& position) {
   forces.update(position, time);
@@ -99,7 +99,7 @@ void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, 
   for (HeldParticle& held : held_) held.normal_load = held.normal.dot(residual_[held.particle]);
 }
 
-/// What pulls away from its surface.
+/// Releases the particles that are pulled away from their surface.
 void StiffContact::release() {
   std::erase_if(held_, [](const HeldParticle& held) { return !(held.normal_load > 0); });
   active_ = held_;
@@ -110,7 +110,7 @@ void StiffContact::keep_along_surfaces(Vec3Field& field) const {
     field.add(held.particle, -held.normal.dot(field[held.particle]) * held.normal);
 }
 
-/// Held normals get a stiffness far above all else, so that one matrix serves whatever is held.
+/// Constrained normal directions get a stiffness far above all others, so that the matrix keeps its pattern.
 bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                                   const Vec3Field& position) {
   constexpr double holding = 1e6;

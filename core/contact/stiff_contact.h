@@ -1,15 +1,16 @@
-// Particles that are put out of obstacles after a step that is long beside the springs' oscillations. There
-// it is not enough to move each of them to the nearest surface: its springs would be stretched by all that
-// they relaxed through the obstacle within the step, and energy would be made that no force has given.
+// Contact particle by particle after steps that are long compared with the springs' oscillations. Moving each
+// particle alone to the nearest surface would stretch its springs, which have relaxed through the obstacle
+// within the step, and so create energy. Instead contact becomes a constraint of the step's own equation.
 //
 // A step of an implicit method ends at the minimum x* of |x - x~|^2_M / (2 w^2) + V(x), w the weight of the
-// force in it. With x outside the obstacles, and g the difference of the gradients of that at x and x*,
+// force in the step. With x outside the obstacles, and g the difference of that function's gradients at x and
+// x*,
 //
 //     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) = sum of l n,    l >= 0, only where x is on a surface
 //
-// so that the cloth beside a contact gives way within the step, and l w is the impulse of the contact.
-// Newton's method over the particles that are held, where the normal component of g says which (an active
-// set; Baraff and Witkin 1998 hold particles so). Friction acts on velocities afterwards.
+// so that the cloth around a contact deforms within the step, and l w is the normal impulse. Solved by
+// Newton's method with an active set: particles are constrained in the normal direction (as in Baraff and
+// Witkin 1998) while the normal component of g is positive. Friction acts on velocities afterwards.
 #pragma once
 
 #include <span>
@@ -23,8 +24,8 @@ namespace cloth {
 
 class StiffContact {
  public:
-  /// Moves `position`, as the step has left it, out of the obstacles. `weight` in s. Returns where it is
-  /// held, in order of the particles.
+  /// Moves `position`, the result of the step, out of the obstacles. `weight` in s. Returns the particles in
+  /// contact, in their order.
   std::vector<HeldParticle> solve(const ClothSystem& system, ForceModel& forces,
                                   std::span<const Obstacle> obstacles, double weight, double time,
                                   const Vec3Field& begin, Vec3Field& position);
@@ -40,7 +41,7 @@ class StiffContact {
 
   Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
   Vec3Field residual_, direction_, start_, along_;
-  std::vector<HeldParticle> held_, active_;  ///< on a surface; pressed against it
+  std::vector<HeldParticle> held_, active_;  ///< on a surface; those with a normal force > 0
   Linearisation linearisation_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;

@@ -1,5 +1,5 @@
-// The connections of a triangle surface as contact needs them: edges once each, what lies beside them, and
-// which triangle answers for a feature that several share.
+// Connectivity of a triangle surface for contact: unique edges, their adjacent vertices, and the
+// representative triangle of every vertex and edge.
 #pragma once
 
 #include <array>
@@ -10,10 +10,9 @@
 
 namespace cloth {
 
-/// Of each triangle, bits 0 to 2: it answers for its vertex k; bits 3 to 5: for its edge from vertex k to k
-/// + 1. Every vertex and every edge has exactly one such triangle ("representative triangles", Curtis,
-/// Tamstorf and Manocha, "Fast Collision Detection for Deformable Models using Representative-Triangles",
-/// 2008).
+/// Bit mask of a triangle. Bits 0 to 2: it represents its vertex k; bits 3 to 5: its edge from vertex k to k
+/// + 1. Every vertex and every edge has exactly one representative triangle (Curtis et al. 2008), so that
+/// each pair of features is found once.
 using RepresentedFeatures = std::uint8_t;
 
 struct Surface {
@@ -23,9 +22,9 @@ struct Surface {
       beside_edge;                           ///< the third vertices of an edge's first two triangles, or -1
   std::vector<std::array<int, 3>> edges_of;  ///< of each triangle: from vertex k to k + 1
   std::vector<RepresentedFeatures> represented;  ///< of each triangle
-  std::vector<int> first_neighbour;              ///< of each vertex in `neighbours`, and one more
+  std::vector<int> first_neighbour;              ///< of each vertex, its offset in `neighbours`; and the end
   std::vector<int> neighbours;                   ///< vertices that share an edge with it
-  std::vector<int> triangle_of_vertex;           ///< the one that answers for it, -1 where there is none
+  std::vector<int> triangle_of_vertex;           ///< its representative, -1 where there is none
   std::vector<int> triangle_of_edge;
 
   bool represents_vertex(int triangle, int k) const {

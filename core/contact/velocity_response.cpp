@@ -1,7 +1,6 @@
-// How velocities answer the contacts of a step, and the work that this is. First all contacts stop what
-// approaches; then those with restitution give speed back, no more in any island than their contacts have
-// taken from it: Newton's law for many contacts at once, and with friction, could make energy (Stronge,
-// "Rigid body collisions with friction", 1990).
+// The velocity solve of continuous contact, and its work. First all contacts stop approaching velocities;
+// then those with restitution return speed, in any island no more energy than its contacts have taken:
+// Newton's restitution law for simultaneous contacts with friction could create energy (Stronge 1990).
 #include <algorithm>
 #include <cmath>
 
@@ -13,20 +12,20 @@
 namespace cloth {
 namespace {
 
-/// Two faces of the cloth that rest on one corner are nearly the same contact: their velocities take long.
+/// Two faces of the cloth that rest on one corner are nearly the same contact, and converge slowly.
 constexpr int velocity_sweeps = 100;
 constexpr double velocity_tolerance = 1e-7;  ///< m/s
 
-/// J, at another velocity less now.
+/// J, the change from velocity `now` to `then`.
 double kinetic_change(double mass, const Vec3& now, const Vec3& then) {
   return 0.5 * mass * (then - now).dot(then + now);
 }
 
 }  // namespace
 
-/// The mean velocity of the step. What began it nearer than its thickness was put apart, and that is no
-/// motion: as one it would leave at the missing distance over the step. There the motion is solved for anew,
-/// with the distance at which the step began as the one to keep. Returns whether there was such a pair.
+/// The mean velocity of the step. A pair that began it nearer than its thickness was separated, which must
+/// not become velocity: there the motion is solved for again, keeping the distance at the beginning of the
+/// step. Returns whether there was such a pair.
 bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begin) {
   if (motion_.size() != position_.size()) motion_ = Vec3Field(position_.size());
   for (std::size_t i = 0; i < position_.size(); ++i)
@@ -58,8 +57,8 @@ bool ContinuousContact::find_motion(const ClothSystem& system, const Begin& begi
   return true;
 }
 
-/// J, of putting apart what began too near: against the mean of the forces where the step began and where it
-/// ends, which is what the half kicks do along the motion.
+/// J, work of separating pairs that began too near: against the mean of the forces at the beginning and at
+/// the end of the step.
 double ContinuousContact::recovering_work(const Begin& begin, const VelocityCoupling& coupling) const {
   Vec3Field moved = begin.position, led = position_;
   for (std::size_t i = 0; i < position_.size(); ++i) {
@@ -70,15 +69,15 @@ double ContinuousContact::recovering_work(const Begin& begin, const VelocityCoup
                 coupling.potential(position_) - coupling.potential(led));
 }
 
-/// m/s: what contact adds to the velocity that leads through the step.
+/// m/s: contact's change of the velocity at the beginning of the step.
 Vec3 ContinuousContact::start_change_of(std::size_t i, const Begin& begin) const {
   return motion_[i] - (integrated_position_[i] - begin.position[i]) / begin.step;
 }
 
-/// m/s, of the touch's two sides, negative where they come nearer; 0 if that is no blow. What nothing held
-/// before comes as fast as the integrator lets it go in this step. What was held comes as fast as it went
-/// when the step began: what the step adds to that is load. Slower than a few times what gravity or the load
-/// adds in a step is no blow, or a cloth at rest would dance.
+/// m/s, relative normal velocity of a contact, negative where the two sides approach; 0 if that is no impact.
+/// Without contact in the last step it is that of this step's integrated motion; with contact, that at the
+/// beginning of the step, because what the step adds to it is load. Speeds below a few times what gravity or
+/// the load adds in a step are no impact, or a cloth at rest would keep moving.
 double ContinuousContact::approach_of(const Touch& touch, const Begin& begin,
                                       const VelocityCoupling& coupling) const {
   const ContactConstraint& contact = touch.contact;
@@ -92,7 +91,7 @@ double ContinuousContact::approach_of(const Touch& touch, const Begin& begin,
   return coming < -least ? coming : 0;
 }
 
-/// The touching pairs, with what their velocities must answer without restitution, and with it.
+/// The constraints of the velocity solve: the contacts of the step, with bounds without and with restitution.
 void ContinuousContact::take_touches(const Begin& begin, const VelocityCoupling& coupling) {
   constraints_.clear();
   bounce_bound_.clear();
@@ -157,7 +156,7 @@ Vec3 ContinuousContact::total_impulse(const ClothSystem& system) const {
   return impulse;
 }
 
-/// Of contacts that act on a velocity which the integrator has finished.
+/// For methods whose velocity is complete before contact acts.
 void ContinuousContact::find_work(const ClothSystem& system, const VelocityCoupling& coupling,
                                   const ClothState& state) {
   for (const ContactConstraint& contact : constraints_) {
@@ -167,11 +166,11 @@ void ContinuousContact::find_work(const ClothSystem& system, const VelocityCoupl
   }
 }
 
-/// Of contacts that act at the begin of the step, on the velocity which leads through it, and at its end,
-/// each as a half of a leapfrog's kick: impulse o at v_n, impulse c to v_n+1. Over the two halves that meet
-/// in one state this is the impulse times the mean of the velocities of the steps before and after, under
-/// which the energy of a leapfrog closes; what c took of the load's half kick l, m |l|^2/2, and the next o
-/// gives back, is lent meanwhile.
+/// For Verlet's method: contact acts at the beginning of the step and at its end, each as half a kick of the
+/// leapfrog, impulse o at v_n and impulse c to v_n+1. The two halves around one state do the work of the
+/// impulse times the mean velocity of the steps before and after, under which the energy balance of a
+/// leapfrog closes. The energy m |l|^2/2 that c takes from the load's half kick l, and the next o returns, is
+/// deferred.
 void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Begin& begin,
                                             const VelocityCoupling& coupling, const ClothState& state) {
   for (std::size_t i = 0; i < position_.size(); ++i) {
@@ -183,8 +182,8 @@ void ContinuousContact::add_half_steps_work(const ClothSystem& system, const Beg
   }
 }
 
-/// J, of a particle: what the next step will give back, which is what stopped only the load of the half step;
-/// a blow is lost. `stopped` in m/s is the velocity after the impulse.
+/// J, of a particle: the energy that the next step returns, that of the half step's load; the energy of an
+/// impact is not returned. `stopped`, in m/s, is the velocity after the impulse.
 double ContinuousContact::deferred_by_load(const ClothSystem& system, std::size_t i,
                                            const Vec3& stopped) const {
   const Vec3 impulse = stopped - free_velocity_[i];
@@ -194,9 +193,8 @@ double ContinuousContact::deferred_by_load(const ClothSystem& system, std::size_
   return 0.5 * system.mass[i] * load * load;
 }
 
-/// Restitution, as far as it gives no more than was taken. Any part of the change between two answers of the
-/// contacts is an answer too: bounds and cones of friction are convex. Speeds are those relative to the
-/// obstacles.
+/// Restitution, limited in each island to the energy that its contacts have taken, relative to the obstacles.
+/// Any combination of two solutions of the contacts is a solution too: bounds and friction cones are convex.
 void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bool follows,
                                ClothState& state) {
   bounced_.assign(position_.size(), 0);
@@ -210,14 +208,14 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
   solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, state.velocity);
 
   Islands islands(constraints_, system.inverse_mass);
-  std::vector<Vec3> carried(position_.size(), Vec3::Zero());
+  std::vector<Vec3> obstacle_velocity(position_.size(), Vec3::Zero());
   std::vector<std::uint8_t> touched(position_.size(), 0);
   for (const ContactConstraint& contact : constraints_)
     for (int k = 0; k < contact.count; ++k) {
       const auto i = at(contact.particle[at(k)]);
       if (contact.weight[at(k)] == 0 || !(system.inverse_mass[i] > 0)) continue;
       touched[i] = 1;
-      carried[i] = contact.rest;
+      obstacle_velocity[i] = contact.rest;
     }
   struct Share {
     double taken = 0, square = 0, linear = 0;  ///< J
@@ -232,9 +230,9 @@ void ContinuousContact::bounce(const ClothSystem& system, const Begin& begin, bo
     if (follows) impulse += start_change_of(i, begin);
     Share& share = shares[at(islands.of(static_cast<int>(i)))];
     if (follows) deferred_of_bounced_[i] = deferred_by_load(system, i, stopped[i]);
-    share.taken -= work_[i] - mass * impulse.dot(carried[i]) + deferred_of_bounced_[i];
+    share.taken -= work_[i] - mass * impulse.dot(obstacle_velocity[i]) + deferred_of_bounced_[i];
     share.square += 0.5 * mass * change.squaredNorm();
-    share.linear += mass * change.dot(stopped[i] - carried[i]);
+    share.linear += mass * change.dot(stopped[i] - obstacle_velocity[i]);
   }
   for (Share& share : shares)
     if (share.square > 0) share.part = part_within(share.square, share.linear, std::max(share.taken, 0.0));

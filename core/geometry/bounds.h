@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-/// Without points it is empty: lower above upper, overlapping no finite box.
+/// Empty by default: lower above upper, overlapping no finite box.
 struct Bounds {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 lower{infinity, infinity, infinity};     ///< m
@@ -34,10 +34,10 @@ Bounds bounds_of(const Points&... points) {
   return bounds;
 }
 
-/// Touching is overlapping.
+/// Boxes that touch overlap.
 inline bool overlap(const Bounds& a, const Bounds& b) {
   bool all = true;
-  for (int axis = 0; axis < 3; ++axis)  // without a branch: which axis parts them cannot be foreseen
+  for (int axis = 0; axis < 3; ++axis)  // without branches: the separating axis is unpredictable
     all = all & (a.lower[axis] <= b.upper[axis]) & (b.lower[axis] <= a.upper[axis]);
   return all;
 }

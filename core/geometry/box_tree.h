@@ -1,9 +1,9 @@
-// A hierarchy of bounding boxes: which of many boxes overlap a given one.
+// A bounding volume hierarchy: which of many boxes overlap a given one.
 //
-// Nodes have eight children, whose boxes lie side by side in single precision and are tested at once; what is
-// found there is tested exactly, so that the answer depends on the boxes alone and not on the tree. Rounding
-// keeps order, so a box in single precision overlaps whatever the exact one does. The tree is packed: all
-// nodes but those at one edge are full, and its depth is the least that eight children allow.
+// Nodes have eight children, whose boxes are stored in single precision and tested at once; hits are tested
+// again in double precision, so that the result depends on the boxes and not on the tree. Rounding is
+// monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full, and its depth
+// is minimal for eight children.
 #pragma once
 
 #include <array>
@@ -30,17 +30,17 @@ class BoxTree {
  public:
   BoxTree() = default;
 
-  /// The same boxes give the same tree. Infinite and empty ones are welcome; what is not a number is not.
+  /// The same boxes give the same tree. Boxes may be infinite or empty, but not NaN.
   explicit BoxTree(std::span<const Bounds> boxes);
 
   int size() const { return static_cast<int>(boxes_.size()); }
 
-  /// The boxes have moved: as many as before, in their order. What is asked stays exact however far they did;
-  /// it takes longer where boxes that were neighbours have parted.
+  /// Replaces the boxes by as many others, in their order. Queries stay exact; they become slower where boxes
+  /// that were neighbours have moved apart.
   void refit(std::span<const Bounds> boxes);
 
-  /// callback(index) for every box that overlaps or touches `query`, in an order that the tree decides.
-  /// Allocates nothing.
+  /// Calls callback(index) for every box that overlaps or touches `query`, in the order of the tree. Does not
+  /// allocate.
   template <class Callback>
   void visit(const Bounds& query, Callback&& callback) const;
 
@@ -64,8 +64,8 @@ class BoxTree {
 
   /// The boxes of the nodes `level` below the root, for drawing; those of level depth() are the given ones.
   std::vector<Bounds> boxes_at(int level) const;
-  /// Appends the same and, of branches that end above `level`, their ends, so that everything is in a box.
-  /// Rounded to single precision; allocates in `boxes` alone.
+  /// Appends the same boxes and the leaves of branches that end above `level`, so that every box is covered.
+  /// Rounded to single precision.
   void append_rounded_boxes(int level, std::vector<Bounds>& boxes) const;
 
  private:

@@ -1,5 +1,4 @@
-// Meshes of our own making that scenes name like files: made when they are first asked for, the same every
-// time.
+// Meshes that the program generates and that scenes refer to like files.
 #pragma once
 
 #include <string>

@@ -1,12 +1,10 @@
-// Closest points of points, segments, triangles and boxes, with the weights that say where on a feature they
-// lie: what contact is made of.
+// Closest points of points, segments, triangles and boxes, with their barycentric weights.
 //
-// Any finite input is taken: segments without length, parallel segments, triangles without area. Weights lie
-// in [0, 1] and sum to 1 up to rounding; where several points are equally close it is always the same one
-// that is returned. What is returned lies on the features, so that a distance is never too small; it is too
-// large by rounding alone, or by up to 2e-8 of the length of triangles whose height is less than 1e-4 of it.
-// Separations are computed from differences of the input, so that features far from the origin lose no more
-// than their coordinates have lost.
+// All finite input is valid: segments without length, parallel segments, triangles without area. Weights lie
+// in [0, 1] and sum to 1 up to rounding; among equally close points the choice is deterministic. The returned
+// points lie on the features, so that a distance is never too small; it is too large by rounding only, or by
+// up to 2e-8 of the length of triangles whose height is less than 1e-4 of their length. Separations are
+// computed from differences of the input, so that accuracy does not depend on the distance from the origin.
 #pragma once
 
 #include <array>
@@ -54,7 +52,7 @@ inline PointTriangle closest_on_triangle(const Vec3& point, const Vec3& a, const
 /// points is an end.
 inline SegmentSegment closest_of_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// Inside, the surface point straight along the axis of least depth (of equal ones the first).
+/// For points inside: the surface point along the axis of least depth (of equal ones the first).
 PointBox closest_on_box(const Vec3& point, const OrientedBox& box);
 
 /// Corner k lies on the upper side along axis i where bit i of k is set.
@@ -68,12 +66,12 @@ inline constexpr std::array<std::array<int, 2>, 12> box_edges{
 
 namespace closest_points {
 
-/// Into [0, 1]; what is not a number becomes 0.
+/// Clamps to [0, 1]; NaN becomes 0.
 inline double clamped(double t) {
   return t > 0 ? (t < 1 ? t : 1) : 0;
 }
 
-/// Squared sine of an angle below which a cross product is not trusted to tell inside from outside.
+/// Squared sine of an angle below which the cross product is too inexact to classify inside and outside.
 inline constexpr double slender = 1e-8;
 
 /// `apart` and `along` are taken from the segment's first end, to the point and to the other end.
@@ -85,11 +83,11 @@ inline PointSegment from_first_end(const Vec3& apart, const Vec3& along, double 
   return result;
 }
 
-/// The closest of the edges of which `beyond[k]`, opposite vertex k, is true.
+/// The closest of the edges k (opposite vertex k) with `beyond[k]`.
 PointTriangle closest_of_edges(const Vec3& point, const std::array<Vec3, 3>& vertices,
                                const std::array<bool, 3>& beyond);
 
-/// The closest of all edges and the inner point that was found.
+/// The closest of all edges and the given inner point.
 PointTriangle closest_on_slender(const Vec3& point, const std::array<Vec3, 3>& vertices,
                                  const PointTriangle& inner);
 
@@ -97,7 +95,7 @@ PointTriangle closest_on_slender(const Vec3& point, const std::array<Vec3, 3>& v
 /// first's.
 SegmentSegment closest_with_an_end(const Vec3& apart, const Vec3& first, const Vec3& second);
 
-/// The closest of those and the inner pair that was found.
+/// The closest of those and the given inner pair.
 SegmentSegment closest_nearly_parallel(const Vec3& apart, const Vec3& first, const Vec3& second,
                                        const SegmentSegment& inner);
 

@@ -1,7 +1,6 @@
-// On which side points lie, without any error: the sign of a determinant of coordinate differences, in
-// doubles where its error bound allows, else by expansions, sums of doubles that are exact (Shewchuk,
-// "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997). Exact as long
-// as no product of coordinate differences leaves the range of doubles.
+// Exact orientation predicates: the sign of a determinant of coordinate differences, in doubles where the
+// error bound allows, else by floating-point expansions (Shewchuk 1997). Exact as long as no product of
+// coordinate differences leaves the range of doubles.
 #pragma once
 
 #include "cloth/vec3_field.h"
@@ -12,7 +11,8 @@ namespace cloth {
 /// always where a, b, c lie on a line).
 int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point);
 
-/// 1 where a, b, c turn anticlockwise, seen against `axis`, -1 clockwise, 0 where they are seen on a line.
+/// The orientation of a, b, c projected along a coordinate axis and seen against it: 1 anticlockwise, -1
+/// clockwise, 0 collinear.
 int turn_around(int axis, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace cloth

@@ -1,4 +1,4 @@
-// What a mesh from a file needs before it is of use: equal vertices made one, faults named, edges listed.
+// Checks and repairs of meshes from files: merging equal vertices, finding faults, listing edges.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@ namespace cloth {
 
 struct Weld {
   TriangleMesh mesh;
-  std::vector<int> number;      ///< in `mesh`, of each vertex that was given
-  int merged_vertices = 0;      ///< how many fewer there are
-  int collapsed_triangles = 0;  ///< gone, because two of their corners have become one
+  std::vector<int> number;      ///< of each input vertex, its index in `mesh`
+  int merged_vertices = 0;      ///< how many were removed
+  int collapsed_triangles = 0;  ///< removed, because two of their corners were merged
 };
 
-/// Each vertex joins the first of those before it that have stayed and are no further than `tolerance` (m, at
-/// least 0) away, else stays where it is.
+/// Merges each vertex into the first earlier one that was kept and is no further than `tolerance` (m, at
+/// least 0) away.
 Weld weld(const TriangleMesh& mesh, double tolerance);
 
 /// An edge and the triangles that share it, in their order.
@@ -29,14 +29,14 @@ struct MeshEdge {
   int forward = 0;                     ///< how many of them run from `from` to `to`
 };
 
-/// Every edge once, by its vertices. Triangles that name a vertex twice have none.
+/// Every edge once, sorted by its vertices. Triangles that repeat a vertex are ignored.
 std::vector<MeshEdge> unique_edges(const TriangleMesh& mesh);
 
 /// The normalised sum of the triangles' normals weighted by area; zero where that sum is zero.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 
 enum class MeshFault {
-  degenerate_triangle,   ///< names a vertex twice, or is less than 1e-12 of its longest edge squared in area
+  degenerate_triangle,   ///< repeats a vertex, or has an area of less than 1e-12 of its longest edge squared
   open_edge,             ///< of one triangle only
   inconsistent_winding,  ///< an edge along which its two triangles run the same way
   crowded_edge,          ///< of more than two triangles
@@ -50,7 +50,7 @@ struct MeshFinding {
   std::string message;  ///< "4 open edges, the first between vertices 0 and 1 near (0, 0.5, 0)"
 };
 
-/// The faults that the mesh has, a finding for each kind in the order above. Indices must be of vertices.
+/// The faults of the mesh, one finding for each kind, in the order above. Precondition: indices are valid.
 std::vector<MeshFinding> inspect(const TriangleMesh& mesh);
 
 }  // namespace cloth

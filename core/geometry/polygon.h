@@ -1,4 +1,4 @@
-// Polygons of many corners cut into triangles.
+// Triangulation of polygons.
 #pragma once
 
 #include <span>

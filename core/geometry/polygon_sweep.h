@@ -1,4 +1,4 @@
-// Simple polygons cut into triangles by a sweep from top to bottom.
+// Triangulation of simple polygons by a plane sweep.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,7 @@
 
 namespace cloth {
 
-/// A polygon of points in space as it is seen along a coordinate axis, from the side where it turns
-/// anticlockwise.
+/// A polygon in space, projected along a coordinate axis, seen from the side where it is anticlockwise.
 struct FlatPolygon {
   std::vector<Vec3> points;
   int axis = 2;
@@ -24,9 +23,8 @@ struct FlatPolygon {
   int turn(int a, int b, int c) const;
 };
 
-/// Numbers of points; as many triangles as there are points, less two. In n log n steps (Hertel and Mehlhorn,
-/// "Fast triangulation of simple polygons", 1983). Nothing where the polygon crosses or touches itself in a
-/// way that the sweep stumbles over.
+/// Triangles of indices of points, two fewer than there are points, in O(n log n) (Hertel and Mehlhorn 1983).
+/// Nothing where the sweep meets a self-intersection of the polygon.
 std::optional<std::vector<Triangle>> sweep_polygon(const FlatPolygon& polygon);
 
 }  // namespace cloth

@@ -1,4 +1,4 @@
-// The surface of a body that is given by a function, as triangles.
+// Triangulation of a surface that is given by a distance function.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,7 +8,8 @@
 
 namespace cloth {
 
-/// About the distance to a body's surface in m: below 0 inside. Its slope must not exceed about 1.
+/// Approximate signed distance to a body's surface in m, negative inside. Its gradient must not exceed
+/// about 1.
 using DistanceFunction = std::function<double(const Vec3&)>;
 
 /// Surface nets (Gibson 1998): one vertex in each cube of side `cell` that the surface passes, moved onto it

@@ -1,5 +1,5 @@
-// The limited springs of a grid as families of one direction each, in arrays with room around them so that no
-// spring needs to know where the grid ends.
+// The limited springs of a grid as families of one direction each, in arrays with padding on every side, so
+// that loops over springs need no boundary cases.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace cloth {
 
 struct GridFamily {
   int down = 0, across = 0;           ///< rows and columns from a spring's first end to its second
-  int rows = 0;                       ///< in which springs begin, from the first one on
+  int rows = 0;                       ///< in which springs begin, from row 0 on
   int begin = 0, end = 0;             ///< columns in which they begin
   std::size_t first_spring = 0;       ///< in the order of the springs, row by row
   double rest_length = 0, limit = 0;  ///< m
@@ -21,8 +21,8 @@ struct GridFamily {
 
 struct GridPlan {
   int rows = 0, columns = 0;
-  int reach = 0;   ///< rows and columns of room on every side
-  int stride = 0;  ///< numbers in a row, room included
+  int reach = 0;   ///< rows and columns of padding on every side
+  int stride = 0;  ///< numbers in a row, padding included
   std::vector<GridFamily> families;
 
   std::ptrdiff_t index(int row, int column) const {
@@ -36,7 +36,7 @@ struct GridPlan {
   }
 };
 
-/// None where these are not whole directions of a grid of at least five rows and columns.
+/// None unless these are complete directions of a grid of at least five rows and columns.
 std::optional<GridPlan> plan_grid(const std::vector<TensionSpring>& springs, const ClothSystem& system);
 
 }  // namespace cloth

@@ -343,7 +343,7 @@ int GridRounds::conjugate_gradients() {
       std::max(enough_of_residual * largest, enough_of_tolerance * task_.tolerance * shortest_);
   double product = preconditioner_.substitute(), share = 0;
   int iterations = 0;
-  while (iterations < most_gradients && product > 0) {
+  while (iterations < most_cg_iterations && product > 0) {
     for (int row = equations_.active.begin; row < equations_.active.end; ++row)
       for (FamilyEquations& family : equations_.families) {
         if (row >= family.plan.rows) continue;

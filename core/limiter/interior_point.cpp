@@ -8,18 +8,18 @@
 namespace cloth {
 namespace {
 
-/// A chain of taut springs adds up multipliers of at most some hundred metres: their violation,
-/// multiplier/rho, stays below a millionth of a cell.
-constexpr double forbidding = 1e11;
+/// Of an excess. The multipliers of a chain of taut springs add up to some hundred metres at most: their
+/// violation, multiplier/rho, stays below a millionth of a cell.
+constexpr double exact_penalty = 1e11;
 
-/// Where the rate is out of reach: the compromise is then one of excesses alone to within a thousandth.
-constexpr double dear = 1e4;
+/// Where the rate is unreachable: the compromise then minimises the excesses to within a thousandth.
+constexpr double compromise_penalty = 1e4;
 
-/// Times the largest violation at the start: multipliers that no reachable rate needs. A chain of 65
-/// particles that is 20 % too long asks for a thousand times.
-constexpr double beyond_need = 1e6;
+/// Times the largest violation at the start: multipliers above this mean that the rate is unreachable. A
+/// chain of 65 particles that is 20 % too long has a thousand times.
+constexpr double multiplier_bound = 1e6;
 
-/// The part of the way to the boundary that a step may take.
+/// The part of the distance to the boundary that a step may take.
 constexpr double to_boundary = 0.995;
 
 constexpr int none = -1;
@@ -37,7 +37,7 @@ InteriorPoint::InteriorPoint(const ClothSystem& system, std::vector<LimitedSprin
   number_particles(system);
 }
 
-/// In the order of elimination of the whole cloth, of which these particles are a part.
+/// Numbers the particles of the working set in the elimination order of the whole cloth.
 void InteriorPoint::number_particles(const ClothSystem& system) {
   std::vector<std::uint8_t> needed(system.pinned.size(), 0);
   for (const LimitedSpring& spring : springs_) needed[spring.i] = needed[spring.j] = 1;
@@ -79,7 +79,7 @@ void InteriorPoint::add_pair(Vector& to, std::size_t s, const Vec3& amount) cons
   if (first_[s] != none) to.segment<3>(3 * first_[s]) -= amount;
 }
 
-/// Slacks and multipliers of the size of the largest violation: the product is the same for every spring.
+/// Slacks and multipliers of the size of the largest violation, with the same product for every spring.
 void InteriorPoint::start() {
   const auto count = static_cast<Eigen::Index>(springs_.size());
   displacement_ = Vector::Zero(3 * weight_.size());
@@ -113,8 +113,8 @@ void InteriorPoint::evaluate() {
   }
 }
 
-/// Stationary, on the constraints, and complementary, each far within the tolerance. A cloth pulled through
-/// by many cells has large multipliers, and its displacements are judged by those.
+/// Stationarity, feasibility and complementarity, each far within the tolerance. Large multipliers, as of a
+/// cloth stretched by many cells, scale the bound on the gradient.
 bool InteriorPoint::is_minimum(double tolerance) const {
   const double size = 0.01 * tolerance * std::max(shortest_, multiplier_.maxCoeff());
   return gradient_.lpNorm<Eigen::Infinity>() <= size &&
@@ -122,8 +122,7 @@ bool InteriorPoint::is_minimum(double tolerance) const {
          multiplier_.dot(slack_) <= size * size * static_cast<double>(slack_.size());
 }
 
-/// w I + sum of (stiffness a a^T + multiplier/|d| (I - a a^T)) over the springs: positive definite whatever
-/// the springs say.
+/// w I + sum of (stiffness a a^T + multiplier/|d| (I - a a^T)) over the springs, always positive definite.
 bool InteriorPoint::factorise() {
   using Block = Eigen::Map<Eigen::Matrix3d>;
   for (std::size_t k = 0; k < particle_.size(); ++k)
@@ -190,18 +189,19 @@ void InteriorPoint::take_step() {
   multiplier_ += length * multiplier_step_;
 }
 
-bool InteriorPoint::has_no_shape(double tolerance) const {
-  return multiplier_.maxCoeff() > std::max(rho_ * tolerance * shortest_, beyond_need * largest_violation_);
+bool InteriorPoint::is_infeasible(double tolerance) const {
+  return multiplier_.maxCoeff() >
+         std::max(rho_ * tolerance * shortest_, multiplier_bound * largest_violation_);
 }
 
 NearestShapeReport InteriorPoint::solve(double tolerance, bool reachable) {
   NearestShapeReport report;
   if (reachable) {
-    rho_ = forbidding;
+    rho_ = exact_penalty;
     report = iterate(tolerance, NearestShape::most_iterations);
-    if (report.converged || !has_no_shape(tolerance)) return report;
+    if (report.converged || !is_infeasible(tolerance)) return report;
   }
-  rho_ = dear;
+  rho_ = compromise_penalty;
   const NearestShapeReport compromise = iterate(tolerance, NearestShape::most_iterations - report.iterations);
   return {report.iterations + compromise.iterations, compromise.excess, compromise.converged};
 }
@@ -217,7 +217,7 @@ NearestShapeReport InteriorPoint::iterate(double tolerance, int most) {
     take_step();
     evaluate();
     if (!displacement_.allFinite() || !multiplier_.allFinite()) break;
-    if (rho_ == forbidding && has_no_shape(tolerance)) return report;
+    if (rho_ == exact_penalty && is_infeasible(tolerance)) return report;
     report.converged = is_minimum(tolerance);
     if (!report.converged && excess_ > report.excess) continue;
     report.excess = excess_;

@@ -1,4 +1,4 @@
-// The interior point method of NearestShape, on the springs that one round works on.
+// The interior point method of NearestShape, on the working set of springs of one round.
 #pragma once
 
 #include "limiter/nearest_shape.h"
@@ -10,9 +10,9 @@ class InteriorPoint {
  public:
   InteriorPoint(const ClothSystem& system, std::vector<LimitedSpring> springs, const Vec3Field& start);
 
-  /// Iterates to the minimum, at most NearestShape::most_iterations times. The shape is then `start` plus the
-  /// displacements. With `reachable`, excesses are as good as forbidden; without, or where the multipliers
-  /// grow beyond all that a reachable rate can need, they are only dear, and the shape is a compromise.
+  /// Iterates to the minimum, at most NearestShape::most_iterations times. With `reachable` the penalty of an
+  /// excess is so high that none is left; without, or where the multipliers exceed what a reachable rate can
+  /// need, it is lower, and the shape is a compromise.
   NearestShapeReport solve(double tolerance, bool reachable);
 
   void displace(Vec3Field& position) const;
@@ -25,7 +25,7 @@ class InteriorPoint {
   void start();
   void evaluate();
   bool is_minimum(double tolerance) const;
-  bool has_no_shape(double tolerance) const;
+  bool is_infeasible(double tolerance) const;
   NearestShapeReport iterate(double tolerance, int most);
   bool factorise();
   void find_direction(const Vector& complementarity);
@@ -41,7 +41,7 @@ class InteriorPoint {
   Vector weight_;                      ///< of each unknown
   double shortest_ = 0;                ///< rest length, m
   double largest_violation_ = 0;       ///< |d| - limit at the start, m
-  double rho_ = 0;                     ///< price of an excess, against weights of about 1
+  double rho_ = 0;                     ///< penalty of an excess, for weights of about 1
 
   Vector displacement_;          ///< x - x0, three components per unknown
   Vector slack_, multiplier_;    ///< both > 0
@@ -50,7 +50,7 @@ class InteriorPoint {
   Vector gap_;                   ///< |d| - limit + slack - multiplier/rho
   Vector gradient_;              ///< w (x - x0) + J^T multiplier
   double excess_ = 0;            ///< relative
-  Vector stiffness_;             ///< what the eliminated slack and multiplier leave on each spring
+  Vector stiffness_;             ///< of each spring, after eliminating slack and multiplier
   Vector step_, slack_step_, multiplier_step_;
   BlockCholesky factors_{3};
   std::vector<double> diagonal_, coupling_;  ///< blocks of the matrix

@@ -1,4 +1,4 @@
-// TensionRounds for any springs: lines one after the other, only the springs that matter.
+// TensionRounds for any springs: lines one after the other, only active springs.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -43,7 +43,7 @@ class LineRounds : public TensionRounds {
   void move(const Active& active, double tension);
   void precondition(const std::vector<double>& residual, std::vector<double>& result) const;
   void pull(const std::vector<double>& tension);
-  double answer(const std::vector<double>& tension, double ridge, std::vector<double>& result) const;
+  double multiply(const std::vector<double>& tension, double ridge, std::vector<double>& result) const;
   int conjugate_gradients();
   void take_step();
   double square() const { return task_.time_step * task_.time_step; }
@@ -74,7 +74,7 @@ void LineRounds::end(std::vector<double>& tension, Vec3Field& position) const {
   position = position_;
 }
 
-/// False where the spring has nothing to do.
+/// False where the spring is not active.
 bool LineRounds::make_active(std::size_t s, Active& active) const {
   const TensionSpring& spring = springs_[s];
   const std::size_t i = spring.first, j = spring.second;
@@ -156,7 +156,7 @@ void LineRounds::sweep_line(std::size_t line) {
     const double known = active.linked ? active.link * step_[k - 1] : 0;
     step_[k] = (active.over * per_square - known) * active.pivot;
   }
-  // What a clipped tension leaves to do is known to the next one, not to the one before it.
+  // Back substitution sees clipped tensions of later springs, not of earlier ones.
   for (std::size_t k = along_.size(); k-- > 0;) {
     if (k + 1 < along_.size() && along_[k + 1].linked)
       step_[k] -= along_[k].pivot * along_[k + 1].link * step_[k + 1];
@@ -176,7 +176,7 @@ void LineRounds::precondition(const std::vector<double>& residual, std::vector<d
     if (active_[k].linked) result[k - 1] -= active_[k - 1].pivot * active_[k].link * result[k];
 }
 
-/// node_ <- W J^T tension, with the sign of a pull
+/// node_ <- W J^T tension
 void LineRounds::pull(const std::vector<double>& tension) {
   std::fill(node_.begin(), node_.end(), Vec3::Zero());
   for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -188,8 +188,8 @@ void LineRounds::pull(const std::vector<double>& tension) {
 }
 
 /// result <- (J W J^T + ridge diagonal) tension, after pull(tension). Returns tension . result.
-double LineRounds::answer(const std::vector<double>& tension, double ridge,
-                          std::vector<double>& result) const {
+double LineRounds::multiply(const std::vector<double>& tension, double ridge,
+                            std::vector<double>& result) const {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const Active& active = active_[k];
     const Vec3 difference = node_[active.first] - node_[active.second];
@@ -221,9 +221,9 @@ int LineRounds::conjugate_gradients() {
   direction_ = solved_;
   double product = dot(residual_, solved_);
   int iterations = 0;
-  while (iterations < most_gradients && product > 0) {
+  while (iterations < most_cg_iterations && product > 0) {
     pull(direction_);
-    const double length = product / answer(direction_, ridge, product_);
+    const double length = product / multiply(direction_, ridge, product_);
     ++iterations;
     largest = 0;
     for (std::size_t k = 0; k < count; ++k) {
@@ -240,7 +240,7 @@ int LineRounds::conjugate_gradients() {
   return iterations;
 }
 
-/// Tensions stay at least 0. Where that clips one, the step is only as long as it brings C nearer to 0.
+/// Tensions stay at least 0. Where that clips one, the step is only as long as it reduces C.
 void LineRounds::take_step() {
   bool clipped = false;
   double gain = 0, length = 1;
@@ -251,7 +251,7 @@ void LineRounds::take_step() {
   }
   pull(step_);
   if (clipped)
-    length = gain > 0 ? std::min(1.0, gain / (square() * answer(step_, task_.softness, product_))) : 0;
+    length = gain > 0 ? std::min(1.0, gain / (square() * multiply(step_, task_.softness, product_))) : 0;
   if (!(length > 0)) {
     length = 1;
     for (std::size_t k = 0; k < active_.size(); ++k) {

@@ -8,8 +8,8 @@
 namespace cloth {
 namespace {
 
-/// A round works on the springs over the limit and on those below it by less than this many times the
-/// largest excess at the start: few are stretched beyond the limit by what their neighbours do.
+/// The working set of a round: springs over the limit, and those below it by less than this many times the
+/// largest excess at the start.
 constexpr double nearness = 2;
 
 }  // namespace
@@ -53,7 +53,7 @@ NearestShapeReport NearestShape::find(const ClothSystem& system, double toleranc
     std::vector<LimitedSpring> chosen;
     std::vector<std::size_t> which;
     for (std::size_t s = 0; s < springs_.size(); ++s) {
-      // The last round takes every spring: it cannot leave one out.
+      // The last round takes every spring.
       if (round + 1 == most_rounds || excess_of(springs_[s], found) > -nearness * before) working[s] = 1;
       if (!working[s]) continue;
       chosen.push_back(springs_[s]);

@@ -1,13 +1,13 @@
-// The nearest shape that obeys the deformation rate. The shapes x with |x_j - x_i| <= (1 + rate) L for every
-// limited spring are a convex set, so that one of them is nearest to a given x0:
+// The nearest shape that satisfies the deformation rate. The shapes x with |x_j - x_i| <= (1 + rate) L for
+// every limited spring form a convex set, so that one of them is nearest to a given x0:
 //
 //     minimise 1/2 sum w_i |x_i - x0_i|^2 + rho/2 sum e_s^2   where   |x_j - x_i| - (1 + rate) L_s <= e_s,
 //
-// w_i the particle's mass over the mean one, pinned particles fixed. rho is so large that the e_s are lost
-// in the tolerance; they are there for springs that say the same thing twice. Where the pins make the rate
+// w_i the particle's mass over the mean mass, pinned particles fixed. rho is so large that the excesses e_s
+// are far below the tolerance; they regularise redundant constraints. Where the pins make the rate
 // unreachable, a smaller rho gives the compromise of least violation. Solved by Mehrotra's
-// predictor-corrector interior point method (Nocedal and Wright, Numerical Optimization, 2006, 16.6 and 19),
-// one sparse Cholesky factorisation per iteration.
+// predictor-corrector interior point method (Nocedal and Wright 2006, 16.6 and 19), with one sparse Cholesky
+// factorisation (sparse/block_cholesky.h) per iteration.
 #pragma once
 
 #include <cstddef>
@@ -36,9 +36,9 @@ class NearestShape {
 
   NearestShape(const ClothSystem& system, const std::vector<SpringRun>& limited, double rate);
 
-  /// Moves `position` to the nearest shape. Without convergence, to the best found: never a larger excess
-  /// than before. Depends on nothing but its arguments; `reachable` false saves looking for what is known
-  /// not to be there.
+  /// Moves `position` to the nearest shape, or without convergence to the best found, never with a larger
+  /// excess than before. The result depends on the arguments only. `reachable` false skips the search for a
+  /// shape without excess.
   NearestShapeReport find(const ClothSystem& system, double tolerance, Vec3Field& position,
                           bool reachable = true);
 

@@ -85,12 +85,13 @@ void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
   add_acceleration(*system_, kick, pull_, change_);
 }
 
-/// Brings the positions within the rate and leaves in report_ what is left. False: they were already.
+/// Moves the positions to satisfy the rate and reports the rest. False: they did already.
 bool StepLimiter::move(ClothState& state) {
   if (!tensions_ || !opened_) {
     report_.excess = limiter_.excess(state.position);
     if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
-    if (limiter_.accepts(report_.excess) && (!tensions_ || report_.excess <= aim(state))) return false;
+    if (limiter_.accepts(report_.excess) && (!tensions_ || report_.excess <= target_residual(state)))
+      return false;
   }
   drifted_ = state.position;
   if (!tensions_) {
@@ -98,7 +99,8 @@ bool StepLimiter::move(ClothState& state) {
     return true;
   }
   if (opened_) tension_ = held_;
-  const TensionReport found = tensions_->solve(*system_, time_step_, tension_, state.position, aim(state));
+  const TensionReport found =
+      tensions_->solve(*system_, time_step_, tension_, state.position, target_residual(state));
   add_report(
       {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess});
   holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
@@ -106,9 +108,9 @@ bool StepLimiter::move(ClothState& state) {
   return true;
 }
 
-/// What a solve leaves becomes speed, left/h. Beside the speeds that the cloth has that is to be little, or
-/// the tolerance would heat it: at short steps it asks for more than the rate does.
-double StepLimiter::aim(const ClothState& state) const {
+/// The residual of a solve becomes velocity, residual/h. It must be small compared with the velocities of the
+/// cloth, or it would add energy: short steps need a smaller residual than the tolerance.
+double StepLimiter::target_residual(const ClothState& state) const {
   constexpr double of_speed = 0.01, least = 0.01;  // of the tolerance
   const double kinetic = work_of_changes(*system_, state.velocity, state.velocity, -0.5);
   const double speed = std::sqrt(2 * kinetic / system_->total_mass());
@@ -127,10 +129,10 @@ void StepLimiter::add_speed_of_move(ClothState& state) const {
   for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
 }
 
-/// A kick, a drift, a closing kick: what opening kick and limiting change is counted as if it came first, and
-/// the closing kick as if it came last. So counted, Verlet keeps its balance of energy up to a term of order
-/// h^2 that swings and does not grow. Where the drift goes with the end velocity it is counted on the mean of
-/// the velocities at both ends, for the same reason.
+/// The work of the opening kick and of limiting is taken at the beginning of the step, that of the closing
+/// kick at its end: Verlet then keeps its energy balance up to a term of order h^2 that oscillates and does
+/// not grow. Where the drift uses the end velocity it is taken with the mean of the velocities at both ends,
+/// for the same reason.
 void StepLimiter::after_drift(double closing_kick, ClothState& state) {
   const bool moved = move(state);
   closing_kick_ = closing_kick;
@@ -162,8 +164,8 @@ void StepLimiter::end_step(const ClothState& state) {
   if (closed_) *work_ += work_of_changes(*system_, closing_, state.velocity, -0.5);
 }
 
-/// A method that drifts with its end velocity takes the impulse along, see above. Of others the account is
-/// the energy after it less that before.
+/// For methods that drift with their end velocity the work is taken as in after_drift(); for others it is the
+/// change of the energy.
 bool StepLimiter::after_step(ClothState& state) {
   if (!move(state)) return false;
   if (!drifts_with_end_velocity_) {
@@ -178,10 +180,10 @@ bool StepLimiter::after_step(ClothState& state) {
   return true;
 }
 
-/// In such a step the springs have pulled at lengths that they never had, so that what the limiter brings
-/// back would bounce with more than it came with. The change c of velocities is taken s times, with s as near
-/// to 1 as leaves  s^2 sum m c^2/2 + s sum m c . v + potential <= 0,  or where that is least.
-void StepLimiter::restrain(double potential, ClothState& state) {
+/// In such a step springs have pulled at lengths that exceed the rate, so that the limited cloth would
+/// rebound with more energy than it had. The change c of velocities is scaled by s, as near to 1 as s^2 sum m
+/// c^2/2 + s sum m c . v + potential <= 0  allows, or where that is least.
+void StepLimiter::limit_energy_gain(double potential, ClothState& state) {
   size_like(state.position, change_);
   const auto change = change_.flat();
   const std::span<const double> to = state.position.flat(), from = drifted_.flat();
@@ -192,12 +194,12 @@ void StepLimiter::restrain(double potential, ClothState& state) {
   if (!(square > 0) || square + linear + potential <= 0) return;
   const double least = -linear / (2 * square), radicand = linear * linear - 4 * square * potential;
   const double aside = radicand > 0 ? std::sqrt(radicand) / (2 * square) : 0;
-  constexpr double most_share = 2;  // takes a load's whole speed: what dx/h leaves of it is a half
+  constexpr double most_share = 2;  // stops a load: dx/h removes half of its speed
   const double share = std::clamp(least + std::copysign(aside, 1 - least), 0.0, most_share);
   add_scaled(share - 1, change_, state.velocity);
 }
 
-void StepLimiter::limit_start(double time_step, ClothState& state) {
+void StepLimiter::limit_initial_shape(double time_step, ClothState& state) {
   begin(time_step);
   const Vec3Field velocity = state.velocity;
   move(state);

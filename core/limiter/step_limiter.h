@@ -1,10 +1,10 @@
-// The deformation rate as a stage of the step. Where a method has a drift, the rate is kept at its end
-// (SHAKE: Ryckaert, Ciccotti, Berendsen 1977; RATTLE: Andersen 1983), so that a closing kick takes the forces
-// of the limited shape. A kick by the forces of the overstretched one, which the limiter has already brought
-// back, throws a taut spring back with restitution (omega h)^2/2: more than it came with, beyond 0.71 of the
-// stable step. Tensions that the last step has found act as forces in the kicks of the next one, opening and
-// closing alike, so that only their changes are left to find and a taut cloth at rest has no speed. After
-// other methods the rate is kept at the step's end, from no tension.
+// The deformation rate as a stage of the step. With methods that drift, the rate is enforced at the end of
+// the drift (SHAKE: Ryckaert et al. 1977; RATTLE: Andersen 1983), so that the closing kick takes the forces
+// of the limited shape. With the forces of the overstretched shape a taut spring would rebound with
+// restitution (omega h)^2/2, more than 1 beyond 0.71 of the stable step. The tensions of the last step act as
+// forces in both kicks of the next one (warm start), so that only their changes are solved for and a taut
+// cloth at rest has velocity 0. With other methods the rate is enforced at the end of the step, starting from
+// tension 0.
 #pragma once
 
 #include <cstddef>
@@ -40,35 +40,34 @@ class StepLimiter : public DriftConstraint {
   /// For methods that do not call the constraint. Returns whether anything was moved.
   bool after_step(ClothState& state);
 
-  /// After a call of it that moved something, by a method that does not go with its end velocity: as much of
-  /// the change of velocity as does not add to the energy, where the move has added `potential` J to elastic
-  /// and potential energy.
-  void restrain(double potential, ClothState& state);
+  /// After an after_step() that moved something, for methods that do not drift with their end velocity: keeps
+  /// only as much of the change of velocity as does not increase the energy, where the move has added
+  /// `potential` J to elastic and gravity energy.
+  void limit_energy_gain(double potential, ClothState& state);
 
-  /// Something else has moved the cloth since: report() tells the excess of these positions.
-  void look_again(const Vec3Field& position) { report_.excess = limiter_.excess(position); }
+  /// Another stage has moved the cloth: updates the excess in report().
+  void update_excess(const Vec3Field& position) { report_.excess = limiter_.excess(position); }
 
-  /// Brings a start within the rate; no motion led there, so that none comes of it.
-  void limit_start(double time_step, ClothState& state);
+  /// Moves an initial shape to one that satisfies the rate, without changing velocities.
+  void limit_initial_shape(double time_step, ClothState& state);
 
   const LimiterReport& report() const { return report_; }  ///< of the last step
   bool is_kept() const { return limiter_.accepts(report_.excess); }
   /// The ends of the spring that is furthest beyond the rate.
   std::pair<int, int> worst_spring(const Vec3Field& position) const;
 
-  /// J, given to the cloth in the last step (negative: taken). Nothing where a method without a drift of its
-  /// own was moved after the step and goes with another velocity than drifts_with_end_velocity() says: that
-  /// is the energy after it less that before.
+  /// J, given to the cloth in the last step (negative: taken). Nothing where the limiter acted after a step
+  /// of a method without drifts_with_end_velocity(): its work is then the change of the energy.
   std::optional<double> work() const { return work_; }
 
-  /// N, what the next step will hold: to be remembered with a state.
+  /// N, with which the next step starts; part of a checkpoint.
   const std::vector<double>& tension() const { return tension_; }
   void set_tension(const std::vector<double>& tension);
 
  private:
   void begin(double time_step);
   bool move(ClothState& state);
-  double aim(const ClothState& state) const;
+  double target_residual(const ClothState& state) const;
   void add_report(const LimiterReport& found);
   void add_speed_of_move(ClothState& state) const;
   void pull(double duration, const std::vector<double>& tension, ClothState& state);
@@ -76,7 +75,7 @@ class StepLimiter : public DriftConstraint {
   Deformation deformation_;
   const ClothSystem* system_;
   DeformationLimiter limiter_;
-  std::optional<TensionSolver> tensions_;  ///< none: the limiter's sweeps or its nearest shape
+  std::optional<TensionSolver> tensions_;  ///< none: solver "sweeps" or "direct"
   std::vector<double> tension_;            ///< N, at the end of the last step
   std::vector<double> held_;               ///< N, in the present step's opening kick
   bool holds_ = false;                     ///< any of tension_ is above 0

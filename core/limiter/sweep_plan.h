@@ -1,5 +1,5 @@
-// The order in which a sweep visits the limited springs: batches (colours) of springs of which no two share a
-// particle, so that a batch may be done all at once, with the same result in any order within it.
+// The order in which a sweep visits the limited springs: batches (a graph colouring) in which no two springs
+// share a particle, so that a batch can be processed in parallel with the same result.
 #pragma once
 
 #include <vector>
@@ -19,13 +19,13 @@ struct SpringBatch {
   int low = 0, high = 0;   ///< rows of particles that the springs end in, from `low` to `high`
 };
 
-/// The runs cut where a row of particles ends and where other ends are free, in their order; every piece has
-/// a stride of 1. Springs between two pins are left out: they are not the limiter's to change.
+/// The runs in their order, divided at the ends of rows and where the free ends change; every piece has a
+/// stride of 1. Springs between two pins are left out, because the limiter cannot change them.
 std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& runs,
                                    double rate);
 
-/// The pieces divided into independent springs: those between neighbours into every other one and the rest,
-/// longer ones into stretches no longer than their offset, which on a grid are whole rows.
+/// The pieces divided into independent springs: those between neighbours into even and odd ones, longer ones
+/// into stretches no longer than their offset, which on a grid are whole rows.
 std::vector<SpringBatch> batches_of(const std::vector<SpringBatch>& pieces, int columns);
 
 /// Row by row of the first particle, so that a row's particles are in the cache for all its springs.

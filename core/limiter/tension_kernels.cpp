@@ -1,8 +1,7 @@
 #include "limiter/tension_kernels.h"
 
-#include <cstdint>
-
 #include "kernels/kernel_loops.h"
+#include "limiter/spring_equation.h"
 
 namespace cloth {
 namespace {
@@ -12,26 +11,6 @@ using kernels::in_parts, kernels::larger, kernels::smaller, kernels::size_of;
 constexpr int parts = 8;         // of doubles
 constexpr int float_parts = 16;  // of floats
 constexpr double infinity = __builtin_huge_val();
-
-/// 1/sqrt(a) for a >= 0, large but finite for 0: Newton's iteration from a guess that is linear in the
-/// exponent (Lomont 2003), quicker than a root and a division.
-[[gnu::always_inline]] inline double inverse_root(double a) {
-  const auto bits = __builtin_bit_cast(std::uint64_t, a);
-  double y = __builtin_bit_cast(double, std::uint64_t{0x5FE6EB50C7B537A9} - (bits >> 1));
-  const double half = 0.5 * a;
-  y = y * (1.5 - half * y * y);
-  y = y * (1.5 - half * y * y);
-  y = y * (1.5 - half * y * y);
-  return y * (1.5 - half * y * y);
-}
-[[gnu::always_inline]] inline float inverse_root(float a) {
-  const auto bits = __builtin_bit_cast(std::uint32_t, a);
-  float y = __builtin_bit_cast(float, std::uint32_t{0x5F375A86} - (bits >> 1));
-  const float half = 0.5f * a;
-  y = y * (1.5f - half * y * y);
-  y = y * (1.5f - half * y * y);
-  return y * (1.5f - half * y * y);
-}
 
 template <class Number, std::size_t count>
 Number largest_of(const Number (&part)[count]) {
@@ -45,34 +24,6 @@ double sum_of(const Number (&part)[count]) {
   double sum = 0;
   for (const Number p : part) sum += static_cast<double>(p);
   return sum;
-}
-
-/// The direction of a spring, C, and whether it is over its limit or has a tension. C/limit is
-/// (q - 1)/(1 + sqrt(q)), q = |d|^2/limit^2: what is small is known to as many digits as it has.
-struct Equation {
-  float ax, ay, az, over;
-  bool active;
-};
-struct EquationRule {
-  double per_square;  ///< 1/limit^2
-  double per_limit;
-  float limit, softness;
-};
-inline EquationRule equation_rule(const SpringRule& rule) {
-  return {1 / (rule.limit * rule.limit), 1 / rule.limit, static_cast<float>(rule.limit),
-          static_cast<float>(rule.softness)};
-}
-[[gnu::always_inline]] inline Equation equation_of(const EquationRule& rule, double dx, double dy, double dz,
-                                                   double t, float both) {
-  const double q = (dx * dx + dy * dy + dz * dz) * rule.per_square;
-  const float ratio = static_cast<float>(q), inverse = inverse_root(ratio);
-  const float beyond = static_cast<float>(q - 1);
-  const float tension = static_cast<float>(t);
-  const float over = beyond / (1 + ratio * inverse) * rule.limit - rule.softness * both * tension;
-  const bool active = (tension > 0 || over > 0) && both > 0;
-  const float scale = active ? inverse : 0.0f;
-  return {scale * static_cast<float>(dx * rule.per_limit), scale * static_cast<float>(dy * rule.per_limit),
-          scale * static_cast<float>(dz * rule.per_limit), over, active};
 }
 
 RowLengths measure_row(const GridNodes& nodes, std::ptrdiff_t i, std::ptrdiff_t offset, const double* tension,
@@ -137,7 +88,7 @@ void clear_lanes(const LineScratch& s, std::ptrdiff_t row, int begin, int end) {
   }
 }
 
-/// One row of the back substitution. What a clipped tension leaves to do is known to those before it.
+/// One row of the back substitution. Earlier springs of a line see the clipped tensions of later ones.
 [[gnu::always_inline]] inline void substitute_lines(const LineBlock& block, std::ptrdiff_t i, LaneRange lanes,
                                                     std::ptrdiff_t row, const LineScratch& scratch) {
   double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i, *t = block.tension + i;
@@ -376,7 +327,7 @@ void add_row(double length, const float* change, double* t, int count) {
 #pragma GCC ivdep
   for (int k = 0; k < count; ++k) {
     const double raised = t[k] + length * static_cast<double>(change[k]);
-    // A float is not the double that it stands for: what is clipped is gone.
+    // A tension that was clipped in floats becomes exactly 0.
     const bool gone = length >= 1 && change[k] <= -static_cast<float>(t[k]);
     t[k] = gone ? 0.0 : larger(raised, 0.0);
   }

@@ -1,5 +1,5 @@
-// The rounds in which TensionSolver finds tensions: line sweeps and conjugate gradients on the springs that
-// are over their limit or have a tension.
+// The iterations of TensionSolver: line sweeps and conjugate gradients on the active springs, which are those
+// that are over their limit or have a tension.
 //
 // Legend: x positions, d = x_second - x_first of a spring, a = d/|d|, C = |d| - limit, w inverse masses (0
 // where pinned), h time step, J the rows (.. -a .. +a ..) of the springs. A tension t (N) pulls the two ends
@@ -13,7 +13,7 @@
 
 namespace cloth {
 
-/// How far positions and tensions are from what is asked for, in rest lengths.
+/// Violation of the complementarity conditions, in rest lengths.
 struct TensionResidual {
   double excess = 0;  ///< largest C of all springs, 0 if none is over
   double slack = 0;   ///< largest -C of springs that have a tension
@@ -24,8 +24,8 @@ struct TensionResidual {
 struct TensionTask {
   double time_step = 0;  ///< s
   double tolerance = 0;  ///< of the residual
-  /// Springs are not rigid: C = h^2 softness (w_first + w_second) t where there is a tension. The residual is
-  /// that of this rule. A softness above 0 can be obeyed wherever the pins are.
+  /// Compliance of the limit: C = h^2 softness (w_first + w_second) t where there is a tension, and the
+  /// residual is that of this equation. With a softness above 0 it has a solution wherever the pins are.
   double softness = 0;
 };
 
@@ -36,8 +36,8 @@ class TensionRounds {
   virtual void begin(const TensionTask& task, const std::vector<double>& inverse_mass,
                      const std::vector<double>& tension, const Vec3Field& position) = 0;
   virtual TensionResidual evaluate() = 0;
-  /// Every line in turn: its tensions are solved for together, those below 0 are clipped, its particles
-  /// moved at once.
+  /// For one line after the other: solves for its tensions together, clips those below 0 and moves its
+  /// particles.
   virtual void sweep_lines(bool backwards) = 0;
   /// One Newton step for all tensions at the last evaluated positions, by conjugate gradients with the lines
   /// as preconditioner. Returns the iterations.
@@ -45,8 +45,7 @@ class TensionRounds {
   virtual void end(std::vector<double>& tension, Vec3Field& position) const = 0;
 };
 
-/// Of a grid whole families of lines side by side, of anything else line by line. They agree to the
-/// tolerance.
+/// For grids whole families of lines side by side, for meshes line by line. The two agree to the tolerance.
 std::unique_ptr<TensionRounds> make_tension_rounds(const std::vector<TensionSpring>& springs,
                                                    const ClothSystem& system);
 std::unique_ptr<TensionRounds> make_line_rounds(const std::vector<TensionSpring>& springs,

@@ -13,7 +13,7 @@ namespace {
 constexpr int most_tension_rounds = 100;
 constexpr int most_rounds_to_aim = 10;  ///< within the tolerance already
 
-/// kappa: of m l/h^2, at which a held tension turns its spring by an angle of 1 within a step.
+/// Share of m l/h^2, the tension that rotates its spring by 1 rad within a step.
 constexpr double held_share = 0.5;
 
 /// Where the pins make the rate unreachable.
@@ -74,7 +74,7 @@ void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Fiel
   }
 }
 
-/// Row by row, those with a tension.
+/// Row by row; rows without a tension are skipped.
 void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec3Field& position,
                                    Vec3Field& force) const {
   std::vector<double> scratch(3 * static_cast<std::size_t>(grid_->columns));
@@ -101,9 +101,9 @@ std::vector<double> TensionSolver::held(const std::vector<double>& tension, doub
   return result;
 }
 
-/// Rounds until the residual is what is aimed at or there were as many as are worth it.
-void TensionSolver::go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
-                          Vec3Field& position, TensionReport& report) {
+/// Rounds until the residual is small enough or the bound on rounds is reached.
+void TensionSolver::run_rounds(const TensionTask& task, const ClothSystem& system,
+                               std::vector<double>& tension, Vec3Field& position, TensionReport& report) {
   rounds_->begin(task, system.inverse_mass, tension, position);
   TensionResidual residual = rounds_->evaluate();
   int rounds = 0, rounds_to_aim = 0;
@@ -122,10 +122,11 @@ void TensionSolver::go_on(const TensionTask& task, const ClothSystem& system, st
   if (rounds > 0) rounds_->end(tension, position);
 }
 
-/// The nearest shape to what the positions would be without tensions, and its tensions but for those of
-/// springs that are slack in it.
-void TensionSolver::find_nearest(const TensionTask& task, const ClothSystem& system,
-                                 std::vector<double>& tension, Vec3Field& position, TensionReport& report) {
+/// Replaces positions and tensions by the nearest shape to the positions without tensions, and its
+/// multipliers.
+void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSystem& system,
+                                         std::vector<double>& tension, Vec3Field& position,
+                                         TensionReport& report) {
   if (!nearest_) nearest_.emplace(system, limited_runs(deformation_, system), deformation_.rate);
   const double square = task.time_step * task.time_step;
   Vec3Field pull(position.size());
@@ -147,8 +148,8 @@ void TensionSolver::find_nearest(const TensionTask& task, const ClothSystem& sys
   }
 }
 
-/// No spring of a grid has a tension or is over its limit: most steps of a loose cloth end here.
-bool TensionSolver::is_loose(const std::vector<double>& tension, Vec3Field& position) const {
+/// Whether no spring of a grid has a tension or is over its limit: most steps of a slack cloth end here.
+bool TensionSolver::is_inactive(const std::vector<double>& tension, Vec3Field& position) const {
   if (!grid_) return false;
   const double* t = tension.data();
   if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
@@ -165,26 +166,26 @@ bool TensionSolver::is_loose(const std::vector<double>& tension, Vec3Field& posi
 }
 
 TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
-                                   Vec3Field& position, double aim) {
+                                   Vec3Field& position, double target_residual) {
   TensionReport report;
   if (!is_finite(position)) {
     report.excess = std::nan("");
     return report;
   }
-  if (is_loose(tension, position)) {
+  if (is_inactive(tension, position)) {
     report.converged = true;
     return report;
   }
   const TensionTask task{.time_step = time_step,
-                         .tolerance = std::min(aim, deformation_.tolerance),
+                         .tolerance = std::min(target_residual, deformation_.tolerance),
                          .softness = unreachable_ ? soft_springs : 0};
   const Vec3Field start = position;
   const std::vector<double> first = tension;
-  go_on(task, system, tension, position, report);
+  run_rounds(task, system, tension, position, report);
   if (!report.converged && !unreachable_) {
     position = start, tension = first;
-    find_nearest(task, system, tension, position, report);
-    go_on(task, system, tension, position, report);
+    restart_from_nearest(task, system, tension, position, report);
+    run_rounds(task, system, tension, position, report);
   }
   if (unreachable_) report.excess = excess(position);
   return report;

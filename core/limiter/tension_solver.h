@@ -1,15 +1,16 @@
-// The deformation rate by tensions: every limited spring may carry a tension t >= 0 (N) that pulls its ends
-// together, and carries one only at its limit, |d| = (1 + rate) L. Positions move by h^2 W J^T t, what the
-// tensions do within one step of h. They are kept from step to step: a step begins with the tensions that it
-// is told to hold, as forces, and only their changes are left to find.
+// The deformation rate by tensions, a complementarity problem: every limited spring may have a tension t >= 0
+// (N) that pulls its ends together, and t > 0 only at its limit, |d| = (1 + rate) L. Positions move by h^2 W
+// J^T t, the effect of the tensions within one step h. Tensions are kept from step to step (warm start): a
+// step begins with the held tensions as forces, and only their changes are solved for.
 //
 //     std::vector<double> tension(solver.springs().size(), 0.0);
 //     each step: held = solver.held(tension, h);  add_force(held, position, force);  drift;
 //                tension = held;  solver.solve(system, h, tension, position);
 //
-// Solved by rounds: one sweep over the lines of springs, in each of which the tensions are found together
-// (Thomas' algorithm), then a Newton step for all of them by conjugate gradients with the lines as
-// preconditioner, projected to t >= 0. What rounds do not end, an interior point method starts anew.
+// Each round is one sweep over the lines of springs, in which the tensions of a line are solved for together
+// (Thomas' algorithm), then a Newton step for all tensions by conjugate gradients with the lines as
+// preconditioner, projected to t >= 0. Where rounds do not converge, an interior point method provides a new
+// start.
 #pragma once
 
 #include <limits>
@@ -50,11 +51,11 @@ class TensionSolver {
   /// In the order of the system's springs. So are tensions.
   const std::vector<TensionSpring>& springs() const { return springs_; }
 
-  /// Moves positions and changes tensions (N, from what is held to what they are) until excess and slack are
-  /// within the tolerance, and on to `aim`, which is less, as far as that takes few rounds. Particles move by
-  /// internal forces alone: the momentum of a free cloth stays.
+  /// Moves positions and changes tensions (N; in: held, out: solved) until excess and slack are within the
+  /// tolerance, and further to the smaller `target_residual` if that takes few rounds. Particles move by
+  /// internal forces only, which conserves the momentum of a free cloth.
   TensionReport solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
-                      Vec3Field& position, double aim = std::numeric_limits<double>::infinity());
+                      Vec3Field& position, double target_residual = std::numeric_limits<double>::infinity());
 
   double shortest() const { return shortest_; }  ///< m, rest length
 
@@ -64,8 +65,8 @@ class TensionSolver {
   /// force += J^T tension, N: each tension pulls its ends together.
   void add_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
 
-  /// What of a tension may be held over a step of h seconds: at most half of m (1 + rate) L/h^2. More makes a
-  /// spring that turns overshoot. None where the rate is unreachable.
+  /// The part of each tension that may act as a force over a step of h seconds: at most half of m (1 + rate)
+  /// L/h^2, because a rotating spring would overshoot with more. Zero where the rate is unreachable.
   std::vector<double> held(const std::vector<double>& tension, double time_step) const;
 
   /// Whether the pins are known to make the rate unreachable: springs are then soft.
@@ -73,12 +74,12 @@ class TensionSolver {
   bool unreachable() const { return unreachable_; }
 
  private:
-  bool is_loose(const std::vector<double>& tension, Vec3Field& position) const;
+  bool is_inactive(const std::vector<double>& tension, Vec3Field& position) const;
   void add_grid_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
-  void go_on(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
-             Vec3Field& position, TensionReport& report);
-  void find_nearest(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
-                    Vec3Field& position, TensionReport& report);
+  void run_rounds(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
+                  Vec3Field& position, TensionReport& report);
+  void restart_from_nearest(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
+                            Vec3Field& position, TensionReport& report);
 
   Deformation deformation_;
   const TensionKernels* kernels_;

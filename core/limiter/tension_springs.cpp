@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::size_t no_spring = std::numeric_limits<std::size_t>::max();
 
-/// Springs that meet at a larger angle than this (60 degrees) do not go on in one line.
+/// Cosine of the angle at which one spring may follow another in a line: at most 60 degrees from straight.
 constexpr double straight_enough = -0.5;
 
-/// Which spring goes on behind each spring's first and second end.
+/// The spring that follows in the line at each spring's first and second end.
 using Followers = std::vector<std::array<std::size_t, 2>>;
 
 struct Junction {
@@ -25,7 +25,8 @@ std::size_t end_at(const TensionSpring& spring, std::size_t particle) {
   return spring.first == particle ? 0 : 1;
 }
 
-/// At every particle the straightest pair of springs of one kind first, then of what is left, and so on.
+/// At every particle the straightest pair of springs is joined first, then the straightest of the rest, and
+/// so on.
 Followers followers_of(const std::vector<TensionSpring>& springs, const ClothSystem& system) {
   std::vector<std::vector<std::size_t>> around(system.pinned.size());
   for (std::size_t s = 0; s < springs.size(); ++s) {
@@ -90,7 +91,7 @@ SpringLines spring_lines(const std::vector<TensionSpring>& springs, const ClothS
   std::vector<std::uint8_t> taken(springs.size(), 0);
   std::vector<std::size_t> met(system.pinned.size(), no_spring);  // the line that last met each particle
 
-  // From one spring to both sides, until the line ends, bites its tail or crosses itself.
+  // From one spring to both sides, until the line ends or reaches a spring or particle that it has.
   const auto follow = [&](std::size_t line, std::size_t from, std::size_t end,
                           std::vector<std::size_t>& found) {
     for (std::size_t spring = from;;) {

@@ -1,6 +1,6 @@
-// The springs that a deformation rate limits, and the lines that they form: springs joined end to end, each
-// going on as straight as it can. On a grid these are rows, columns and diagonals. Along a line the equations
-// of the tensions are tridiagonal.
+// The springs that a deformation rate limits, and the lines that they form: springs joined end to end, as
+// straight as possible. On a grid these are rows, columns and diagonals. Along a line the equations of the
+// tensions are tridiagonal.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ struct TensionSpring {
   bool operator==(const TensionSpring&) const = default;
 };
 
-/// Whether the deformation rate is for this kind of springs.
+/// Whether the deformation rate limits this family.
 bool is_limited(const Deformation& deformation, SpringFamily family);
 std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothSystem& system);
 
 /// In the order of the system's springs; those between two pins are among them.
 std::vector<TensionSpring> tension_springs(const Deformation& deformation, const ClothSystem& system);
 
-/// Every spring stands in exactly one line, and no line meets a particle twice.
+/// Every spring is in exactly one line, and no line contains a particle twice.
 struct SpringLines {
   std::vector<std::size_t> springs;  ///< line by line, each in the order along it
   std::vector<std::size_t> begin;    ///< of each line in `springs`, and the end of the last one

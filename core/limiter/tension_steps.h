@@ -1,4 +1,4 @@
-// What the kinds of TensionRounds share: the numbers of their steps.
+// Constants that the implementations of TensionRounds share.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-/// Of a diagonal of J W J^T, added to it: springs that say the same thing twice make that matrix singular.
+/// Share of the diagonal of J W J^T that is added to it, because redundant springs make that matrix singular.
 inline constexpr double least_ridge = 3e-6;     ///< along a line, above what floats round
 inline constexpr double together_ridge = 1e-3;  ///< all tensions at once; less only makes iterations more
 inline double ridge_of(const TensionTask& task) {
@@ -16,9 +16,9 @@ inline double ridge_of(const TensionTask& task) {
 
 /// Conjugate gradients end at this share of the first residual, or of the tolerance.
 inline constexpr double enough_of_residual = 0.5, enough_of_tolerance = 0.3;
-inline constexpr int most_gradients = 6;
+inline constexpr int most_cg_iterations = 6;
 
-/// Where even the clipped step would not do, this share of C over the diagonal is taken.
+/// Where the clipped step does not reduce C, this share of C over the diagonal is taken.
 inline constexpr double steepest_share = 0.25;
 
 }  // namespace cloth

@@ -1,4 +1,4 @@
-// Energies of a state and the ledger of what entered and left.
+// The energies of a state.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Energy {
 /// sum 1/2 m |v|^2, in J.
 double kinetic_energy(const ClothSystem& system, const Vec3Field& velocity);
 
-/// `gravity_acceleration` of zero leaves the potential out.
+/// Without gravity its potential is 0.
 Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleration, const ClothState& state);
 
 }  // namespace cloth

@@ -1,5 +1,5 @@
-// The frequencies of an actual cloth: any shape, any stretch, its masses and its pins. Springs alone; air, a
-// hand and contact are not in it.
+// The frequencies of a cloth in any shape, with its masses and pins. Springs only, without air, the hand and
+// contact.
 #pragma once
 
 #include "cloth/cloth_system.h"

@@ -14,7 +14,7 @@ void Simulation::find_unreachable() {
 
 /// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.
 void Simulation::limit_start() {
-  if (prepare_ && limiter_) limiter_->limit_start(time_step_, state_);
+  if (prepare_ && limiter_) limiter_->limit_initial_shape(time_step_, state_);
 }
 
 /// Where the method has not had it done within the step.
@@ -26,7 +26,7 @@ void Simulation::limit_deformation() {
     if (limiter_->after_step(state_)) {
       if (by_energy) {
         const double gained = measure_energy(system_, gravity, state_).potential() - before.potential();
-        limiter_->restrain(gained, state_);
+        limiter_->limit_energy_gain(gained, state_);
         ledger_.limiter += gained + kinetic_energy(system_, state_.velocity) - before.kinetic;
       }
       integrator_->forget(Change::state);
@@ -41,7 +41,7 @@ void Simulation::book_limiter() {
   const bool kept_before_contact = limiter_->is_kept();
   if (limits_drift_) limiter_->end_step(state_);
   ledger_.limiter += limiter_->work().value_or(0);
-  if (last_contact_.acted) limiter_->look_again(state_.position);
+  if (last_contact_.acted) limiter_->update_excess(state_.position);
   last_limit_ = limiter_->report();
   if (!limiter_->is_kept() && std::isfinite(last_limit_.excess)) note_breach(kept_before_contact);
 }

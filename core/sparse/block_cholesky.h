@@ -1,7 +1,7 @@
-// Sparse Cholesky factors of a symmetric, positive definite matrix of small square blocks, by the
-// multifrontal method (Duff and Reid 1983; Liu 1992): every front gathers its columns of the matrix and the
-// updates of its children, is factored densely, and leaves an update for its parent. The pattern is analysed
-// once.
+// Sparse Cholesky factorisation of a symmetric, positive definite matrix of small square blocks by the
+// multifrontal method (Duff and Reid 1983; Liu 1992): every front assembles its columns of the matrix and the
+// updates of its children, is factored densely, and produces an update for its parent. The pattern is
+// analysed once.
 //
 //     BlockCholesky factors(3);
 //     factors.analyse(couplings, order);            // once for a pattern

@@ -1,8 +1,8 @@
-// In which order the unknowns of a sparse symmetric matrix are eliminated decides how many entries its
-// Cholesky factors have. On a grid nested dissection (George 1973) is best up to a constant: a separator,
-// lines of particles that no spring reaches across, is eliminated last, and the halves that it leaves are
-// ordered likewise. Lines may also run along the diagonals: no spring of a cloth reaches across two
-// neighbouring ones either, and a diagonal has fewer particles for its length than a row.
+// The elimination order of the unknowns of a sparse symmetric matrix determines the fill of its Cholesky
+// factors. On a grid nested dissection (George 1973) is optimal up to a constant: a separator, lines of
+// particles that no spring crosses, is eliminated last, and the two halves are ordered likewise. Lines may
+// also be diagonals: no spring of a cloth crosses two neighbouring ones, and a diagonal has fewer particles
+// for its length than a row.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace cloth {
 
-/// An unordered pair of unknowns that stand in one another's equations.
+/// An unordered pair of unknowns with a nonzero block off the diagonal.
 using Coupling = std::pair<int, int>;
 
-/// How far couplings reach, in rows, columns, row + column, and row - column: the width of a separator of
-/// lines along which that number is constant.
+/// The largest extent of a coupling in rows, columns, row + column, and row - column: the width of a
+/// separator of lines along which that number is constant.
 struct GridReach {
   std::array<int, 4> along{};
 };

@@ -1,9 +1,9 @@
-// What Cholesky factors of a pattern look like, before any number is known.
+// Symbolic factorisation: the structure of the Cholesky factors of a pattern.
 //
-// Column j of L has entries where the matrix has them and where the columns have them that j is the parent
-// of; parent(j) is its first entry below the diagonal (Liu 1990). Neighbouring columns of the same structure
-// make a front: a dense lower trapezoid of `width` columns, `height` rows, the first `width` of which are the
-// columns' own.
+// Column j of L has entries where the matrix has them and where the columns whose parent is j have them;
+// parent(j) is the row of the first entry of column j below the diagonal (Liu 1990). Neighbouring columns of
+// the same structure form a front: a dense lower trapezoid of `width` columns and `height` rows, the first
+// `width` of which are the columns' own.
 #pragma once
 
 #include <vector>
@@ -25,8 +25,8 @@ struct EliminationTree {
   std::vector<Front> fronts;  ///< children before parents; each right behind its subtree
 };
 
-/// `order`: a permutation of the unknowns; it is changed where that brings the columns of a subtree together,
-/// which leaves the fill as it is. Fronts are merged where that costs few zeros.
+/// `order`: a permutation of the unknowns. It is changed so that the columns of a subtree are contiguous,
+/// which does not change the fill. Fronts are merged where that adds few zeros.
 EliminationTree analyse(const std::vector<Coupling>& couplings, const std::vector<int>& order);
 
 }  // namespace cloth

@@ -1,0 +1,191 @@
+// How continuous contact moves cloth and obstacles through a step: substeps, and rounds within each of them.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/at.h"
+#include "contact/continuous_contact.h"
+#include "contact/obstacle_substeps.h"
+
+namespace cloth {
+namespace {
+
+constexpr int most_rounds_at_rest = 100, most_rounds_stuck = 15;
+/// Rounds in which the longest remaining displacement does not decrease, after which the remaining particles
+/// are held back.
+constexpr int most_rounds_idle = 6;
+constexpr double progress_part = 0.7;
+
+/// Bound on the pairs and particles that the rounds of one step may visit: some seconds of work. Counted
+/// instead of timed, so that a run does not depend on the machine.
+double most_work_of(std::size_t particles) {
+  constexpr double least = 1e7, for_a_particle = 2e3;
+  return least + for_a_particle * static_cast<double>(particles);
+}
+
+bool all_finite(const Vec3Field& field) {
+  const auto values = field.flat();
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+void ContinuousContact::begin(const ContactTimes& times) {
+  set_thickness(times.end);
+  starts_before_ = starts_;
+  paths_.clear();
+  bool all_rest = true;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    poses_[k] = starts_[k];
+    end_poses_[k] = pose_in_transition(obstacles_, transitions_, k, times.end);
+    const Obstacle& obstacle = obstacles_[k];
+    const Vec3 spun = obstacle.keyframes.empty() ? Vec3(times.step * obstacle.spin) : Vec3(Vec3::Zero());
+    paths_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k], spun);
+    all_rest = all_rest && paths_[k].rests();
+  }
+  starts_ = end_poses_;
+  part_ = all_rest ? 1 : 0;
+  was_rebased_ = false;
+  radius_scale_.assign(position_.size(), 1.0);
+  touches_.clear();
+  substep_ = 0, work_count_ = 0, has_moved_ = false;
+  substeps_ = substeps_for(bodies_, paths_, mean_edge_);
+  if (substeps_ > 1) whole_paths_ = paths_;
+}
+
+/// Whether anything can come near in a step of several substeps, by bounding boxes.
+bool ContinuousContact::may_come_near() const {
+  if (full_self_thickness_ > 0) return true;
+  Bounds cloth;
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    cloth.add(bounds_of(Vec3(position_[i]), Vec3(target_position_[i])));
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    if (comes_near(bodies_[k], whole_paths_[k], cloth, thickness_)) return true;
+  return false;
+}
+
+/// The target moves by an even share of the integrator's displacement, from the last substep's target.
+void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& from,
+                                      const Vec3Field& integrated) {
+  substep_ = substep;
+  const double share = 1 / static_cast<double>(substeps_);
+  if (substep == 0) target_position_ = from;
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    target_position_.add(i, share * (integrated[i] - from[i]));
+  free_position_ = target_position_;
+  was_rebased_ = was_rebased_ || substep > 0;
+  substep_from_ = position_;
+  radius_scale_.assign(position_.size(), 1.0);
+  bool all_rest = true;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    end_poses_[k] =
+        whole_paths_[k].at(substep + 1 == substeps_ ? 1 : share * static_cast<double>(substep + 1));
+    paths_[k] = PoseInterpolation(bodies_[k].pivot, poses_[k], end_poses_[k]);
+    all_rest = all_rest && paths_[k].rests();
+  }
+  part_ = all_rest ? 1 : 0;
+  find_pairs();
+}
+
+/// States that are not finite are ignored: the run stops at them.
+bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state) {
+  if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
+  free_position_ = target_position_ = state.position;
+  position_ = from;
+  begin(times);
+  return substeps_ == 1 ? find_pairs() : may_come_near();
+}
+
+ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
+                                       const ContactTimes& times, ClothState& state,
+                                       const VelocityCoupling& coupling) {
+  ContactReport report;
+  RoundsEnd end = RoundsEnd::arrived;
+  if (substeps_ == 1) end = go_rounds(system, from, times.step, report);
+  const double substep_time = times.step / static_cast<double>(substeps_);
+  for (std::int64_t k = 0; substeps_ > 1 && k < substeps_ && end == RoundsEnd::arrived; ++k) {
+    begin_substep(k, from, state.position);
+    end = go_rounds(system, substep_from_, substep_time, report);
+  }
+  if (end == RoundsEnd::interrupted) {
+    starts_ = starts_before_;
+    report.interrupted = true;
+    return report;
+  }
+  if (end != RoundsEnd::arrived) report.pinch = pinch(system);
+  report.exhausted = end == RoundsEnd::exhausted;
+  if (substeps_ > 1) forget_overtaken_touches(from, times.step);
+  if (!has_moved_ && touches_.empty()) return report;
+  report.acted = true;
+  report.pairs = pairs_.size();
+  report.contacts = count_touched();
+  integrated_position_ = state.position;
+  state.position = position_;
+  solve_velocities(system, {from, times.step}, coupling, state, report);
+  return report;
+}
+
+/// Moves cloth and obstacles to the end of a substep of `step` seconds that began at `from`.
+ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& system, const Vec3Field& from,
+                                                          double step, ContactReport& report) {
+  int stuck = 0, rounds_at_rest = 0, idle = 0;
+  double least_left = infinity;
+  const double arrived = arrived_length();
+  while (true) {
+    if (stop_test_ && stop_test_()) return RoundsEnd::interrupted;
+    ++report.rounds;
+    work_count_ += static_cast<double>(pairs_.size() + position_.size());
+    if (!is_separated_) separate_all();
+    is_separated_ = false;
+    solve_target(system, from);
+    keep_touches(step);
+    const Vec3Field before = position_;
+    const double left = move_cloth();
+    has_moved_ = has_moved_ || left > 0;
+    const bool is_exhausted = work_count_ > most_work_of(position_.size());
+    if (part_ < 1) {
+      const double advance = advance_obstacles();
+      if (part_ < 1) free_position_ = target_position_, was_rebased_ = true;
+      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
+      if (stuck > most_rounds_stuck) return RoundsEnd::pinched;
+      if (part_ < 1 && is_exhausted) return RoundsEnd::exhausted;
+    }
+    if (part_ == 1) {
+      if (left <= arrived || ++rounds_at_rest > most_rounds_at_rest || is_exhausted) break;
+      idle = left < progress_part * least_left ? 0 : idle + 1;
+      least_left = std::min(least_left, left);
+      if (idle > most_rounds_idle) break;
+    }
+    if (reached_bounds_) find_pairs();
+  }
+  const bool is_last = substeps_ == 1 || substep_ + 1 == substeps_;
+  return work_count_ > most_work_of(position_.size()) && !is_last ? RoundsEnd::exhausted : RoundsEnd::arrived;
+}
+
+/// With several substeps a particle's velocity follows from its last substep with a contact impulse, and from
+/// the obstacle's velocity in that substep.
+void ContinuousContact::forget_overtaken_touches(const Vec3Field& from, double step) {
+  std::vector<std::int64_t> last(position_.size(), -1);
+  const auto any_of = [](const ContactConstraint& contact, const auto& test) {
+    for (int k = 0; k < contact.count; ++k)
+      if (contact.weight[at(k)] != 0 && test(at(contact.particle[at(k)]))) return true;
+    return false;
+  };
+  for (const Touch& touch : touches_)
+    any_of(touch.contact, [&](std::size_t i) {
+      if (touch.contact.normal_impulse > 0) last[i] = std::max(last[i], touch.substep);
+      return false;
+    });
+  std::erase_if(touches_, [&](const Touch& touch) {
+    return !any_of(touch.contact, [&](std::size_t i) { return last[i] == touch.substep; });
+  });
+  for (Touch& touch : touches_) touch.contact.rest = touch.contact.point(from) + step * touch.velocity;
+}
+
+double ContinuousContact::furthest_move(const Vec3Field& before) const {
+  double furthest = 0;
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    furthest = std::max(furthest, (position_[i] - before[i]).norm());
+  return furthest;
+}
+
+}  // namespace cloth

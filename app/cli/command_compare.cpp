@@ -12,12 +12,24 @@
 #include "compare/comparison_report.h"
 #include "console.h"
 #include "integrators/registry.h"
-#include "io/run_folder.h"
 #include "progress.h"
 #include "simulation/memory_estimate.h"
+#include "studies.h"
 
 namespace clothlab::cli {
 namespace {
+
+struct CompareArguments {
+  std::string file;   ///< or a built-in comparison
+  std::string scene;  ///< without a file: this scene, a pane for each of `methods`
+  std::vector<std::string> methods;
+  std::vector<std::string> settings;
+  std::optional<double> duration;  ///< s
+  std::string reference;           ///< empty: the comparison's own
+  std::string folder;
+  int threads = 1;
+  bool list = false, json = false;
+};
 
 struct LoadedComparison {
   std::optional<cloth::Comparison> comparison;
@@ -45,36 +57,17 @@ std::vector<std::string> settings_of(const CompareArguments& arguments) {
 LoadedComparison load_file(const CompareArguments& arguments) {
   const auto overrides = parse_settings(settings_of(arguments));
   if (!overrides) return {std::nullopt, bad_input};
-  std::string text;
-  std::error_code error;
   const cloth::BuiltinComparison* builtin = cloth::find_builtin_comparison(arguments.file);
-  const bool is_file = std::filesystem::exists(arguments.file, error) &&
-                       !(builtin && std::filesystem::is_directory(arguments.file, error));
-  if (is_file) {
-    if (const auto failure = cloth::read_text_file(arguments.file, text))
-      return {std::nullopt, report(*failure)};
-  } else if (builtin) {
-    text = builtin->text;
-  } else {
-    say(
-        fmt::format("{}: there is neither a file nor a built-in comparison of this name; 'clothlab-cli "
-                    "compare --list' lists the built-in ones",
-                    arguments.file));
-    return {std::nullopt, io_failed};
-  }
-  cloth::ComparisonReading reading = cloth::read_comparison(text, arguments.file, *overrides);
+  const NamedText named =
+      read_named(arguments.file, builtin ? &builtin->text : nullptr, "comparison", "compare --list");
+  if (named.exit_code != done) return {std::nullopt, named.exit_code};
+  cloth::ComparisonReading reading = cloth::read_comparison(named.text, arguments.file, *overrides);
   if (!reading.comparison) return {std::nullopt, report(reading.problems)};
   return {std::move(reading.comparison), done};
 }
 
 /// `--scene S --methods a,b`: a pane for each method, nothing else differs.
 LoadedComparison from_methods(const CompareArguments& arguments) {
-  const auto& known = cloth::integrator_names();
-  for (const std::string& method : arguments.methods)
-    if (std::find(known.begin(), known.end(), method) == known.end()) {
-      say(fmt::format("--methods: \"{}\" is not a method; known are {}", method, fmt::join(known, ", ")));
-      return {std::nullopt, bad_input};
-    }
   if (arguments.methods.size() < cloth::least_panes || arguments.methods.size() > cloth::most_panes) {
     say(fmt::format("--methods: {} given; a comparison has {} to {}", arguments.methods.size(),
                     cloth::least_panes, cloth::most_panes));
@@ -109,7 +102,7 @@ std::string command_of(const CompareArguments& arguments) {
     text += " " + arguments.file;
   else
     text += fmt::format(" --scene {} --methods {}", arguments.scene, fmt::join(arguments.methods, ","));
-  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  text += settings_text(arguments.settings);
   if (arguments.duration) text += fmt::format(" --duration {}", *arguments.duration);
   if (!arguments.reference.empty()) text += " --reference " + arguments.reference;
   return text + " --out DIR";
@@ -146,8 +139,6 @@ int finish(const CompareArguments& arguments, cloth::ResultFolder& folder, cloth
   return run.rate_is_kept() ? done : rate_not_kept;
 }
 
-}  // namespace
-
 int compare(const CompareArguments& arguments) {
   if (arguments.list) return list_comparisons(arguments.json);
   const LoadedComparison loaded = load(arguments);
@@ -182,6 +173,40 @@ int compare(const CompareArguments& arguments) {
                                              .results = folder.is_open() ? &folder : nullptr});
   }
   return finish(arguments, folder, run);
+}
+
+}  // namespace
+
+void add_compare(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "compare",
+      "Two to four methods, steps or values on one scene, in lock step: differences and a ranking", compare);
+  CLI::Option* file =
+      command.add_option("comparison", arguments.file, "A .compare.json file or a built-in comparison");
+  CLI::Option* scene = command.add_option("--scene", arguments.scene,
+                                          "Without a file: this scene, a pane for each of --methods");
+  CLI::Option* methods = add_names(command, "--methods", arguments.methods,
+                                   "Two to four methods, e.g. verlet,rk4", cloth::integrator_names());
+  scene->needs(methods)->excludes(file);
+  methods->needs(scene);
+  add_settings(command, arguments.settings);
+  command.add_option("--duration", arguments.duration, "Simulated time in s, instead of the scene's")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--reference", arguments.reference,
+                     "What differences are measured from: the name of a pane, controlled (the shared scene "
+                     "under error control) or none");
+  add_path(command, "--out", arguments.folder,
+           "Folder for A.csv, B.csv, ..., compare.csv, comparison.json, summary.json, compare.svg and "
+           "report.html; made if missing. A comparison is one run: after an interruption the same command "
+           "begins anew");
+  command
+      .add_option("--threads", arguments.threads,
+                  "Panes that step at the same time; with more than one, costs contain what they take from "
+                  "each other")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command.add_flag("--list", arguments.list, "List the built-in comparisons");
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

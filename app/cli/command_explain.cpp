@@ -16,6 +16,12 @@
 namespace clothlab::cli {
 namespace {
 
+struct ExplainArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  bool json = false;
+};
+
 using json = nlohmann::ordered_json;
 
 struct MethodLimit {
@@ -166,13 +172,23 @@ std::string to_json(const Explanation& e) {
   return root.dump(2) + "\n";
 }
 
-}  // namespace
-
 int explain(const ExplainArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   const Explanation explanation = explain_scene(*loaded.scene);
   return print(arguments.json ? to_json(explanation) : to_text(explanation));
+}
+
+}  // namespace
+
+void add_explain(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "explain",
+      "The stages a scene is run with, what was left out and why, and each method's stable time step",
+      explain);
+  add_scene(command, arguments.scene)->required();
+  add_settings(command, arguments.settings);
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

@@ -6,6 +6,11 @@
 #include "io/obj_writer.h"
 
 namespace clothlab::cli {
+namespace {
+
+struct MeshArguments {
+  std::string name;
+};
 
 int mesh(const MeshArguments& arguments) {
   if (arguments.name.empty()) {
@@ -21,6 +26,14 @@ int mesh(const MeshArguments& arguments) {
     return bad_input;
   }
   return print(cloth::obj_text(found->make(), found->title));
+}
+
+}  // namespace
+
+void add_mesh(Program& program) {
+  auto [command, arguments] =
+      add_command(program, "mesh", "List the built-in meshes, or print one as an OBJ file", mesh);
+  command.add_option("name", arguments.name, "The mesh to print");
 }
 
 }  // namespace clothlab::cli

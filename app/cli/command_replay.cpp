@@ -5,13 +5,22 @@
 
 #include "commands.h"
 #include "console.h"
-#include "io/run_folder.h"
+#include "io/machine.h"
+#include "io/text_file.h"
 #include "progress.h"
+#include "simulation/run_summary.h"
 #include "simulation/session_json.h"
 #include "simulation/time_step.h"
 
 namespace clothlab::cli {
 namespace {
+
+struct ReplayArguments {
+  std::string session;
+  std::string folder;
+  double until = std::numeric_limits<double>::infinity();  ///< s
+  bool json = false;
+};
 
 /// What the replay's end says of the session's. A difference is told on standard error.
 std::string agreement_text(const cloth::Session& session, const cloth::ReplayResult& result) {
@@ -64,8 +73,6 @@ void say_what_went_wrong(const cloth::Session& session, const cloth::ReplayResul
         session.version.empty() ? "unknown" : session.version, cloth::version()));
 }
 
-}  // namespace
-
 int replay(const ReplayArguments& arguments) {
   std::string text;
   if (const auto error = cloth::read_text_file(arguments.session, text)) return report(*error);
@@ -100,6 +107,19 @@ int replay(const ReplayArguments& arguments) {
   const int printed =
       print(arguments.json ? result_json(session, result) : result_text(session, result, arguments.folder));
   return printed == done ? exit_code_of(result) : printed;
+}
+
+}  // namespace
+
+void add_replay(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "replay", "Carry out a saved session again and compare its end, to the bit", replay);
+  command.add_option("session", arguments.session, "A session file")->required();
+  add_path(command, "--out", arguments.folder,
+           "Folder for scene.json, record.csv, final_state.csv and summary.json; made if missing");
+  command.add_option("--until", arguments.until, "End at the step nearest to this time in s")
+      ->check(CLI::NonNegativeNumber);
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

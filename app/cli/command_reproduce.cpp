@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,13 @@
 
 namespace clothlab::cli {
 namespace {
+
+struct ReproduceArguments {
+  std::string folder;
+  std::vector<std::string> only;
+  bool overwrite = false;  ///< an unfinished reproduction of other parts
+  bool json = false;
+};
 
 std::string result_json(const cloth::ReproduceResult& result, const std::string& folder) {
   nlohmann::ordered_json document{{"status", result.stopped ? "stopped" : "finished"}, {"folder", folder}};
@@ -32,8 +40,6 @@ std::string result_text(const cloth::ReproduceResult& result, const std::string&
   }
   return text + fmt::format("{}: {}/report.html\n", result.stopped ? "stopped" : "finished", folder);
 }
-
-}  // namespace
 
 int reproduce(const ReproduceArguments& arguments) {
   listen_for_stop();
@@ -61,6 +67,21 @@ int reproduce(const ReproduceArguments& arguments) {
       print(arguments.json ? result_json(result, arguments.folder) : result_text(result, arguments.folder));
   if (printed != done) return printed;
   return result.stopped ? interrupted : done;
+}
+
+}  // namespace
+
+void add_reproduce(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "reproduce",
+      "Measure the source report's figures, its Table 1 and its errata; one report.html", reproduce);
+  add_path(command, "--out", arguments.folder, "Folder for report.html and its pictures")->required();
+  add_names(
+      command, "--only", arguments.only,
+      fmt::format("Only these parts, separated by commas: {}", fmt::join(cloth::reproduce_parts(), ", ")),
+      cloth::reproduce_parts());
+  add_overwrite(command, arguments.overwrite);
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

@@ -9,6 +9,11 @@
 namespace clothlab::cli {
 namespace {
 
+struct ScenesArguments {
+  std::string name;
+  bool json = false;
+};
+
 int print_one(const ScenesArguments& arguments) {
   const cloth::BuiltinScene* scene = cloth::find_builtin_scene(arguments.name);
   if (scene) return print(scene->text);
@@ -16,8 +21,6 @@ int print_one(const ScenesArguments& arguments) {
                   arguments.name));
   return bad_input;
 }
-
-}  // namespace
 
 int scenes(const ScenesArguments& arguments) {
   if (!arguments.name.empty()) return print_one(arguments);
@@ -29,6 +32,15 @@ int scenes(const ScenesArguments& arguments) {
     text += fmt::format("{:<20} {}\n", scene.name, title);
   }
   return print(arguments.json ? nlohmann::ordered_json{{"scenes", list}}.dump(2) + "\n" : text);
+}
+
+}  // namespace
+
+void add_scenes(Program& program) {
+  auto [command, arguments] =
+      add_command(program, "scenes", "List the built-in scenes, or print one", scenes);
+  command.add_option("name", arguments.name, "The scene to print");
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

@@ -6,12 +6,33 @@
 
 namespace clothlab::cli {
 
-int schema(bool of_comparison) {
-  return print(of_comparison ? cloth::comparison_schema() : cloth::scene_schema());
+namespace {
+
+struct SchemaArguments {
+  bool of_comparison = false, json = false;  ///< a schema is JSON, asked for or not
+};
+
+int schema(const SchemaArguments& arguments) {
+  return print(arguments.of_comparison ? cloth::comparison_schema() : cloth::scene_schema());
 }
 
-int parameters() {
+struct NoArguments {};
+
+int parameters(const NoArguments&) {
   return print(cloth::reference_page());
+}
+
+}  // namespace
+
+void add_schema(Program& program) {
+  auto [command, arguments] =
+      add_command(program, "schema", "Print the JSON Schema of the scene file", schema);
+  command.add_flag("--comparison", arguments.of_comparison, "Of the comparison file instead");
+  add_json(command, arguments.json);
+}
+
+void add_parameters(Program& program) {
+  add_command(program, "parameters", "Print the reference page of all parameters (Markdown)", parameters);
 }
 
 }  // namespace clothlab::cli

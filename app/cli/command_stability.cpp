@@ -1,44 +1,40 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "commands.h"
-#include "console.h"
 #include "integrators/registry.h"
-#include "io/run_folder.h"
-#include "progress.h"
 #include "studies.h"
 #include "study/stability_report.h"
-#include "study/study_recorder.h"
 
 namespace clothlab::cli {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+struct StabilityArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::string x, y;                  ///< PATH=LOW:HIGH:COUNT[:log]; empty: time step over stiffness
+  std::vector<std::string> methods;  ///< empty: those with a limit
+  double periods = 200;
+  int most_steps = 20000;
+  bool full_size = false;
+  std::string folder;
+  bool overwrite = false;  ///< an unfinished study of other inputs
+  bool json = false;
+};
 
 /// Fills in axes and methods, or says what is wrong with them.
 std::vector<cloth::Problem> read_options(const StabilityArguments& arguments, const cloth::Scene& scene,
                                          cloth::StabilityOptions& options) {
-  options.methods = arguments.methods.empty() ? cloth::methods_with_a_limit() : arguments.methods;
+  for (const std::string& method :
+       arguments.methods.empty() ? cloth::methods_with_a_limit() : arguments.methods)
+    if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end())
+      options.methods.push_back(method);
   options.criterion.periods = arguments.periods;
   options.criterion.most_steps = arguments.most_steps;
   options.full_size = arguments.full_size;
   std::vector<cloth::Problem> problems;
-  std::vector<std::string> known;
-  for (const std::string& method : options.methods) {
-    const auto& names = cloth::integrator_names();
-    if (std::find(names.begin(), names.end(), method) == names.end())
-      problems.push_back({.path = {},
-                          .value = {},
-                          .rule = fmt::format("{}: must be one of {}", method, fmt::join(names, ", ")),
-                          .place = "--methods"});
-    else if (std::find(known.begin(), known.end(), method) == known.end())
-      known.push_back(method);
-  }
-  options.methods = known;
   const auto read_axis = [&](const std::string& text, const char* option, cloth::StudyAxis& axis) {
     const auto parsed = cloth::parse_axis(text, option);
     if (const auto* problem = std::get_if<cloth::Problem>(&parsed))
@@ -54,8 +50,7 @@ std::vector<cloth::Problem> read_options(const StabilityArguments& arguments, co
 }
 
 std::string command_text(const StabilityArguments& arguments) {
-  std::string text = "clothlab-cli stability " + arguments.scene;
-  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  std::string text = "clothlab-cli stability " + arguments.scene + settings_text(arguments.settings);
   if (!arguments.x.empty()) text += " --x '" + arguments.x + "'";
   if (!arguments.y.empty()) text += " --y '" + arguments.y + "'";
   if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
@@ -67,8 +62,6 @@ std::string command_text(const StabilityArguments& arguments) {
   return text + " --out DIR";
 }
 
-}  // namespace
-
 int stability(const StabilityArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
@@ -79,39 +72,52 @@ int stability(const StabilityArguments& arguments) {
     if (const int refused = refused_for_memory(*loaded.scene, options.methods); refused != done)
       return refused;
 
-  listen_for_stop();
-  cloth::StudyRecorder recorder;
-  const cloth::StudyTable plan = cloth::plan_stability_map(*loaded.scene, options);
-  const std::string command = command_text(arguments);
-  if (const auto error =
-          recorder.begin(arguments.folder, plan, {command, {arguments.scene}, arguments.overwrite}))
-    return report(*error);
-  say_what_goes_on(recorder);
-
-  const auto start = std::chrono::steady_clock::now();
-  cloth::StabilityMap map;
-  std::optional<cloth::IoError> failure;
-  {
-    Progress progress;
-    if (recorder.earlier()) options.earlier = &std::get<cloth::StabilityMap>(*recorder.earlier());
-    options.partial = [&](const cloth::StabilityMap& so_far) {
-      if (!failure) failure = recorder.keep(so_far);
-    };
-    options.progress = [&](double part) {
-      progress.show(part, "stability map");
-      return !failure && !stop_is_requested();
-    };
-    map = cloth::run_stability_map(*loaded.scene, options);
-  }
-  const double wall = seconds_since(start);
-  if (!failure) failure = recorder.end(map, wall);
-  if (failure) return report(*failure);
+  const cloth::Scene& scene = *loaded.scene;
+  const auto made =
+      make_study(cloth::plan_stability_map(scene, options), options,
+                 {arguments.folder, command_text(arguments), arguments.scene, arguments.overwrite},
+                 [&](const cloth::StabilityOptions& all) { return cloth::run_stability_map(scene, all); });
+  if (const int* failed = std::get_if<int>(&made)) return *failed;
+  const auto& [map, wall] = std::get<0>(made);
   const int printed =
       print(arguments.json ? cloth::stability_json(map)
                            : cloth::stability_text(map) +
                                  fmt::format("{:.3g} s; results in {}\n", wall, arguments.folder));
   if (printed != done) return printed;
   return map.complete ? done : interrupted;
+}
+
+}  // namespace
+
+void add_stability(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "stability",
+      "Map where each method is stable over two parameters, with the predicted limits over it", stability);
+  add_scene(command, arguments.scene)->required();
+  add_settings(command, arguments.settings);
+  command.add_option("--x", arguments.x,
+                     "PATH=LOW:HIGH:COUNT or PATH=LOW:HIGH:COUNT:log; without it the time step around the "
+                     "predicted limits");
+  command.add_option("--y", arguments.y,
+                     "Likewise; without it springs.*, all stiffnesses together, a tenth to ten times the "
+                     "scene's. springs.* is the structural stiffness, shear and flexion in proportion");
+  add_names(command, "--methods", arguments.methods,
+            "Methods, separated by commas; without it all that have a limit", cloth::integrator_names());
+  command.add_option("--periods", arguments.periods, "Length of a run in periods of the fastest motion")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  command
+      .add_option("--most-steps", arguments.most_steps,
+                  "After so many steps a run ends, however long it should last")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  command.add_flag("--full-size", arguments.full_size,
+                   "Run the whole grid; without it larger ones are run with 16 x 16 of the same particles");
+  add_path(command, "--out", arguments.folder,
+           "Folder for stability.csv, stability.svg, study.json and report.html; made if missing")
+      ->required();
+  add_overwrite(command, arguments.overwrite);
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

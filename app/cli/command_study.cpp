@@ -5,6 +5,12 @@
 #include "study/study_folder.h"
 
 namespace clothlab::cli {
+namespace {
+
+struct StudyArguments {
+  std::string folder;
+  bool json = false, csv = false;
+};
 
 int study(const StudyArguments& arguments) {
   const cloth::StudyReading reading = cloth::read_study(arguments.folder);
@@ -19,6 +25,17 @@ int study(const StudyArguments& arguments) {
       fmt::format("{}: {}{}\n{}\n\n", cloth::kind_of(table), cloth::title_of(table),
                   cloth::is_complete(table) ? "" : " (stopped before its end)", reading.study->command);
   return print(head + cloth::study_text(table));
+}
+
+}  // namespace
+
+void add_study(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "study",
+      "Print the table of a study's folder, whether the command line or the window wrote it", study);
+  command.add_option("folder", arguments.folder, "A folder with a study.json")->required();
+  CLI::Option* json = add_json(command, arguments.json);
+  command.add_flag("--csv", arguments.csv, "Print every run as CSV")->excludes(json);
 }
 
 }  // namespace clothlab::cli

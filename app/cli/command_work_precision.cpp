@@ -1,34 +1,27 @@
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <chrono>
+#include <fmt/ranges.h>
 
 #include "commands.h"
-#include "console.h"
 #include "integrators/registry.h"
-#include "io/run_folder.h"
-#include "progress.h"
 #include "studies.h"
-#include "study/study_recorder.h"
 #include "study/work_precision_tables.h"
 
 namespace clothlab::cli {
 namespace {
 
-/// True if every method is known; says which are otherwise.
-bool are_known(const std::vector<std::string>& methods) {
-  const auto& names = cloth::integrator_names();
-  for (const std::string& method : methods)
-    if (std::find(names.begin(), names.end(), method) == names.end()) {
-      say(fmt::format("--methods: \"{}\" is not a method; known are {}", method, fmt::join(names, ", ")));
-      return false;
-    }
-  return true;
-}
+struct WorkPrecisionArguments {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::vector<std::string> methods;  ///< empty: all
+  std::optional<double> horizon;     ///< s
+  int repeats = 5;
+  std::string folder;
+  bool overwrite = false;  ///< an unfinished study of other inputs
+  bool json = false;
+};
 
 std::string command_of(const WorkPrecisionArguments& arguments) {
-  std::string text = "clothlab-cli work-precision " + arguments.scene;
-  for (const std::string& setting : arguments.settings) text += " --set '" + setting + "'";
+  std::string text = "clothlab-cli work-precision " + arguments.scene + settings_text(arguments.settings);
   if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
   if (arguments.horizon) text += fmt::format(" --horizon {}", *arguments.horizon);
   if (arguments.repeats != WorkPrecisionArguments{}.repeats)
@@ -36,50 +29,26 @@ std::string command_of(const WorkPrecisionArguments& arguments) {
   return text + " --out DIR";
 }
 
-}  // namespace
-
 int work_precision(const WorkPrecisionArguments& arguments) {
-  if (!are_known(arguments.methods)) return bad_input;
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
-
+  const cloth::Scene& scene = *loaded.scene;
   const auto& methods = arguments.methods.empty() ? cloth::integrator_names() : arguments.methods;
   if (arguments.horizon)
-    if (const auto rule = cloth::broken_horizon_rule(*loaded.scene, methods, *arguments.horizon))
+    if (const auto rule = cloth::broken_horizon_rule(scene, methods, *arguments.horizon))
       return report({{"", "", *rule, fmt::format("--horizon {}", *arguments.horizon), 0, 0}});
-  if (const int refused = refused_for_memory(*loaded.scene, methods); refused != done) return refused;
+  if (const int refused = refused_for_memory(scene, methods); refused != done) return refused;
 
-  listen_for_stop();
   cloth::WorkPrecisionOptions options;
   options.methods = arguments.methods;
   options.horizon = arguments.horizon;
   options.repeats = arguments.repeats;
-  cloth::StudyRecorder recorder;
-  std::optional<cloth::IoError> failure;
-  if (!arguments.folder.empty()) {
-    const cloth::StudyTable plan = cloth::plan_work_precision(*loaded.scene, options);
-    failure = recorder.begin(arguments.folder, plan,
-                             {command_of(arguments), {arguments.scene}, arguments.overwrite});
-    if (failure) return report(*failure);
-    say_what_goes_on(recorder);
-    if (recorder.earlier()) options.earlier = &std::get<cloth::WorkPrecision>(*recorder.earlier());
-    options.partial = [&](const cloth::WorkPrecision& so_far) {
-      if (!failure) failure = recorder.keep(so_far);
-    };
-  }
-  const auto start = std::chrono::steady_clock::now();
-  cloth::WorkPrecision study;
-  {
-    Progress bar;
-    options.progress = [&](const cloth::StudyProgress& progress) {
-      bar.show(progress.fraction, progress.text);
-      return !failure && !stop_is_requested();
-    };
-    study = cloth::study_work_precision(*loaded.scene, options);
-  }
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (!failure && recorder.is_open()) failure = recorder.end(study, wall.count());
-  if (failure) return report(*failure);
+  const auto made = make_study(
+      cloth::plan_work_precision(scene, options), options,
+      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite},
+      [&](const cloth::WorkPrecisionOptions& all) { return cloth::study_work_precision(scene, all); });
+  if (const int* failed = std::get_if<int>(&made)) return *failed;
+  const cloth::WorkPrecision& study = std::get<0>(made).table;
   const bool has_reference = study.reference.failure.empty();
   if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
   std::string text = arguments.json ? cloth::work_precision_json(study) : cloth::work_precision_text(study);
@@ -87,6 +56,28 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   if (const int printed = print(text); printed != done) return printed;
   if (study.stopped) return interrupted;
   return has_reference ? done : diverged;
+}
+
+}  // namespace
+
+void add_work_precision(Program& program) {
+  auto [command, arguments] = add_command(
+      program, "work-precision", "Error against run time of every method on a scene", work_precision);
+  add_scene(command, arguments.scene)->required();
+  add_settings(command, arguments.settings);
+  add_names(command, "--methods", arguments.methods, "Only these methods, e.g. verlet,rk4",
+            cloth::integrator_names());
+  command
+      .add_option("--horizon", arguments.horizon, "Simulated time in s; chosen from the scene if not given")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--repeats", arguments.repeats, "Timed repeats of each run")
+      ->check(CLI::Range(5, 1000))
+      ->capture_default_str();
+  add_path(command, "--out", arguments.folder,
+           "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg, study.json and "
+           "report.html; made if missing");
+  add_overwrite(command, arguments.overwrite);
+  add_json(command, arguments.json);
 }
 
 }  // namespace clothlab::cli

@@ -11,19 +11,15 @@
 
 #include "io/printable.h"
 #include "io/process.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/memory_estimate.h"
+#include "simulation/run_summary.h"
 
 namespace clothlab::cli {
 
 void write_error(const std::string& text) {
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t part = ::write(STDERR_FILENO, text.data() + done, text.size() - done);
-    if (part < 0 && errno != EINTR) return;  // there is nobody left to tell
-    if (part > 0) done += static_cast<std::size_t>(part);
-  }
+  cloth::write_bytes(STDERR_FILENO, text);  // where that fails there is nobody left to tell
 }
 
 void say(const std::string& message) {
@@ -107,26 +103,33 @@ int run_program(const std::function<int()>& command) {
   }
 }
 
+NamedText read_named(const std::string& name, const std::string* built_in, const char* what,
+                     const char* lister) {
+  std::error_code error;
+  NamedText found;
+  found.is_file =
+      std::filesystem::exists(name, error) && !(built_in && std::filesystem::is_directory(name, error));
+  if (found.is_file) {
+    if (const auto failure = cloth::read_text_file(name, found.text)) found.exit_code = report(*failure);
+  } else if (built_in) {
+    found.text = *built_in;
+  } else {
+    say(
+        fmt::format("{}: there is neither a file nor a built-in {} of this name; 'clothlab-cli {}' lists the "
+                    "built-in ones",
+                    name, what, lister));
+    found.exit_code = io_failed;
+  }
+  return found;
+}
+
 LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings) {
   const auto overrides = parse_settings(settings);
   if (!overrides) return {std::nullopt, bad_input};
-  std::string text;
-  std::error_code error;
   const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name);
-  // A folder of results may well have the name of the scene that it came from.
-  const bool is_file =
-      std::filesystem::exists(name, error) && !(builtin && std::filesystem::is_directory(name, error));
-  if (is_file) {
-    if (const auto failure = cloth::read_text_file(name, text)) return {std::nullopt, report(*failure)};
-  } else if (builtin) {
-    text = builtin->text;
-  } else {
-    say(fmt::format(
-        "{}: there is neither a file nor a built-in scene of this name; 'clothlab-cli scenes' lists the "
-        "built-in ones",
-        name));
-    return {std::nullopt, io_failed};
-  }
+  const auto [text, is_file, exit_code] =
+      read_named(name, builtin ? &builtin->text : nullptr, "scene", "scenes");
+  if (exit_code != done) return {std::nullopt, exit_code};
   cloth::MeshSource meshes;
   if (!is_file) meshes.folder = cloth::SceneFolder{.path = "", .built_in = true};
   cloth::SceneReading reading = cloth::read_scene(text, name, *overrides, meshes);

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "io/run_folder.h"
-#include "scene/problem.h"
+#include "params/problem.h"
 #include "scene/scene.h"
 #include "scene/scene_json.h"
+#include "simulation/run_summary.h"
 
 namespace clothlab::cli {
 
@@ -36,6 +36,19 @@ struct LoadedScene {
 
 /// `name` is a file or the name of a built-in scene; a file wins. `settings` are PATH=VALUE.
 LoadedScene load_scene(const std::string& name, const std::vector<std::string>& settings);
+
+/// What a name stands for: the text of a file, or of what is built in; or the exit code of a command whose
+/// message is already on standard error.
+struct NamedText {
+  std::string text;
+  bool is_file = false;
+  int exit_code = done;
+};
+
+/// A file wins, but not a folder: one of results may well have the name of the scene that it came from.
+/// `built_in` is null where nothing is; `what` says what there might be, and `lister` which command lists it.
+NamedText read_named(const std::string& name, const std::string* built_in, const char* what,
+                     const char* lister);
 
 /// `settings` are PATH=VALUE; nothing, and a message, if one is not.
 std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std::string>& settings);

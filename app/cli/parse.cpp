@@ -1,10 +1,14 @@
 #include "parse.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <sstream>
 
 #include "console.h"
+#include "io/machine.h"
 #include "io/printable.h"
-#include "io/run_folder.h"
 #include "kernels/instruction_set.h"
 
 namespace clothlab::cli {
@@ -35,10 +39,47 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
-CLI::Validator is_name() {
-  return CLI::Validator(
-      [](const std::string& name) { return name.empty() ? std::string("must be a name") : std::string(); },
-      "");
+CLI::Option* add_scene(CLI::App& command, std::string& scene) {
+  return command.add_option("scene", scene, "A scene file or the name of a built-in scene");
+}
+
+CLI::Option* add_settings(CLI::App& command, std::vector<std::string>& settings) {
+  return command
+      .add_option("--set", settings,
+                  "Set a parameter, PATH=VALUE, e.g. springs.structural=500; null takes a block out, e.g. "
+                  "air=null; may be repeated")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_json(CLI::App& command, bool& json) {
+  return command.add_flag("--json", json, "Give the result as one JSON object");
+}
+
+void add_overwrite(CLI::App& command, bool& overwrite) {
+  command.add_flag("--overwrite", overwrite,
+                   "Begin anew where the folder holds an unfinished study; without it that goes on if it has "
+                   "the same inputs, and is left alone if not");
+}
+
+CLI::Option* add_path(CLI::App& command, const char* option, std::string& path, const std::string& help) {
+  return command.add_option(option, path, help)
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return name.empty() ? std::string("must be a name") : std::string();
+          },
+          ""));
+}
+
+CLI::Option* add_names(CLI::App& command, const char* option, std::vector<std::string>& names,
+                       const std::string& help, const std::vector<std::string>& known) {
+  const auto problem = [known](const std::string& name) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) return std::string();
+    return fmt::format("{}: must be one of {}", name, fmt::join(known, ", "));
+  };
+  return command.add_option(option, names, help)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Validator(problem, ""));
 }
 
 }  // namespace clothlab::cli

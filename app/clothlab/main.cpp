@@ -8,7 +8,7 @@
 #include "compare/compare_window.h"
 #include "compare/comparison_files.h"
 #include "io/process.h"
-#include "io/run_folder.h"
+#include "io/machine.h"
 #include "main_window/main_window.h"
 #include "main_window/stop_signals.h"
 #include "scene/builtin_scenes.h"

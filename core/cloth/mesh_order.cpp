@@ -6,12 +6,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "geometry/at.h"
+
 namespace cloth {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Who is joined to whom, as rows of one list.
 struct Neighbours {

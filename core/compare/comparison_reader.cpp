@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "compare/comparison_json.h"
+#include "io/json_reader.h"
+#include "io/json_syntax.h"
 #include "scene/builtin_scenes.h"
-#include "scene/json_locator.h"
-#include "scene/json_syntax.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -16,69 +15,30 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-const std::set<std::string> root_keys{"format", "title", "scene", "panes", "reference"};
-const std::set<std::string> pane_keys{"name", "title", "own"};
-
-std::string shown(const json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
-  return text;
-}
+const std::vector<std::string> root_keys{"format", "title", "scene", "panes", "reference"};
+const std::vector<std::string> pane_keys{"name", "title", "own"};
 
 /// Reads own values through the reader of scenes: a pane's scene is the shared one with its values set.
-class ComparisonReader {
+class ComparisonReader : public JsonReader<json> {
  public:
   ComparisonReader(std::string place, const std::vector<Override>& overrides)
       : place_(std::move(place)), overrides_(overrides) {}
 
-  std::vector<Problem> problems;
-
   Comparison read(const json& root) {
     Comparison comparison;
-    if (!root.is_object()) {
-      problem("", root, "must be an object in braces");
-      return comparison;
-    }
+    if (!object(root, "")) return comparison;
     known_keys(root, "", root_keys);
-    if (const auto format = root.find("format"); format != root.end() && *format != comparison_format)
-      problem("format", *format, fmt::format("must be \"{}\"", comparison_format));
-    read_text(root, "title", "title", comparison.title);
-    if (const auto scene = root.find("scene"); scene != root.end())
+    format(root, comparison_format);
+    text(root, "", "title", comparison.title);
+    if (const json* scene = required(root, "", "scene", "must be given: what the panes run"))
       read_shared_scene(*scene, comparison.scene);
-    else
-      problems.push_back({"scene", "", "must be given: what the panes run", "", 0, 0});
-    if (const auto panes = root.find("panes"); panes != root.end())
+    if (const json* panes = required(root, "", "panes", "must be given: two to four panes"))
       read_panes(*panes, comparison);
-    else
-      problems.push_back({"panes", "", "must be given: two to four panes", "", 0, 0});
-    read_text(root, "reference", "reference", comparison.reference);
+    text(root, "", "reference", comparison.reference);
     return comparison;
   }
 
  private:
-  void problem(const std::string& path, const json& value, const std::string& rule) {
-    problems.push_back({path, shown(value), rule, "", 0, 0});
-  }
-
-  void known_keys(const json& from, const std::string& path, const std::set<std::string>& known) {
-    for (const auto& [key, value] : from.items())
-      if (!known.count(key))
-        problems.push_back({path + key, "",
-                            fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
-                            0});
-  }
-
-  bool read_text(const json& from, const std::string& key, const std::string& path, std::string& into) {
-    const auto value = from.find(key);
-    if (value == from.end()) return false;
-    if (value->is_string())
-      into = value->get<std::string>();
-    else
-      problem(path, *value, "must be a text in quotes");
-    return value->is_string();
-  }
-
   void read_shared_scene(const json& value, Scene& scene) {
     if (value.is_string()) {
       const BuiltinScene* builtin = find_builtin_scene(value.get<std::string>());
@@ -97,36 +57,28 @@ class ComparisonReader {
       return problem("scene", value, "must be a scene in braces or the name of a built-in one");
     }
     SceneReading reading = read_scene(scene_text_, place_, overrides_, meshes_);
-    for (Problem& problem : reading.problems) {
-      problem.path = problem.path.empty() ? "scene" : "scene." + problem.path;
-      problems.push_back(std::move(problem));
-    }
+    add_problems("scene", std::move(reading.problems));
     has_scene_ = reading.scene.has_value();
     if (has_scene_) scene = *reading.scene;
   }
 
   void read_panes(const json& value, Comparison& comparison) {
-    if (!value.is_array()) return problem("panes", value, "must be a list of two to four panes");
+    if (!list(value, "panes", "must be a list of two to four panes")) return;
     for (std::size_t i = 0; i < value.size(); ++i) {
       const std::string path = fmt::format("panes.{}", i);
       Pane& pane = comparison.panes.emplace_back();
       if (i < most_panes) pane.name = pane_names[i];
-      if (!value[i].is_object()) {
-        problem(path, value[i], "must be an object in braces");
-        continue;
-      }
-      known_keys(value[i], path + ".", pane_keys);
-      read_text(value[i], "name", path + ".name", pane.name);
-      read_text(value[i], "title", path + ".title", pane.title);
-      if (const auto own = value[i].find("own"); own != value[i].end())
-        read_own(*own, path, comparison.scene, pane);
+      if (!object(value[i], path)) continue;
+      known_keys(value[i], path, pane_keys);
+      text(value[i], path, "name", pane.name);
+      text(value[i], path, "title", pane.title);
+      if (const json* own = member(value[i], "own")) read_own(*own, path, comparison.scene, pane);
     }
   }
 
   void read_own(const json& value, const std::string& path, const Scene& shared, Pane& pane) {
-    if (!value.is_object())
-      return problem(path + ".own", value,
-                     "must be an object of parameters: {\"integrator.method\": \"rk4\"}");
+    if (!object(value, path + ".own", "must be an object of parameters: {\"integrator.method\": \"rk4\"}"))
+      return;
     std::vector<Override> settings = overrides_;
     for (const auto& [key, own] : value.items()) {
       const std::string at = path + ".own." + key;
@@ -161,10 +113,9 @@ class ComparisonReader {
       if (parameter)
         pane.own.push_back({settings[k].path, parameter->get(*reading.scene)});
       else
-        problems.push_back({path + ".own." + settings[k].path, "",
-                            "is not a parameter of the shared scene: a pane changes values, and what is not "
-                            "there is shared by all",
-                            "", 0, 0});
+        add_problem(path + ".own." + settings[k].path,
+                    "is not a parameter of the shared scene: a pane changes values, and what is not there is "
+                    "shared by all");
     }
   }
 
@@ -182,8 +133,7 @@ ComparisonReading read_comparison(const std::string& text, const std::string& pl
   if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
   const JsonLocations locations = locate_json(text);
   ComparisonReader reader(place, overrides);
-  for (const std::string& path : locations.repeated)
-    reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
+  reader.problems = locations.repetitions();
   Comparison comparison = reader.read(json::parse(text));
   if (reader.problems.empty()) reader.problems = find_problems(comparison);
   if (reader.problems.empty()) reader.problems = find_start_problems(comparison);
@@ -191,13 +141,9 @@ ComparisonReading read_comparison(const std::string& text, const std::string& pl
 
   for (Problem& problem : reader.problems) {
     if (!problem.place.empty() && problem.place != place) continue;  // an option's
-    problem.place = place;
-    const TextPosition at = locations.place_of(problem.path, problem.value.empty());
-    problem.line = at.line, problem.column = at.column;
+    locations.put_in_place(problem, place);
   }
-  std::stable_sort(reader.problems.begin(), reader.problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
+  sort_by_place(reader.problems);
   return {std::nullopt, std::move(reader.problems)};
 }
 

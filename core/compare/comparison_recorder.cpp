@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/comparison_json.h"
-#include "io/run_folder.h"
+#include "io/machine.h"
 #include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 

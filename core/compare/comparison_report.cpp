@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/comparison_json.h"
-#include "io/run_folder.h"
+#include "simulation/run_summary.h"
 #include "report/html_page.h"
-#include "report/machine.h"
+#include "io/machine.h"
 
 namespace cloth {
 namespace {

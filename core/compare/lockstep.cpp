@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
-#include <mutex>
-#include <system_error>
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "integrators/registry.h"
@@ -132,14 +132,20 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
   while (lane.going() && lane.index < index) {
     const double next = time_of(lane.index + 1);
     const auto is_there = [&] { return lane.simulation->time() > next - 0.5 * lane.simulation->time_step(); };
-    const Clock::time_point start = Clock::now();
     while (!lane.divergence && !is_there()) {
       if (may_go_on && !may_go_on()) break;
-      lane.divergence = lane.simulation->step();
+      const std::int64_t begin = lane.simulation->state().step;
+      const double step = lane.simulation->time_step();
+      const std::int64_t left = steps_beyond(lane.simulation->time(), next - 0.5 * step, step);
+      const Clock::time_point start = Clock::now();
+      lane.divergence = lane.simulation->advance(std::min(left, lane.batch_.steps()));
+      const double taken = seconds_since(start);
+      const std::int64_t steps = lane.simulation->state().step - begin;
+      lane.wall_since_ += taken;
+      lane.steps_since_ += steps;
+      lane.batch_.note(std::max<std::int64_t>(1, steps), taken);
       if (lane.simulation->interrupted()) break;
-      ++lane.steps_since_;
     }
-    lane.wall_since_ += seconds_since(start);
     if (lane.divergence)
       lane.wall += lane.wall_since_;
     else if (!is_there())

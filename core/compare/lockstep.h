@@ -22,7 +22,7 @@
 #include "compare/comparison.h"
 #include "compare/difference.h"
 #include "simulation/energy_account.h"
-#include "simulation/simulation.h"
+#include "simulation/step_batches.h"
 
 namespace cloth {
 
@@ -52,6 +52,7 @@ struct Lane {
   Scene start_;                   ///< as it was run at first
   std::int64_t steps_since_ = 0;  ///< the last common time
   double wall_since_ = 0;
+  BatchSize batch_;
 };
 
 class LockStep {
@@ -76,7 +77,8 @@ class LockStep {
   bool all_stopped() const;    ///< no pane is going
 
   /// Steps one lane to a common time, and measures it there. False if `may_go_on`, which is asked before each
-  /// step, ended it before; the next call goes on from where it stands. A lane that stopped is left alone.
+  /// batch of steps, ended it before; the next call goes on from where it stands. A lane that stopped is left
+  /// alone.
   bool advance_lane(std::size_t lane, std::int64_t index, const std::function<bool()>& may_go_on = {});
 
   /// Differences at index(). To be called at each common time, once all lanes are there.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "contact/at.h"
 #include "contact/obstacle_substeps.h"
+#include "geometry/at.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {

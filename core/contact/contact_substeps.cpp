@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/at.h"
+#include "geometry/at.h"
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_substeps.h"
 

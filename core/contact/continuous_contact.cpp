@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
-#include "contact/at.h"
 #include "contact/stagger.h"
+#include "geometry/at.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {

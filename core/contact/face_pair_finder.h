@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "contact/at.h"
 #include "contact/feature_pairs.h"
 #include "contact/slab.h"
+#include "geometry/at.h"
 
 namespace cloth {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/at.h"
+#include "geometry/at.h"
 
 namespace cloth {
 namespace {

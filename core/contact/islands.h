@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/at.h"
 #include "contact/contact_solver.h"
+#include "geometry/at.h"
 
 namespace cloth {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/at.h"
 #include "contact/face_pair_finder.h"
+#include "geometry/at.h"
 #include "kernels/in_shares.h"
 
 namespace cloth {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/at.h"
 #include "contact/continuous_contact.h"
+#include "geometry/at.h"
 
 namespace cloth {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "cloth/mesh_cloth.h"
-#include "contact/at.h"
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_body.h"
 #include "contact/obstacle_contact.h"
+#include "geometry/at.h"
 #include "geometry/box_tree.h"
 #include "geometry/triangle_intersection.h"
 

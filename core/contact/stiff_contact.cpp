@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cloth/sums.h"
-#include "contact/at.h"
+#include "geometry/at.h"
 #include "integrators/implicit/linear_choice.h"
 #include "integrators/integrator.h"
 

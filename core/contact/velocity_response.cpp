@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/at.h"
+#include "geometry/at.h"
 #include "contact/contact_work.h"
 #include "contact/continuous_contact.h"
 #include "contact/islands.h"

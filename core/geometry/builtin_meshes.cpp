@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/bunny.h"
+#include "geometry/split_mix.h"
 
 namespace cloth {
 namespace {
@@ -105,12 +106,9 @@ TriangleMesh cone_bed() {
   return ConeBed().make();
 }
 
-/// A number in [-1, 1) for each k (splitmix64, Steele et al. 2014).
+/// A number in [-1, 1) for each k.
 double scatter(std::uint64_t k) {
-  k += 0x9e3779b97f4a7c15u;
-  k = (k ^ (k >> 30)) * 0xbf58476d1ce4e5b9u;
-  k = (k ^ (k >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<double>((k ^ (k >> 31)) >> 11) * 0x1p-52 - 1;
+  return SplitMix(k).number();
 }
 
 /// A round cloth of diameter 1 m in the plane y = 0, facing up: rings of 6, 12, 18, ... vertices about its

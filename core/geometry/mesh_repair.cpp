@@ -118,13 +118,13 @@ class Tally {
   MeshFinding finding_;
 };
 
-std::string at(const Vec3& place) {
+std::string place_text(const Vec3& place) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", place.x(), place.y(), place.z());
 }
 
 std::string between(const TriangleMesh& mesh, const MeshEdge& edge) {
   return fmt::format("between vertices {} and {} near {}", edge.from, edge.to,
-                     at(0.5 * (vertex(mesh, edge.from) + vertex(mesh, edge.to))));
+                     place_text(0.5 * (vertex(mesh, edge.from) + vertex(mesh, edge.to))));
 }
 
 bool degenerate(const TriangleMesh& mesh, const Triangle& t) {
@@ -200,7 +200,7 @@ std::vector<MeshFinding> inspect(const TriangleMesh& mesh) {
     for (const int i : t) used[static_cast<std::size_t>(i)] = true;
     if (!degenerate(mesh, t)) continue;
     flat.add(static_cast<int>(k), fmt::format("triangle {} of vertices {}, {} and {} near {}", k, t[0], t[1],
-                                              t[2], at(vertex(mesh, t[0]))));
+                                              t[2], place_text(vertex(mesh, t[0]))));
   }
   for (const MeshEdge& edge : unique_edges(mesh)) {
     if (edge.triangles == 1) open.add(edge.from, between(mesh, edge));
@@ -208,7 +208,8 @@ std::vector<MeshFinding> inspect(const TriangleMesh& mesh) {
     if (edge.triangles > 2) crowded.add(edge.from, between(mesh, edge));
   }
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (!used[i]) unused.add(static_cast<int>(i), fmt::format("vertex {} at {}", i, at(mesh.vertices[i])));
+    if (!used[i])
+      unused.add(static_cast<int>(i), fmt::format("vertex {} at {}", i, place_text(mesh.vertices[i])));
 
   std::vector<MeshFinding> findings;
   for (Tally* tally : {&flat, &open, &winding, &crowded, &unused}) tally->report(findings);

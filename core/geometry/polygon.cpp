@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/at.h"
 #include "geometry/polygon_sweep.h"
 
 namespace cloth {
@@ -83,8 +84,6 @@ class EarCutter {
 
  private:
   static constexpr std::size_t looks_for_a_corner = 60, least_looks = 100'000, most_looks = 20'000'000;
-
-  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
   bool turns_left(int corner) const {
     return polygon_.turn(previous_[at(corner)], corner, next_[at(corner)]) > 0;

@@ -35,6 +35,12 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string csv_text(const CsvTable& table, const char* end) {
+  std::string text = line_of(table.header) + end;
+  for (const auto& row : table.rows) text += line_of(row) + end;
+  return text;
+}
+
 CsvTable parse_csv(const std::string& text) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> row;

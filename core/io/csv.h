@@ -39,6 +39,9 @@ struct CsvTable {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// With `end` behind each row, the header's too.
+std::string csv_text(const CsvTable& table, const char* end);
+
 /// Reads RFC 4180 text; a last line without an end counts as a row.
 CsvTable parse_csv(const std::string& text);
 

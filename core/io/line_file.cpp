@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <string_view>
+#include <utility>
 
 namespace cloth {
 namespace {
@@ -19,10 +20,6 @@ LineFile::~LineFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::optional<IoError> LineFile::failure() const {
-  return IoError{path_, std::strerror(errno)};
-}
-
 std::optional<IoError> LineFile::open(const std::filesystem::path& path) {
   return open(path, O_CREAT | O_TRUNC);
 }
@@ -30,7 +27,7 @@ std::optional<IoError> LineFile::open(const std::filesystem::path& path) {
 std::optional<IoError> LineFile::open_at_end(const std::filesystem::path& path) {
   if (auto error = open(path, 0)) return error;
   const off_t end = ::lseek(descriptor_, 0, SEEK_END);
-  if (end < 0) return failure();
+  if (end < 0) return system_error(path_);
   written_ = end;
   return std::nullopt;
 }
@@ -41,7 +38,7 @@ std::optional<IoError> LineFile::open(const std::filesystem::path& path, int fla
   written_ = lines_ = 0;
   hash_ = {};
   descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
-  if (descriptor_ < 0) return failure();
+  if (descriptor_ < 0) return system_error(path_);
   return std::nullopt;
 }
 
@@ -53,43 +50,32 @@ std::optional<IoError> LineFile::add(const std::string& line) {
 }
 
 std::optional<IoError> LineFile::flush() {
-  std::size_t done = 0;
-  while (descriptor_ >= 0 && done < pending_.size()) {
-    const ssize_t part = ::write(descriptor_, pending_.data() + done, pending_.size() - done);
-    if (part > 0) {
-      done += static_cast<std::size_t>(part);
-    } else if (part < 0 && errno != EINTR) {
-      const auto error = failure();
-      const std::size_t whole = pending_.rfind('\n', done == 0 ? 0 : done - 1);
-      if (done > 0 && whole != std::string::npos) {
-        const std::string kept = pending_.substr(0, whole + 1);
-        written_ += static_cast<std::int64_t>(kept.size());
-        lines_ += std::count(kept.begin(), kept.end(), '\n');
-        hash_.add(kept);
-      }
-      // Failing to take the line back as well leaves nothing better to do: the first error is the one to
-      // report.
-      [[maybe_unused]] const int truncated = ::ftruncate(descriptor_, written_);
-      ::lseek(descriptor_, written_, SEEK_SET);
-      pending_.clear();
-      pending_lines_ = 0;
-      return error;
-    }
+  if (descriptor_ < 0) return std::nullopt;
+  const std::string text = std::exchange(pending_, {});
+  const std::int64_t lines = std::exchange(pending_lines_, 0);
+  std::optional<IoError> error;
+  std::string_view kept = text;
+  if (const std::size_t done = write_bytes(descriptor_, text); done < text.size()) {
+    error = system_error(path_);
+    kept = kept.substr(0, kept.substr(0, done).rfind('\n') + 1);  // npos + 1 is 0
   }
-  written_ += static_cast<std::int64_t>(done);
-  lines_ += pending_lines_;
-  hash_.add(pending_);
-  pending_.clear();
-  pending_lines_ = 0;
-  return std::nullopt;
+  written_ += static_cast<std::int64_t>(kept.size());
+  lines_ += error ? std::count(kept.begin(), kept.end(), '\n') : lines;
+  hash_.add(kept);
+  if (!error) return std::nullopt;
+  // Failing to take the rest of a line back leaves nothing better to do: the first error is the one to
+  // report.
+  [[maybe_unused]] const int truncated = ::ftruncate(descriptor_, written_);
+  ::lseek(descriptor_, written_, SEEK_SET);
+  return error;
 }
 
 std::optional<IoError> LineFile::close() {
   if (descriptor_ < 0) return std::nullopt;
   auto error = flush();
   // Some things that can be written to, such as a pipe, cannot be waited for.
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS && !error) error = failure();
-  if (::close(descriptor_) != 0 && !error) error = failure();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS && !error) error = system_error(path_);
+  if (::close(descriptor_) != 0 && !error) error = system_error(path_);
   descriptor_ = -1;
   return error;
 }

@@ -3,22 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "io/file_digest.h"
 #include "io/fnv_hash.h"
+#include "io/text_file.h"
 
 namespace cloth {
-
-/// A file that could not be read or written: which, and what the system said.
-struct IoError {
-  std::filesystem::path path;
-  std::string message;
-  bool refused = false;  ///< not the system's fault: what was asked for would destroy something
-  std::string text() const { return path.string() + ": " + message; }
-};
 
 class LineFile {
  public:
@@ -47,7 +39,6 @@ class LineFile {
 
  private:
   std::optional<IoError> open(const std::filesystem::path& path, int flags);
-  std::optional<IoError> failure() const;
 
   std::filesystem::path path_;
   int descriptor_ = -1;

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "geometry/polygon.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "io/tiny_obj.h"
 
 namespace cloth {
@@ -124,7 +124,8 @@ class Scan {
   void cut_face() {
     const std::vector<Triangle> triangles = cut_polygon(vertices, corners_);
     if (triangles.empty())
-      problem = fmt::format("a face of {} corners is too entangled to be cut into triangles", corners_.size());
+      problem =
+          fmt::format("a face of {} corners is too entangled to be cut into triangles", corners_.size());
     for (const Triangle& triangle : triangles) add_face(triangle);
   }
 

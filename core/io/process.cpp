@@ -138,4 +138,9 @@ std::optional<double> available_memory() {
   return least;
 }
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
 }  // namespace cloth

@@ -35,4 +35,7 @@ Failure failure_in_hand();
 /// of its control group. Nothing where the system does not say.
 std::optional<double> available_memory();
 
+/// The machine's name; empty where the system does not tell.
+std::string host_name();
+
 }  // namespace cloth

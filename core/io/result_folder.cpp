@@ -14,7 +14,8 @@
 #include <sstream>
 #include <utility>
 
-#include "io/run_folder.h"
+#include "io/process.h"
+#include "io/text_file.h"
 
 namespace cloth {
 namespace {
@@ -151,7 +152,7 @@ bool is_at(int descriptor, const fs::path& path) {
 
 std::optional<IoError> remove_file(const fs::path& path) {
   if (::unlink(path.c_str()) == 0 || errno == ENOENT) return std::nullopt;
-  return IoError{path, std::strerror(errno)};
+  return system_error(path);
 }
 
 }  // namespace
@@ -171,10 +172,6 @@ std::optional<IoError> overwritten_input(const fs::path& output, const std::vect
                          ", and writing would replace it: give another place for the results",
                      true};
   return std::nullopt;
-}
-
-IoError ResultFolder::failure(const fs::path& path) const {
-  return {path, std::strerror(errno)};
 }
 
 void ResultFolder::look_for_old_files() {
@@ -214,7 +211,7 @@ std::optional<IoError> ResultFolder::lock(const fs::path& folder, const FolderUs
     release();
     made_list_ = !is_there(list);
     descriptor_ = ::open(list.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (descriptor_ < 0) return failure(list);
+    if (descriptor_ < 0) return system_error(list);
     if (!is_readable(list)) {
       ::close(std::exchange(descriptor_, -1));
       return IoError{list, "is not from this program", true};
@@ -235,10 +232,8 @@ std::optional<IoError> ResultFolder::lock(const fs::path& folder, const FolderUs
 std::optional<IoError> ResultFolder::note_line(const std::string& line) {
   changed_ = true;
   const std::string text = line + "\n";
-  const ssize_t written = ::write(descriptor_, text.data(), text.size());
-  if (written == static_cast<ssize_t>(text.size())) return std::nullopt;
-  if (written >= 0) errno = ENOSPC;
-  return failure(path_ / list_name);
+  if (write_bytes(descriptor_, text) == text.size()) return std::nullopt;
+  return system_error(path_ / list_name);
 }
 
 std::optional<IoError> ResultFolder::begin_anew() {
@@ -249,15 +244,13 @@ std::optional<IoError> ResultFolder::begin_anew() {
     if (std::find(index_names.begin(), index_names.end(), name) != index_names.end()) sync_folder(path_);
   }
   old_files_.clear();
-  if (::ftruncate(descriptor_, 0) != 0) return failure(path_ / list_name);
+  if (::ftruncate(descriptor_, 0) != 0) return system_error(path_ / list_name);
   return go_on();
 }
 
 std::optional<IoError> ResultFolder::go_on() {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
   if (auto error = note_line(list_format + std::string("\nkind ") + kind_)) return error;
-  if (auto error = note_line(fmt::format("process {} on {}", ::getpid(), host.data()))) return error;
+  if (auto error = note_line(fmt::format("process {} on {}", ::getpid(), host_name()))) return error;
   for (const std::string& name : old_files_) {
     files_.push_back(name);
     if (auto error = note_line("file " + name)) return error;

@@ -76,7 +76,6 @@ class ResultFolder {
  private:
   std::optional<IoError> refusal(const FolderUse& use) const;
   std::optional<IoError> note_line(const std::string& line);
-  IoError failure(const std::filesystem::path& path) const;
   void look_for_old_files();
 
   std::filesystem::path path_;

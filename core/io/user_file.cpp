@@ -5,20 +5,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <variant>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 
 namespace cloth {
 namespace {
 
 constexpr int most_links = 40;  // that Linux follows
-
-IoError failure_of(const std::filesystem::path& path, int error) {
-  return {path, std::strerror(error)};
-}
 
 /// Where a path leads, the last name included, whether or not something is there.
 std::variant<std::filesystem::path, IoError> target_of(const std::filesystem::path& path) {
@@ -30,7 +24,8 @@ std::variant<std::filesystem::path, IoError> target_of(const std::filesystem::pa
     if (error) return at;  // no link
     at = next.is_absolute() ? next : at.parent_path() / next;
   }
-  return failure_of(path, ELOOP);
+  errno = ELOOP;
+  return system_error(path);
 }
 
 const char* kind_of_file(mode_t mode) {
@@ -40,66 +35,23 @@ const char* kind_of_file(mode_t mode) {
   return "a device";
 }
 
-/// A descriptor that is closed at the end.
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags, mode_t mode = 0)
-      : number_(::open(path.c_str(), flags | O_CLOEXEC, mode)) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  bool is_open() const { return number_ >= 0; }
-  int number() const { return number_; }
-
-  /// Writes all of it to the disk. False with errno.
-  bool write(const std::string& text) {
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t part = ::write(number_, text.data() + done, text.size() - done);
-      if (part < 0 && errno != EINTR) return false;
-      if (part > 0) done += static_cast<std::size_t>(part);
-    }
-    return ::fsync(number_) == 0;
-  }
-
- private:
-  int number_;
-};
-
 /// Over what is there, which other names lead to as well. What did not go through is taken back.
 std::optional<IoError> overwrite(const std::filesystem::path& target, const std::string& text) {
   std::string before;
   if (auto error = read_text_file(target, before)) return error;
-  Descriptor file(target, O_WRONLY);
-  if (!file.is_open()) return failure_of(target, errno);
-  if (file.write(text) && ::ftruncate(file.number(), static_cast<off_t>(text.size())) == 0)
-    return std::nullopt;
-  const IoError error = failure_of(target, errno);
-  ::lseek(file.number(), 0, SEEK_SET);
-  // Failing in this as well leaves nothing better to do: the first error is the one to report.
-  [[maybe_unused]] const bool taken_back =
-      file.write(before) && ::ftruncate(file.number(), static_cast<off_t>(before.size())) == 0;
-  return error;
-}
-
-/// By a file beside it that takes its name.
-std::optional<IoError> replace(const std::filesystem::path& target, const std::string& text,
-                               const struct stat* old) {
-  std::filesystem::path draft = target;
-  draft += ".part";
-  ::unlink(draft.c_str());
-  Descriptor file(draft, O_WRONLY | O_CREAT | O_EXCL, 0666);
-  if (!file.is_open()) return failure_of(target, errno);
-  if (old) {
-    // Who may not give a file away writes one of his own; the mode comes after, since a new owner clears bits.
-    [[maybe_unused]] const int owned = ::fchown(file.number(), old->st_uid, old->st_gid);
-    ::fchmod(file.number(), old->st_mode & 07777);
+  const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) return system_error(target);
+  const auto holds = [&](const std::string& content) {
+    return write_to_disk(file, content) && ::ftruncate(file, static_cast<off_t>(content.size())) == 0;
+  };
+  std::optional<IoError> error;
+  if (!holds(text)) {
+    error = system_error(target);
+    ::lseek(file, 0, SEEK_SET);
+    // Failing in this as well leaves nothing better to do: the first error is the one to report.
+    [[maybe_unused]] const bool taken_back = holds(before);
   }
-  if (file.write(text) && ::rename(draft.c_str(), target.c_str()) == 0) return std::nullopt;
-  const IoError error = failure_of(target, errno);
-  ::unlink(draft.c_str());
+  ::close(file);
   return error;
 }
 
@@ -119,12 +71,12 @@ Found look_at(const std::filesystem::path& target) {
   } else if (::stat(target.c_str(), &found.facts) == 0) {
     found.there = true;
     if (!S_ISREG(found.facts.st_mode))
-      found.problem = IoError{target, std::string("is ") + kind_of_file(found.facts.st_mode) +
-                                          ": the result goes into a file"};
+      found.problem = IoError{
+          target, std::string("is ") + kind_of_file(found.facts.st_mode) + ": the result goes into a file"};
     else if (::access(target.c_str(), W_OK) != 0)
-      found.problem = failure_of(target, errno);
+      found.problem = system_error(target);
   } else if (errno != ENOENT) {
-    found.problem = failure_of(target, errno);
+    found.problem = system_error(target);
   }
   return found;
 }
@@ -144,7 +96,7 @@ std::optional<IoError> write_user_file(const std::filesystem::path& path, const 
   const Found found = look_at(target);
   if (found.problem) return found.problem;
   if (found.there && found.facts.st_nlink > 1) return overwrite(target, text);
-  return replace(target, text, found.there ? &found.facts : nullptr);
+  return write_text_file(target, text, found.there ? &found.facts : nullptr);
 }
 
 }  // namespace cloth

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "io/line_file.h"
+#include "io/text_file.h"
 
 namespace cloth {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "geometry/split_mix.h"
 #include "measure/spectrum.h"
 
 namespace cloth {
@@ -47,18 +48,12 @@ class ScaledLaplacian {
   Eigen::VectorXd scale_;  ///< 1/sqrt(kg); 0 where pinned
 };
 
-/// Signs that are the same everywhere (splitmix64, Steele et al. 2014), larger where springs are: a few stiff
+/// Random signs that are the same everywhere, larger where springs are: a few stiff
 /// particles among many soft ones are found soon.
 Eigen::VectorXd laplacian_start(const Eigen::VectorXd& row_bounds) {
-  std::uint64_t state = 1;
+  SplitMix random(1);
   Eigen::VectorXd start = row_bounds.cwiseProduct(row_bounds) / std::pow(row_bounds.maxCoeff(), 2);
-  for (double& value : start) {
-    std::uint64_t bits = (state += 0x9e3779b97f4a7c15u);
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-    bits ^= bits >> 31;
-    value *= static_cast<double>(bits >> 11) * 0x1p-52 - 1;
-  }
+  for (double& value : start) value *= random.number();
   return start.normalized();
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "geometry/split_mix.h"
+
 namespace cloth {
 namespace {
 
@@ -56,17 +58,11 @@ class ScaledStiffness {
   VectorXd scale_;
 };
 
-/// Numbers in [-1, 1] that are the same everywhere (splitmix64, Steele et al. 2014), 0 on pins.
+/// Numbers in [-1, 1] that are the same everywhere, 0 on pins.
 VectorXd start_vector(const VectorXd& scale) {
-  std::uint64_t state = 0;
+  SplitMix random(0);
   VectorXd start(scale.size());
-  for (double& value : start) {
-    std::uint64_t bits = (state += 0x9e3779b97f4a7c15u);
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-    bits ^= bits >> 31;
-    value = static_cast<double>(bits >> 11) * 0x1p-52 - 1;
-  }
+  for (double& value : start) value = random.number();
   return (scale.array() > 0).select(start, 0);
 }
 

@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/round_numbers.h"
+
 namespace cloth {
 namespace {
 
-constexpr float floor_opacity = 0.35F, line_opacity = 0.24F, shadow_opacity = 0.42F;
+constexpr float slope_opacity = 0.92F;
 constexpr double farther = 0.003;  // share of its distance: what lies on the floor is seen whole
 
 float smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return static_cast<float>(t * t * (3 - 2 * t));
-}
-
-/// 1, 2 or 5 times a power of ten, some 16 over `size`.
-double grid_step_for(double size) {
-  const double fine = std::max(size, 1e-6) / 16, decade = std::pow(10, std::floor(std::log10(fine)));
-  return (fine <= 2 * decade ? 2 : fine <= 5 * decade ? 5 : 10) * decade;
 }
 
 /// How much of a pixel that is `per_pixel` lines wide the lines through whole numbers cover.
@@ -36,7 +32,7 @@ struct Paint {
 Paint floor_paint(const Floor& floor, const Vec3& at, const Vec3& right, const Vec3& below) {
   const Vec3 from_middle = at - floor.middle;
   Paint paint;
-  const float fade = 1 - smoothstep(0.25, 1, from_middle.norm() / floor.reach);
+  const float fade = 1 - smoothstep(floor.is_level() ? 0.25 : 0.55, 1, from_middle.norm() / floor.reach);
   if (!(fade > 0)) return paint;
   float fine = 0, coarse = 0;
   for (const Vec3& axis : {floor.axis_u, floor.axis_v}) {
@@ -45,13 +41,12 @@ Paint floor_paint(const Floor& floor, const Vec3& at, const Vec3& right, const V
     fine = std::max(fine, line_cover(place, per_pixel));
     coarse = std::max(coarse, line_cover(place / 5, per_pixel / 5));
   }
-  static const Colour white = linear_light({0xff, 0xff, 0xff}), ink = linear_light({0x30, 0x3c, 0x4a}),
-                      dusk = linear_light({0x3c, 0x44, 0x52});
-  const float line = line_opacity * std::max(0.55F * fine, coarse);
-  const float dark = floor.shadow == nullptr ? 0 : shadow_opacity * floor.shadow->at(at.x(), at.z());
+  const float line = floor.line_opacity * std::max(0.55F * fine, coarse);
+  const float dark = floor.shadow == nullptr ? 0 : floor.shade_opacity * floor.shadow->at(at.x(), at.z());
   // Floor, then lines, then shadow, one over the other.
-  const float rest = (1 - floor_opacity) * (1 - line) * (1 - dark);
-  paint.colour = (1 - dark) * ((1 - line) * floor_opacity * white + line * ink) + dark * dusk;
+  const float rest = (1 - floor.ground_opacity) * (1 - line) * (1 - dark);
+  paint.colour = (1 - dark) * ((1 - line) * floor.ground_opacity * floor.ground + line * floor.line) +
+                 dark * floor.shade;
   paint.opacity = fade * (1 - rest);
   paint.colour /= std::max(1 - rest, 1e-6F);
   return paint;
@@ -144,7 +139,8 @@ float FloorShadow::at(double x, double z) const {
   return (1 - t) * ((1 - s) * texel[0] + s * texel[1]) + t * ((1 - s) * texel[size_] + s * texel[size_ + 1]);
 }
 
-Floor::Floor(const Vec3& on_plane, const Vec3& unit_normal, const Eigen::AlignedBox3d& extent)
+Floor::Floor(const Vec3& on_plane, const Vec3& unit_normal, const Eigen::AlignedBox3d& extent,
+             const PictureTheme& theme)
     : point(on_plane), normal(unit_normal) {
   const Vec3 about = extent.isEmpty() ? point : Vec3(extent.center());
   const double size = extent.isEmpty() ? 1 : std::max(extent.diagonal().norm(), 1e-6);
@@ -153,8 +149,14 @@ Floor::Floor(const Vec3& on_plane, const Vec3& unit_normal, const Eigen::Aligned
   axis_u = (hint - hint.dot(normal) * normal).normalized();
   axis_v = normal.cross(axis_u);
   middle = about - (about - point).dot(normal) * normal;
-  reach = 2.2 * size;
+  reach = (is_level() ? 2.2 : 1.3) * size;
   grid_step = grid_step_for(size);
+  ground = linear_light(is_level() ? theme.floor : theme.slope);
+  line = linear_light(theme.floor_line);
+  shade = linear_light(theme.floor_shadow);
+  ground_opacity = is_level() ? theme.floor_opacity : slope_opacity;
+  line_opacity = theme.line_opacity;
+  shade_opacity = theme.shadow_opacity;
 }
 
 void lay_floor(const Floor& floor, const EyeFrame& frame, SampleBand& band) {
@@ -180,6 +182,7 @@ void lay_floor(const Floor& floor, const EyeFrame& frame, SampleBand& band) {
           const double nearness = nearness_at((sx + 0.5) / n, (sy + 0.5) / n) * (1 - farther);
           if (static_cast<float>(nearness) <= band.nearness[k]) continue;
           band.colour[k] += paint.opacity * (paint.colour - band.colour[k]);
+          if (!floor.is_level() && paint.opacity > 0.5F) band.nearness[k] = static_cast<float>(nearness);
         }
       }
     }

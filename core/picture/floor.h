@@ -1,8 +1,10 @@
-// Planes: a barely tinted floor with a faint grid that fades with distance, and the soft shadow on it.
+// Planes: a barely tinted floor with a faint grid that fades with distance, and the soft shadow on it. One
+// that is not level is a sheet, or its slope would look like ground seen askew.
 #pragma once
 
 #include <span>
 
+#include "picture/picture_theme.h"
 #include "picture/rasteriser.h"
 
 namespace cloth {
@@ -35,8 +37,12 @@ struct Floor {
   double reach = 1;     ///< m
   double grid_step = 0.1;
   const FloorShadow* shadow = nullptr;
+  Colour ground, line, shade;  ///< of the plane, its grid and what lies in the shadow
+  float ground_opacity, line_opacity, shade_opacity;
 
-  Floor(const Vec3& point, const Vec3& normal, const Eigen::AlignedBox3d& extent);
+  Floor(const Vec3& point, const Vec3& normal, const Eigen::AlignedBox3d& extent, const PictureTheme& theme);
+
+  bool is_level() const { return std::abs(normal.y()) > 0.999; }
 };
 
 /// Lays the floor over the samples of a band that lie behind it.

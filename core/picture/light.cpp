@@ -9,7 +9,6 @@ namespace cloth {
 namespace {
 
 const Colour key_colour(1.00F, 0.97F, 0.92F), fill_colour(0.88F, 0.94F, 1.00F);
-constexpr float exposure = 1.05F;
 constexpr float hidden_darkness = 0.75F;  // of the key light, lost in a shadow
 
 float decoded(std::uint8_t channel) {
@@ -62,7 +61,7 @@ Rgb encoded(const Colour& linear) {
   return {encoded_channel(linear.x()), encoded_channel(linear.y()), encoded_channel(linear.z())};
 }
 
-Light::Light(const EyeFrame& frame) : eye_(frame.eye.cast<float>()) {
+Light::Light(const EyeFrame& frame, float exposure) : eye_(frame.eye.cast<float>()), exposure_(exposure) {
   const Vec3 key = Vec3(-0.20, 0.70, 0.20) - 0.35 * frame.forward - 0.65 * frame.right;
   const Vec3 fill = 0.9 * frame.right - 0.45 * frame.forward - 0.1 * frame.up;
   key_ = key.normalized().cast<float>();
@@ -90,7 +89,7 @@ Colour Light::lit(const Colour& albedo, const SeenPoint& point, float wrap, floa
   const float half_way = std::max(n.dot((to_eye + key_).normalized()), 0.0F);
   const float squared = half_way * half_way, fourth = squared * squared, eighth = fourth * fourth;
   const float highlight = reached * gloss * eighth * eighth * std::clamp(5 * facing, 0.0F, 1.0F);
-  return (exposure * (albedo.cwiseProduct(light) + highlight * key_colour)).unaryExpr(&soft_clip);
+  return (exposure_ * (albedo.cwiseProduct(light) + highlight * key_colour)).unaryExpr(&soft_clip);
 }
 
 Colour Light::shade(const PictureSurface& surface, const SeenPoint& point) const {

@@ -45,7 +45,7 @@ struct SeenPoint {
 class Light {
  public:
   /// The key light goes half way with the eye, so that folds read alike from every side.
-  explicit Light(const EyeFrame& frame);
+  Light(const EyeFrame& frame, float exposure);
 
   /// Nothing is hidden from the key light until then. `shadow` must outlive the light.
   void set_key_shadow(const KeyShadow* shadow) { hidden_ = shadow; }
@@ -61,6 +61,7 @@ class Light {
   Eigen::Vector3f eye_, key_, fill_;
   Vec3 shadow_;
   const KeyShadow* hidden_ = nullptr;
+  float exposure_;
 };
 
 }  // namespace cloth

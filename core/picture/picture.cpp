@@ -15,14 +15,8 @@ namespace {
 constexpr int most_pixels = 8192;         // either way
 constexpr double bands_along_cloth = 12;  // of the pattern, over the longer side
 constexpr double edge_cut = 0.6;          // of a cell, off a box's size
-constexpr Rgb pale_sheet{0xf4, 0xf6, 0xf8}, pale_back{0xd2, 0xda, 0xe4};
-constexpr Rgb warp{0xea, 0xd6, 0xc8}, weft{0xd0, 0x9f, 0x8e}, body{0xb9, 0xbe, 0xc5},
-    accent{0x34, 0x57, 0xd5}, white{0xff, 0xff, 0xff};
+constexpr Rgb warp{0xea, 0xd6, 0xc8}, weft{0xd0, 0x9f, 0x8e};
 const Colour back_tint(0.56F, 0.70F, 0.86F);  // the back of the cloth is duller and cooler
-
-bool is_level(const Vec3& unit_normal) {
-  return std::abs(unit_normal.y()) > 0.999;
-}
 
 void move(PictureMesh& mesh, const Pose& pose) {
   if (pose == Pose{}) return;
@@ -42,10 +36,11 @@ class Painter {
         system_(system),
         position_(position),
         options_(options),
+        theme_(*options.theme),
         width_(std::clamp(options.width, 1, most_pixels)),
         height_(std::clamp(options.height, 1, most_pixels)),
         frame_(camera, width_, height_),
-        light_(frame_),
+        light_(frame_, theme_.exposure),
         canvas_(frame_, light_, width_, height_),
         has_cloth_(system.size() > 0 && position.size() == static_cast<std::size_t>(system.size()) &&
                    system.pinned.size() == position.size()) {}
@@ -67,6 +62,7 @@ class Painter {
   const ClothSystem& system_;
   const Vec3Field& position_;
   const PictureOptions& options_;
+  const PictureTheme& theme_;
   int width_, height_;
   EyeFrame frame_;
   Light light_;
@@ -92,7 +88,7 @@ void Painter::add_obstacles() {
   // diagonal, a box by what a cell across its edge cuts off, its edges rounded.
   PictureSurface surface;
   surface.look = Look::matte;
-  surface.front = surface.back = linear_light(body);
+  surface.front = surface.back = linear_light(theme_.body);
   surface.nearer = -0.004F;
   const int matte = canvas_.add_surface(surface);
   const double cell = system_.springs.empty() ? 0 : system_.springs.front().rest_length;
@@ -127,8 +123,9 @@ void Painter::add_cloth() {
                                                  : Eigen::Vector2d(scene_.cloth.width, scene_.cloth.height);
   const Eigen::Vector2d bands = bands_along_cloth * size / std::max(size.maxCoeff(), 1e-9);
   surface.bands = {static_cast<float>(bands.x()), static_cast<float>(bands.y())};
-  surface.front = linear_light(options_.wireframe ? pale_sheet : warp);
-  surface.back = options_.wireframe ? linear_light(pale_back) : Colour(back_tint.cwiseProduct(surface.front));
+  surface.front = linear_light(options_.wireframe ? theme_.sheet : warp);
+  surface.back =
+      options_.wireframe ? linear_light(theme_.sheet_back) : Colour(back_tint.cwiseProduct(surface.front));
   if (plain && !options_.wireframe) surface.front = 0.5F * (linear_light(warp) + linear_light(weft));
   surface.front_thread = linear_light(weft);
   surface.back_thread = back_tint.cwiseProduct(surface.front_thread);
@@ -176,8 +173,8 @@ void Painter::add_spring(const SpringRun& run, int particle, double width, int s
 void Painter::add_pins() {
   PictureSurface marker;
   marker.look = Look::flat;
-  marker.front = linear_light(accent);
-  marker.back = linear_light(white);
+  marker.front = linear_light(theme_.pin);
+  marker.back = linear_light(theme_.pin_rim);
   marker.nearer = 0.01F;
   const int surface = canvas_.add_surface(marker);
   const double scale = std::max(1.0, height_ / 480.0);
@@ -226,12 +223,17 @@ void Painter::add_floors() {
     if (o.shape != Shape::plane || !o.point.allFinite() || !std::isfinite(length) || !(length > 0)) continue;
     const Pose pose = pose_of(o, options_.time);
     const Vec3 point = pose.at(o.point), normal = pose.turn * (o.normal / length);
-    floors_.emplace_back(point, normal, extent_);
-    if (is_level(normal)) level = std::max(level.value_or(point.y()), point.y());
+    floors_.emplace_back(point, normal, extent_, theme_);
+    if (floors_.back().is_level()) level = std::max(level.value_or(point.y()), point.y());
   }
-  if (!level && options_.ground && !extent_.isEmpty()) {
+  // What is not level comes first and hides what lies behind it. On a slope, unlike a wall, what falls comes
+  // to lie.
+  std::stable_partition(floors_.begin(), floors_.end(), [](const Floor& f) { return !f.is_level(); });
+  const bool catches = std::any_of(floors_.begin(), floors_.end(),
+                                   [](const Floor& f) { return std::abs(f.normal.y()) > 0.2; });
+  if (!catches && options_.ground && !extent_.isEmpty()) {
     level = extent_.min().y() - 0.06 * extent_.diagonal().norm();
-    floors_.emplace_back(Vec3(0, *level, 0), Vec3::UnitY(), extent_);
+    floors_.emplace_back(Vec3(0, *level, 0), Vec3::UnitY(), extent_, theme_);
   }
   if (!options_.shadow) return;
   cast_on_bodies();
@@ -240,7 +242,7 @@ void Painter::add_floors() {
   for (const PictureMesh& mesh : meshes_) shadow_.add(mesh.vertices, mesh.triangles);
   shadow_.blur();
   for (Floor& floor : floors_)
-    if (is_level(floor.normal) && floor.point.y() == *level) floor.shadow = &shadow_;
+    if (floor.is_level() && floor.point.y() == *level) floor.shadow = &shadow_;
 }
 
 Image Painter::paint() {
@@ -256,7 +258,7 @@ Image Painter::paint() {
   }
   add_arrows();
   add_floors();
-  const Colour top = linear_light(options_.background_top), bottom = linear_light(options_.background_bottom);
+  const Colour top = linear_light(theme_.background_top), bottom = linear_light(theme_.background_bottom);
   return canvas_.draw(
       [&](int row) -> Colour {
         const float share = (static_cast<float>(row) + 0.5F) / static_cast<float>(height_);

@@ -1,6 +1,5 @@
 // Pictures of a cloth and its obstacles without a window: a small renderer of its own, so that a report has
-// pictures on a machine without display, graphics card or Qt. Colours are those of the window's light
-// theme.
+// pictures on a machine without display, graphics card or Qt.
 //
 //     const PictureCamera camera = camera_showing(scene, state.position);
 //     write_file("cloth.png", png_file(cloth_image(scene, system, state.position, camera)));
@@ -8,6 +7,7 @@
 
 #include "picture/image.h"
 #include "picture/picture_camera.h"
+#include "picture/picture_theme.h"
 #include "picture/strain_colours.h"
 
 namespace cloth {
@@ -23,9 +23,9 @@ struct PictureOptions {
   bool wireframe = false;                               ///< springs as lines on a pale sheet
   std::array<bool, 3> springs_shown{true, true, true};  ///< by SpringFamily; fewer read better on a fine grid
   double time = 0;                                      ///< s: obstacles that move are where they are then
-  bool ground = true;  ///< a floor below everything where the scene has no level plane
+  bool ground = true;  ///< a floor below everything where the scene has no plane to fall on
   bool shadow = true;  ///< on the floor, and of cloth and bodies on each other
-  Rgb background_top{0xd9, 0xe0, 0xea}, background_bottom{0xf6, 0xf8, 0xfa};
+  const PictureTheme* theme = &light_picture();
   std::vector<PictureArrow> arrows{};  ///< over everything else
 };
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/round_numbers.h"
+
 namespace cloth {
 namespace {
 
@@ -15,14 +17,6 @@ constexpr double largest = 1e300, smallest = 1e-300;
 
 double logarithm(AxisScale scale, double value) {
   return scale == AxisScale::logarithmic ? std::log10(value) : value;
-}
-
-/// The smallest of 1, 2, 5 times a power of ten that is not below.
-double nice_step(double at_least) {
-  const double power = std::pow(10, std::floor(std::log10(at_least)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= at_least * (1 - 1e-9)) return factor * power;
-  return 10 * power;
 }
 
 std::string superscript_of(int number) {
@@ -97,7 +91,7 @@ int AxisMap::tick_exponent() const {
 }
 
 std::vector<Tick> AxisMap::linear_ticks(double spacing) const {
-  const double step = nice_step((high_ - low_) / std::max(1.0, std::abs(to_ - from_) / spacing));
+  const double step = rounded_up((high_ - low_) / std::max(1.0, std::abs(to_ - from_) / spacing));
   const int exponent = tick_exponent();
   const double unit = std::pow(10, exponent);
   const int decimals = std::max(0, -int(std::floor(std::log10(step / unit) + 1e-9)));

@@ -138,13 +138,6 @@ std::optional<std::string> too_many_steps(double duration, double time_step) {
                      most_steps_of_run);
 }
 
-std::string Problem::text() const {
-  std::string text;
-  if (!place.empty()) text = line > 0 ? fmt::format("{}:{}:{}: ", place, line, column) : place + ": ";
-  if (!path.empty()) text += value.empty() ? path + ": " : fmt::format("{} = {}: ", path, value);
-  return text + rule;
-}
-
 std::vector<Problem> find_problems(const Scene& scene) {
   std::vector<Problem> problems;
   check_counts(scene, problems);

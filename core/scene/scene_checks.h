@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "scene/problem.h"
+#include "params/problem.h"
 #include "scene/scene.h"
 
 namespace cloth {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/problem.h"
+#include "params/problem.h"
 #include "scene/scene.h"
 
 namespace cloth {

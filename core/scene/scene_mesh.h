@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
-#include "scene/problem.h"
+#include "params/problem.h"
 
 namespace cloth {
 

@@ -8,10 +8,10 @@
 
 #include "contact/rigid_motion.h"
 #include "contact/start_check.h"
+#include "io/json_reader.h"
+#include "io/json_syntax.h"
 #include "io/printable.h"
 #include "scene/blocks.h"
-#include "scene/json_locator.h"
-#include "scene/json_syntax.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 
@@ -20,32 +20,15 @@ namespace {
 
 using json = nlohmann::json;
 
-std::string number_text(const json& value) {
-  return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
-}
-
-std::string shown(const json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text =
-      value.is_number() ? number_text(value) : value.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
-  return text;
-}
-
 /// Takes a JSON document apart block by block. Problems are collected, never thrown.
-class SceneReader {
+class SceneReader : public JsonReader<json> {
  public:
-  std::vector<Problem> problems;
-
   Scene read(const json& root) {
     Scene scene;
     if (!object(root, "")) return scene;
     known_keys(root, "", known_in("", {"format", "obstacles"}, scene));
-    if (const json* format = member(root, "format"); format && *format != scene_format)
-      problem("format", *format, fmt::format("must be \"{}\"", scene_format));
-
-    if (!member(root, "cloth"))
-      problems.push_back({"cloth", "", "must be given: a scene needs a cloth", "", 0, 0});
+    format(root, scene_format);
+    required(root, "", "cloth", "must be given: a scene needs a cloth");
     for (const BlockRow* row : block_rows_of_file()) {
       if (row->path == "cloth")
         read_cloth(root, scene.cloth);
@@ -58,29 +41,6 @@ class SceneReader {
   }
 
  private:
-  void problem(const std::string& path, const json& value, const std::string& rule) {
-    problems.push_back({path, shown(value), rule, "", 0, 0});
-  }
-
-  static const json* member(const json& from, const std::string& key) {
-    const auto found = from.find(key);
-    return found == from.end() ? nullptr : &*found;
-  }
-
-  bool object(const json& value, const std::string& path) {
-    if (value.is_object()) return true;
-    problem(path, value, "must be an object in braces");
-    return false;
-  }
-
-  void known_keys(const json& from, const std::string& path, const std::set<std::string>& known) {
-    for (const auto& [key, value] : from.items())
-      if (!known.count(key))
-        problems.push_back({joined_path(path, key), "",
-                            fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
-                            0});
-  }
-
   template <class List>
   static std::set<std::string> keys_of(const List& declared, std::set<std::string> also = {}) {
     for (const auto& field : declared) also.insert(field.info.key);
@@ -155,7 +115,7 @@ class SceneReader {
   }
 
   void read_vertex_pins(const json& value, std::vector<Pin>& pins) {
-    if (!value.is_array()) return problem("cloth.pins", value, "must be a list");
+    if (!list(value, "cloth.pins")) return;
     for (std::size_t i = 0; i < value.size(); ++i)
       if (small_integer(value[i]))
         pins.emplace_back(PinnedParticle{0, value[i].get<int>()});
@@ -164,7 +124,7 @@ class SceneReader {
   }
 
   void read_pins(const json& value, std::vector<Pin>& pins) {
-    if (!value.is_array()) return problem("cloth.pins", value, "must be a list");
+    if (!list(value, "cloth.pins")) return;
     for (std::size_t i = 0; i < value.size(); ++i) {
       const json& pin = value[i];
       const std::string path = fmt::format("cloth.pins.{}", i);
@@ -199,7 +159,7 @@ class SceneReader {
       if (!object(value[i], path)) continue;
       const json* shape = member(value[i], "shape");
       if (!shape) {
-        problems.push_back({path + ".shape", "", "must be given: " + shapes, "", 0, 0});
+        add_problem(path + ".shape", "must be given: " + shapes);
         continue;
       }
       const auto known = std::find_if(all_shapes.begin(), all_shapes.end(),
@@ -219,7 +179,7 @@ class SceneReader {
   }
 
   void read_keyframes(const json& value, const std::string& path, Obstacle& obstacle) {
-    if (!value.is_array()) return problem(path, value, "must be a list");
+    if (!list(value, path)) return;
     for (std::size_t i = 0; i < value.size(); ++i) {
       const std::string key_path = fmt::format("{}.{}", path, i);
       Keyframe& key = obstacle.keyframes.emplace_back();
@@ -331,12 +291,10 @@ class Placer {
         return;
       }
     }
-    problem.place = place_;
-    const TextPosition at = locations_.place_of(problem.path, problem.value.empty());
-    problem.line = at.line, problem.column = at.column;
+    locations_.put_in_place(problem, place_);
   }
 
-  const std::vector<std::string>& repeated() const { return locations_.repeated; }
+  std::vector<Problem> repetitions() const { return locations_.repetitions(); }
 
  private:
   JsonLocations locations_;
@@ -359,8 +317,7 @@ SceneReading read_scene(const std::string& text, const std::string& place,
   const Placer place_problem(text, place, overrides);
 
   SceneReader reader;
-  for (const std::string& path : place_problem.repeated())
-    reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
+  reader.problems = place_problem.repetitions();
   for (const Override& override_ : overrides)
     if (!set_at(document, override_.path, parse_value(override_.value)))
       reader.problems.push_back(
@@ -378,9 +335,7 @@ SceneReading read_scene(const std::string& text, const std::string& place,
 
   if (reader.problems.empty()) return {std::move(scene), {}};
   for (Problem& problem : reader.problems) place_problem(problem);
-  std::stable_sort(reader.problems.begin(), reader.problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
+  sort_by_place(reader.problems);
   return {std::nullopt, std::move(reader.problems)};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "io/machine.h"
+
 namespace cloth {
 namespace {
 

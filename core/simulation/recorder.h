@@ -7,7 +7,7 @@
 
 #include "io/csv.h"
 #include "io/result_folder.h"
-#include "io/run_folder.h"
+#include "simulation/run_summary.h"
 #include "simulation/simulation.h"
 
 namespace cloth {

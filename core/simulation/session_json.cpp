@@ -6,9 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "io/run_folder.h"
-#include "scene/json_locator.h"
-#include "scene/json_syntax.h"
+#include "io/json_reader.h"
+#include "io/json_syntax.h"
 #include "scene/scene_checks.h"
 
 namespace cloth {
@@ -54,22 +53,10 @@ json command_json(const SessionCommand& command) {
   return entry;
 }
 
-std::string indented(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\n' && i + 1 == text.size()) break;
-    out += text[i];
-    if (text[i] == '\n') out += "  ";
-  }
-  return out;
-}
-
 /// Takes a session's document apart. Problems are collected, never thrown.
-class SessionReader {
+class SessionReader : public JsonReader<json> {
  public:
   explicit SessionReader(SceneFolder folder) : folder_(std::move(folder)) {}
-
-  std::vector<Problem> problems;
 
   Session read(const json& root) {
     Session session;
@@ -77,103 +64,51 @@ class SessionReader {
     known_keys(
         root, "",
         {"format", "version", "scene", "steps", "time_s", "commands", "step_changes", "final_state_hash"});
-    if (const auto format = root.find("format"); format != root.end() && *format != session_format)
-      problem("format", *format, fmt::format("must be \"{}\"", session_format));
+    format(root, session_format);
     read_scene_part(root, session);
     session.steps = step(root, "", "steps").value_or(std::numeric_limits<std::int64_t>::max());
-    session.time = optional_number(root, "", "time_s");
-    session.version = optional_text(root, "version");
-    session.final_state_hash = optional_text(root, "final_state_hash");
-    if (const json* commands = member(root, "", "commands")) read_commands(*commands, session);
-    if (const auto changes = root.find("step_changes"); changes != root.end())
-      read_step_changes(*changes, session);
+    number(root, "", "time_s", session.time);
+    text(root, "", "version", session.version);
+    text(root, "", "final_state_hash", session.final_state_hash);
+    if (const json* commands = required(root, "", "commands")) read_commands(*commands, session);
+    if (const json* changes = member(root, "step_changes")) read_step_changes(*changes, session);
     return session;
   }
 
  private:
-  void problem(const std::string& path, const json& value, const std::string& rule) {
-    constexpr std::size_t longest = 60;
-    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-    if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
-    problems.push_back({path, text, rule, "", 0, 0});
-  }
-
-  static std::string joined(const std::string& path, const std::string& key) {
-    return path.empty() ? key : path + "." + key;
-  }
-
-  bool object(const json& value, const std::string& path) {
-    if (value.is_object()) return true;
-    problem(path, value, "must be an object in braces");
-    return false;
-  }
-
-  void known_keys(const json& from, const std::string& path, const std::vector<std::string>& known) {
-    for (const auto& [key, value] : from.items())
-      if (std::find(known.begin(), known.end(), key) == known.end())
-        problems.push_back({joined(path, key), "",
-                            fmt::format("is not a known key; known here: {}", fmt::join(known, ", ")), "", 0,
-                            0});
-  }
-
-  const json* member(const json& from, const std::string& path, const std::string& key) {
-    const auto found = from.find(key);
-    if (found != from.end()) return &*found;
-    problems.push_back({joined(path, key), "", "must be given", "", 0, 0});
-    return nullptr;
-  }
-
   void read_scene_part(const json& root, Session& session) {
-    const json* value = member(root, "", "scene");
+    const json* value = required(root, "", "scene");
     if (!value) return;
     SceneReading reading =
         read_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "", {}, {folder_});
     if (reading.scene) session.scene = std::move(*reading.scene);
-    for (Problem& found : reading.problems) {
-      found.path = found.path.empty() ? "scene" : "scene." + found.path;
-      problems.push_back(std::move(found));
-    }
+    add_problems("scene", std::move(reading.problems));
   }
 
   std::optional<std::int64_t> step(const json& from, const std::string& path, const std::string& key) {
-    const json* value = member(from, path, key);
+    const json* value = required(from, path, key);
     if (!value) return std::nullopt;
     if (value->is_number_integer() && value->get<double>() >= 0 && value->get<double>() <= largest_step)
       return value->get<std::int64_t>();
-    problem(joined(path, key), *value, fmt::format("must be a whole number, >= 0 and <= {:g}", largest_step));
+    problem(joined_path(path, key), *value,
+            fmt::format("must be a whole number, >= 0 and <= {:g}", largest_step));
     return std::nullopt;
-  }
-
-  double optional_number(const json& from, const std::string& path, const std::string& key) {
-    const auto found = from.find(key);
-    if (found == from.end()) return 0;
-    if (found->is_number()) return found->get<double>();
-    problem(joined(path, key), *found, "must be a number");
-    return 0;
-  }
-
-  std::string optional_text(const json& from, const std::string& key) {
-    const auto found = from.find(key);
-    if (found == from.end()) return "";
-    if (found->is_string()) return found->get<std::string>();
-    problem(key, *found, "must be a text in quotes");
-    return "";
   }
 
   /// `count` numbers of a list, or nothing and a problem.
   std::vector<double> numbers(const json& from, const std::string& path, const std::string& key,
                               std::size_t count) {
-    const json* value = member(from, path, key);
+    const json* value = required(from, path, key);
     if (!value) return {};
     const auto is_number = [](const json& entry) { return entry.is_number(); };
     if (value->is_array() && value->size() == count && std::all_of(value->begin(), value->end(), is_number))
       return value->get<std::vector<double>>();
-    problem(joined(path, key), *value, fmt::format("must be a list of {} numbers", count));
+    problem(joined_path(path, key), *value, fmt::format("must be a list of {} numbers", count));
     return {};
   }
 
   void read_commands(const json& commands, Session& session) {
-    if (!commands.is_array()) return problem("commands", commands, "must be a list");
+    if (!list(commands, "commands")) return;
     std::int64_t earliest = 0;
     for (std::size_t i = 0; i < commands.size(); ++i) {
       const std::string path = fmt::format("commands.{}", i);
@@ -185,21 +120,22 @@ class SessionReader {
         if (*at < earliest) problem(path + ".step", *at, "must not be before the command above it");
         command.step = earliest = std::max(*at, earliest);
       }
-      command.time = optional_number(commands[i], path, "time_s");
+      number(commands[i], path, "time_s", command.time);
       known_keys(commands[i], path, {"step", "time_s", "set", "brush", "pull"});
       read_action(commands[i], path, command.action);
     }
   }
 
   void read_step_changes(const json& changes, Session& session) {
-    if (!changes.is_array()) return problem("step_changes", changes, "must be a list");
+    if (!list(changes, "step_changes")) return;
     for (std::size_t i = 0; i < changes.size(); ++i) {
       const std::string path = fmt::format("step_changes.{}", i);
       if (!object(changes[i], path)) continue;
       known_keys(changes[i], path, {"step", "time_s", "time_step_s"});
-      session.step_changes.push_back({.step = step(changes[i], path, "step").value_or(0),
-                                      .time = optional_number(changes[i], path, "time_s"),
-                                      .time_step = optional_number(changes[i], path, "time_step_s")});
+      StepChange& change = session.step_changes.emplace_back();
+      change.step = step(changes[i], path, "step").value_or(0);
+      number(changes[i], path, "time_s", change.time);
+      number(changes[i], path, "time_step_s", change.time_step);
     }
   }
 
@@ -207,7 +143,7 @@ class SessionReader {
     const auto set = command.find("set"), brush = command.find("brush"), pull = command.find("pull");
     const auto end = command.end();
     if ((set != end) + (brush != end) + (pull != end) != 1) {
-      problems.push_back({path, "", "must have one of set, brush, pull", "", 0, 0});
+      add_problem(path, "must have one of set, brush, pull");
     } else if (set != end) {
       if (!object(*set, path + ".set")) return;
       Edits edits;
@@ -227,7 +163,7 @@ class SessionReader {
     if (const auto v = numbers(value, path, "velocity_m_s", 3); !v.empty())
       gust.velocity = {v[0], v[1], v[2]};
     if (const auto p = numbers(value, path, "cursor_px", 2); !p.empty()) gust.cursor = {p[0], p[1]};
-    if (member(value, path, "radius_px")) gust.radius = optional_number(value, path, "radius_px");
+    if (required(value, path, "radius_px")) number(value, path, "radius_px", gust.radius);
     const auto matrix = numbers(value, path, "world_to_screen", 16);
     for (std::size_t k = 0; k < matrix.size(); ++k)
       gust.world_to_screen(static_cast<int>(k / 4), static_cast<int>(k % 4)) = matrix[k];
@@ -247,12 +183,6 @@ class SessionReader {
   SceneFolder folder_;  ///< of the scene's meshes
 };
 
-void put_in_place(const JsonLocations& locations, const std::string& place, Problem& problem) {
-  const TextPosition at = locations.place_of(problem.path, problem.value.empty());
-  problem.place = place;
-  problem.line = at.line, problem.column = at.column;
-}
-
 }  // namespace
 
 SessionReading read_session(const std::string& text, const std::string& place,
@@ -261,13 +191,10 @@ SessionReading read_session(const std::string& text, const std::string& place,
   SessionReader reader(folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()}));
   Session session = reader.read(json::parse(text));
   const JsonLocations locations = locate_json(text);
-  for (const std::string& path : locations.repeated)
-    reader.problems.push_back({path, "", "is given more than once", "", 0, 0});
+  for (Problem& problem : locations.repetitions()) reader.problems.push_back(std::move(problem));
   if (reader.problems.empty()) return {std::move(session), {}};
-  for (Problem& problem : reader.problems) put_in_place(locations, place, problem);
-  std::stable_sort(reader.problems.begin(), reader.problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
+  for (Problem& problem : reader.problems) locations.put_in_place(problem, place);
+  sort_by_place(reader.problems);
   return {std::nullopt, std::move(reader.problems)};
 }
 
@@ -276,7 +203,7 @@ void place_in_session(const std::string& text, const std::string& place, std::si
   const JsonLocations locations = locate_json(text);
   for (Problem& problem : problems) {
     problem.path = fmt::format("commands.{}.{}", command, problem.path);
-    put_in_place(locations, place, problem);
+    locations.put_in_place(problem, place);
   }
 }
 
@@ -284,7 +211,7 @@ void place_in_session(const std::string& text, const std::string& place, std::si
 std::string write_session(const Session& session) {
   std::string out =
       fmt::format("{{\n  \"format\": \"{}\",\n  \"version\": {},\n  \"scene\": {},\n", session_format,
-                  json(session.version).dump(), indented(write_scene(session.scene)));
+                  json(session.version).dump(), indented_json(write_scene(session.scene)));
   out += fmt::format("  \"steps\": {},\n  \"time_s\": {},\n  \"commands\": [", session.steps,
                      json(session.time).dump());
   for (std::size_t i = 0; i < session.commands.size(); ++i)

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cassert>
 
+#include "geometry/at.h"
 #include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
 
 // Legend: m a front's height, w its width, r = m - w the size of its update, all in numbers, not blocks.
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 /// Of a row or column, given by its place in the order, within a front; in blocks.
 int within(const Front& front, int place) {

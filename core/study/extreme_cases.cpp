@@ -60,7 +60,7 @@ void for_each_free(const ClothSystem& system, Visit visit) {
     if (!system.pinned[i]) visit(i);
 }
 
-std::size_t at(const ClothSystem& system, int row, int column) {
+std::size_t place_of(const ClothSystem& system, int row, int column) {
   return static_cast<std::size_t>(system.index(row, column));
 }
 
@@ -127,7 +127,7 @@ void add_masses(std::vector<ExtremeCase>& cases) {
        "The light particles set the step, the heavy one the load. Iterations that pass a message from "
        "spring to spring leave the springs too long.",
        scene, 500, [](ClothSystem& system, ClothState&) {
-         const std::size_t heavy = at(system, system.rows - 1, system.columns / 2);
+         const std::size_t heavy = place_of(system, system.rows - 1, system.columns / 2);
          system.mass[heavy] *= 1e5;
          system.inverse_mass[heavy] /= 1e5;
        }});
@@ -190,7 +190,7 @@ void add_rates(std::vector<ExtremeCase>& cases) {
                    "The right answer is unreachable: it is found from the pins' distance before the first "
                    "step, and the run goes on with the violation that the sweeps leave.",
                    limited(0.1), 300, [](ClothSystem& system, ClothState& state) {
-                     state.position.add(at(system, 0, system.columns - 1), {system.diagonal / 3, 0, 0});
+                     state.position.add(place_of(system, 0, system.columns - 1), {system.diagonal / 3, 0, 0});
                    }});
 }
 
@@ -315,7 +315,7 @@ void add_outside(std::vector<ExtremeCase>& cases) {
        "Contact looks at positions after a step, so a particle that moves further than the box is "
        "thick can pass it unseen; the warning says so.",
        bullet, 300, [](ClothSystem& system, ClothState& state) {
-         state.velocity.set(at(system, system.rows / 2, system.columns / 2), {0, 0, -1000});
+         state.velocity.set(place_of(system, system.rows / 2, system.columns / 2), {0, 0, -1000});
        }});
   Scene far = base_scene();
   far.cloth.origin = {1e6, 1e6, 1e6};

@@ -29,9 +29,9 @@ class CellRun {
         stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)),
         most_evaluations_(extreme.most_evaluations) {}
 
-  ExtremeCell to_end(ExtremeCell cell, const std::function<bool()>& keep_going) {
+  ExtremeCell to_end(ExtremeCell cell, const StopTest& stop) {
     record();
-    if (keep_going) simulation_.set_stop_test([&] { return !keep_going(); });
+    simulation_.set_stop_test(stop);
     while (!divergence_ && simulation_.state().step < last_ &&
            simulation_.count().force_evaluations < most_evaluations_) {
       look_for_tunnelling();
@@ -39,7 +39,7 @@ class CellRun {
       if (divergence_ || simulation_.interrupted()) break;
       cell.steps = simulation_.state().step;
       if (cell.steps % stride_ == 0 || cell.steps == last_) record();
-      if (keep_going && !keep_going()) break;
+      if (is_to_stop(stop)) break;
     }
     cell.max_strain = max_strain_;
     cell.energy_ratio = energy_ratio_;
@@ -164,8 +164,7 @@ const std::vector<ExtremeStatus>& extreme_statuses() {
   return all;
 }
 
-ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
-                        const std::function<bool()>& keep_going) {
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop) {
   ExtremeCell cell{.case_name = extreme.name, .method = method, .detail = {}};
   Scene scene = extreme.scene;
   scene.integrator.method = method;
@@ -177,7 +176,7 @@ ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
   }
   cell.time_step = *time_step;
   const auto start = std::chrono::steady_clock::now();
-  cell = CellRun(extreme, scene, *time_step).to_end(std::move(cell), keep_going);
+  cell = CellRun(extreme, scene, *time_step).to_end(std::move(cell), stop);
   cell.wall = seconds_since(start);
   return cell;
 }
@@ -203,9 +202,6 @@ ExtremesTable empty_table(const ExtremesOptions& options) {
 ExtremesTable run_extremes(const ExtremesOptions& options) {
   ExtremesTable table = empty_table(options);
   const double all = static_cast<double>(table.cases.size() * table.methods.size());
-  const auto goes_on = [&options] {
-    return !options.stop.stop_requested() && (!options.keep_going || options.keep_going());
-  };
   for (const ExtremeCase& extreme : table.cases)
     for (const std::string& method : table.methods) {
       if (options.earlier && table.cells.size() < options.earlier->cells.size()) {
@@ -215,8 +211,8 @@ ExtremesTable run_extremes(const ExtremesOptions& options) {
       const StudyProgress progress{static_cast<double>(table.cells.size()) / all,
                                    extreme.name + ", " + method};
       if (options.progress && !options.progress(progress)) return table;
-      ExtremeCell cell = run_extreme(extreme, method, goes_on);
-      if (!goes_on()) return table;  // half a cell is none
+      ExtremeCell cell = run_extreme(extreme, method, options.stop);
+      if (is_to_stop(options.stop)) return table;  // half a cell is none
       table.cells.push_back(std::move(cell));
       if (options.partial) options.partial(table);
     }

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -74,9 +73,8 @@ struct ExtremeCell {
 /// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the records of the second
 /// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
 /// the start and all works into the cloth by more than the threshold, losses by damping not counted.
-/// `keep_going` is asked after every step; false ends the run.
-ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method,
-                        const std::function<bool()>& keep_going = {});
+/// `stop` is asked after every step, and within one that takes long; true ends the run.
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop = {});
 
 /// Case after case, each with every method; an interrupted run has fewer cells.
 struct ExtremesTable {
@@ -97,8 +95,7 @@ struct ExtremesOptions {
   std::function<bool(const StudyProgress&)> progress{};  ///< before each cell; false stops the study
   /// The table so far, after every cell; the last is what is returned.
   std::function<void(const ExtremesTable&)> partial{};
-  std::stop_token stop{};              ///< looked at after every step; half a cell is none
-  std::function<bool()> keep_going{};  ///< likewise, for who has no stop token; false stops the study
+  StopTest stop{};  ///< asked after every step; half a cell is none
   /// The same table, stopped before its end: its cells are not run again.
   const ExtremesTable* earlier = nullptr;
 };

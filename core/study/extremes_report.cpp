@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "io/csv.h"
-#include "report/html_page.h"
-#include "report/machine.h"
 #include "report/svg.h"
 
 namespace cloth {
@@ -29,57 +27,6 @@ std::string status_word(const ExtremeCell* cell) {
     default:
       return name_of(cell->status);
   }
-}
-
-std::string word_of(const ExtremeCell* cell) {
-  return status_word(cell) + (cell && cell->ended_early ? "*" : "");
-}
-
-Verdict verdict_of(ExtremeStatus status) {
-  switch (status) {
-    case ExtremeStatus::stable:
-      return Verdict::good;
-    case ExtremeStatus::not_converged:
-    case ExtremeStatus::unreachable:
-    case ExtremeStatus::refused:
-      return Verdict::warn;
-    default:
-      return Verdict::bad;
-  }
-}
-
-const char* meaning_of(ExtremeStatus status) {
-  switch (status) {
-    case ExtremeStatus::stable:
-      return "Finite to the end, and no energy appeared from nowhere. It does not say accurate: a method "
-             "that damps "
-             "everything is stable.";
-    case ExtremeStatus::not_converged:
-      return "Finite, and no energy appeared from nowhere, but the last iteration of some step still changed "
-             "more "
-             "than a tenth of the largest speed: the step's equations were not solved, and the motion is "
-             "another "
-             "one, as a rule a slower one. The residual is told.";
-    case ExtremeStatus::energy_growth:
-      return "Finite to the end, but in the second half kinetic, elastic and gravity energy were in the mean "
-             "above "
-             "those of the start and all works, by more than 5 % of the energy scale: the method made "
-             "energy, "
-             "in one violent moment or steadily.";
-    case ExtremeStatus::diverged:
-      return "Stopped: a position or velocity was not finite, or the energy that the ledger leaves "
-             "unexplained was ten times all "
-             "that the scene can give. The stop names step, particle and cause.";
-    case ExtremeStatus::unreachable:
-      return "The pins make the deformation rate unreachable, which their distance shows before the first "
-             "step. The run is finite, with the excess that is left.";
-    case ExtremeStatus::refused:
-      return "No step is stable for this method and scene, so none was taken.";
-    case ExtremeStatus::solver_failed:
-      return "Stopped: the equations of an implicit step could not be solved. The stop names step, particle "
-             "and cause.";
-  }
-  return "";
 }
 
 /// "semi-", "implicit-", "euler"
@@ -133,113 +80,6 @@ std::string matrix_text(const ExtremesTable& table) {
   return text;
 }
 
-HtmlTable matrix_html(const ExtremesTable& table) {
-  HtmlTable matrix;
-  matrix.caption =
-      "Every method on every case. Rest the pointer on a cell for its reason. An asterisk: ended early, its "
-      "force evaluations used up.";
-  matrix.columns.push_back({"case", Align::left});
-  for (const std::string& method : table.methods) matrix.columns.push_back({method, Align::left});
-  for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    HtmlRow row;
-    row.cells.emplace_back(HtmlText(table.cases[c].name), Verdict::none, table.cases[c].what);
-    for (std::size_t m = 0; m < table.methods.size(); ++m) {
-      const ExtremeCell* cell = table.cell(c, m);
-      row.cells.emplace_back(HtmlText(word_of(cell)), cell ? verdict_of(cell->status) : Verdict::none,
-                             cell ? cell->detail : "not run");
-    }
-    matrix.rows.push_back(std::move(row));
-  }
-  return matrix;
-}
-
-std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme) {
-  std::vector<const ExtremeCell*> cells;
-  for (std::size_t m = 0; m < table.methods.size(); ++m)
-    if (const ExtremeCell* cell = table.cell(extreme, m); cell && cell->status != ExtremeStatus::stable)
-      cells.push_back(cell);
-  return cells;
-}
-
-/// A stop says itself that it is one.
-std::string reason_of(const ExtremeCell& cell) {
-  return cell.status == ExtremeStatus::diverged ? cell.detail
-                                                : fmt::format("{}: {}", name_of(cell.status), cell.detail);
-}
-
-/// A row for each case with a cell that is not stable.
-HtmlTable reasons_html(const ExtremesTable& table) {
-  HtmlTable reasons;
-  reasons.columns = {{"case"}, {"not stable"}, {"why"}};
-  for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    std::string methods;
-    for (const ExtremeCell* cell : not_stable(table, c))
-      methods += (methods.empty() ? "" : ", ") + cell->method;
-    if (!methods.empty())
-      reasons.rows.push_back(
-          {{HtmlText(table.cases[c].name), HtmlText(methods), HtmlText(table.cases[c].reading)}});
-  }
-  return reasons;
-}
-
-HtmlTable case_html(const ExtremesTable& table, std::size_t extreme) {
-  HtmlTable rows;
-  rows.columns = {{"method"},
-                  {"status"},
-                  {"step (s)", Align::right},
-                  {"steps", Align::right},
-                  {"largest strain", Align::right},
-                  {"energy ratio", Align::right},
-                  {"run time (s)", Align::right},
-                  {"what happened"}};
-  for (std::size_t m = 0; m < table.methods.size(); ++m) {
-    const ExtremeCell* cell = table.cell(extreme, m);
-    if (!cell) continue;
-    const bool ran = cell->status != ExtremeStatus::refused;
-    const auto number = [&](double value) { return ran ? html_number(value) : HtmlText(""); };
-    rows.rows.push_back({{HtmlText(cell->method),
-                          {HtmlText(name_of(cell->status)), verdict_of(cell->status)},
-                          number(cell->time_step),
-                          HtmlText(std::to_string(cell->steps)),
-                          number(cell->max_strain),
-                          number(cell->energy_ratio),
-                          number(cell->wall),
-                          HtmlText(cell->detail)}});
-  }
-  return rows;
-}
-
-void add_cases(HtmlPage& page, const ExtremesTable& table) {
-  page.heading("The cases one by one");
-  page.paragraph(
-      "What was done, what it shows, and each method's numbers. Strain is the largest of structural and "
-      "shear springs over the whole run; the energy ratio is "
-      "kinetic and elastic energy at the end over the energy scale.");
-  for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    const ExtremeCase& extreme = table.cases[c];
-    if (!table.cell(c, 0)) continue;
-    const std::size_t red = not_stable(table, c).size();
-    page.begin_details(HtmlText(extreme.name) +
-                       (red == 0
-                            ? HtmlText(" – all stable")
-                            : HtmlText(fmt::format(" – {} of {} not stable", red, table.methods.size()))));
-    page.paragraph(extreme.what + (extreme.reading.empty() ? "" : " " + extreme.reading));
-    page.table(case_html(table, c));
-    page.end_details();
-  }
-}
-
-std::vector<std::pair<std::string, HtmlText>> conditions(const std::string& command) {
-  std::vector<std::pair<std::string, HtmlText>> rows{{"command", html_code(command)}};
-  rows.emplace_back("bounds",
-                    HtmlText(fmt::format("each cell has a fixed number of steps (its case says how many) "
-                                         "and at most {} force evaluations; nothing depends on time",
-                                         ExtremeCase{}.most_evaluations)));
-  rows.emplace_back("random starts", HtmlText(fmt::format("seed {}", extreme_seed)));
-  for (const auto& [name, value] : fact_rows(machine_facts())) rows.emplace_back(name, HtmlText(value));
-  return rows;
-}
-
 constexpr const char* markdown_head = R"(# Stiff and extreme cases
 
 `clothlab-cli extremes` runs every method on a fixed, named list of cases that break simulations. Every cell is a finite
@@ -271,6 +111,36 @@ This page is the output of `clothlab-cli extremes --markdown`. An asterisk: the 
 )";
 
 }  // namespace
+
+std::string word_of(const ExtremeCell* cell) {
+  return status_word(cell) + (cell && cell->ended_early ? "*" : "");
+}
+
+Verdict verdict_of(ExtremeStatus status) {
+  switch (status) {
+    case ExtremeStatus::stable:
+      return Verdict::good;
+    case ExtremeStatus::not_converged:
+    case ExtremeStatus::unreachable:
+    case ExtremeStatus::refused:
+      return Verdict::warn;
+    default:
+      return Verdict::bad;
+  }
+}
+
+std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme) {
+  std::vector<const ExtremeCell*> cells;
+  for (std::size_t m = 0; m < table.methods.size(); ++m)
+    if (const ExtremeCell* cell = table.cell(extreme, m); cell && cell->status != ExtremeStatus::stable)
+      cells.push_back(cell);
+  return cells;
+}
+
+std::string reason_of(const ExtremeCell& cell) {
+  return cell.status == ExtremeStatus::diverged ? cell.detail
+                                                : fmt::format("{}: {}", name_of(cell.status), cell.detail);
+}
 
 std::string count_of_statuses(const ExtremesTable& table) {
   std::string text;
@@ -335,6 +205,12 @@ CategoryMap extremes_map(const ExtremesTable& table) {
   return map;
 }
 
+CsvTable extremes_table(const ExtremesTable& table) {
+  CsvTable rows{extremes_columns(), {}};
+  for (const ExtremeCell& cell : table.cells) rows.rows.push_back(extremes_row(cell));
+  return rows;
+}
+
 std::string extremes_text(const ExtremesTable& table) {
   std::string text = matrix_text(table) + "\n";
   bool any = false;
@@ -397,40 +273,6 @@ std::string extremes_markdown(const ExtremesTable& table) {
       text += fmt::format("- `{}`: {}\n", cell->method, reason_of(*cell));
   }
   return text;
-}
-
-std::string extremes_html(const ExtremesTable& table, const std::string& command) {
-  HtmlPage page(
-      "Stiff and extreme cases",
-      fmt::format("{} methods on {} cases that break simulations. Every cell is a finite result or a "
-                  "stop that names step, particle and cause.",
-                  table.methods.size(), table.cases.size()));
-  if (!table.is_complete())
-    page.notice(fmt::format("Interrupted: {} of {} cells were run.", table.cells.size(),
-                            table.cases.size() * table.methods.size()),
-                Verdict::warn);
-  page.heading("The table");
-  page.paragraph(fmt::format("{} cells: {}.", table.cells.size(), count_of_statuses(table)));
-  page.table(matrix_html(table));
-  page.heading("The words");
-  HtmlTable words;
-  words.columns = {{"status"}, {"meaning"}};
-  for (const ExtremeStatus status : extreme_statuses())
-    words.rows.push_back({{{HtmlText(name_of(status)), verdict_of(status)}, HtmlText(meaning_of(status))}});
-  page.table(words);
-  page.paragraph(
-      "The energy scale is the kinetic energy that the scene can give: its fall, its wind, and what the "
-      "start "
-      "holds. Divergence is judged against ten times this scale after every step, energy growth against a "
-      "twentieth of it at some fifty records of a run.");
-  page.heading("Why cells are not stable");
-  page.paragraph(
-      "By case; what happened in each cell, with step, particle and cause, is in the next section.");
-  page.table(reasons_html(table));
-  add_cases(page, table);
-  page.heading("How it was run");
-  page.facts(conditions(command));
-  return page.to_html();
 }
 
 }  // namespace cloth

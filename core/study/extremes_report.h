@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "io/csv.h"
 #include "report/category_map.h"
+#include "report/html_page.h"
 #include "study/extremes.h"
 
 namespace cloth {
@@ -12,7 +14,17 @@ namespace cloth {
 /// "stable 31, diverged 9": the statuses that occur, in their order.
 std::string count_of_statuses(const ExtremesTable& table);
 
+/// The status in a narrow column, with an asterisk where the cell ended early; "-" for a cell that was not
+/// run.
+std::string word_of(const ExtremeCell* cell);
+Verdict verdict_of(ExtremeStatus status);
+
+/// The cells of one case that are not stable, and why: a stop says itself that it is one.
+std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme);
+std::string reason_of(const ExtremeCell& cell);
+
 /// case, method, status, detail, steps, max_strain, energy_ratio, wall_s, time_step_s, ended_early
+CsvTable extremes_table(const ExtremesTable& table);
 std::vector<std::string> extremes_columns();
 std::vector<std::string> extremes_row(const ExtremeCell& cell);
 

@@ -11,7 +11,7 @@
 #include "forces/force_model.h"
 #include "measure/energy.h"
 #include "measure/stability_limit.h"
-#include "simulation/simulation.h"
+#include "simulation/step_batches.h"
 
 namespace cloth {
 namespace {
@@ -147,7 +147,7 @@ StateDifference difference(const std::vector<ClothState>& a, const std::vector<C
 }
 
 ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
-                               const ReferenceProgress& progress, const std::stop_token& stop) {
+                               const ReferenceProgress& progress, const StopTest& stop) {
   ReferenceSolution solution;
   ClothMotion motion(scene);
   const Derivative f = [&](double time, const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
@@ -182,7 +182,7 @@ ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
 }
 
 ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples, std::int64_t steps,
-                                const ReferenceProgress& progress, const std::stop_token& stop) {
+                                const ReferenceProgress& progress, const StopTest& stop) {
   ReferenceSolution solution;
   solution.smooth = false;
   solution.first = fmt::format("{} with the same limiter and contact in {} steps", loop_method, steps);
@@ -193,25 +193,24 @@ ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples,
   coarse.integrator = {loop_method, 2 * horizon / static_cast<double>(steps)};
   Simulation first(fine), second(coarse);
   std::vector<ClothState> check;
-  const auto advance = [&](Simulation& simulation, std::int64_t to) {
-    while (solution.failure.empty() && simulation.state().step < to) {
-      if (stop.stop_requested())
-        solution.failure = "stopped";
-      else if (const auto divergence = simulation.step())
-        solution.failure = describe(*divergence);
-    }
+  const auto advance = [&](StepBatches& batches, std::int64_t to) {
+    if (solution.failure.empty() && !batches.run_to(to))
+      solution.failure = batches.divergence() ? describe(*batches.divergence()) : "stopped";
   };
+  first.set_threads(machine_threads());
+  second.set_threads(machine_threads());
+  StepBatches first_steps(first, stop), second_steps(second, stop);
   for (int k = 1; k <= samples && solution.failure.empty(); ++k) {
     for (int part = 1; part <= 10 && solution.failure.empty(); ++part) {  // so that it can be stopped soon
       const std::int64_t to = steps * (k - 1) / samples + steps / samples * part / 10;
-      advance(first, to);
+      advance(first_steps, to);
       if (progress && !progress(0.67 * static_cast<double>(to) / static_cast<double>(steps)))
         solution.failure = "stopped";
     }
     solution.states.push_back(first.state());
   }
   for (int k = 1; k <= samples && solution.failure.empty(); ++k) {
-    advance(second, steps / 2 * k / samples);
+    advance(second_steps, steps / 2 * k / samples);
     check.push_back(second.state());
     if (progress && !progress(0.67 + 0.33 * k / samples)) solution.failure = "stopped";
   }

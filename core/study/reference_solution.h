@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -72,11 +71,11 @@ using ReferenceProgress = std::function<bool(double)>;
 /// weights: that of the one oscillation if there is one, else near the fastest of those that carry weight.
 /// `stop` is looked at before each step.
 ReferenceSolution solve_smooth(const Scene& scene, double horizon, int samples,
-                               const ReferenceProgress& progress = {}, const std::stop_token& stop = {});
+                               const ReferenceProgress& progress = {}, const StopTest& stop = {});
 
 /// By the loop with Verlet in `steps` steps, checked with half as many. Precondition: 2 * samples divides
 /// `steps`.
 ReferenceSolution solve_by_loop(const Scene& scene, double horizon, int samples, std::int64_t steps,
-                                const ReferenceProgress& progress = {}, const std::stop_token& stop = {});
+                                const ReferenceProgress& progress = {}, const StopTest& stop = {});
 
 }  // namespace cloth

@@ -78,13 +78,13 @@ double Extrapolation::try_step(const Derivative& f, double begin, double step, c
 }
 
 std::optional<std::string> Extrapolation::advance(const Derivative& f, double begin, double end,
-                                                  Eigen::VectorXd& y, const std::stop_token& stop) {
+                                                  Eigen::VectorXd& y, const StopTest& stop) {
   slope_.resize(y.size());
   derivative_.resize(y.size());
   double time = begin;
   if (!(step_ > 0)) step_ = end - begin;
   while (time < end) {
-    if (stop.stop_requested()) return "stopped";
+    if (is_to_stop(stop)) return "stopped";
     const bool last = time + step_ * (1 + 1e-9) >= end;
     const double step = last ? end - time : step_;
     if (step <= 16 * eps * std::max(std::abs(end), end - begin))
@@ -145,7 +145,7 @@ bool Collocation::solve_stages(const Derivative& f, double begin, double step, c
 }
 
 std::optional<std::string> Collocation::advance(const Derivative& f, double begin, double end, int steps,
-                                                Eigen::VectorXd& y, const std::stop_token& stop) {
+                                                Eigen::VectorXd& y, const StopTest& stop) {
   const double step = (end - begin) / steps;
   stage_.resize(y.size());
   derivative_.resize(y.size());
@@ -154,7 +154,7 @@ std::optional<std::string> Collocation::advance(const Derivative& f, double begi
     slopes_ = derivative_.replicate(1, stages);
   }
   for (int n = 0; n < steps; ++n) {
-    if (stop.stop_requested()) return "stopped";
+    if (is_to_stop(stop)) return "stopped";
     if (last_step_ > 0 && std::abs(step / last_step_ - 1) < 1e-6) {
       guess_.noalias() = slopes_ * forward_.transpose();
       slopes_.swap(guess_);

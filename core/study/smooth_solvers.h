@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
+
+#include "study/study_progress.h"
 
 namespace cloth {
 
@@ -26,7 +27,7 @@ class Extrapolation {
   /// y(begin) becomes y(end); the reason if it cannot: the step would vanish, y is not finite, or "stopped",
   /// which is looked at before each step.
   std::optional<std::string> advance(const Derivative& f, double begin, double end, Eigen::VectorXd& y,
-                                     const std::stop_token& stop = {});
+                                     const StopTest& stop = {});
 
  private:
   void midpoint_rule(const Derivative& f, double begin, double step, int parts, const Eigen::VectorXd& y,
@@ -50,7 +51,7 @@ class Collocation {
 
   /// `steps` equal steps; the reason if the iteration does not converge, or "stopped".
   std::optional<std::string> advance(const Derivative& f, double begin, double end, int steps,
-                                     Eigen::VectorXd& y, const std::stop_token& stop = {});
+                                     Eigen::VectorXd& y, const StopTest& stop = {});
 
  private:
   bool solve_stages(const Derivative& f, double begin, double step, const Eigen::VectorXd& y);

@@ -4,13 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <numbers>
 
-#include "cloth/grid.h"
-#include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
-#include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
 #include "simulation/time_step.h"
@@ -18,90 +13,8 @@
 namespace cloth {
 namespace {
 
-constexpr int samples_of_a_run = 400;
-constexpr int steps_between_questions = 64;  // whether to go on
+constexpr int batches_between_reports = 16;  // of how far it has come
 constexpr int limit_halvings = 5;            // of the bracket between two cells
-
-/// A number in [-1, 1] that is the same everywhere (splitmix64, Steele et al. 2014).
-double next_random(std::uint64_t& state) {
-  std::uint64_t bits = (state += 0x9e3779b97f4a7c15u);
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-  bits ^= bits >> 31;
-  return static_cast<double>(bits >> 11) * 0x1p-52 - 1;
-}
-
-/// m, between neighbours at rest.
-double shortest_spacing(const ClothSheet& sheet) {
-  if (!sheet.is_mesh()) {
-    const GridCell grid = cell_of(sheet);
-    return std::min(grid.across.norm(), grid.down.norm());
-  }
-  const SceneMesh& mesh = *sheet.mesh.loaded;
-  double shortest = infinity;
-  for (const auto& [a, b] : mesh.edges)
-    shortest = std::min(shortest, (mesh.surface.vertices[static_cast<std::size_t>(a)] -
-                                   mesh.surface.vertices[static_cast<std::size_t>(b)])
-                                      .norm());
-  return shortest;
-}
-
-/// Moves every free particle at random, so that every motion that can grow has something to grow from.
-Preparation perturbation(const Scene& cell, const StabilityCriterion& criterion) {
-  const double length = criterion.perturbation * shortest_spacing(cell.cloth);
-  return [length, seed = criterion.perturbation_seed](ClothSystem& system, ClothState& state) {
-    std::uint64_t random = seed;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-      const double x = next_random(random), y = next_random(random), z = next_random(random);
-      if (!system.pinned[i]) state.position.add(i, length * Vec3(x, y, z));
-    }
-  };
-}
-
-/// The energy that the scene can give, in J: falling by its own size, the full wind, what it starts with; and
-/// a trace of all springs at twice their length, so that a scene in which nothing moves has a scale too.
-double energy_scale(const Simulation& run) {
-  constexpr double trace = 1e-6;
-  const Scene& scene = run.scene();
-  const double mass = run.system().total_mass();
-  double wind = 0;
-  if (scene.air) wind = scene.air->wind.norm() * (1 + (scene.air->gust ? scene.air->gust->amplitude : 0));
-  double elastic = 0;
-  for (const SpringRun& springs : run.system().springs)
-    elastic += 0.5 * springs.stiffness * springs.rest_length * springs.rest_length * springs.count;
-  return mass * gravity_of(scene).norm() * run.system().diagonal + 0.5 * mass * wind * wind +
-         std::abs(run.checkpoint().ledger.initial) + trace * elastic;
-}
-
-/// A mesh stays as it is: no smaller one has the same triangles.
-void make_smaller(ClothSheet& cloth) {
-  if (cloth.is_mesh()) return;
-  const int rows = std::min(cloth.rows, study_grid), columns = std::min(cloth.columns, study_grid);
-  const auto scaled = [](int index, int from, int to) {
-    return static_cast<int>(std::lround(static_cast<double>(index) * (to - 1) / (from - 1)));
-  };
-  for (Pin& pin : cloth.pins)
-    if (auto* particle = std::get_if<PinnedParticle>(&pin))
-      *particle = {scaled(particle->row, cloth.rows, rows), scaled(particle->column, cloth.columns, columns)};
-  cloth.mass *= static_cast<double>(rows) * columns / (static_cast<double>(cloth.rows) * cloth.columns);
-  cloth.width *= static_cast<double>(columns - 1) / (cloth.columns - 1);
-  cloth.height *= static_cast<double>(rows - 1) / (cloth.rows - 1);
-  cloth.rows = rows;
-  cloth.columns = columns;
-}
-
-/// Steps that the criterion asks for.
-std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCriterion& criterion) {
-  const double omega = cell.springs ? largest_frequency(cell.cloth, *cell.springs) : 0;
-  double steps = criterion.least_steps;
-  if (omega > 0)
-    steps = std::max(steps, std::ceil(criterion.periods * 2 * std::numbers::pi / (omega * time_step)));
-  return static_cast<std::int64_t>(std::min(steps, 1e15));
-}
-
-double seconds_of(const std::optional<double>& limit) {
-  return limit.value_or(0);
-}
 
 /// Work of a cell, in steps: a run beyond the limit soon ends.
 double expected_work(const StabilityCell& cell, const StabilityCriterion& criterion) {
@@ -124,14 +37,13 @@ class MapRunner {
   const MethodMap* earlier(const MethodMap& map) const;
   PredictedLimits limits_beside(const MethodMap& map, std::size_t k) const;
   StabilityCell run_at(const std::string& method, double x, double y);
-  bool keep_on() {
-    if (options_.stop.stop_requested()) return false;
-    return ++questions_ % steps_between_questions != 0 || report(done_ / work_);
+  bool is_stopped() {
+    return is_to_stop(options_.stop) || (++batches_ % batches_between_reports == 0 && !report());
   }
   void tell() const {
     if (options_.partial) options_.partial(map_);
   }
-  bool report(double part) { return !options_.progress || options_.progress(std::min(1.0, part)); }
+  bool report() { return !options_.progress || options_.progress({std::min(1.0, done_ / work_), text_}); }
 
   bool x_is_step() const { return options_.x.path == time_step_path; }
   bool y_is_step() const { return options_.y.path == time_step_path; }
@@ -140,13 +52,15 @@ class MapRunner {
   const StabilityOptions& options_;
   std::vector<double> x_values_, y_values_;
   double work_ = 0, done_ = 0;
-  std::int64_t questions_ = 0;
+  std::int64_t batches_ = 0;
+  std::size_t cells_ = 0, cell_ = 0;  ///< of all methods; the one that is run
+  std::string text_ = "laying out the map";
   StabilityMap map_;
 };
 
 StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
-  StabilityCell cell =
-      run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion, [this] { return keep_on(); });
+  StabilityCell cell = run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion,
+                                [this] { return is_stopped(); });
   cell.x = x;
   cell.y = y;
   return cell;
@@ -155,17 +69,18 @@ StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
 /// Fills in what is known without running: the limits, and how long each cell will take.
 bool MapRunner::lay_out(MethodMap& map) {
   for (const double y : y_values_) {
-    if (options_.stop.stop_requested()) return false;
+    if (is_to_stop(options_.stop)) return false;
     PredictedLimits row_limits;  // a time step does not change them
     for (std::size_t ix = 0; ix < x_values_.size(); ++ix) {
       const Scene scene = cell_scene(scene_, options_, map.method, x_values_[ix], y);
       StabilityCell cell{.x = x_values_[ix], .y = y};
       if (ix == 0 || !x_is_step()) row_limits = predict_limits(scene);
       cell.limits = row_limits;
-      cell.time_step = seconds_of(resolved_time_step(scene));
+      cell.time_step = resolved_time_step(scene).value_or(0);
       cell.wanted_steps = cell.time_step > 0 ? wanted_steps(scene, cell.time_step, options_.criterion) : 0;
       work_ += expected_work(cell, options_.criterion);
       map.cells.push_back(std::move(cell));
+      ++cells_;
     }
   }
   return true;
@@ -187,13 +102,14 @@ bool MapRunner::run_cells(MethodMap& map) {
     const double work = expected_work(cell, options_.criterion);
     const bool is_known =
         before && k < before->cells.size() && before->cells[k].status != CellStatus::not_run;
+    text_ = fmt::format("cell {} of {}", ++cell_, cells_);
     StabilityCell result = is_known ? before->cells[k] : run_at(map.method, cell.x, cell.y);
     if (result.status == CellStatus::not_run) return false;
     result.limits = limits;
     cell = std::move(result);
     done_ += work;
     tell();
-    if (!report(done_ / work_)) return false;
+    if (!report()) return false;
   }
   return true;
 }
@@ -297,7 +213,7 @@ StudyAxis default_time_axis(const Scene& scene, const std::vector<std::string>& 
     Scene fixed = scene;
     fixed.integrator.method = method;
     fixed.integrator.tolerance = 0;
-    const double limit = seconds_of(stable_step(method, fixed));
+    const double limit = stable_step(method, fixed).value_or(0);
     if (!(limit > negligible * reference) || !std::isfinite(limit)) continue;
     shortest = std::min(shortest, limit);
     longest = std::max(longest, limit);
@@ -309,17 +225,6 @@ StudyAxis default_time_axis(const Scene& scene, const std::vector<std::string>& 
           .high = longest * reach,
           .count = 24,
           .scale = AxisScale::logarithmic};
-}
-
-Scene cell_scene(const Scene& scene, const StabilityOptions& options, const std::string& method, double x,
-                 double y) {
-  Scene cell = scene;
-  cell.integrator.method = method;
-  if (facts_of(method).settings == MethodSettings::error_control) cell.integrator.tolerance = 0;
-  set_number(cell, options.x.path, x, "--x");
-  set_number(cell, options.y.path, y, "--y");
-  if (!options.full_size && cell.obstacles.empty()) make_smaller(cell.cloth);
-  return cell;
 }
 
 std::vector<Problem> find_problems(const Scene& scene, const StabilityOptions& options) {
@@ -343,61 +248,6 @@ std::vector<Problem> find_problems(const Scene& scene, const StabilityOptions& o
         }
       }
   return problems;
-}
-
-PredictedLimits predict_limits(const Scene& cell) {
-  const std::string& method = cell.integrator.method;
-  PredictedLimits limits{.predicted = seconds_of(stable_step(method, cell)),
-                         .guaranteed = seconds_of(guaranteed_step(method, cell)),
-                         .provot = provot_step(cell),
-                         .spectrum = infinity};
-  if (!std::isfinite(limits.predicted)) return limits;
-  const ClothSystem system = make_cloth(cell.cloth, cell.springs.value_or(SpringMaterial{}));
-  const double omega = measure_spectrum(system, system.start).largest_frequency();
-  limits.spectrum = seconds_of(stable_step(method, omega, damping_rates(cell)));
-  return limits;
-}
-
-StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion,
-                       const std::function<bool()>& keep_on) {
-  StabilityCell cell;
-  const auto time_step = resolved_time_step(scene);
-  if (!time_step) {
-    cell.status = CellStatus::refused;
-    cell.detail = "no stable step that \"auto\" could take";
-    return cell;
-  }
-  cell.time_step = *time_step;
-  cell.wanted_steps = wanted_steps(scene, *time_step, criterion);
-  const std::int64_t steps = std::min<std::int64_t>(cell.wanted_steps, criterion.most_steps);
-  const std::int64_t stride = std::max<std::int64_t>(1, steps / samples_of_a_run);
-
-  Simulation run(scene, perturbation(scene, criterion));
-  const double scale = energy_scale(run);
-  std::vector<EnergySample> samples{{0, 0}};
-  std::optional<Divergence> divergence;
-  while (!divergence && run.state().step < steps) {
-    divergence = run.step();
-    if (keep_on && !keep_on()) return cell;
-    if (run.state().step % stride == 0 && !divergence)
-      samples.push_back({run.time(), run.measure().energy_error()});
-  }
-  const EnergyVerdict verdict = judge_energy(samples, scale, criterion);
-  cell.status = CellStatus::run;
-  cell.steps = run.state().step;
-  cell.run_class = verdict.run_class;
-  cell.growth_rate = verdict.growth_rate;
-  cell.energy_ratio = verdict.largest_ratio;
-  if (divergence) {
-    cell.run_class = divergence->solver_failed ? RunClass::solver_failed : RunClass::diverged;
-    const double last = std::abs(run.measure().energy_error()) / scale;
-    cell.energy_ratio = std::isfinite(last) ? std::max(last, cell.energy_ratio) : infinity;
-    cell.detail =
-        fmt::format("step {}, particle {}: {}", divergence->step, divergence->particle, divergence->cause);
-  } else if (cell.wanted_steps > steps) {
-    cell.detail = fmt::format("cut short: {} of {} steps", steps, cell.wanted_steps);
-  }
-  return cell;
 }
 
 StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options) {

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "simulation/simulation.h"
 #include "study/energy_verdict.h"
 #include "study/study_axis.h"
+#include "study/study_progress.h"
 
 namespace cloth {
 
@@ -23,11 +23,10 @@ struct StabilityOptions {
   StudyAxis x{}, y{};
   StabilityCriterion criterion{};
   bool full_size = false;
-  /// Called between and within cells with the part that is done, 0 to 1; false stops the study.
-  std::function<bool(double part)> progress{};
+  std::function<bool(const StudyProgress&)> progress{};  ///< between and within cells; false stops the study
   /// The map so far, after every finished cell and measured limit; the last is what is returned.
   std::function<void(const StabilityMap&)> partial{};
-  std::stop_token stop{};  ///< looked at before every step; stops like `progress`
+  StopTest stop{};  ///< asked between batches of steps; stops like `progress`
   /// The same map, stopped before its end: its cells and measured limits are not run again.
   const StabilityMap* earlier = nullptr;
 };
@@ -105,9 +104,11 @@ Scene cell_scene(const Scene& scene, const StabilityOptions& options, const std:
 
 PredictedLimits predict_limits(const Scene& cell);
 
-/// One run, judged. `keep_on` is asked after every step; after false the cell's status is not_run.
-StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion,
-                       const std::function<bool()>& keep_on = {});
+/// That the criterion asks for in runs of the cell's scene.
+std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCriterion& criterion);
+
+/// One run, judged. `stop` is asked between batches of steps; after true the cell's status is not_run.
+StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion, const StopTest& stop = {});
 
 /// What will be run: axes and methods, no cells yet.
 StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options);

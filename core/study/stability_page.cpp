@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "integrators/registry.h"
+#include "io/machine.h"
 #include "report/html_page.h"
-#include "report/machine.h"
 #include "scene/scene_json.h"
 #include "study/stability_report.h"
 

@@ -204,16 +204,15 @@ std::vector<std::string> stability_row(const std::string& method, const Stabilit
           std::to_string(cell.wanted_steps)};
 }
 
-std::string stability_csv(const StabilityMap& map) {
-  std::string text;
-  const auto add = [&text](const std::vector<std::string>& row) {
-    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + csv_field(row[k]);
-    text += "\r\n";
-  };
-  add(stability_columns());
+CsvTable stability_table(const StabilityMap& map) {
+  CsvTable table{stability_columns(), {}};
   for (const MethodMap& method : map.methods)
-    for (const StabilityCell& cell : method.cells) add(stability_row(method.method, cell));
-  return text;
+    for (const StabilityCell& cell : method.cells) table.rows.push_back(stability_row(method.method, cell));
+  return table;
+}
+
+std::string stability_csv(const StabilityMap& map) {
+  return csv_text(stability_table(map), "\r\n");
 }
 
 std::vector<std::string> criterion_text(const StabilityMap& map) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/csv.h"
 #include "report/heat_map.h"
 #include "study/stability_map.h"
 
@@ -21,6 +22,7 @@ std::string status_of(const StabilityCell& cell);
 
 /// method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,time_step_s,
 /// growth_rate_per_s,steps,detail,wanted_steps; a row for each cell, method after method, from the lowest y.
+CsvTable stability_table(const StabilityMap& map);
 std::string stability_csv(const StabilityMap& map);
 std::vector<std::string> stability_columns();
 std::vector<std::string> stability_row(const std::string& method, const StabilityCell& cell);

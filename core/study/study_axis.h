@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "params/problem.h"
 #include "report/axis.h"
-#include "scene/problem.h"
 #include "scene/scene.h"
 
 namespace cloth {

@@ -6,9 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/csv.h"
-#include "io/run_folder.h"
+#include "io/machine.h"
 #include "kernels/instruction_set.h"
-#include "report/machine.h"
 #include "scene/scene_json.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
@@ -98,23 +97,6 @@ json contents(const ExtremesTable& table) {
   return {{"options", {{"methods", table.methods}, {"cases", cases}}}};
 }
 
-std::string csv_text(const CsvTable& table) {
-  std::string text;
-  const auto add = [&text](const std::vector<std::string>& row) {
-    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + csv_field(row[k]);
-    text += "\r\n";
-  };
-  add(table.header);
-  for (const auto& row : table.rows) add(row);
-  return text;
-}
-
-CsvTable extremes_table(const ExtremesTable& table) {
-  CsvTable rows{extremes_columns(), {}};
-  for (const ExtremeCell& cell : table.cells) rows.rows.push_back(extremes_row(cell));
-  return rows;
-}
-
 /// What its numbers depend on beside scene and options.
 json maker() {
   return {{"version", version()},
@@ -155,9 +137,9 @@ const char* csv_name(const StudyTable& table) {
 }
 
 std::string study_csv(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return csv_text(run_table(*study));
+  if (const auto* study = std::get_if<WorkPrecision>(&table)) return csv_text(run_table(*study), "\r\n");
   if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_csv(*map);
-  return csv_text(extremes_table(std::get<ExtremesTable>(table)));
+  return csv_text(extremes_table(std::get<ExtremesTable>(table)), "\r\n");
 }
 
 std::string study_text(const StudyTable& table) {
@@ -195,25 +177,6 @@ std::vector<std::string> study_files(const StudyTable& table) {
     names.insert(names.end(), {samples_name, reference_states_name});
   names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
   return names;
-}
-
-std::optional<IoError> write_study(const std::filesystem::path& folder, const WorkPrecision& study,
-                                   const std::string& command, double wall) {
-  return StudyRecorder::write(folder, study, command, wall);
-}
-
-std::optional<IoError> write_study(const std::filesystem::path& folder, const StabilityMap& map,
-                                   const std::string& command, double wall) {
-  return StudyRecorder::write(folder, map, command, wall);
-}
-
-std::optional<IoError> write_study(const std::filesystem::path& folder, const ExtremesTable& table,
-                                   const std::string& command, double wall) {
-  return StudyRecorder::write(folder, table, command, wall);
-}
-
-std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study) {
-  return StudyRecorder::write(folder, study.table, study.command, study.wall);
 }
 
 }  // namespace cloth

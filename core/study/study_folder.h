@@ -1,7 +1,7 @@
 // A study as a folder, written and read by the command line and the window alike: its tables as CSV, its
 // diagram as SVG, report.html, and study.json, which says what was studied.
 //
-//     if (auto error = write_study(folder, map, command, wall)) ...
+//     if (auto error = StudyRecorder::write(folder, map, command, wall)) ...  // study_recorder.h
 //     StudyReading reading = read_study(folder);
 #pragma once
 
@@ -38,16 +38,6 @@ std::string title_of(const StudyTable& table);
 
 /// Whether it came to its end.
 bool is_complete(const StudyTable& table);
-
-/// Makes the folder and writes its files; those of an earlier study in it go first. study.json comes last and
-/// has the digests of the others: whenever the writing ends, the folder holds this study or none.
-std::optional<IoError> write_study(const std::filesystem::path& folder, const WorkPrecision& study,
-                                   const std::string& command, double wall);
-std::optional<IoError> write_study(const std::filesystem::path& folder, const StabilityMap& map,
-                                   const std::string& command, double wall);
-std::optional<IoError> write_study(const std::filesystem::path& folder, const ExtremesTable& table,
-                                   const std::string& command, double wall);
-std::optional<IoError> write_study(const std::filesystem::path& folder, const Study& study);
 
 /// study.json for a folder. Without `files`: of a study that is being made, whose tables still grow.
 /// `states`: the file with the states of its reference, while it is kept.

@@ -10,10 +10,10 @@
 #include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
 #include "io/csv.h"
-#include "io/run_folder.h"
-#include "scene/json_entry.h"
-#include "scene/json_locator.h"
-#include "scene/json_syntax.h"
+#include "io/json_entry.h"
+#include "io/json_locator.h"
+#include "io/json_syntax.h"
+#include "io/text_file.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "study/stability_report.h"
@@ -387,9 +387,7 @@ StudyReading read_study(const std::filesystem::path& folder) {
     if (!disagreements.empty()) disagreements += "; ";
     return {std::nullopt, place + disagreements + bad.problem, bad.is_lost || !disagreements.empty()};
   } catch (BadJsonEntry& bad) {
-    const TextPosition at = locate_json(text).place_of(bad.problem.path, bad.problem.value.empty());
-    bad.problem.place = place + "study.json";
-    bad.problem.line = at.line, bad.problem.column = at.column;
+    locate_json(text).put_in_place(bad.problem, place + "study.json");
     if (disagreements.empty()) return {std::nullopt, bad.problem.text()};
   }
   return {std::nullopt, place + disagreements, true};

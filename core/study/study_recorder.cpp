@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
 #include "study/reference_states.h"
@@ -37,23 +37,11 @@ std::vector<std::string> differences(const Json& before, const Json& now) {
   return found;
 }
 
-std::string text_of(const std::vector<std::string>& columns,
-                    const std::vector<std::vector<std::string>>& rows) {
-  std::string text;
-  const auto add = [&text](const std::vector<std::string>& row) {
-    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + csv_field(row[k]);
-    text += '\n';
-  };
-  add(columns);
-  for (const auto& row : rows) add(row);
-  return text;
-}
-
 /// Begins a table with the rows that are there, to go on after them.
 std::optional<IoError> begin_table(ResultFolder& folder, const char* name, const CsvTable& kept,
                                    CsvFile& file) {
   if (auto error = folder.add(name)) return error;
-  if (auto error = write_text_file(folder / name, text_of(kept.header, kept.rows))) return error;
+  if (auto error = write_text_file(folder / name, csv_text(kept, "\n"))) return error;
   return file.open_at_end(folder / name);
 }
 
@@ -177,8 +165,7 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
     }
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
-    kept.header = extremes_columns();
-    for (const ExtremeCell& cell : extremes.cells) kept.rows.push_back(extremes_row(cell));
+    kept = extremes_table(extremes);
     rows_kept_ = {extremes.cells.size()};
   }
   return begin_table(folder_, csv_name(table), kept, rows_);
@@ -243,7 +230,7 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
   if (auto error = samples_.close()) return error;
   if (auto error = folder_.write(csv_name(table), study_csv(table), true)) return error;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
-    const std::string samples = text_of(sample_columns(), sample_table(*study).rows);
+    const std::string samples = csv_text(sample_table(*study), "\n");
     if (auto error = folder_.write(samples_name, samples, true)) return error;
     if (is_complete(table)) {
       states_.reset();

@@ -45,7 +45,8 @@ class StudyRecorder {
 
   bool is_open() const { return folder_.is_open(); }
 
-  /// A whole study at once, in place of whatever study the folder holds.
+  /// A whole study at once, in place of whatever study the folder holds. study.json comes last and has the
+  /// digests of the other files: whenever the writing ends, the folder holds this study or none.
   static std::optional<IoError> write(const std::filesystem::path& folder, const StudyTable& table,
                                       const std::string& command, double wall);
 

@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "cloth/mesh_cloth.h"
+#include "geometry/split_mix.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_parameters.h"
+#include "simulation/step_batches.h"
+#include "study/quantile.h"
 
 namespace cloth {
 namespace {
@@ -24,7 +26,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// One untimed run: errors at the fixed times, counts, and how it ended.
 class UntimedPass {
  public:
-  UntimedPass(const WorkPrecision& study, const StepLadder& ladder, const std::stop_token& stop)
+  UntimedPass(const WorkPrecision& study, const StepLadder& ladder, const StopTest& stop)
       : study_(study), ladder_(ladder), stop_(stop) {}
 
   /// nullopt if it was stopped before the end, or `go_on` said false.
@@ -33,22 +35,22 @@ class UntimedPass {
     WorkPrecisionRun result{.rung = rung, .tolerance = ladder_.tolerance(rung), .samples = {}};
     const std::int64_t stride = ladder_.steps(rung) / study_.samples;
     std::vector<ClothState> states;
-    std::optional<Divergence> divergence;
-    for (int k = 0; k < study_.samples && !divergence; ++k) {
-      for (std::int64_t n = 0; n < stride && !divergence; ++n) {
-        if (stop_.stop_requested()) return std::nullopt;
-        divergence = simulation.step();
-        result.limiter_iterations += simulation.last_limit().direct_iterations;
-      }
+    StepBatches batches(simulation, stop_);
+    const std::int64_t batch =
+        study_.scene.deformation ? 1 : stride;  // the limiter's iterations of every step
+    for (std::int64_t step = batch; step <= stride * study_.samples && !batches.divergence(); step += batch) {
+      if (!batches.run_to(step) && !batches.divergence()) return std::nullopt;
+      result.limiter_iterations += simulation.last_limit().direct_iterations;
+      if (step % stride != 0) continue;
       if (!go_on()) return std::nullopt;
-      if (!divergence) states.push_back(simulation.state());
+      if (!batches.divergence()) states.push_back(simulation.state());
     }
     result.count = simulation.count();
     result.steps = ladder_.by_tolerance ? result.count.inner_steps : result.count.steps;
     result.time_step = simulation.time() / static_cast<double>(std::max<std::int64_t>(1, result.steps));
     if (!ladder_.by_tolerance) result.time_step = simulation.time_step();
     result.estimated = estimated_seconds(study_.particles, result.count, result.limiter_iterations);
-    judge(simulation, divergence, states, result);
+    judge(simulation, batches.divergence(), states, result);
     return result;
   }
 
@@ -72,7 +74,7 @@ class UntimedPass {
 
   const WorkPrecision& study_;
   const StepLadder& ladder_;
-  const std::stop_token& stop_;
+  const StopTest& stop_;
 };
 
 int repeats_of(const WorkPrecisionRun& run, int repeats) {
@@ -193,25 +195,17 @@ class Measuring {
 
 /// nullopt if it was stopped.
 std::optional<double> seconds_of(const WorkPrecision& study, const StepLadder& ladder, int rung,
-                                 const std::stop_token& stop) {
+                                 const StopTest& stop) {
   Simulation simulation(scene_at(study.scene, ladder, rung, study.horizon));
-  const std::int64_t steps = ladder.steps(rung);
-  const auto start = std::chrono::steady_clock::now();
-  for (std::int64_t n = 0; n < steps; ++n) {
-    if (stop.stop_requested()) return std::nullopt;
-    if (simulation.step()) break;
-  }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  StepBatches batches(simulation, stop);
+  if (!batches.run_to(ladder.steps(rung)) && !batches.divergence()) return std::nullopt;
+  return batches.seconds();
 }
 
-/// Fisher and Yates with a fixed generator (splitmix64): the same order on every machine.
+/// Fisher and Yates with a fixed generator: the same order on every machine.
 void shuffle(std::vector<std::pair<MethodStudy*, WorkPrecisionRun*>>& runs, std::uint64_t seed) {
-  for (std::size_t k = runs.size(); k > 1; --k) {
-    std::uint64_t z = (seed += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    std::swap(runs[k - 1], runs[(z ^ (z >> 31)) % k]);
-  }
+  SplitMix random(seed);
+  for (std::size_t k = runs.size(); k > 1; --k) std::swap(runs[k - 1], runs[random.bits() % k]);
 }
 
 /// Each run has run once, untimed, before: that was the warm-up. All runs of a repeat in shuffled order.
@@ -307,13 +301,7 @@ TimeSpread spread_of(const std::vector<TimedSample>& samples) {
   std::vector<double> seconds;
   for (const TimedSample& sample : samples) seconds.push_back(sample.seconds);
   std::sort(seconds.begin(), seconds.end());
-  const auto at = [&](double part) {
-    const double place = part * static_cast<double>(seconds.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, seconds.size() - 1);
-    return seconds[below] + (place - static_cast<double>(below)) * (seconds[above] - seconds[below]);
-  };
-  return {seconds.front(), at(0.25), at(0.5), at(0.75)};
+  return {seconds.front(), quantile(seconds, 0.25), quantile(seconds, 0.5), quantile(seconds, 0.75)};
 }
 
 void conclude(WorkPrecision& study) {

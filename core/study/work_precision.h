@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,7 +26,7 @@ struct WorkPrecisionOptions {
   /// The study so far: after the reference, every finished run and every timed repeat of one; the last is
   /// what is returned.
   std::function<void(const WorkPrecision&)> partial{};
-  std::stop_token stop{};  ///< looked at before every step, the timed ones too; stops like `progress`
+  StopTest stop{};  ///< asked between batches of steps, the timed ones too; stops like `progress`
   /// The same study, stopped before its end: its reference, runs and timings are not made again. Only where
   /// the states of the reference are lost and a run is left to measure is it solved once more.
   const WorkPrecision* earlier = nullptr;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "io/machine.h"
 #include "report/html_page.h"
-#include "report/machine.h"
 #include "scene/scene_json.h"
 #include "study/work_precision_report.h"
 #include "study/work_precision_tables.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "report/machine.h"
+#include "io/machine.h"
 #include "scene/scene_json.h"
 
 namespace cloth {

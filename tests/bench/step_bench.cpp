@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
-
 #include "bench/speed/speed_tables.h"
 #include "cli/console.h"
 #include "cli/parse.h"
@@ -22,17 +20,12 @@ struct Arguments {
   bool json = false, markdown = false;
 };
 
-std::vector<std::string> feature_names(bool with_bare) {
+/// Beside the bare cloth.
+std::vector<std::string> feature_names() {
   std::vector<std::string> names;
   for (const Feature& feature : features())
-    if (with_bare || &feature != &bare_feature()) names.push_back(feature.name);
+    if (&feature != &bare_feature()) names.push_back(feature.name);
   return names;
-}
-
-/// An option with names between commas, each of them among `known`.
-void add_names(CLI::App& app, const char* option, std::vector<std::string>& names, const std::string& help,
-               const std::vector<std::string>& known) {
-  app.add_option(option, names, help)->delimiter(',')->check(CLI::IsMember(known));
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -42,10 +35,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(4, 2048));
   add_names(app, "--methods", study.methods, "Only these methods, e.g. verlet,rk4",
             cloth::integrator_names());
-  add_names(
-      app, "--features", study.features,
-      fmt::format("Only these beside the bare step: {}; all without", fmt::join(feature_names(false), ", ")),
-      feature_names(true));
+  add_names(app, "--features", study.features,
+            fmt::format("Only these beside the bare step: {}; all without", fmt::join(feature_names(), ", ")),
+            feature_names());
   app.add_option("--threads", study.threads, "Numbers of threads, e.g. 1,2; 1 and all cores without")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024));
@@ -55,11 +47,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_names(app, "--only", study.parts, fmt::format("Only these parts: {}", fmt::join(speed_parts(), ", ")),
             speed_parts());
   app.add_flag("--quick", study.quick, "Small sizes and short timings: a look, not a measurement");
-  app.add_option("--out", arguments.folder,
-                 "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot "
-                 "go on after an interruption: the same command begins anew")
-      ->check(is_name());
-  CLI::Option* json = app.add_flag("--json", arguments.json, "Give the result as one JSON object");
+  add_path(app, "--out", arguments.folder,
+           "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot go on "
+           "after "
+           "an interruption: the same command begins anew");
+  CLI::Option* json = add_json(app, arguments.json);
   app.add_flag("--markdown", arguments.markdown, "Print the tables as Markdown")->excludes(json);
 }
 

@@ -288,11 +288,14 @@ TEST(CompareWorker, EndsWithinAStepHoweverLongTheIntervalIs) {
   comparison.scene.record.interval = 1000;
   comparison.scene.duration = 1000;
   comparison.scene.integrator.time_step = 0.001;
-  CompareWorker worker;
-  worker.send(command::Load{comparison});
-  worker.send(command::Speed{fastest});
-  worker.send(command::Play{});
+  auto worker = std::make_unique<CompareWorker>();
+  worker->send(command::Load{comparison});
+  worker->send(command::Speed{fastest});
+  worker->send(command::Play{});
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto start = std::chrono::steady_clock::now();
+  worker.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "bridge/simulation_worker.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab::test {

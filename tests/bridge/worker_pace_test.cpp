@@ -47,7 +47,7 @@ TEST(RateMeter, CountsStepsAndSimulatedSecondsPerSecond) {
   RateMeter meter;
   const Clock::time_point start{};
   meter.restart(0, start);
-  for (int n = 1; n <= 100; ++n) meter.count(0.002 * n, start + milliseconds(10 * n));
+  for (int n = 1; n <= 100; ++n) meter.count(1, 0.002 * n, start + milliseconds(10 * n));
   EXPECT_NEAR(meter.steps_per_second(), 100, 1e-9);
   EXPECT_NEAR(meter.real_time_factor(), 0.2, 1e-9);
 }

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "support/files.h"
 
 namespace cloth::test {

@@ -6,7 +6,7 @@
 #include "cli/command_line.h"
 #include "io/csv.h"
 #include "io/file_digest.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "support/files.h"
 
 namespace cloth::test::folders_test {

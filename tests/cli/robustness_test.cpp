@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "support/files.h"
 
 namespace cloth::test::robustness_test {

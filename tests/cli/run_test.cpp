@@ -7,7 +7,7 @@
 
 #include "cli/command_line.h"
 #include "io/obj_reader.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/scene_json.h"
 #include "support/files.h"
 
@@ -221,9 +221,93 @@ TEST(Run, ThatIsKilledLeavesAValidRecord) {
 
 TEST(Run, AcceptsThreadsAndGivesTheSameBits) {
   const TemporaryFolder folder;
-  cli(short_run + "--threads 1 " + out(folder, "one"));
-  cli(short_run + "--threads 4 " + out(folder, "four"));
-  EXPECT_EQ(content_of(folder / "one/final_state.csv"), content_of(folder / "four/final_state.csv"));
+  const std::string large =
+      "run corners-free --set cloth.rows=128 --set cloth.columns=128 --set duration=0.02 ";
+  for (const char* threads : {"1", "4"}) {
+    const CommandResult result = cli(large + "--json --threads " + threads + " " + out(folder, threads));
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(nlohmann::json::parse(result.output)["threads"], std::stoi(threads)) << "they are not used";
+  }
+  const std::string state = content_of(folder / "1/final_state.csv");
+  EXPECT_EQ(parse_csv(state).rows.size(), 128u * 128u);
+  EXPECT_EQ(state, content_of(folder / "4/final_state.csv"));
+}
+
+/// Of a PNG file: its width and height, which follow the names of the format and of the first chunk.
+std::pair<int, int> png_size(const std::string& png) {
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t k = at; k < at + 4; ++k) value = value << 8 | static_cast<unsigned char>(png.at(k));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST(Run, WritesAPictureOfTheClothAfterTheLastStep) {
+  const TemporaryFolder folder;
+  const auto picture = [&](const std::string& name, const std::string& options) {
+    const CommandResult result =
+        cli("run ball --set duration=0.05 --picture '" + (folder / name).string() + "' " + options);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const std::string png = content_of(folder / name);
+    EXPECT_EQ(png.substr(1, 3), "PNG") << name;
+    return png;
+  };
+  const std::string usual = picture("usual.png", "");
+  EXPECT_EQ(png_size(usual), std::pair(1280, 960));
+  EXPECT_EQ(picture("again.png", ""), usual) << "the same bytes again";
+  const std::string small = picture("small.png", "--size 120x90");
+  EXPECT_EQ(png_size(small), std::pair(120, 90));
+  EXPECT_EQ(png_size(picture("dot.png", "--size 1x1")), std::pair(1, 1));
+  std::set<std::string> different{small};
+  for (const char* options : {"--view front", "--view left", "--view top", "--view -30,80", "--theme dark"})
+    EXPECT_TRUE(different.insert(picture("other.png", std::string("--size 120x90 ") + options)).second)
+        << options << " shows what another one shows";
+  EXPECT_EQ(picture("right.png", "--size 120x90 --view right"),
+            picture("90.png", "--size 120x90 --view 90,0"));
+}
+
+TEST(Run, SaysWhatIsWrongWithAPictureBeforeItRuns) {
+  const TemporaryFolder folder;
+  const std::string file = "--picture '" + (folder / "cloth.png").string() + "' ";
+  const struct {
+    std::string options, message;
+  } cases[] = {{file + "--view below", "--view: below: must be front, back, left, right, top, corner, or"},
+               {file + "--view 10", "--view: 10: must be"},
+               {file + "--view 10,91", "--view: 10,91: must be"},
+               {file + "--view nan,0", "--view: nan,0: must be"},
+               {file + "--size 0x10", "--size: 0x10: must be WIDTHxHEIGHT in pixels, each from 1 to 8192"},
+               {file + "--size 100", "--size: 100: must be"},
+               {file + "--size 9000x10", "--size: 9000x10: must be"},
+               {file + "--theme blue", "--theme: blue: must be light or dark"},
+               {"--view top", "--view requires --picture"},
+               {"--picture ''", "--picture: must be a name"}};
+  for (const auto& [options, message] : cases) {
+    const CommandResult result = cli(short_run + options + " " + out(folder));
+    EXPECT_EQ(result.exit_code, 2) << options;
+    EXPECT_TRUE(has(result.errors, message)) << options << "\n" << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder / "result")) << options;
+    EXPECT_FALSE(std::filesystem::exists(folder / "cloth.png")) << options;
+  }
+}
+
+TEST(Run, RefusesAPictureThatHasNoPlace) {
+  const TemporaryFolder folder;
+  const auto run_with = [&](const std::string& picture, const std::string& more = "") {
+    return cli(short_run + "--picture '" + (folder / picture).string() + "' " + more + out(folder));
+  };
+  const CommandResult nowhere = run_with("none/cloth.png");
+  EXPECT_EQ(nowhere.exit_code, 4);
+  EXPECT_TRUE(has(nowhere.errors, "none/cloth.png: there is no folder")) << nowhere.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "result"));
+  const CommandResult own = run_with("result/record.csv");
+  EXPECT_EQ(own.exit_code, 4) << "its folder is not there yet";
+  const CommandResult twice = run_with("both", "--obj '" + (folder / "both").string() + "' ");
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_TRUE(has(twice.errors, "give the picture another name") ||
+              has(twice.errors, "give the OBJ file another name"))
+      << twice.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "both"));
 }
 
 }  // namespace

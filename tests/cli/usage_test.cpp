@@ -4,7 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
+#include "io/machine.h"
 #include "scene/builtin_scenes.h"
 #include "scene/reference_page.h"
 #include "support/files.h"

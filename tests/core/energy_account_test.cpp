@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "io/run_folder.h"
+#include "simulation/run_summary.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/recorder.h"
 

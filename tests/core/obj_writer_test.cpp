@@ -8,7 +8,7 @@
 
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
-#include "io/cloth_obj.h"
+#include "cloth/cloth_obj.h"
 #include "io/obj_reader.h"
 #include "scene/builtin_scenes.h"
 

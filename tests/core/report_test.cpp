@@ -9,7 +9,7 @@
 
 #include "report/html_page.h"
 #include "report/line_plot.h"
-#include "report/machine.h"
+#include "io/machine.h"
 #include "report/palette.h"
 #include "report/svg.h"
 #include "support/xml.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "support/files.h"
 
 namespace cloth::test::result_folder_test {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "scene/builtin_scenes.h"
-#include "scene/json_locator.h"
+#include "io/json_locator.h"
 #include "scene/scene_json.h"
 
 namespace cloth::test::scene_edits_test {

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
+#include "study/study_recorder.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
 #include "study/work_precision_tables.h"
@@ -40,7 +41,7 @@ ExtremesOptions few_cases() {
 }
 
 Study read_back(const TemporaryFolder& folder, const StudyTable& table) {
-  const auto error = write_study(folder.path(), Study{table, "the command", 1.25});
+  const auto error = StudyRecorder::write(folder.path(), table, "the command", 1.25);
   EXPECT_FALSE(error) << error->text();
   StudyReading reading = read_study(folder.path());
   EXPECT_TRUE(reading.study) << reading.problem;
@@ -81,7 +82,7 @@ TEST(StudyFolder, ExtremesComeBackAsTheyWereWritten) {
 TEST(StudyFolder, SaysWhatIsWrongWithIt) {
   const TemporaryFolder folder;
   EXPECT_NE(read_study(folder.path()).problem.find("study.json"), std::string::npos);
-  ASSERT_FALSE(write_study(folder.path(), Study{run_extremes(few_cases()), "", 0}));
+  ASSERT_FALSE(StudyRecorder::write(folder.path(), run_extremes(few_cases()), "", 0));
   const auto path = folder / "extremes.csv";
   std::string text = content_of(path);
   text.replace(text.find("diverged"), 8, "exploded");
@@ -137,7 +138,7 @@ TEST(StudyStop, EndsEveryStudyAtItsNextStepAndKeepsWhatIsFinished) {
   std::stop_source stop;
   int runs = 0;
   WorkPrecisionOptions precision = few_runs();
-  precision.stop = stop.get_token();
+  precision.stop = [&stop] { return stop.stop_requested(); };
   precision.partial = [&](const WorkPrecision& so_far) {
     if ((runs = finished_runs(so_far)) == 2) stop.request_stop();
   };
@@ -147,13 +148,13 @@ TEST(StudyStop, EndsEveryStudyAtItsNextStepAndKeepsWhatIsFinished) {
 
   const Scene scene = small_cloth();
   StabilityOptions options = small_map(scene);
-  options.stop = stop.get_token();  // requested already
+  options.stop = [&stop] { return stop.stop_requested(); };  // requested already
   const StabilityMap map = run_stability_map(scene, options);
   EXPECT_FALSE(map.complete);
   EXPECT_EQ(finished_runs(map), 0);
 
   ExtremesOptions extremes = few_cases();
-  extremes.stop = stop.get_token();
+  extremes.stop = [&stop] { return stop.stop_requested(); };
   EXPECT_TRUE(run_extremes(extremes).cells.empty());
 }
 
@@ -161,7 +162,7 @@ TEST(StudyStop, AStoppedStudyComesBackFromItsFolderToo) {
   const Scene scene = small_cloth();
   StabilityOptions options = small_map(scene);
   std::stop_source stop;
-  options.stop = stop.get_token();
+  options.stop = [&stop] { return stop.stop_requested(); };
   options.partial = [&](const StabilityMap& so_far) {
     if (finished_runs(so_far) == 5) stop.request_stop();
   };

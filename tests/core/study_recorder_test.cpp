@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
 #include "study/reference_states.h"
@@ -35,7 +35,7 @@ void make_some_cells(const std::filesystem::path& folder, int cells) {
   const int before = recorder.earlier() ? finished_runs(*recorder.earlier()) : 0;
   int calls = 0;
   std::stop_source stop;
-  options.stop = stop.get_token();
+  options.stop = [&stop] { return stop.stop_requested(); };
   options.partial = [&](const StabilityMap& map) {
     if (calls++ > 1000 || finished_runs(map) >= before + cells) stop.request_stop();
     EXPECT_FALSE(recorder.keep(map));
@@ -161,7 +161,7 @@ TEST(StudyRecorder, OfWorkPrecisionKeepsRunsAndTimings) {
     ASSERT_FALSE(recorder.begin(folder.path(), plan_work_precision(scene, options), {}));
     if (recorder.earlier()) options.earlier = &std::get<WorkPrecision>(*recorder.earlier());
     std::stop_source stop;
-    options.stop = stop.get_token();
+    options.stop = [&stop] { return stop.stop_requested(); };
     std::size_t now = 0;
     options.partial = [&](const WorkPrecision& so_far) {
       now = sample_table(so_far).rows.size();
@@ -203,7 +203,7 @@ Part make_part(const Scene& scene, const std::filesystem::path& folder, std::opt
   EXPECT_FALSE(recorder.begin(folder, plan_work_precision(scene, options), {}));
   if (recorder.earlier()) options.earlier = &std::get<WorkPrecision>(*recorder.earlier());
   std::stop_source stop;
-  options.stop = stop.get_token();
+  options.stop = [&stop] { return stop.stop_requested(); };
   options.partial = [&](const WorkPrecision& so_far) {
     EXPECT_FALSE(recorder.keep(so_far));
     if (last && finished_runs(so_far) >= *last) stop.request_stop();

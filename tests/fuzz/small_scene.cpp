@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/json_syntax.h"
+#include "io/json_syntax.h"
 #include "scene/scene_checks.h"
 #include "simulation/simulation.h"
 #include "simulation/stages.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "fuzz/small_scene.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "study/study_folder.h"
 
 namespace {

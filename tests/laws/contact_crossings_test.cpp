@@ -13,6 +13,7 @@
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 #include "support/random.h"
+#include "support/test_names.h"
 
 namespace cloth::test::contact_crossings_test {
 namespace {
@@ -22,12 +23,6 @@ std::vector<std::string> scenes_of_contact() {
   for (const BuiltinScene& scene : builtin_scenes())
     if (has_continuous_contact(builtin_scene(scene.name))) names.push_back(scene.name);
   return names;
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 /// A step, how long to go on with it, and how often to look.

@@ -11,6 +11,7 @@
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::every_scene_test {
 namespace {
@@ -73,16 +74,14 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
-std::string test_name(const ::testing::TestParamInfo<Case>& info) {
-  std::string name = std::get<0>(info.param) + "_with_" + std::get<1>(info.param);
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
+std::string name_of_case(const ::testing::TestParamInfo<Case>& info) {
+  return test_word(std::get<0>(info.param) + "_with_" + std::get<1>(info.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
                          ::testing::Combine(::testing::ValuesIn(scene_names()),
                                             ::testing::ValuesIn(integrator_names())),
-                         test_name);
+                         name_of_case);
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryBuiltInScene, ::testing::ValuesIn(scene_names()),
                          [](const auto& scene) {

@@ -17,6 +17,7 @@
 #include "support/reference.h"
 #include "support/scenes.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::exact_motion_test {
 namespace {
@@ -406,12 +407,6 @@ TEST_P(ExactMotion, ThatWasManufacturedInWindAndDragIsFollowed) {
   };
   made.load = [&] { return std::make_unique<ManufacturedLoad>(made.scene, made.system); };
   expect_followed(made, GetParam(), ManufacturedMotion::amplitude);
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
-  std::string name = method.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ExactMotion, ::testing::ValuesIn(integrator_names()), test_name);

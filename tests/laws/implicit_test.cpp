@@ -10,6 +10,7 @@
 #include "support/direct_run.h"
 #include "support/scenes.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::implicit_test {
 namespace {
@@ -210,12 +211,6 @@ TEST_P(Implicit, CountsItsIterationsAndSolves) {
   EXPECT_GT(simulation.count().factorisations + simulation.count().linear_iterations, 0);
   EXPECT_GE(simulation.count().force_evaluations, simulation.count().iterations + 10);
   EXPECT_LE(simulation.count().largest_residual, scene.integrator.tolerance);
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
-  std::string name = method.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Method, Implicit, ::testing::Values("implicit-euler", "implicit-midpoint", "bdf2"),

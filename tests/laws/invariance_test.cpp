@@ -8,6 +8,7 @@
 #include "support/direct_run.h"
 #include "support/scenes.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::invariance_test {
 namespace {
@@ -109,12 +110,6 @@ std::vector<std::string> names_but_explicit_euler() {
   std::vector<std::string> names = integrator_names();
   std::erase(names, "explicit-euler");
   return names;
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
-  std::string name = method.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, EveryMethod, ::testing::ValuesIn(integrator_names()), test_name);

@@ -22,6 +22,7 @@
 #include "support/random.h"
 #include "support/scenes.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::mesh_cloth_test {
 namespace {
@@ -245,13 +246,7 @@ TEST_P(MeshClothWith, GoesOnFromACheckpointToTheBit) {
   EXPECT_EQ(whole.state(), parts.state());
 }
 
-std::string name_of_test(const ::testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods, MeshClothWith, ::testing::ValuesIn(integrator_names()), name_of_test);
+INSTANTIATE_TEST_SUITE_P(Methods, MeshClothWith, ::testing::ValuesIn(integrator_names()), test_name);
 
 TEST(RestingFrequency, BoundsTheSpectrumAtRestAndNotByMuch) {
   for (const char* name : {"disc.obj"}) {

@@ -10,6 +10,7 @@
 #include "support/direct_run.h"
 #include "support/scenes.h"
 #include "support/states.h"
+#include "support/test_names.h"
 
 namespace cloth::test::order_test {
 namespace {
@@ -125,12 +126,6 @@ TEST_P(ObservedOrder, IsAlsoThatOfTheEnergyLedger) {
   for (int k = 0; k <= ladder.halvings; ++k)
     errors.push_back(ledger_error(with_spring_damping(), GetParam(), ladder.first << k, ladder.time));
   expect_order(errors, facts_of(GetParam()).order, ladder, 1e-15, GetParam() + " ledger");
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
-  std::string name = method.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ObservedOrder, ::testing::ValuesIn(integrator_names()), test_name);

@@ -10,6 +10,7 @@
 #include "integrators/registry.h"
 #include "support/direct_run.h"
 #include "support/scenes.h"
+#include "support/test_names.h"
 
 namespace cloth::test::oscillator_test {
 namespace {
@@ -117,12 +118,6 @@ TEST_P(PhaseError, OfADampedOscillationVanishesAtTheMethodsOrder) {
   };
   const int order = facts_of(GetParam()).order, steps = order > 4 ? 80 : 800;  // above rounding
   EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)), order, 0.1) << GetParam();
-}
-
-std::string test_name(const ::testing::TestParamInfo<std::string>& method) {
-  std::string name = method.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, PhaseError, ::testing::ValuesIn(integrator_names()), test_name);

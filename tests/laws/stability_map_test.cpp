@@ -191,7 +191,7 @@ TEST(StabilityMap, DrawsAPredictedCurveWhereNoAxisIsTheTimeStep) {
 
 TEST(StabilityMap, ThatIsStoppedKeepsWhatItHas) {
   StabilityOptions options = small_map();
-  options.progress = [](double part) { return part < 0.3; };
+  options.progress = [](const StudyProgress& progress) { return progress.fraction < 0.3; };
   const StabilityMap map = run_stability_map(builtin_scene("corners-free"), options);
   EXPECT_FALSE(map.complete);
   EXPECT_EQ(map.methods[0].cells[0].status, CellStatus::run);

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/at.h"
 #include "support/crossings.h"
 
 namespace cloth::test {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 TriangleMesh irregular_sheet(Random& random) {
   constexpr int side = 5;

@@ -110,7 +110,8 @@ void ChartExportTest::csv_holds_the_times_shown() {
 
 void ChartExportTest::csv_has_decimal_points_under_a_german_locale() {
   const QByteArray old = std::setlocale(LC_ALL, nullptr);
-  std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed; Qt's own locale is set in any case
+  const bool has_commas =
+      std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;  // Qt's own locale has, in any case
   QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
   {
     Bench bench;
@@ -125,6 +126,7 @@ void ChartExportTest::csv_has_decimal_points_under_a_german_locale() {
   }
   QLocale::setDefault(QLocale::c());
   std::setlocale(LC_ALL, old.constData());
+  if (!has_commas) QSKIP("the C library has no German locale here: only Qt's was tried");
 }
 
 void ChartExportTest::pictures_have_the_size_asked_for() {
@@ -164,7 +166,7 @@ void ChartExportTest::a_file_that_cannot_be_written_is_an_error_message() {
   QVERIFY(bench.panel.exportCsv(nowhere).contains(nowhere));
   QVERIFY(bench.panel.exportPng(nowhere).contains(nowhere));
   QVERIFY(bench.panel.exportSvg(nowhere).contains(nowhere));
-  QVERIFY(bench.panel.exportCsv(folder.path()).contains("not a file"));
+  QVERIFY(bench.panel.exportCsv(folder.path()).contains("is a folder"));
   QVERIFY(!bench.panel.exportPng(folder.filePath("zero.png"), {0, 10}).isEmpty());
   QVERIFY(!QFile::exists(folder.filePath("zero.png")));
 }

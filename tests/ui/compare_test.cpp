@@ -12,7 +12,7 @@
 #include "compare/run_comparison.h"
 #include "compare_bench.h"
 #include "io/csv.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "listed_test.h"
 #include "main_window/main_window.h"
 #include "theme/theme.h"

@@ -243,7 +243,7 @@ void CompareWorker::play_for_a_moment() {
 
 void CompareWorker::arrive() {
   const double time = now();
-  meter_.count(time, Clock::now());
+  meter_.count(1, time, Clock::now());
   if (lockstep_->all_stopped()) {
     status_.playing = false;
     end_recording();

@@ -119,7 +119,7 @@ class CompareWorker {
   // The worker's own.
   int threads_;
   std::deque<CompareCommand> waiting_;
-  bool handling_ = false;  ///< a command that is not yet among handled_
+  bool handling_ = false;                    ///< a command that is not yet among handled_
   std::uint64_t handled_ = 0, settled_ = 0;  ///< commands; the second: with the step that they asked for
   std::unique_ptr<cloth::LockStep> lockstep_;
   std::optional<std::int64_t> under_way_;  ///< the common time that panes are on their way to

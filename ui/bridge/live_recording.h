@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "io/run_folder.h"
 #include "simulation/recorder.h"
 #include "simulation/session.h"
 

@@ -104,6 +104,7 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
       status_.refusal = problems.front().text();
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
+  simulation_->set_threads(std::max(1, cloth::machine_threads() - 1));  // one core is the window's
   simulation_->set_stop_test([this] { return thread_.get_stop_token().stop_requested(); });
   gave_up_ = false;
   history_.begin(*simulation_);
@@ -178,7 +179,7 @@ void SimulationWorker::handle(const command::SingleStep&) {
   status_.playing = false;
   if (!simulation_ || !status_.refusal.empty()) return;
   status_.divergence.reset();
-  if (advance()) publish_frame();
+  if (advance(1)) publish_frame();
 }
 
 void SimulationWorker::handle(const command::Speed& speed) {
@@ -221,27 +222,42 @@ void SimulationWorker::play_for_a_moment() {
   const Clock::time_point start = Clock::now();
   Clock::time_point now = start;
   do {
-    if (!pace_.is_due(simulation_->time() + simulation_->time_step(), now)) break;
-    if (!advance()) break;
+    const std::int64_t due = steps_due(now), begin = simulation_->state().step;
+    if (due == 0 || !advance(due)) break;
     now = Clock::now();
-    meter_.count(simulation_->time(), now);
+    meter_.count(simulation_->state().step - begin, simulation_->time(), now);
   } while (now - start < batch_time && !thread_.get_stop_token().stop_requested());
   if (now - last_frame_ >= frame_interval) publish_frame();
 }
 
-bool SimulationWorker::advance() {
+/// Those between which nothing is looked at: to the next row at most, and one by one where the log is played
+/// again. 0: none is due.
+std::int64_t SimulationWorker::steps_due(Clock::time_point now) {
+  const double time = simulation_->time(), step = simulation_->time_step();
+  if (!pace_.is_due(time + step, now)) return 0;
+  const std::int64_t most =
+      playing_again_ ? 1 : std::min(batch_.steps(), rows_.until_due(simulation_->state().step));
+  std::int64_t steps = 1;
+  while (steps < most && pace_.due_time(time + static_cast<double>(steps + 1) * step) <= now) ++steps;
+  return steps;
+}
+
+bool SimulationWorker::advance(std::int64_t steps) {
   if (playing_again_) return advance_again();
   begin_branch();
+  const std::int64_t begin = simulation_->state().step;
   const Clock::time_point start = Clock::now();
-  const auto divergence = simulation_->step();
-  wall_since_row_ += seconds(Clock::now() - start);
+  const auto divergence = simulation_->advance(steps);
+  const double taken = seconds(Clock::now() - start);
+  wall_since_row_ += taken;
   if (divergence) {
     diverge(*divergence);
     return false;
   }
   if (simulation_->interrupted()) return false;
   history_.extend(*simulation_);
-  ++steps_since_row_;
+  steps_since_row_ += simulation_->state().step - begin;
+  batch_.note(steps, taken);
   rows_.follow(*simulation_);
   if (rows_.due(simulation_->state().step)) take_sample();
   return true;

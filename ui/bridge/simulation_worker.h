@@ -16,6 +16,7 @@
 #include "bridge/worker_pace.h"
 #include "bridge/worker_status.h"
 #include "simulation/history.h"
+#include "simulation/step_batches.h"
 
 namespace clothlab {
 
@@ -118,7 +119,8 @@ class SimulationWorker {
   void drop_later_samples();
   void show_session_problems(const std::vector<cloth::Problem>& problems);
   void play_for_a_moment();
-  bool advance();
+  std::int64_t steps_due(WorkerPace::Clock::time_point now);
+  bool advance(std::int64_t steps);
   bool advance_again();
   void take_sample();
   void deliver(const ChartSample& sample);
@@ -145,6 +147,7 @@ class SimulationWorker {
   WorkerStatus status_;
   WorkerPace pace_;
   RateMeter meter_;
+  cloth::BatchSize batch_;
   std::uint64_t topology_ = 0;
   cloth::Vec3Field normals_;  ///< scratch
   ContactChoice contact_;

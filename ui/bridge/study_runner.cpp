@@ -170,34 +170,27 @@ void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
 void StudyRunner::carry_out(const StudyOrder& order, const std::stop_token& stop) {
   const auto partial = [&](const auto& table) { offer(table, false); };
   const auto progress = [this](const cloth::StudyProgress& now) { return note(now); };
+  const cloth::StopTest stop_test = [&stop] { return stop.stop_requested(); };
   if (const auto* chosen = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
     cloth::WorkPrecisionOptions options = *chosen;
     options.progress = progress;
     options.partial = partial;
-    options.stop = stop;
+    options.stop = stop_test;
     options.earlier = begin(cloth::plan_work_precision(order.scene, options), order);
     offer(cloth::study_work_precision(order.scene, options), true);
   } else if (const auto* map = std::get_if<cloth::StabilityOptions>(&order.options)) {
     cloth::StabilityOptions options = *map;
-    std::string text = "laying out the map";
-    options.progress = [&](double part) { return note({part, text}); };
-    options.partial = [&](const cloth::StabilityMap& so_far) {
-      std::size_t runs = 0, all = 0;
-      for (const cloth::MethodMap& method : so_far.methods)
-        for (const cloth::StabilityCell& cell : method.cells)
-          ++all, runs += cell.status != cloth::CellStatus::not_run ? 1 : 0;
-      text = "cell " + std::to_string(std::min(runs + 1, all)) + " of " + std::to_string(all);
-      partial(so_far);
-    };
-    options.stop = stop;
-    note({0, text});
+    options.progress = progress;
+    options.partial = partial;
+    options.stop = stop_test;
+    note({0, "laying out the map"});
     options.earlier = begin(cloth::plan_stability_map(order.scene, options), order);
     offer(cloth::run_stability_map(order.scene, options), true);
   } else {
     cloth::ExtremesOptions options = std::get<cloth::ExtremesOptions>(order.options);
     options.progress = progress;
     options.partial = partial;
-    options.stop = stop;
+    options.stop = stop_test;
     options.earlier = begin(cloth::empty_table(options), order);
     offer(cloth::run_extremes(options), true);
   }

@@ -49,8 +49,8 @@ void RateMeter::restart(double simulated, WorkerPace::Clock::time_point now) {
   steps_per_second_ = real_time_factor_ = 0;
 }
 
-void RateMeter::count(double simulated, WorkerPace::Clock::time_point now) {
-  ++steps_;
+void RateMeter::count(std::int64_t steps, double simulated, WorkerPace::Clock::time_point now) {
+  steps_ += steps;
   const double elapsed = seconds(now - since_);
   if (elapsed < meter_interval) return;
   steps_per_second_ = static_cast<double>(steps_) / elapsed;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace clothlab {
 
@@ -46,14 +47,15 @@ class WorkerPace {
 class RateMeter {
  public:
   void restart(double simulated, WorkerPace::Clock::time_point now);
-  void count(double simulated, WorkerPace::Clock::time_point now);
+  /// After `steps` more.
+  void count(std::int64_t steps, double simulated, WorkerPace::Clock::time_point now);
   double steps_per_second() const { return steps_per_second_; }
   double real_time_factor() const { return real_time_factor_; }
 
  private:
   WorkerPace::Clock::time_point since_ = WorkerPace::Clock::now();
   double simulated_ = 0;
-  long steps_ = 0;
+  std::int64_t steps_ = 0;
   double steps_per_second_ = 0, real_time_factor_ = 0;
 };
 

@@ -7,12 +7,12 @@
 #include <QImage>
 #include <QMessageBox>
 #include <QPainter>
-#include <QSaveFile>
 #include <QSvgGenerator>
 #include <charconv>
 #include <cmath>
 
 #include "charts/live_chart.h"
+#include "document/result_files.h"
 
 namespace clothlab {
 
@@ -28,14 +28,9 @@ QString could_not_write(const QString& path, const QString& why) {
   return tr("Could not write %1: %2.").arg(path, why);
 }
 
-/// All or nothing: a half-written file never takes the place of a whole one.
-QString write_file(const QString& path, const QByteArray& bytes) {
-  const QFileInfo target(path);
-  if (target.exists() && !target.isFile()) return could_not_write(path, tr("it is not a file"));
-  QSaveFile file(path);
-  if (!file.open(QIODevice::WriteOnly)) return could_not_write(path, file.errorString());
-  if (file.write(bytes) != bytes.size() || !file.commit()) return could_not_write(path, file.errorString());
-  return {};
+QString written(const QString& path, const QByteArray& bytes) {
+  const QString problem = write_file(path, bytes);
+  return problem.isEmpty() ? problem : could_not_write(path, problem);
 }
 
 void paint_header(QPainter& painter, LiveChart& chart, const ChartRecord& record, const QRectF& row,
@@ -136,7 +131,7 @@ QString save_png(const QString& path, QSize size, const ChartPicture& picture) {
   QBuffer buffer(&bytes);
   buffer.open(QIODevice::WriteOnly);
   if (!image.save(&buffer, "PNG")) return could_not_write(path, tr("the picture could not be encoded"));
-  return write_file(path, bytes);
+  return written(path, bytes);
 }
 
 QString save_svg(const QString& path, QSize size, const ChartPicture& picture) {
@@ -154,7 +149,7 @@ QString save_svg(const QString& path, QSize size, const ChartPicture& picture) {
     QPainter painter(&svg);
     paint_picture(painter, size, picture);
   }
-  return write_file(path, bytes);
+  return written(path, bytes);
 }
 
 std::vector<CsvColumn> run_columns() {
@@ -183,7 +178,7 @@ QString save_csv(const QString& path, const ChartRecord& record, const std::vect
     append_row(csv, record, columns, t, sample_first ? std::optional(s++) : std::nullopt,
                draw_first ? std::optional(d++) : std::nullopt);
   }
-  return write_file(path, csv);
+  return written(path, csv);
 }
 
 void save_charts_by_dialog(QWidget* parent,

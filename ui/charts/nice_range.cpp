@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/round_numbers.h"
+
 namespace clothlab {
 
 namespace {
@@ -38,11 +40,7 @@ void add_multiples(std::vector<Tick>& ticks, Range logarithms, int multiple) {
 
 double nice_step(double span, int intervals) {
   if (!(span > 0) || !std::isfinite(span)) return 1;
-  const double raw = span / std::max(1, intervals);
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= raw * (1 - 1e-9)) return factor * power;
-  return 10 * power;
+  return cloth::rounded_up(span / std::max(1, intervals));
 }
 
 Range nice_range(Range data, int intervals) {

@@ -9,7 +9,7 @@
 namespace clothlab {
 namespace {
 
-constexpr int bar_width = 14, tick_length = 4, label_room = 56;  // px
+constexpr int bar_width = 14, label_room = 60;  // px
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void ColourBar::showRange(const QString& title, double maximum, double factor, d
 
 QSize ColourBar::sizeHint() const {
   const int widest = fontMetrics().horizontalAdvance(tr("Difference"));
-  return {std::max(bar_width + tick_length + label_room, widest) + 2 * spacing, 300};
+  return {std::max(bar_width + label_room, widest) + 2 * spacing, 300};
 }
 
 void ColourBar::paintEvent(QPaintEvent*) {
@@ -39,23 +39,13 @@ void ColourBar::paintEvent(QPaintEvent*) {
 
   const QRectF bar(spacing / 2.0, head.bottom() + spacing + line / 2.0, bar_width,
                    height() - head.bottom() - 2 * spacing - line);
-  QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
-  for (int i = 0; i <= 32; ++i) gradient.setColorAt(i / 32.0, strain_colour(i / 32.0));
-  painter.setPen(Qt::NoPen);
-  painter.setBrush(gradient);
-  painter.drawRoundedRect(bar, 2, 2);
-  const auto y_of = [&](double value) { return bar.bottom() - bar.height() * value / maximum_; };
-  for (const double tick : round_ticks(maximum_)) {
-    const double y = y_of(tick);
-    painter.setPen(theme().muted_text);
-    painter.drawLine(QPointF(bar.right() + 2, y), QPointF(bar.right() + 2 + tick_length, y));
-    painter.setPen(theme().text);
-    painter.drawText(QRectF(bar.right() + tick_length + 6, y - line / 2.0, label_room, line),
-                     Qt::AlignLeft | Qt::AlignVCenter, QString::number(factor_ * tick, 'g', 3));
-  }
+  paint_colour_scale(
+      painter, bar, maximum_, label_room,
+      [this](double value) { return QString::number(factor_ * value, 'g', 3); }, theme());
   if (limit_ < 0 || limit_ > maximum_) return;
   painter.setPen(QPen(theme().limit, 2));
-  painter.drawLine(QPointF(bar.left() - 3, y_of(limit_)), QPointF(bar.right() + 3, y_of(limit_)));
+  const double y = bar.bottom() - bar.height() * limit_ / maximum_;
+  painter.drawLine(QPointF(bar.left() - 3, y), QPointF(bar.right() + 3, y));
 }
 
 }  // namespace clothlab

@@ -16,7 +16,7 @@
 #include "compare/compare_window.h"
 #include "compare/comparison_files.h"
 #include "document/document_actions.h"
-#include "document/recording_folder.h"
+#include "document/result_files.h"
 #include "theme/theme.h"
 #include "widgets/action_button.h"
 
@@ -235,7 +235,7 @@ bool CompareWindow::saveTo(const QString& path) {
 
 void CompareWindow::toggleRecording(bool on) {
   if (on)
-    startRecording(new_recording_folder(document_.title()));
+    startRecording(new_folder(results_folder(), {document_.title()}));
   else
     link_.send(compare_command::StopRecording{});
 }

@@ -6,7 +6,7 @@
 
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "measure/stability_limit.h"
 
 namespace clothlab {

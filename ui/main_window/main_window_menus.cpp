@@ -12,8 +12,8 @@
 #include "compare/builtin_comparisons.h"
 #include "compare/compare_window.h"
 #include "document/document_actions.h"
-#include "document/recording_folder.h"
-#include "io/run_folder.h"
+#include "document/result_files.h"
+#include "io/machine.h"
 #include "main_window/cloth_file.h"
 #include "main_window/main_window.h"
 #include "main_window/scene_library.h"
@@ -237,7 +237,7 @@ void MainWindow::saveCloth() {
 
 void MainWindow::toggleRecording(bool on) {
   if (on)
-    startRecording(new_recording_folder(document_.title()));
+    startRecording(new_folder(results_folder(), {document_.title()}));
   else
     link_.send(command::StopRecording{});
 }

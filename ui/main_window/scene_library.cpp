@@ -3,7 +3,7 @@
 #include <QFileInfo>
 #include <QSettings>
 
-#include "io/run_folder.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/session_json.h"
 

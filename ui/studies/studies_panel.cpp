@@ -8,13 +8,13 @@
 #include <QMenu>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QSaveFile>
 #include <QScrollArea>
 #include <QStackedWidget>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "document/result_files.h"
 #include "studies/study_library.h"
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
@@ -300,11 +300,8 @@ void StudiesPanel::fillRecentMenu() {
 QString StudiesPanel::save(const QString& name) {
   if (!table_) return tr("There is no study to save.");
   if (!name.endsWith(".csv", Qt::CaseInsensitive)) return save_diagram(plot_->diagram(), name, font());
-  const std::string csv = cloth::study_csv(*table_);
-  QSaveFile file(name);
-  const auto size = static_cast<qint64>(csv.size());
-  if (file.open(QIODevice::WriteOnly) && file.write(csv.data(), size) == size && file.commit()) return {};
-  return tr("%1: %2").arg(name, file.errorString());
+  const QString problem = write_file(name, QByteArray::fromStdString(cloth::study_csv(*table_)));
+  return problem.isEmpty() ? problem : tr("%1: %2").arg(name, problem);
 }
 
 void StudiesPanel::saveAs() {

@@ -1,10 +1,10 @@
 #include "studies/study_library.h"
 
-#include <QDateTime>
 #include <QDir>
 #include <QFileInfo>
 #include <QSettings>
-#include <QStandardPaths>
+
+#include "document/result_files.h"
 
 namespace clothlab {
 namespace {
@@ -12,26 +12,14 @@ namespace {
 constexpr int most_recent = 12;
 const char* const recent_key = "recentStudies";
 
-QString plain(const QString& text) {
-  QString name;
-  for (const QChar c : text.toLower()) name += c.isLetterOrNumber() ? c : QChar('-');
-  while (name.contains("--")) name.replace("--", "-");
-  return name.left(40);
-}
-
 }  // namespace
 
-QString studies_folder() {
-  return QDir(QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation))
-      .filePath("Clothlab/studies");
+QString new_study_folder(const QString& kind, const QString& title) {
+  return new_folder(studies_folder(), {kind, title});
 }
 
-QString new_study_folder(const QString& kind, const QString& title) {
-  const QString stamp = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
-  const QString base = QDir(studies_folder()).filePath(stamp + "-" + plain(kind) + "-" + plain(title));
-  QString folder = base;
-  for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);
-  return folder;
+QString studies_folder() {
+  return QDir(results_folder()).filePath("studies");
 }
 
 QString shown_path(const QString& path) {

@@ -4,11 +4,11 @@
 #include <QEvent>
 #include <QMouseEvent>
 #include <QPdfWriter>
-#include <QSaveFile>
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
 
+#include "document/result_files.h"
 #include "theme/theme.h"
 
 namespace clothlab {
@@ -80,9 +80,8 @@ Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
 }
 
 QString written(const QString& name, const QByteArray& bytes) {
-  QSaveFile file(name);
-  if (file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size() && file.commit()) return {};
-  return QObject::tr("%1: %2").arg(name, file.errorString());
+  const QString problem = write_file(name, bytes);
+  return problem.isEmpty() ? problem : QObject::tr("%1: %2").arg(name, problem);
 }
 
 }  // namespace

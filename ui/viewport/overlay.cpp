@@ -138,24 +138,9 @@ void Overlay::colour_bar(QPainter& view, QSizeF size, const Theme& theme, double
 
     const QRectF bar(area.left() + 12, area.top() + line + 19, 14,
                      height - line - 34 - (has_rate ? line + 6 : 0));
-    const auto y_of = [&](double strain) { return bar.bottom() - bar.height() * strain / maximum; };
-    QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
-    for (int i = 0; i <= 32; ++i) gradient.setColorAt(i / 32.0, strain_colour(i / 32.0));
-    p.setPen(Qt::NoPen);
-    p.setBrush(gradient);
-    p.drawRoundedRect(bar, 2, 2);
-
-    const bool rate_shown = has_rate && deformation_rate <= maximum;
-    for (const double tick : round_ticks(maximum)) {
-      const double y = y_of(tick);
-      p.setPen(QPen(theme.muted_text, 1));
-      p.drawLine(QPointF(bar.right() + 3, y), QPointF(bar.right() + 7, y));
-      p.setPen(theme.text);
-      p.drawText(QRectF(bar.right() + 11, y - line / 2, area.right() - bar.right() - 14, line),
-                 Qt::AlignLeft | Qt::AlignVCenter, percent(tick));
-    }
-    if (rate_shown) {
-      const double y = y_of(deformation_rate);
+    paint_colour_scale(p, bar, maximum, area.right() - bar.right() - 14, percent, theme);
+    if (has_rate && deformation_rate <= maximum) {
+      const double y = bar.bottom() - bar.height() * deformation_rate / maximum;
       haloed_line(p, {bar.left() - 3, y, bar.right() + 3, y}, theme.limit, faded(theme.panel, 0.9), 2);
       QPainterPath mark(QPointF(bar.left() - 2, y));
       mark.lineTo(bar.left() - 8, y - 4.5);

@@ -1,7 +1,10 @@
 #include "viewport/strain_scale.h"
 
+#include <QPainter>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/round_numbers.h"
 
 namespace clothlab {
 namespace {
@@ -31,23 +34,33 @@ QColor strain_colour(double fraction) {
 
 double round_maximum(double value, double least) {
   const double clamped = std::isfinite(value) ? std::clamp(value, least, most_range) : most_range;
-  const double decade = std::pow(10, std::floor(std::log10(clamped) + 1e-9));
-  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
-    if (step * decade >= clamped * (1 - 1e-6)) return step * decade;  // strains come in single precision
-  return 10 * decade;
+  constexpr double slack = 1e-6;  // strains come in single precision
+  return cloth::rounded_up(clamped, {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}, slack);
 }
 
 std::vector<double> round_ticks(double maximum) {
-  const double decade = std::pow(10, std::floor(std::log10(maximum / 4)));
-  double step = 10 * decade;
-  for (const double candidate : {1.0, 2.0, 2.5, 5.0}) {
-    if (maximum / (candidate * decade) > 6.5) continue;
-    step = candidate * decade;
-    break;
-  }
+  const double step = cloth::rounded_up(maximum / 6.5, {1.0, 2.0, 2.5, 5.0});
   std::vector<double> ticks;
   for (int i = 0; i * step <= maximum * (1 + 1e-9); ++i) ticks.push_back(i * step);
   return ticks;
+}
+
+void paint_colour_scale(QPainter& painter, const QRectF& bar, double maximum, double room,
+                        const std::function<QString(double)>& text_of, const Theme& theme) {
+  QLinearGradient gradient(bar.bottomLeft(), bar.topLeft());
+  for (int i = 0; i <= 32; ++i) gradient.setColorAt(i / 32.0, strain_colour(i / 32.0));
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(gradient);
+  painter.drawRoundedRect(bar, 2, 2);
+  const double line = painter.fontMetrics().height();
+  for (const double tick : round_ticks(maximum)) {
+    const double y = bar.bottom() - bar.height() * tick / maximum;
+    painter.setPen(QPen(theme.muted_text, 1));
+    painter.drawLine(QPointF(bar.right() + 3, y), QPointF(bar.right() + 7, y));
+    painter.setPen(theme.text);
+    painter.drawText(QRectF(bar.right() + 11, y - line / 2, room, line), Qt::AlignLeft | Qt::AlignVCenter,
+                     text_of(tick));
+  }
 }
 
 void StrainRange::follow(double largest, double deformation_rate, double seconds) {

@@ -2,10 +2,16 @@
 #pragma once
 
 #include <QColor>
+#include <QRectF>
+#include <QString>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "picture/strain_colours.h"
+#include "theme/theme.h"
+
+class QPainter;
 
 namespace clothlab {
 
@@ -47,5 +53,10 @@ double round_maximum(double value, double least = StrainRange::least_strain);
 
 /// Four to seven round ticks from 0 up to `maximum`.
 std::vector<double> round_ticks(double maximum);
+
+/// The colours from 0 at the bottom of `bar` to `maximum` at its top, with round ticks to its right; their
+/// texts are at most `room` px wide.
+void paint_colour_scale(QPainter& painter, const QRectF& bar, double maximum, double room,
+                        const std::function<QString(double)>& text_of, const Theme& theme);
 
 }  // namespace clothlab

@@ -6,8 +6,7 @@
 #include <array>
 
 #include "io/csv.h"
-#include "io/run_folder.h"
-#include "report/machine.h"
+#include "io/machine.h"
 #include "study/reproduce/reproduction_index.h"
 #include "study/reproduce/study_page.h"
 
@@ -59,11 +58,11 @@ void add_machine(HtmlPage& page) {
 }
 
 std::string numbers_csv(const std::vector<Measured>& numbers) {
-  std::string text = "part,name,unit,value,expected\r\n";
+  CsvTable table{{"part", "name", "unit", "value", "expected"}, {}};
   for (const Measured& number : numbers)
-    text += fmt::format("{},{},{},{},{}\r\n", number.part, csv_field(number.name), csv_field(number.unit),
-                        csv_number(number.value), number.expected ? csv_number(*number.expected) : "");
-  return text;
+    table.rows.push_back({number.part, number.name, number.unit, csv_number(number.value),
+                          number.expected ? csv_number(*number.expected) : ""});
+  return csv_text(table, "\r\n");
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "io/run_folder.h"
+#include "io/machine.h"
+#include "io/text_file.h"
 #include "kernels/instruction_set.h"
-#include "report/machine.h"
 
 namespace cloth {
 namespace {

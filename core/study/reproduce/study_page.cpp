@@ -7,6 +7,7 @@
 
 #include "cloth/sums.h"
 #include "scene/builtin_scenes.h"
+#include "simulation/step_batches.h"
 
 namespace cloth {
 
@@ -68,11 +69,13 @@ SceneRun scene_run(const std::string& name, const std::vector<std::string>& sett
 bool advance(Simulation& simulation, double time, StudyPage& study, double from, double to) {
   const double begin = simulation.time();
   const double almost = time - 0.5 * simulation.time_step();
-  for (int k = 0; simulation.time() < almost; ++k) {
-    if (simulation.step()) return false;
-    if (k % 20 == 0 && !study.go_on(from + (to - from) * (simulation.time() - begin) / (time - begin)))
+  StepBatches batches(simulation, [&] {
+    return !study.go_on(from + (to - from) * (simulation.time() - begin) / (time - begin));
+  });
+  while (simulation.time() < almost)
+    if (!batches.run_to(simulation.state().step +
+                        steps_beyond(simulation.time(), almost, simulation.time_step())))
       return false;
-  }
   return study.go_on(to);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "study/quantile.h"
+
 namespace cloth::speed {
 namespace {
 
@@ -48,13 +50,7 @@ Pace pace_of(Subject& subject, const TimingPlan& plan) {
 Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    const double place = part * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-  };
-  return {at(0.25), at(0.5), at(0.75), values.front()};
+  return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75), values.front()};
 }
 
 Spread spread_of(const Subject& subject) {

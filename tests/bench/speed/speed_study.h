@@ -15,7 +15,7 @@
 #include "bench/speed/process_costs.h"
 #include "bench/speed/scene_speeds.h"
 #include "bench/speed/step_costs.h"
-#include "report/machine.h"
+#include "io/machine.h"
 
 namespace cloth::speed {
 

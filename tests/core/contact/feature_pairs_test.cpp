@@ -16,10 +16,6 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Points of the far feature, among them all its corners; of a ball, a solid box and a half-space some of
 /// each.
 std::vector<Vec3> far_points(const FeaturePair& pair, const Sheet& sheet,

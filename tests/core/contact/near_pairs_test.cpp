@@ -8,14 +8,11 @@
 #include <set>
 
 #include "contact/close_pairs.h"
+#include "geometry/at.h"
 #include "support/contact_bodies.h"
 
 namespace cloth::test::near_pairs_test {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Every particle goes its way evenly within the step and keeps this far from the border of its capsule.
 struct Motion {

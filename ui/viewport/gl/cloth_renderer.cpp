@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/round_numbers.h"
 #include "geometry/mesh_look.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
@@ -32,12 +33,6 @@ double chain_length(const ClothFrame& frame, int first, int stride, int count) {
         (particle_position(frame, first + k * stride) - particle_position(frame, first + (k - 1) * stride))
             .norm();
   return length;
-}
-
-/// The distance of grid lines: 1, 2 or 5 times a power of ten, some 16 over `size`.
-double grid_step_for(double size) {
-  const double fine = std::max(size, 1e-6) / 16, decade = std::pow(10, std::floor(std::log10(fine)));
-  return (fine <= 2 * decade ? 2 : fine <= 5 * decade ? 5 : 10) * decade;
 }
 
 QColor thread_colour(const Theme& theme) {
@@ -320,7 +315,7 @@ void ClothRenderer::draw_floor(const Shot& shot, const Theme& theme, const Floor
   kit_->plane.setUniformValue("axis_u", uniform_vector(u));
   kit_->plane.setUniformValue("axis_v", uniform_vector(v));
   kit_->plane.setUniformValue("reach", number((is_level ? 2.2 : 1.3) * size));
-  kit_->plane.setUniformValue("grid_step", number(grid_step_for(size)));
+  kit_->plane.setUniformValue("grid_step", number(cloth::grid_step_for(size)));
   kit_->plane.setUniformValue("grid_offset", QVector2D(number(middle.dot(u)), number(middle.dot(v))));
   solids_->draw_strip();
 }

@@ -1,36 +1,18 @@
-#include "io/run_folder.h"
+#include "simulation/run_summary.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <vector>
 
+#include "io/machine.h"
+#include "io/process.h"
 #include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
 
 using json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
-      return line.substr(line.find(": ") + 2);
-  return "";
-}
 
 /// JSON has no NaN: a number that is not finite is written as a word.
 json finite_or_word(double value) {
@@ -67,80 +49,7 @@ json solver_json(const StepCount& count) {
   return solver;
 }
 
-/// On the disk when it returns, so that a rename never shows a file that is not there yet.
-std::optional<IoError> write_draft(const fs::path& draft, const std::string& text) {
-  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) return IoError{draft, std::strerror(errno)};
-  std::optional<IoError> failure;
-  for (std::size_t done = 0; done < text.size() && !failure;) {
-    const ssize_t part = ::write(descriptor, text.data() + done, text.size() - done);
-    if (part > 0)
-      done += static_cast<std::size_t>(part);
-    else if (part == 0 || errno != EINTR)
-      failure = IoError{draft, part == 0 ? "could not be written" : std::strerror(errno)};
-  }
-  if (!failure && ::fsync(descriptor) != 0 && errno != EINVAL) failure = IoError{draft, std::strerror(errno)};
-  if (::close(descriptor) != 0 && !failure) failure = IoError{draft, std::strerror(errno)};
-  return failure;
-}
-
 }  // namespace
-
-std::optional<IoError> make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) return IoError{folder, error.message()};
-  if (!fs::is_directory(folder, error)) return IoError{folder, "is not a folder"};
-  return std::nullopt;
-}
-
-void sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
-std::optional<IoError> write_text_file(const fs::path& path, const std::string& text) {
-  fs::path draft = path;
-  draft += ".part";
-  if (auto error = write_draft(draft, text)) {
-    error->path = path;
-    ::unlink(draft.c_str());
-    return error;
-  }
-  std::error_code error;
-  fs::rename(draft, path, error);
-  if (error) {
-    ::unlink(draft.c_str());
-    return IoError{path, error.message()};
-  }
-  sync_folder(path.parent_path());
-  return std::nullopt;
-}
-
-std::optional<IoError> read_text_file(const fs::path& path, std::string& text, std::size_t largest) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) return IoError{path, "is a folder"};
-  const auto failure = [&] { return IoError{path, std::strerror(errno)}; };
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return failure();
-  text.clear();
-  std::vector<char> block(std::size_t{1} << 20);
-  std::optional<IoError> problem;
-  for (ssize_t part = 1; part != 0 && !problem;) {
-    part = ::read(file, block.data(), block.size());
-    if (part < 0 && errno == EINTR) continue;
-    if (part < 0)
-      problem = failure();
-    else if (text.size() + static_cast<std::size_t>(part) > largest)
-      problem = IoError{path, fmt::format("is too large: more than {} MB are not read", largest >> 20)};
-    else
-      text.append(block.data(), static_cast<std::size_t>(part));
-  }
-  ::close(file);
-  return problem;
-}
 
 std::string state_csv(const ClothState& state) {
   std::string text = "particle,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n";
@@ -154,10 +63,6 @@ std::string state_csv(const ClothState& state) {
 
 double RunSummary::nanoseconds_per_particle_step() const {
   return count.steps > 0 && particles > 0 ? wall * 1e9 / (static_cast<double>(count.steps) * particles) : 0;
-}
-
-std::string version() {
-  return CLOTHLAB_VERSION;
 }
 
 nlohmann::ordered_json breach_json(const RateBreach& breach) {
@@ -203,10 +108,10 @@ std::string summary_json(const RunSummary& s) {
   if (!s.files.empty()) root["files"] = digests_json(s.files);
   root["threads"] = s.threads;
   root["host"] = {{"name", host_name()},
-                  {"processor", processor()},
+                  {"processor", processor_name()},
                   {"instruction_set", name_of(active_instruction_set())},
-                  {"compiler", CLOTHLAB_COMPILER},
-                  {"build", CLOTHLAB_BUILD_TYPE}};
+                  {"compiler", compiler_name()},
+                  {"build", build_type()}};
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

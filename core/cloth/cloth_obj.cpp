@@ -1,4 +1,4 @@
-#include "io/cloth_obj.h"
+#include "cloth/cloth_obj.h"
 
 #include <fmt/format.h>
 

@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "params/parameter.h"
-#include "scene/problem.h"
+#include "io/json_reader.h"
 
 namespace cloth {
 
@@ -88,10 +87,7 @@ class JsonEntry {
   }
 
   BadJsonEntry bad(const std::string& rule) const {
-    const bool is_short = !value_->is_structured();
-    return {{path_,
-             is_short ? value_->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) : "",
-             rule, "", 0, 0}};
+    return {{path_, value_->is_structured() ? "" : shown_json(*value_), rule, "", 0, 0}};
   }
 
  private:

@@ -1,35 +1,16 @@
-// What a run leaves in its folder beside record.csv.
+// What a run leaves in its folder beside record.csv: its last state and its summary.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "cloth/cloth_system.h"
-#include "io/csv.h"
+#include "io/file_digest.h"
 #include "simulation/energy_account.h"
 #include "simulation/outcome.h"
 
 namespace cloth {
-
-/// Makes the folder and those above it.
-std::optional<IoError> make_folder(const std::filesystem::path& folder);
-
-/// Writes to a file beside it first, then renames: the file is old or new, never half, after a loss of power
-/// too.
-std::optional<IoError> write_text_file(const std::filesystem::path& path, const std::string& text);
-
-/// Waits until the disk has what was renamed, made or removed in the folder, where the system can tell.
-void sync_folder(const std::filesystem::path& folder);
-
-/// Bytes of a scene, a session or a table that are read at most: far more than there is use for, and little
-/// enough for what is made of them. A mesh may have more.
-inline constexpr std::size_t largest_text = std::size_t{256} << 20, largest_mesh_text = std::size_t{2} << 30;
-
-/// The whole file, or why not: it may have `largest` bytes.
-std::optional<IoError> read_text_file(const std::filesystem::path& path, std::string& text,
-                                      std::size_t largest = largest_text);
 
 /// final_state.csv: particle,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s
 std::string state_csv(const ClothState& state);
@@ -62,7 +43,5 @@ nlohmann::ordered_json breach_json(const RateBreach& breach);
 
 /// summary.json
 std::string summary_json(const RunSummary& summary);
-
-std::string version();
 
 }  // namespace cloth

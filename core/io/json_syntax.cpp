@@ -1,19 +1,19 @@
-#include "scene/json_syntax.h"
+#include "io/json_syntax.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scene/json_locator.h"
+#include "io/json_locator.h"
 
 namespace cloth {
 namespace {
 
 using json = nlohmann::json;
 
-/// Only notes where and why a text is not JSON, or is nested so deeply or has so many values that it cannot be
-/// a file of this program. Reads without recursion, and without keeping what it reads.
+/// Only notes where and why a text is not JSON, or is nested so deeply or has so many values that it cannot
+/// be a file of this program. Reads without recursion, and without keeping what it reads.
 struct SyntaxCheck : nlohmann::json_sax<json> {
   static constexpr int deepest = 64;
   static constexpr std::size_t most_values = 10'000'000;
@@ -107,6 +107,16 @@ std::optional<Problem> syntax_problem(const std::string& text, const std::string
   if (json::sax_parse(begin, end, &syntax)) return std::nullopt;
   const TextPosition at = position_of(text, std::min(syntax.offset, text.size()));
   return Problem{"", "", syntax.message, place, at.line, at.column};
+}
+
+std::string indented_json(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n' && i + 1 == text.size()) break;
+    result += text[i];
+    if (text[i] == '\n') result += "  ";
+  }
+  return result;
 }
 
 }  // namespace cloth

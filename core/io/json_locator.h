@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "params/problem.h"
+
 namespace cloth {
 
 struct TextPosition {
@@ -24,7 +26,16 @@ struct JsonLocations {
   /// The most precise place that the text has for `path`: its value, or its key if `of_key`; for what is not
   /// in the text, that which would hold it.
   TextPosition place_of(std::string path, bool of_key) const;
+
+  /// Sets place, line and column of a problem in this text, which `place` names.
+  void put_in_place(Problem& problem, const std::string& place) const;
+
+  /// That a path is given more than once, for each such path; not yet put in place.
+  std::vector<Problem> repetitions() const;
 };
+
+/// Into the order of the text; problems without a line come first.
+void sort_by_place(std::vector<Problem>& problems);
 
 /// Precondition: `text` is one valid JSON value.
 JsonLocations locate_json(std::string_view text);

@@ -20,6 +20,11 @@ struct MachineFacts {
 
 MachineFacts machine_facts();
 
+std::string version();         // of Clothlab
+std::string compiler_name();   // of the engine, with its version
+std::string build_type();      // of the engine
+std::string processor_name();  // "unknown" where the system does not tell
+
 /// In words, for a table or the head of a file.
 std::vector<std::pair<std::string, std::string>> fact_rows(const MachineFacts& facts);
 

@@ -1,4 +1,4 @@
-#include "scene/json_locator.h"
+#include "io/json_locator.h"
 
 #include <algorithm>
 
@@ -111,6 +111,25 @@ TextPosition JsonLocations::place_of(std::string path, bool of_key) const {
   while (!values.count(path))
     path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
   return values.at(path);
+}
+
+void JsonLocations::put_in_place(Problem& problem, const std::string& place) const {
+  const TextPosition at = place_of(problem.path, problem.value.empty());
+  problem.place = place;
+  problem.line = at.line, problem.column = at.column;
+}
+
+std::vector<Problem> JsonLocations::repetitions() const {
+  std::vector<Problem> problems;
+  for (const std::string& path : repeated)
+    problems.push_back({path, "", "is given more than once", "", 0, 0});
+  return problems;
+}
+
+void sort_by_place(std::vector<Problem>& problems) {
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
 }
 
 }  // namespace cloth

@@ -1,4 +1,4 @@
-#include "report/machine.h"
+#include "io/machine.h"
 
 #include <fmt/format.h>
 
@@ -52,17 +52,33 @@ std::string now() {
 
 }  // namespace
 
+std::string version() {
+  return CLOTHLAB_VERSION;
+}
+
+std::string compiler_name() {
+  return CLOTHLAB_COMPILER;
+}
+
+std::string build_type() {
+  return CLOTHLAB_BUILD_TYPE;
+}
+
+std::string processor_name() {
+  for (const char* key : {"model name", "Hardware", "cpu model"})
+    if (const std::string name = value_in("/proc/cpuinfo", key, ':'); !name.empty()) return name;
+  return "unknown";
+}
+
 MachineFacts machine_facts() {
   MachineFacts facts;
-  for (const char* key : {"model name", "Hardware", "cpu model"})
-    if (facts.processor.empty()) facts.processor = value_in("/proc/cpuinfo", key, ':');
-  if (facts.processor.empty()) facts.processor = "unknown";
+  facts.processor = processor_name();
   facts.cores = int(std::thread::hardware_concurrency());
   facts.operating_system = operating_system();
-  facts.compiler = CLOTHLAB_COMPILER;
+  facts.compiler = compiler_name();
   facts.flags = CLOTHLAB_FLAGS;
-  facts.build_type = CLOTHLAB_BUILD_TYPE;
-  facts.version = CLOTHLAB_VERSION;
+  facts.build_type = build_type();
+  facts.version = version();
   facts.date = now();
   return facts;
 }

@@ -1,0 +1,14 @@
+#include "params/problem.h"
+
+#include <fmt/format.h>
+
+namespace cloth {
+
+std::string Problem::text() const {
+  std::string text;
+  if (!place.empty()) text = line > 0 ? fmt::format("{}:{}:{}: ", place, line, column) : place + ": ";
+  if (!path.empty()) text += value.empty() ? path + ": " : fmt::format("{} = {}: ", path, value);
+  return text + rule;
+}
+
+}  // namespace cloth

@@ -1,0 +1,40 @@
+#include "document/result_files.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFileInfo>
+#include <QStandardPaths>
+
+#include "io/user_file.h"
+
+namespace clothlab {
+namespace {
+
+QString plain(const QString& text) {
+  QString name;
+  for (const QChar c : text.toLower()) name += c.isLetterOrNumber() ? c : QChar('-');
+  while (name.contains("--")) name.replace("--", "-");
+  return name.left(40);
+}
+
+}  // namespace
+
+QString results_folder() {
+  return QDir(QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation)).filePath("Clothlab");
+}
+
+QString new_folder(const QString& parent, const QStringList& words) {
+  QString name = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
+  for (const QString& word : words) name += "-" + plain(word);
+  const QString base = QDir(parent).filePath(name);
+  QString folder = base;
+  for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);
+  return folder;
+}
+
+QString write_file(const QString& path, const QByteArray& bytes) {
+  const auto error = cloth::write_user_file(path.toStdString(), bytes.toStdString());
+  return error ? QString::fromStdString(error->message) : QString();
+}
+
+}  // namespace clothlab

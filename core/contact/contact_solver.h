@@ -1,5 +1,5 @@
 // Contact constraints with Coulomb friction, solved by projected Gauss-Seidel (Erleben 2005); friction on
-// positions as in position-based dynamics (Mueller et al. 2007).
+// positions as in position-based dynamics (Müller et al. 2007).
 //
 // A constraint on the point sum w x of its particles:
 //     normal . (sum w x) >= bound

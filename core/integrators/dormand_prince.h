@@ -1,8 +1,7 @@
 // The Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (1980) for y = (x, v, work): the step goes on
 // with the solution of order 5 (local extrapolation), the difference of the two is its error estimate, and
 // the last stage of a step is the first of the next one. With a tolerance, the method divides the step that
-// it is given: step sizes by the PI control of Gustafsson, as in Hairer, Norsett and Wanner, "Solving
-// Ordinary Differential Equations I", II.4.
+// it is given: step sizes by PI control (Gustafsson 1991), as in Hairer et al., I, II.4.
 #pragma once
 
 #include <array>

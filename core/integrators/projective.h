@@ -1,5 +1,5 @@
-// Implicit Euler by iterations with one constant matrix: projective dynamics (Liu et al., Fast Simulation of
-// Mass-Spring Systems, 2013) read as a quasi-Newton method (Liu, Bouaziz, Kavan 2017).
+// Implicit Euler by iterations with one constant matrix: projective dynamics (Liu et al. 2013)
+// read as a quasi-Newton method (Liu et al. 2017).
 //
 // A step is the solution v' of  r(v') = M (v' - v) - h f(x + h v', v', t + h) = 0,  x' = x + h v'.
 // From the inertial guess v' = v every iteration takes

@@ -1,5 +1,5 @@
-// Implicit Euler by Gauss-Seidel passes over the springs: extended position based dynamics (Macklin, Müller,
-// Chentanez, XPBD, 2016), taken in substeps (Macklin et al., Small Steps in Physics Simulation, 2019).
+// Implicit Euler by Gauss-Seidel passes over the springs: extended position-based dynamics (Macklin et al.
+// 2016), in substeps (Macklin et al. 2019).
 //
 // A substep of h = time step / substeps first predicts with everything but the springs,
 //

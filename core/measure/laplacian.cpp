@@ -74,7 +74,8 @@ RitzBound largest_ritz(const std::vector<double>& diagonal, const std::vector<do
 }  // namespace
 
 /// Lanczos iteration without reorthogonalisation: copies of found eigenvalues do no harm where only the
-/// largest is asked for (Paige 1971). That its residual may be added to bound it from above: Zhou & Li 2011.
+/// largest is asked for (Paige 1971). That its residual may be added to bound it from above: Zhou and Li
+/// 2011.
 double guaranteed_frequency(const ClothSystem& system) {
   constexpr std::array<std::size_t, 4> looks{20, 40, 80, 160};  // how often the Ritz values are looked at
   constexpr double close_enough = 1e-4, exhausted = 1e-12;      // relative

@@ -11,7 +11,7 @@ namespace {
 
 using Lab = std::array<double, 3>;
 
-/// OKLab to sRGB (Ottosson 2020, "A perceptual color space for image processing").
+/// OKLab to sRGB (Ottosson 2020).
 Rgb srgb(const Lab& lab) {
   const double l = std::pow(lab[0] + 0.3963377774 * lab[1] + 0.2158037573 * lab[2], 3);
   const double m = std::pow(lab[0] - 0.1055613458 * lab[1] - 0.0638541728 * lab[2], 3);

@@ -13,7 +13,7 @@ enum class MethodSettings { none, error_control, newton, projective, xpbd };
 
 /// A step on the oscillator x'' = -omega^2 x - c x'; measure/amplification.h computes with it. Of the
 /// Runge-Kutta family: R(z) = (1 + z/a (1 + z/b (1 + ...))) / (1 - implicit z), `divisors` a, b, ...
-/// (stability functions: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2 and IV.3).
+/// (stability functions: Hairer et al., II, IV.2 and IV.3).
 struct OscillatorStep {
   enum class Family { runge_kutta, semi_implicit_euler, verlet, bdf2 };
   Family family = Family::runge_kutta;

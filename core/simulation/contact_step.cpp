@@ -23,7 +23,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
   book_contact(times);
 }
 
-/// What has run away is not followed: it stays where it was, and the run stops.
+/// A state that has diverged is not followed: the cloth stays where it was, and the run stops.
 void Simulation::resolve_continuous_contact(const StepTimes& times) {
   last_contact_ = {};
   if (is_fast(kinetic_energy(system_, state_.velocity)) && has_run_away()) {

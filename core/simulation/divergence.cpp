@@ -1,4 +1,4 @@
-// When a run has run away, and what a stop says.
+// When a run has diverged, and the message of a stop.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace cloth {
 namespace {
 
-/// Unexplained energy this many times all that the scene can give is a run that has run away.
-constexpr double runaway_factor = 10;
+/// Unexplained energy this many times all that the scene can give is a run that has diverged.
+constexpr double divergence_factor = 10;
 
 /// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
 constexpr double rounding_floor = 1e-6;
@@ -88,9 +88,9 @@ double Simulation::energy_scale() const {
   return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
 }
 
-/// Faster than the scene explains at a glance. Not yet run away: contact may have given all of it.
+/// Faster than the scene explains at a glance. Not yet diverged: contact may have given all of it.
 bool Simulation::is_fast(double kinetic) const {
-  return !(kinetic <= runaway_factor * energy_scale_after(0));
+  return !(kinetic <= divergence_factor * energy_scale_after(0));
 }
 
 /// By the ledger: whether more energy has come or gone, kinetic, elastic or of height, than works and losses
@@ -100,7 +100,7 @@ bool Simulation::has_run_away() const {
   const Energy energy = measure_energy(system_, gravity_of(scene_), state_);
   const double unexplained = energy.total() - ledger_.initial - ledger_.entered();
   const double missing = unexplained < 0 ? std::abs(ledger_.limiter) : 0;
-  return !(std::abs(unexplained) <= runaway_factor * (energy_scale_after(-energy.gravity) + missing));
+  return !(std::abs(unexplained) <= divergence_factor * (energy_scale_after(-energy.gravity) + missing));
 }
 
 /// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2. Where the step is
@@ -108,11 +108,11 @@ bool Simulation::has_run_away() const {
 bool Simulation::is_surely_slow(double speed_squares) const {
   const double kinetic = 0.5 * largest_mass_ * speed_squares;
   if (watches_step_) return kinetic <= steady_energy_scale();
-  return kinetic <= runaway_factor * energy_scale_after(0);
+  return kinetic <= divergence_factor * energy_scale_after(0);
 }
 
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
-/// all does not make the speeds too much, nothing has run away. Only else, and where a method without a limit
+/// all does not make the speeds too much, nothing has diverged. Only else, and where a method without a limit
 /// or "auto" asks for it every few steps, the ledger is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
   const bool looks = watches_ledger_ && state_.step % ledger_interval == 0;
@@ -126,7 +126,7 @@ std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& re
   was_finite_ = !lost;
   if (!lost && !looks && !is_fast(kinetic_energy(system_, state_.velocity))) return std::nullopt;
   if (!lost && !has_run_away()) return std::nullopt;
-  return stop_at_fastest("its energy has run away");
+  return stop_at_fastest("its energy is out of bounds");
 }
 
 Divergence Simulation::stop_at_fastest(const std::string& cause) const {

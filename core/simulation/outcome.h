@@ -32,8 +32,8 @@ struct Divergence {
   double time_step = 0;  ///< s, as run
   double stable_step =
       0;  ///< s, the method's limit in every shape; 0 if there is none, infinity if any will do
-  bool solver_failed = false;  ///< the equations of the step could not be solved: nothing has run away
-  bool pinched = false;        ///< an obstacle met cloth that cannot give way: nothing has run away
+  bool solver_failed = false;  ///< the equations of the step could not be solved: nothing has diverged
+  bool pinched = false;        ///< an obstacle met cloth that cannot give way: nothing has diverged
 };
 
 /// A shorter step that came in force by itself.
@@ -53,9 +53,9 @@ std::string describe(const std::vector<StepChange>& changes);
 /// Where springs were left beyond the deformation rate and its tolerance. The run goes on, but it is not the
 /// run that the scene asks for.
 struct RateBreach {
-  std::int64_t steps = 0;       ///< in which that was so
-  std::int64_t first_step = 0;  ///< the first of them
-  double first_time = 0;        ///< s, at its end
+  std::int64_t steps = 0;                       ///< in which that was so
+  std::int64_t first_step = 0;                  ///< the first of them
+  double first_time = 0;                        ///< s, at its end
   int first_particle = 0, second_particle = 0;  ///< ends of the spring that was furthest beyond then
   double first_excess = 0;                      ///< (|d| - (1 + rate) L)/L of that spring
   std::int64_t largest_step = 0;                ///< where it was worst

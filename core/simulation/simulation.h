@@ -112,7 +112,7 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step; or, where the new state is not finite or has run away, why. The state is then the bad one.
+  /// One step; or, where the new state is not finite or has diverged, why. The state is then the bad one.
   std::optional<Divergence> step();
 
   /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit.
@@ -281,7 +281,7 @@ class Simulation {
   double hand_energy_ = 0;                    ///< J, the most that the hand's spring has held so far
   ObstacleTransitions carries_;
   ThicknessTransition thickness_transition_;
-  bool was_finite_ = false;   ///< every position was finite after the last step
+  bool was_finite_ = false;  ///< every position was finite after the last step
   ClothState before_batch_;  ///< to go back to
 };
 

@@ -28,7 +28,7 @@ GridReach reach_of(const std::vector<SpringRun>& springs, int columns);
 /// The given particles of a grid, numbered row by row, in the order of elimination.
 std::vector<int> nested_dissection(const std::vector<int>& particles, int columns, const GridReach& reach);
 
-/// The unknowns 0..size of any pattern: approximate minimum degree (Amestoy, Davis, Duff 1996). Couplings may
+/// The unknowns 0..size of any pattern: approximate minimum degree (Amestoy et al. 1996). Couplings may
 /// repeat.
 std::vector<int> minimum_degree(int size, const std::vector<Coupling>& couplings);
 

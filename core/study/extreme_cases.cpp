@@ -178,7 +178,7 @@ void add_rates(std::vector<ExtremeCase>& cases) {
     return scene;
   };
   const std::string reading =
-      "The limiter works on what the method gives it: where the method has run away, no rate helps. What is "
+      "The limiter works on what the method gives it: where the method has diverged, no rate helps. What is "
       "left above the rate is in the table.";
   cases.push_back(
       {"rate-0", "Structural and shear springs may not stretch at all.", reading, limited(0), 300});

@@ -17,7 +17,7 @@ namespace cloth {
 using Derivative = std::function<void(double t, const Eigen::VectorXd& y, Eigen::VectorXd& dy)>;
 
 /// Extrapolation of the modified midpoint rule in even powers of the step, with order and step control
-/// (Gragg 1965; Bulirsch and Stoer 1966; Hairer, Norsett and Wanner I, II.9): columns are added until the
+/// (Gragg 1965; Bulirsch and Stoer 1966; Hairer et al., I, II.9): columns are added until the
 /// last two agree.
 class Extrapolation {
  public:
@@ -41,7 +41,7 @@ class Extrapolation {
   Eigen::VectorXd slope_, previous_, middle_, next_, derivative_;
 };
 
-/// Gauss-Legendre collocation with six stages, order 12, symmetric (Hairer, Norsett and Wanner I, II.7;
+/// Gauss-Legendre collocation with six stages, order 12, symmetric (Hairer et al., I, II.7;
 /// Kuntzmann 1961), in equal steps. The stages are found by fixed-point iteration from the last step's
 /// polynomial, until nothing changes but rounding: steps must be short against the fastest motion.
 class Collocation {

@@ -79,7 +79,7 @@ void print_header() {
 void print_row(const std::string& name, const Scene& scene, const CheckedRun& run) {
   std::string end = "as asked";
   if (run.gave_up) end = "out of patience";
-  if (run.stop) end = run.stop->pinched ? "pinched" : run.stop->solver_failed ? "solver failed" : "ran away";
+  if (run.stop) end = run.stop->pinched ? "pinched" : run.stop->solver_failed ? "solver failed" : "diverged";
   if (run.stop) end += fmt::format(" at {:.4g} s: {}", run.stop->time, run.stop->cause);
   if (run.crossings.number > 0)
     end = fmt::format("{}; first crossing at {:.5g} s: {}", end, run.crossed_at, run.crossings.first);

@@ -104,7 +104,7 @@ TEST(CompareWorker, ASingleStepIsOneCommonTime) {
 
 TEST(CompareWorker, APaneThatDivergesStopsWithItsCauseAndTheOthersGoOn) {
   cloth::Comparison comparison = small_comparison({"rk4", "explicit-euler"});
-  comparison.scene.deformation.reset();  // a limited cloth cannot run away
+  comparison.scene.deformation.reset();  // a limited cloth cannot diverge
   cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
   CompareWorker worker;
   worker.send(command::Load{comparison});

@@ -106,7 +106,7 @@ TEST_F(Replay, OfACommandBeyondTheEndExitsWithTwo) {
 
 TEST_F(Replay, ThatDivergesExitsWithThree) {
   Session wild = session();
-  wild.scene.deformation.reset();  // a limited cloth cannot run away
+  wild.scene.deformation.reset();  // a limited cloth cannot diverge
   wild.commands[1].action = Edits{{"integrator.method", "\"verlet\""}, {"integrator.time_step", "0.5"}};
   const CommandResult result = run(wild, "--out r");
   EXPECT_EQ(result.exit_code, 3);

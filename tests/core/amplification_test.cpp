@@ -1,5 +1,4 @@
 #include "measure/amplification.h"
-#include "scene/method_facts.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "scene/method_facts.h"
 #include "support/random.h"
 
 namespace cloth::test::amplification_test {
@@ -52,7 +52,7 @@ Pair runge_kutta(Pair y, double w, double zeta, const std::vector<std::vector<do
   return stage(b);
 }
 
-/// Dormand & Prince 1980: the tableau, of whose polynomial the library knows the coefficients alone.
+/// Dormand and Prince 1980: the tableau, of whose polynomial the library knows the coefficients alone.
 Pair dormand_prince(Pair y, double w, double zeta) {
   return runge_kutta(y, w, zeta,
                      {{},
@@ -127,7 +127,7 @@ TEST(AmplificationMatrix, SolvesTheEquationsOfTheImplicitMethods) {
   }
 }
 
-TEST(Amplification, OfTheImplicitMethodsIsTheTables) {  // numerics.md 3.1
+TEST(Amplification, OfTheImplicitMethodsIsTheTables) {
   const auto expect = [](const char* method, double at_10, double at_100) {
     EXPECT_NEAR(amplification(method, 10, 0), at_10, at_10 == 0.301 ? 0.51e-3 : 0.51e-4) << method;
     EXPECT_NEAR(amplification(method, 100, 0), at_100, 0.51e-4) << method;
@@ -137,13 +137,13 @@ TEST(Amplification, OfTheImplicitMethodsIsTheTables) {  // numerics.md 3.1
   expect("implicit-midpoint", 1, 1);
 }
 
-TEST(Amplification, OfSemiImplicitEulerGrowsBeyondTwo) {  // numerics.md 6, erratum 4
+TEST(Amplification, OfSemiImplicitEulerGrowsBeyondTwo) {
   EXPECT_NEAR(amplification("semi-implicit-euler", 1.9, 0), 1, 1e-14);
   EXPECT_NEAR(amplification("semi-implicit-euler", 2.1, 0), 1.88, 0.01);
   EXPECT_NEAR(amplification("semi-implicit-euler", 10, 0), 98, 0.1);
 }
 
-TEST(Amplification, OfDormandPrinceGrowsSlowlyBeyondItsLimit) {  // numerics.md 3.1
+TEST(Amplification, OfDormandPrinceGrowsSlowlyBeyondItsLimit) {
   EXPECT_NEAR(amplification("dormand-prince", 1.2, 0) - 1, 3.1e-4, 0.06e-4);
   EXPECT_NEAR(amplification("dormand-prince", 1.5, 0) - 1, 3.0e-3, 0.06e-3);
   EXPECT_NEAR(amplification("dormand-prince", 1.9, 0) - 1, 2.2e-2, 0.06e-2);
@@ -159,7 +159,7 @@ TEST(Amplification, OfTheImplicitMethodsNeverExceedsOne) {
     }
 }
 
-/// The leading coefficients of numerics.md 2.5, table A1: coefficient and power of w.
+/// The leading coefficients of the methods' errors: coefficient and power of w.
 struct Leading {
   double frequency, frequency_power, damping, damping_power;
 };

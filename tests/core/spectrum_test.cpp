@@ -18,7 +18,7 @@ namespace {
 
 struct Ratio {
   double structural, shear, flexion;
-  std::array<double, 4> free;  // omega_max sqrt(m/k_s) of N = 5, 10, 20, 40: numerics.md 3.2
+  std::array<double, 4> free;  // omega_max sqrt(m/k_s) of N = 5, 10, 20, 40
 };
 constexpr std::array<int, 4> sizes{5, 10, 20, 40};
 constexpr std::array<Ratio, 5> ratios{{{1, 1, 1, {2.8740, 3.0967, 3.1602, 3.1765}},
@@ -102,7 +102,7 @@ TEST(Spectrum, OfFreeGridsIsTheTables) {
 }
 
 struct Stretched {
-  double stretch, first, second, smallest;  // 1:1:1 and 1:.5:.25, N = 20: numerics.md 3.2; 0: not printed
+  double stretch, first, second, smallest;  // 1:1:1 and 1:.5:.25, N = 20; 0: not printed
 };
 
 TEST(Spectrum, OfStretchedGridsIsTheTables) {
@@ -126,7 +126,7 @@ TEST(Spectrum, OfStretchedGridsIsTheTables) {
     }
 }
 
-TEST(Spectrum, OfAChainIsThatOfItsModes) {  // numerics.md 2.5, A5
+TEST(Spectrum, OfAChainIsThatOfItsModes) {
   // Two rows joined by nothing but structural springs, the lower row and the rest of the frame pinned: a
   // chain.
   constexpr int n = 12;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<double, 7> ratios{0, 0.01, 0.1, 0.5, 1, 2, 5};  // damping ratios zeta
 
-/// Largest omega h of every method at each of the ratios: the table of numerics.md 3.1.
+/// Largest omega h of every method at each of the ratios.
 const std::map<std::string, std::array<double, 7>> table{
     {"explicit-euler", {0, 0.02, 0.2, 1, 2, 0.5359, 0.2020}},
     {"semi-implicit-euler", {2, 1.9801, 1.8100, 1.2361, 0.8284, 0.4721, 0.1980}},
@@ -97,7 +97,7 @@ TEST(OscillatorLimit, IsWhereTheScanMeetsTheClosedForm) {
     }
 }
 
-TEST(OscillatorLimit, OfRungeKuttaMethodsHasClosedForms) {  // numerics.md 3.1
+TEST(OscillatorLimit, OfRungeKuttaMethodsHasClosedForms) {
   EXPECT_NEAR(oscillator_limit("rk4", 1, 0), 2 * std::numbers::sqrt2, 1e-9);
   for (const double zeta : {1.0, 1.5, 2.0, 5.0}) {
     const double fastest = zeta + std::sqrt(zeta * zeta - 1);
@@ -174,7 +174,7 @@ TEST(StableStep, HoldsForEverySlowerMotionToo) {
 
 struct Ratio {
   double structural, shear, flexion;
-  double five, ten, infinite, guaranteed;  // omega sqrt(m/k_s), numerics.md 3.2
+  double five, ten, infinite, guaranteed;  // omega sqrt(m/k_s)
 };
 constexpr std::array<Ratio, 5> frequencies{{{1, 1, 1, 2.8740, 3.0967, 3.1820, 4.0415},
                                             {1, 1, 0.1, 2.6473, 2.7823, 2.8284, 3.4641},
@@ -366,7 +366,7 @@ TEST(DampingRates, OfSpringsBoundThoseOfTheGrid) {
   EXPECT_GE(rate, 0.8 * damping_rates(scene).most);
 }
 
-TEST(ProvotStep, IsTooLongForAGrid) {  // numerics.md 3.2: 5.00, and 3.14 for structural springs alone
+TEST(ProvotStep, IsTooLongForAGrid) {  // 5.00, and 3.14 for structural springs alone
   Scene scene;
   scene.cloth = unit_sheet(10);
   scene.springs = material_of(frequencies[0]);
@@ -375,7 +375,7 @@ TEST(ProvotStep, IsTooLongForAGrid) {  // numerics.md 3.2: 5.00, and 3.14 for st
   EXPECT_NEAR(provot_step(scene) / *stable_step("semi-implicit-euler", scene), std::numbers::pi, 1e-9);
 }
 
-TEST(StableStep, OfTheWorkedExampleIsThePrintedOne) {  // numerics.md 3.2: 1 m^2, N = 30, 0.2 kg, 1:.5:.1
+TEST(StableStep, OfTheWorkedExampleIsThePrintedOne) {  // 1 m^2, N = 30, 0.2 kg, 1:.5:.1
   Scene scene = bare_sheet(30, 30, 1.0 / 29, 0.2 / 900);
   scene.springs = SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0};
   EXPECT_NEAR(largest_frequency(scene.cloth, *scene.springs), 3674, 0.5);

@@ -1,6 +1,6 @@
 // Nothing comes through: scenes of contact are looked at by the checker of crossings with every method, at
 // steps from a tenth of a millisecond to a sixtieth of a second, until the end or until an explicit method
-// has run away; and a thousand random drops after every step. clothlab-contact-check runs the same scenes as
+// has diverged; and a thousand random drops after every step. clothlab-contact-check runs the same scenes as
 // long and as large as they are.
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST_P(EveryMethod, LetsNothingThroughAtAnyStep) {
 
 INSTANTIATE_TEST_SUITE_P(Contact, EveryMethod, ::testing::ValuesIn(integrator_names()), test_name);
 
-/// s to go on at a step of a sixtieth of a second. Methods that such a step is too long for run away within
+/// s to go on at a step of a sixtieth of a second. Methods that such a step is too long for diverge within
 /// some steps, which then take long: the first one says whether it lets something through.
 double sixtieths(const Scene& scene) {
   constexpr double sixtieth = 1.0 / 60;

@@ -170,7 +170,7 @@ Scene edited_scene(const std::string& name) {
   return scene;
 }
 
-TEST_P(AnEdit, LetsNothingThroughAndNothingRunAway) {
+TEST_P(AnEdit, LetsNothingThroughAndDoesNotDiverge) {
   const auto& [tested, method] = GetParam();
   Scene scene = edited_scene(tested.scene);
   scene.integrator.method = method;

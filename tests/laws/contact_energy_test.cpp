@@ -37,7 +37,7 @@ TEST_P(ContactOf, ObstaclesAtRestGivesNothing) {
       for (const bool continuous : {true, false}) {
         if (!continuous && std::string(name) == "cones") continue;
         Scene scene = small_scene(name, continuous, 0.5, restitution);
-        const bool is_explicit = GetParam() == "explicit-euler";  // which runs away in air
+        const bool is_explicit = GetParam() == "explicit-euler";  // which diverges in air
         scene.integrator = {.method = GetParam(), .time_step = is_explicit ? 1e-4 : 1e-3};
         const ContactLedger ledger = ledger_of(scene, thrown({0, -1, 0}), is_explicit ? 0.05 : 0.3);
         const std::string where = std::string(name) + (continuous ? "" : ", particle by particle") +

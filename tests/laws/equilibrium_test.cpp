@@ -1,4 +1,4 @@
-// Where a cloth comes to rest, known in closed form. numerics.md A6.
+// Where a cloth comes to rest, known in closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Motions of whole cloths, rings and chains that are known in closed form: every method tends to them at its
-// order. numerics.md 2.5, A2 to A5 and A8; a flat sheet in gusts, which tells a wrong stage time; and A9, a
+// order; a flat sheet in gusts, which tells a wrong stage time; and a
 // motion chosen freely and made exact by the load that it needs.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Falling, known in closed form. numerics.md A7.
+// Falling, known in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>

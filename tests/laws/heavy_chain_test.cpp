@@ -1,5 +1,5 @@
 // The heavy chain of Small Steps in Physics Simulation (Macklin et al. 2019): XPBD gives its figures, with g
-// = 10 m/s^2 and frames of 0.03 s, which the paper leaves out. numerics.md 1.
+// = 10 m/s^2 and frames of 0.03 s, which the paper leaves out.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,4 +1,4 @@
-// What a free cloth keeps. numerics.md A10.
+// What a free cloth keeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST(Momentum, IsKeptByEveryMethodWithAndWithoutSpringDamping) {
       EXPECT_LE(FreeRun(method, 0.1, damping).momentum_error, 1e-11) << method;
 }
 
-/// What numerics.md A10 says of a method.
+/// The invariants of a method.
 enum class Kept { exactly, to_order };
 struct Invariants {
   Kept angular_momentum;

@@ -191,7 +191,7 @@ TEST(Projective, SolvesTheStepEquationsWithEveryForceAndTheHand) {
   }
 }
 
-// numerics.md A1, but exactly: a pendulum of two particles below two pins, as in oscillator_test.
+// Exactly: a pendulum of two particles below two pins, as in oscillator_test.
 TEST(BothLocalMethods, MultiplyTheDampedOscillatorAsImplicitEulerDoes) {
   constexpr double stiffness = 40, mass = 0.1, amplitude = 0.01;
   const double omega = std::sqrt(stiffness / mass);

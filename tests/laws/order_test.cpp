@@ -1,4 +1,4 @@
-// Observed orders (numerics.md 4a): a smooth cloth with viscous damping, drag along the normals, wind and
+// Observed orders: a smooth cloth with viscous damping, drag along the normals, wind and
 // gusts, hung by two corners; the step is halved five times and T is hit exactly.
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct Ladder {
 };
 
 /// Methods that damp fast motions by themselves are asymptotic only where the fastest one is resolved finely:
-/// they get a shorter time. numerics.md 4a.
+/// they get a shorter time.
 Ladder ladder_of(const std::string& method) {
   const Ladder damped{.first = 200, .halvings = 3, .time = 0.1};
   const std::map<std::string, Ladder> ladders{

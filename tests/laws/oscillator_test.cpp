@@ -1,5 +1,5 @@
 // A spring pendulum that is exactly linear: two particles below two pins move up and down together, so that
-// each vertical spring keeps its direction and the horizontal ones their length. numerics.md A1.
+// each vertical spring keeps its direction and the horizontal ones their length.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ Coefficients predicted(const std::string& method, double w) {
   return table.at(method);
 }
 
-/// Distance in phase space from the exact motion after ten periods at w = 0.1, numerics.md A1.
+/// Distance in phase space from the exact motion after ten periods at w = 0.1.
 const std::map<std::string, double> error_at_a_tenth{
     {"explicit-euler", 22}, {"semi-implicit-euler", 2.62e-2}, {"verlet", 2.62e-2},
     {"rk4", 5.25e-5},       {"dormand-prince", 1.76e-7},      {"implicit-euler", 0.957},
@@ -99,7 +99,7 @@ TEST_P(PhaseError, IsWithinATenthOfItsLeadingCoefficients) {
   }
 }
 
-TEST_P(PhaseError, AtATenthIsThatOfTheTable) {  // ten periods at w = 0.1, numerics.md A1
+TEST_P(PhaseError, AtATenthIsThatOfTheTable) {  // ten periods at w = 0.1
   Oscillator oscillator(GetParam());
   oscillator.advance(630, 2 * pi / 63 / omega);
   const double error = std::abs(Complex(oscillator.x() - 1, -oscillator.v() / omega));

@@ -112,7 +112,7 @@ TEST(ExplicitEuler, DriftsWithTheOldVelocity) {
   }
 }
 
-TEST(SemiImplicitEuler, StartedHalfAKickEarlierIsVerlet) {  // numerics.md 2.4
+TEST(SemiImplicitEuler, StartedHalfAKickEarlierIsVerlet) {
   Random random;
   const Scene scene = undamped();
   DirectRun verlet(scene, "verlet"), euler(scene, "semi-implicit-euler");

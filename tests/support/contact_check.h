@@ -32,7 +32,7 @@ struct CheckedWay {
   double patience = infinity;  ///< s of processor time, after which no further step is begun
 };
 
-/// Runs the scene to the way's end, or until its method runs away. Crossings do not end it.
+/// Runs the scene to the way's end, or until its method diverges. Crossings do not end it.
 CheckedRun check_run(const Scene& scene, const CheckedWay& way);
 
 struct RestingWay {

@@ -1,7 +1,6 @@
 // On which side points lie, without any error: the sign of the determinant in doubles, then in long doubles,
-// where its error bound allows, else by expansions, sums of doubles that are exact (Shewchuk 1997, "Adaptive
-// precision floating-point arithmetic and fast robust geometric predicates"). Exact as long as no product of
-// three coordinate differences leaves the range of doubles.
+// where its error bound allows, else by expansions, sums of doubles that are exact (Shewchuk 1997).
+// Exact as long as no product of three coordinate differences leaves the range of doubles.
 #pragma once
 
 #include "cloth/vec3_field.h"

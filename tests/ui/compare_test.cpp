@@ -196,7 +196,7 @@ class CompareTest : public QObject {
 
   void a_pane_that_diverges_says_why_and_the_others_go_on() {
     cloth::Comparison comparison = small_comparison({"rk4", "explicit-euler"});
-    comparison.scene.deformation.reset();  // a limited cloth cannot run away
+    comparison.scene.deformation.reset();  // a limited cloth cannot diverge
     cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
     CompareBench bench(comparison);
     bench.play_to_the_end();

@@ -42,7 +42,7 @@ double contrast(const QColor& a, const QColor& b) {
   return (std::max(of_a, of_b) + 0.05) / (std::min(of_a, of_b) + 0.05);
 }
 
-/// How an eye sees linear RGB (Machado, Oliveira and Fernandes 2009, full severity).
+/// How an eye sees linear RGB (Machado et al. 2009, full severity).
 using Eye = std::array<Triple, 3>;
 constexpr Eye ordinary_eye = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 constexpr Eye deuteranope = {

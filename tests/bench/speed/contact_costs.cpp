@@ -105,7 +105,7 @@ ContactCost measure_contact(const std::string& name, const ContactPlan& plan,
   cost.without = spread_of(subjects[0]);
   cost.with = spread_of(subjects[1]);
   cost.ratio = ratio_of(subjects[1], subjects[0]);
-  if (subjects[0].broken || subjects[1].broken) cost.remark = "it ran away while it was timed";
+  if (subjects[0].broken || subjects[1].broken) cost.remark = "it diverged while it was timed";
   return cost;
 }
 

@@ -3,6 +3,8 @@
 // for everybody's.
 #pragma once
 
+#include "kernels/kernel_table.h"
+
 namespace cloth::kernels {
 
 /// The six directions of springs, as bits. (row, column) is the particle at the spring's first end, except
@@ -109,11 +111,8 @@ struct GridKernels {
   void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);
   /// result[i] = 1 / sqrt(s[i]), 0 where s[i] is zero; the two ways as well.
   void (*inverse_roots[2])(const double* squares, double* result, int count);
-};
 
-const GridKernels& portable_grid_kernels();
-const GridKernels& sse2_grid_kernels();
-const GridKernels& avx2_grid_kernels();
-const GridKernels& avx512_grid_kernels();
+  CLOTHLAB_KERNEL_TABLE(GridKernels)
+};
 
 }  // namespace cloth::kernels

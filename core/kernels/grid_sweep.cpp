@@ -94,23 +94,8 @@ std::optional<Grid> recognise_grid(const ClothSystem& system) {
   return grid;
 }
 
-const kernels::GridKernels& grid_kernels(InstructionSet set) {
-  switch (set) {
-#ifdef CLOTHLAB_X86_KERNELS
-    case InstructionSet::sse2:
-      return kernels::sse2_grid_kernels();
-    case InstructionSet::avx2:
-      return kernels::avx2_grid_kernels();
-    case InstructionSet::avx512:
-      return kernels::avx512_grid_kernels();
-#endif
-    default:
-      return kernels::portable_grid_kernels();
-  }
-}
-
 GridSweep::GridSweep(const ClothSystem& system, const Grid& grid, std::optional<double> mass)
-    : SpringSweep(mass), system_(&system), grid_(grid), kernels_(&grid_kernels(active_instruction_set())) {}
+    : SpringSweep(mass), system_(&system), grid_(grid), kernels_(&active_kernels<kernels::GridKernels>()) {}
 
 int GridSweep::threads() const {
   return std::clamp(std::min(grid_.rows * grid_.columns / fewest_particles, grid_.rows / fewest_rows), 1,

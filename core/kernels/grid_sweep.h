@@ -23,8 +23,6 @@ namespace cloth {
 /// stiffness and rest length; whole families may be absent.
 std::optional<kernels::Grid> recognise_grid(const ClothSystem& system);
 
-const kernels::GridKernels& grid_kernels(InstructionSet set);
-
 class GridSweep : public SpringSweep {
  public:
   /// Both must outlive the sweep.

@@ -2,6 +2,8 @@
 // grid_pass.h.
 #pragma once
 
+#include "kernels/kernel_table.h"
+
 namespace cloth::kernels {
 
 /// Eight particles in a row make a slice, whatever the width of the registers; some slices make a block.
@@ -83,11 +85,8 @@ struct MeshKernels {
   void (*evaluate)(const MeshPass& pass);
   void (*damp)(const MeshPass& pass);
   void (*sum_squares)(const MeshPass& pass);
-};
 
-const MeshKernels& portable_mesh_kernels();
-const MeshKernels& sse2_mesh_kernels();
-const MeshKernels& avx2_mesh_kernels();
-const MeshKernels& avx512_mesh_kernels();
+  CLOTHLAB_KERNEL_TABLE(MeshKernels)
+};
 
 }  // namespace cloth::kernels

@@ -21,25 +21,10 @@ FieldPointers pointers(Vec3Field& field) {
 
 }  // namespace
 
-const kernels::MeshKernels& mesh_kernels(InstructionSet set) {
-  switch (set) {
-#ifdef CLOTHLAB_X86_KERNELS
-    case InstructionSet::sse2:
-      return kernels::sse2_mesh_kernels();
-    case InstructionSet::avx2:
-      return kernels::avx2_mesh_kernels();
-    case InstructionSet::avx512:
-      return kernels::avx512_mesh_kernels();
-#endif
-    default:
-      return kernels::portable_mesh_kernels();
-  }
-}
-
 MeshSweep::MeshSweep(const ClothSystem& system, std::optional<double> mass)
     : SpringSweep(mass),
       layout_(make_mesh_layout(system)),
-      kernels_(&mesh_kernels(active_instruction_set())),
+      kernels_(&active_kernels<kernels::MeshKernels>()),
       inverse_mass_(system.inverse_mass),
       vectors_((static_cast<std::size_t>(kernels::nobody(layout_.slices)) + 1) * 4),
       squares_(static_cast<std::size_t>(layout_.blocks) * all_sums) {

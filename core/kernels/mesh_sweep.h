@@ -9,8 +9,6 @@
 
 namespace cloth {
 
-const kernels::MeshKernels& mesh_kernels(InstructionSet set);
-
 class MeshSweep : public SpringSweep {
  public:
   /// `system` is not referred to afterwards. For springs without constant offset, F_i = k (|d| - L) d/|d|

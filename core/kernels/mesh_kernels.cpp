@@ -1,10 +1,11 @@
-#include "kernels/lanes_sse2.h"
+// A kernel source, see kernel_table.h.
+#include CLOTHLAB_LANES
 //
 #include "kernels/mesh_passes.h"
 
 namespace cloth::kernels {
 
-const MeshKernels& sse2_mesh_kernels() {
+const MeshKernels& MeshKernels::CLOTHLAB_SET() {
   return mesh_kernels;
 }
 

@@ -1,10 +1,11 @@
-#include "kernels/lanes_portable.h"
+// A kernel source, see kernel_table.h.
+#include CLOTHLAB_LANES
 //
 #include "kernels/grid_passes.h"
 
 namespace cloth::kernels {
 
-const GridKernels& portable_grid_kernels() {
+const GridKernels& GridKernels::CLOTHLAB_SET() {
   return grid_kernels;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/text_file.h"
 #include "params/problem.h"
 #include "scene/scene.h"
 #include "scene/scene_json.h"

@@ -11,7 +11,7 @@
 namespace cloth {
 namespace {
 
-/// Who is joined to whom, as rows of one list.
+/// Neighbours of each particle, as rows of one list.
 struct Neighbours {
   std::vector<int> begin, list;
 
@@ -62,8 +62,8 @@ void visit_part(const Neighbours& neighbours, int start, std::vector<int>& level
   }
 }
 
-/// A particle about as far from others as any: from the farthest of `start` of least degree to its farthest,
-/// as long as that is farther.
+/// A pseudoperipheral particle (George and Liu 1979): repeatedly the farthest particle of least degree, while
+/// the distance increases.
 int end_of_a_long_path(const Neighbours& neighbours, int start, std::vector<int>& level) {
   std::vector<int> part;
   for (int longest = -1;;) {

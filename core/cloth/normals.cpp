@@ -15,7 +15,7 @@ void normalise(double* nx, double* ny, double* nz, int count) {
   }
 }
 
-/// So many columns of a grid at a time: what lies between two rows of them stays in the first cache.
+/// Columns of a grid that are processed at a time, so that their cross products stay in the first cache.
 constexpr int strip_width = 128;
 
 /// The cross products of one row of cells: [k] is that of the cell whose left edge is column first - 1 + k, 0
@@ -36,7 +36,7 @@ struct CellRow {
     const double *xd = xa + columns, *yd = ya + columns, *zd = za + columns;
     double *lx = lower_x.data() + to, *ly = lower_y.data() + to, *lz = lower_z.data() + to;
     double *ux = upper_x.data() + to, *uy = upper_y.data() + to, *uz = upper_z.data() + to;
-#pragma GCC ivdep  // the cells are nobody's positions
+#pragma GCC ivdep  // cells and positions do not alias
     for (int k = 0; k < end - begin; ++k) {
       const double cx = xd[k + 1] - xa[k], cy = yd[k + 1] - ya[k], cz = zd[k + 1] - za[k];  // c - a
       const double dx = xd[k] - xa[k], dy = yd[k] - ya[k], dz = zd[k] - za[k];

@@ -9,13 +9,13 @@
 namespace cloth {
 namespace {
 
-/// An ellipsoid, and how widely it melts into what is there before it.
+/// An ellipsoid and the width of its smooth union with the parts before it.
 struct Part {
   Vec3 centre, radii;  // m
   double melt;         // m
 };
 
-/// A limb between two points, thinner or thicker towards its end.
+/// A capsule between two points, with different radii at its ends.
 struct Limb {
   Vec3 from, to;       // m
   double radius, end;  // m
@@ -41,7 +41,7 @@ const std::array<Limb, 3> limbs{{
 }};
 const Limb paw{{0.23, 0.05, 0.10}, {0.315, 0.045, 0.10}, 0.05, 0.042, 0.03};
 
-/// Nearly the distance, of the right sign (Quilez, "Ellipsoid - SDF").
+/// Approximate signed distance to an ellipsoid (Quilez, "Ellipsoid - SDF").
 double distance_to(const Part& part, const Vec3& x) {
   const Vec3 inside = (x - part.centre).cwiseQuotient(part.radii);
   const double level = inside.norm();
@@ -55,7 +55,7 @@ double distance_to(const Limb& limb, const Vec3& x) {
   return (x - limb.from - t * along).norm() - (limb.radius + t * (limb.end - limb.radius));
 }
 
-/// The smaller of the two, rounded where they are nearer than `melt` to each other.
+/// Smooth minimum: rounded where the two differ by less than `melt`.
 double melted(double a, double b, double melt) {
   if (!(melt > 0)) return std::min(a, b);
   const double overlap = std::max(melt - std::abs(a - b), 0.0) / melt;

@@ -10,7 +10,7 @@
 namespace cloth {
 namespace {
 
-/// Newell's normal: the sum of the cross products around, whatever the shape.
+/// Newell's normal: the sum of the cross products of consecutive corners, valid for any shape.
 Vec3 normal_of(const std::vector<Vec3>& vertices, std::span<const int> corners) {
   const Vec3 first = vertices[static_cast<std::size_t>(corners[0])];
   Vec3 sum = Vec3::Zero();
@@ -37,8 +37,8 @@ bool cover_once(const FlatPolygon& polygon, const std::vector<Triangle>& triangl
                      [&](const Triangle& t) { return polygon.turn(t[0], t[1], t[2]) >= 0; });
 }
 
-/// For polygons that touch or cross themselves: ears are cut off one by one (Meisters 1975); what could lie
-/// within an ear is found by a grid over the corners that turn in.
+/// Ear clipping (Meisters 1975), for polygons that touch or cross themselves. A raster over the reflex
+/// corners finds those within an ear.
 class EarCutter {
  public:
   explicit EarCutter(const FlatPolygon& polygon)
@@ -114,13 +114,14 @@ class EarCutter {
     return std::clamp(static_cast<int>((point[axis] - low_[axis]) / span * cells_), 0, cells_ - 1);
   }
 
-  /// Whether the corner turns left and no corner that turns in lies within its triangle.
+  /// Whether the corner is convex and no reflex corner lies within its triangle.
   bool is_ear(int corner) {
     look();
     if (!turns_left(corner)) return false;
     const Triangle ear{previous_[at(corner)], corner, next_[at(corner)]};
     Eigen::Vector2d low = place_of(corner), high = low;
-    for (const int end : {ear[0], ear[2]}) low = low.cwiseMin(place_of(end)), high = high.cwiseMax(place_of(end));
+    for (const int end : {ear[0], ear[2]})
+      low = low.cwiseMin(place_of(end)), high = high.cwiseMax(place_of(end));
     const int x_end = cell_of(high, 0), y_begin = cell_of(low, 1), y_end = cell_of(high, 1);
     for (int x = cell_of(low, 0); x <= x_end; ++x)
       for (int y = y_begin; y <= y_end; ++y)

@@ -15,9 +15,9 @@ std::size_t place(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Above the sweep line lie slabs of the polygon's inside, each between an edge to its left and one to its
-/// right. What of a slab is not cut into triangles yet lies below a chain of points from the left edge to the
-/// right one that turns in at every point between: where it does not, a triangle has been cut off.
+/// The sweep line crosses slabs of the polygon's interior, each between an edge to its left and one to its
+/// right. The part of a slab that is not triangulated yet lies below a reflex chain of points from the left
+/// edge to the right one: convex points of the chain have been cut off as triangles.
 class Sweep {
  public:
   explicit Sweep(const FlatPolygon& polygon)
@@ -94,8 +94,8 @@ class Sweep {
 
   void cut(int a, int b, int c) { triangles_.push_back({node(a).point, node(b).point, node(c).point}); }
 
-  /// Cuts triangles off between `at` and the chain to the left of it, which ends in `last`, until it turns in;
-  /// all of them if `all`. What of the chain is left ends in the node returned.
+  /// Cuts off triangles between `at` and the chain to its left, which ends in `last`, until the chain is
+  /// reflex, or all of them if `all`. Returns the end of the remaining chain.
   int cut_leftwards(int at, int last, bool all = false) {
     while (node(last).left != none &&
            (all || polygon_.turn(node(at).point, node(last).point, node(node(last).left).point) > 0)) {
@@ -113,7 +113,7 @@ class Sweep {
     return first;
   }
 
-  /// False: it has no business there, so that the polygon is not simple.
+  /// False: the polygon is not simple.
   bool open_slab(int left_edge, int right_edge, int first, int last, int lowest_node) {
     const int slab = static_cast<int>(slabs_.size());
     slabs_.push_back({left_edge, right_edge, first, last, lowest_node});
@@ -174,7 +174,7 @@ class Sweep {
     return open_slab(slab.left_edge, previous(point), slab.first, at, at);
   }
 
-  /// The inside goes on to the left and to the right of the point.
+  /// The interior continues to the left and to the right of the point.
   bool split(int point) {
     const auto beyond = lefts_.upper_bound(typename Order::At{point});
     if (beyond == lefts_.begin()) return false;

@@ -13,7 +13,7 @@ bool is_one_sided(int a, int b, int c) {
   return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-/// An axis along which three points are not seen on a line; -1 where they lie on one.
+/// An axis along which the projections of three points are not collinear; -1 where the points are.
 int axis_that_sees(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int axis = 0; axis < 3; ++axis)
     if (turn_around(axis, a, b, c) != 0) return axis;
@@ -43,8 +43,8 @@ bool touches_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
                                    turn_around(axis, t[2], t[0], p));
 }
 
-/// Whether an axis parts the points by more than what rounding could be: tells nearly all pairs without exact
-/// arithmetic, also those in one plane.
+/// Whether an axis separates the points by more than the rounding error: decides nearly all pairs without
+/// exact arithmetic, also coplanar ones.
 template <std::size_t M, std::size_t N>
 bool is_parted_by(const Vec3& axis, const std::array<Vec3, M>& a, const std::array<Vec3, N>& b) {
   constexpr double rounding = 1e-12;

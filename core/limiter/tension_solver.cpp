@@ -153,7 +153,7 @@ bool TensionSolver::is_inactive(const std::vector<double>& tension, Vec3Field& p
   if (!grid_) return false;
   const double* t = tension.data();
   if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
-  const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights: not asked for
+  const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights are not used
   for (const GridFamily& family : grid_->families) {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
     for (int row = 0; row < family.rows; ++row) {

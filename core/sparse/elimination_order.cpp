@@ -51,8 +51,8 @@ class Dissection {
   std::vector<int> order;
 
  private:
-  /// The one that is smallest for what it separates, |S|^2 / (|A| |B|), among those that leave a quarter on
-  /// either side; none where nothing is gained.
+  /// The separator with the least |S|^2 / (|A| |B|) among those with at least a quarter of the points on
+  /// either side; none where separation does not pay.
   std::optional<Separator> find_separator(const std::vector<GridPoint>& points) const {
     constexpr std::size_t indivisible = 6;  // particles
     std::optional<Separator> best;

@@ -30,8 +30,8 @@ Columns lower_columns(const std::vector<Coupling>& couplings, const std::vector<
   return columns;
 }
 
-/// Each column's parent, -1 at a root, before anything is filled in: from every entry of a row up to the root
-/// of what is known so far, over shortcuts (Liu 1990).
+/// The parent of each column, -1 at a root, before fill-in: from every entry of a row to the root of the tree
+/// so far, with path compression (Liu 1990).
 std::vector<int> find_parents(const Columns& columns) {
   std::vector<int> parent(columns.size(), -1), shortcut(columns.size(), -1);
   Columns of_row(columns.size());
@@ -49,7 +49,7 @@ std::vector<int> find_parents(const Columns& columns) {
   return parent;
 }
 
-/// Adds what elimination adds: the rest of a column to its parent.
+/// Adds the fill-in: the rest of each column to its parent.
 void fill_in(Columns& columns) {
   std::vector<int> merged;
   for (const std::vector<int>& rows : columns) {

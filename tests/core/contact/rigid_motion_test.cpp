@@ -47,7 +47,7 @@ TEST(Keyframes, HoldOutsideAndAreStraightBetween) {
   EXPECT_LE((middle.at({2, 2, 3}) - Vec3(1 + half, 0, -half)).norm(), 1e-14);
 }
 
-TEST(APassage, EndsAtItsPosesToTheBit) {
+TEST(APoseInterpolation, EndsAtItsPosesToTheBit) {
   Obstacle obstacle = ball();
   obstacle.spin = {1, 2, 3}, obstacle.velocity = {3, 2, 1};
   const Pose from = pose_of(obstacle, 0.1), to = pose_of(obstacle, 0.2);
@@ -61,7 +61,7 @@ TEST(APassage, EndsAtItsPosesToTheBit) {
   EXPECT_LE((there.shift - between.shift).norm(), 1e-13);
 }
 
-TEST(APassage, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
+TEST(APoseInterpolation, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
   Obstacle obstacle = ball();
   for (const Vec3& spin : {Vec3(10, 40, 20), Vec3(0, -63, 0), Vec3(0, 20 * pi, 0), Vec3(-35, 0, 0)}) {
     obstacle.spin = spin;

@@ -63,8 +63,8 @@ double Simulation::steady_energy_scale() const {
   const double drop = mass * gravity_of(scene_).norm() * system_.diagonal;
   double wind = 0;
   if (scene_.air) wind = scene_.air->wind.norm() * (1 + (scene_.air->gust ? scene_.air->gust->amplitude : 0));
-  const double struck = 2 * obstacle_speed_;  // at most, off an obstacle that gives all speed back
-  return drop + 0.5 * mass * (wind * wind + struck * struck) + std::abs(ledger_.initial) +
+  const double struck = 2 * run_.obstacle_speed;  // at most, off an obstacle that gives all speed back
+  return drop + 0.5 * mass * (wind * wind + struck * struck) + std::abs(run_.ledger.initial) +
          rounding_floor * elastic_scale_;
 }
 
@@ -72,20 +72,20 @@ double Simulation::steady_energy_scale() const {
 /// elsewhere.
 double Simulation::energy_scale_after(double fallen) const {
   const double drop = total_mass_ * gravity_of(scene_).norm() * system_.diagonal;
-  const double hand =
-      std::abs(ledger_.forces.brush) + std::abs(ledger_.forces.pull) + std::max(hand_energy_, hand_energy());
-  return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(ledger_.contact);
+  const double hand = std::abs(run_.ledger.forces.brush) + std::abs(run_.ledger.forces.pull) +
+                      std::max(run_.hand_energy, hand_energy());
+  return steady_energy_scale() + std::max(0.0, fallen - drop) + hand + std::abs(run_.ledger.contact);
 }
 
 /// J, of the spring by which the hand pulls.
 double Simulation::hand_energy() const {
-  if (!pull_) return 0;
-  const Vec3 way = pull_->target - state_.position[static_cast<std::size_t>(pull_->particle)];
+  if (!run_.pull) return 0;
+  const Vec3 way = run_.pull->target - run_.state.position[static_cast<std::size_t>(run_.pull->particle)];
   return 0.5 * pull_strength_.stiffness * way.squaredNorm();
 }
 
 double Simulation::energy_scale() const {
-  return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), state_.position));
+  return energy_scale_after(-gravity_energy(system_, gravity_of(scene_), run_.state.position));
 }
 
 /// Faster than the scene explains at a glance. Not yet diverged: contact may have given all of it.
@@ -97,10 +97,10 @@ bool Simulation::is_fast(double kinetic) const {
 /// and ten times what the scene could give explain. What a limiter has taken out may be missing once more; it
 /// explains no gain.
 bool Simulation::has_run_away() const {
-  const Energy energy = measure_energy(system_, gravity_of(scene_), state_);
-  const double unexplained = energy.total() - ledger_.initial - ledger_.entered();
-  const double missing = unexplained < 0 ? std::abs(ledger_.limiter) : 0;
-  return !(std::abs(unexplained) <= divergence_factor * (energy_scale_after(-energy.gravity) + missing));
+  const Energy energy = measure_energy(system_, gravity_of(scene_), run_.state);
+  const double unexplained = energy.total() - run_.ledger.initial - run_.ledger.entered();
+  const double missing = unexplained < 0 ? std::abs(run_.ledger.limiter) : 0;
+  return !(std::abs(unexplained) <= runaway_factor * (energy_scale_after(-energy.gravity) + missing));
 }
 
 /// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2. Where the step is
@@ -115,27 +115,27 @@ bool Simulation::is_surely_slow(double speed_squares) const {
 /// all does not make the speeds too much, nothing has diverged. Only else, and where a method without a limit
 /// or "auto" asks for it every few steps, the ledger is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
-  const bool looks = watches_ledger_ && state_.step % ledger_interval == 0;
-  if (!looks && report.speed_squares && was_finite_ && !limiter_ && !contact_ && !continuous_contact_ &&
+  const bool looks = watches_ledger_ && run_.state.step % ledger_interval == 0;
+  if (!looks && report.speed_squares && was_finite_ && !limiter_ && !contact_ &&
       is_surely_slow(*report.speed_squares))
     return std::nullopt;
-  const auto x = state_.position.flat();
+  const auto x = run_.state.position.flat();
   // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.
   const double sum = ordered_sum(x.size(), [p = x.data()](std::size_t k) { return p[k]; });
-  const bool lost = !std::isfinite(sum) && first_not_finite(state_.position);
+  const bool lost = !std::isfinite(sum) && first_not_finite(run_.state.position);
   was_finite_ = !lost;
-  if (!lost && !looks && !is_fast(kinetic_energy(system_, state_.velocity))) return std::nullopt;
+  if (!lost && !looks && !is_fast(kinetic_energy(system_, run_.state.velocity))) return std::nullopt;
   if (!lost && !has_run_away()) return std::nullopt;
   return stop_at_fastest("its energy is out of bounds");
 }
 
 Divergence Simulation::stop_at_fastest(const std::string& cause) const {
-  if (const auto i = first_not_finite(state_.velocity)) return stop_at(*i, "its velocity is not finite");
-  if (const auto i = first_not_finite(state_.position)) return stop_at(*i, "its position is not finite");
+  if (const auto i = first_not_finite(run_.state.velocity)) return stop_at(*i, "its velocity is not finite");
+  if (const auto i = first_not_finite(run_.state.position)) return stop_at(*i, "its position is not finite");
   int fastest = 0;
   double highest_speed = -1;
-  for (std::size_t i = 0; i < state_.velocity.size(); ++i) {
-    if (const double speed = state_.velocity[i].stableNorm(); speed > highest_speed) {
+  for (std::size_t i = 0; i < run_.state.velocity.size(); ++i) {
+    if (const double speed = run_.state.velocity[i].stableNorm(); speed > highest_speed) {
       highest_speed = speed;
       fastest = static_cast<int>(i);
     }
@@ -175,11 +175,11 @@ Divergence Simulation::stop_at_exhaustion(const Pinch& pinch) const {
 
 Divergence Simulation::stop_at(int particle, std::string cause) const {
   Divergence divergence;
-  divergence.step = state_.step;
-  divergence.time = state_.time;
+  divergence.step = run_.state.step;
+  divergence.time = run_.state.time;
   divergence.particle = particle;
   divergence.cause = std::move(cause);
-  divergence.time_step = time_step_;
+  divergence.time_step = run_.time_step;
   divergence.stable_step = method_limit();
   divergence.on_grid = !system_.is_mesh();
   divergence.row = divergence.particle / system_.columns;

@@ -46,8 +46,10 @@ std::string describe(const EnergyAccount& account) {
   if (!account.is_doubtful()) return "";
   return fmt::format(
       "energy is not accounted for: an error of up to {:.3g} J, {:.3g} % of the {:.3g} J that were exchanged "
-      "(trusted up to {:.3g} %); a shorter time step or another method would tell what of this motion is real",
-      account.largest_error(), 100 * account.share(), account.exchanged(), 100 * EnergyAccount::doubtful_share);
+      "(trusted up to {:.3g} %); a shorter time step or another method would tell what of this motion is "
+      "real",
+      account.largest_error(), 100 * account.share(), account.exchanged(),
+      100 * EnergyAccount::doubtful_share);
 }
 
 }  // namespace cloth

@@ -9,10 +9,10 @@ namespace cloth {
 
 struct Measurement;
 
-/// Gathers a run's rows. The error of a row is total energy - that at the start - works + losses; a deformation
-/// rate that is kept only ever takes energy, so that what the limiter has given in sum is an error too. What was
-/// exchanged is the largest that the kinetic, elastic or potential energy has changed by since the first row,
-/// or that any one work or loss of the ledger has come to.
+/// Gathers a run's rows. The error of a row is total energy - that at the start - works + losses; a
+/// deformation rate that is kept only ever takes energy, so that what the limiter has given in sum is an
+/// error too. What was exchanged is the largest that the kinetic, elastic or potential energy has changed by
+/// since the first row, or that any one work or loss of the ledger has come to.
 class EnergyAccount {
  public:
   /// Beyond this part of the energy exchanged, a run says that its motion cannot be relied on.

@@ -66,10 +66,10 @@ std::string describe(const RateBreach& b) {
     return b.columns > 0 ? fmt::format("{} (row {}, column {})", i, i / b.columns, i % b.columns)
                          : std::to_string(i);
   };
-  const std::string also =
-      b.steps > 1 ? fmt::format("; so it was in {} steps, worst in step {} with {:.3g} %", b.steps,
-                                b.largest_step, 100 * b.largest_excess)
-                  : "";
+  const std::string also = b.steps > 1
+                               ? fmt::format("; so it was in {} steps, worst in step {} with {:.3g} %",
+                                             b.steps, b.largest_step, 100 * b.largest_excess)
+                               : "";
   const char* why = b.unreachable  ? ", which the pins make unreachable"
                     : b.by_contact ? ", where contact has stretched it"
                                    : "";

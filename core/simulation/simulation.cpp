@@ -7,7 +7,6 @@
 #include "cloth/mesh_cloth.h"
 #include "cloth/sums.h"
 #include "contact/continuous_contact.h"
-#include "contact/stiff_contact.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
 #include "measure/spectrum.h"
@@ -44,57 +43,49 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
 Simulation::Simulation(const Scene& scene, Preparation prepare)
     : scene_(scene), prepare_(std::move(prepare)) {
   system_ = make_cloth(scene_.cloth, material_of(scene_));
-  state_ = starting_state(system_);
-  if (prepare_) prepare_(system_, state_);
+  run_.state = starting_state(system_);
+  if (prepare_) prepare_(system_, run_.state);
   take_step_of_scene();
   assemble();
   limit_start();
-  ledger_.initial = total_energy();
-  automatic_.least_error = 0;
+  run_.ledger.initial = total_energy();
+  run_.automatic.least_error = 0;
 }
 
 Simulation::~Simulation() = default;
 
 void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
-  share_work();
   const std::vector<double> tension = limiter_ ? limiter_->tension() : std::vector<double>();
   limiter_.reset();
   if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_)) {
     limiter_.emplace(*scene_.deformation, system_);
     limiter_->set_tension(tension);
   }
-  contact_.reset();
-  continuous_contact_.reset();
-  if (has_continuous_contact(scene_))
-    continuous_contact_ =
-        std::make_unique<ContinuousContact>(scene_, system_, carries_, thickness_transition_, state_.time);
-  else if (!scene_.obstacles.empty())
-    contact_.emplace(scene_.obstacles, gravity_of(scene_).norm());
-  stiff_contact_.reset();
-  if (contact_ && time_step_ > explicit_step_limit(scene_)) stiff_contact_ = std::make_unique<StiffContact>();
-  if (continuous_contact_) continuous_contact_->set_team(team_.get());
-  if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
+  contact_ = make_contact_stage(scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
+                                run_.time_step > explicit_step_limit(scene_));
+  share_work();
+  if (contact_) contact_->set_stop_test(stop_test_);
   find_unreachable();
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
-  obstacle_speed_ = std::max(obstacle_speed_, highest_obstacle_speed(scene_, carries_, state_.position));
+  run_.obstacle_speed =
+      std::max(run_.obstacle_speed, highest_obstacle_speed(scene_, run_.transitions, run_.state.position));
   largest_mass_ = *std::max_element(system_.mass.begin(), system_.mass.end());
   was_finite_ = false;
-  last_limit_ = {};
-  last_contact_ = {};
+  run_.last_limit = {};
+  run_.last_contact = {};
 
-  const bool brush = quantities_.brush, pull = quantities_.pull;  // a hand that acted keeps its column
   quantities_ = Quantities{
       .damping = scene_.damping.value_or(0) > 0 || (!system_.springs.empty() && scene_.springs->damping > 0),
       .air = scene_.air && scene_.air->drag > 0,
-      .brush = brush,
-      .pull = pull,
+      .brush = run_.was_brushed,
+      .pull = run_.was_pulled,
       .limiter = limiter_.has_value(),
-      .contact = contact_ || continuous_contact_,
+      .contact = contact_ != nullptr,
       .structural = system_.spring_count(SpringFamily::structural) > 0,
       .shear = system_.spring_count(SpringFamily::shear) > 0,
-      .continuous_contact = continuous_contact_ != nullptr};
+      .continuous_contact = has_continuous_contact()};
 
   strongest_pull_ = find_strongest_pull();
   apply_hand();
@@ -108,7 +99,7 @@ PullStrength Simulation::find_strongest_pull() const {
   const SpringMaterial material = material_of(scene_);
   const double omega = guaranteed_frequency(scene_.cloth, material);
   const double limit = guaranteed_step(scene_.integrator.method, scene_).value_or(0);
-  const double step = automatic_.longest;
+  const double step = run_.automatic.longest;
   const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / step : 1 / step;
   const double strongest =
       std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
@@ -133,8 +124,8 @@ void Simulation::apply_hand() {
     pull_strength_.stiffness = std::min(pull_strength_.stiffness, most_pull_->stiffness);
     pull_strength_.damping = std::min(pull_strength_.damping, most_pull_->damping);
   }
-  forces_->set_brush(brush_);
-  forces_->set_pull(pull_, pull_strength_.stiffness, pull_strength_.damping);
+  forces_->set_brush(run_.brush);
+  forces_->set_pull(run_.pull, pull_strength_.stiffness, pull_strength_.damping);
   choose_stepper();
 }
 
@@ -152,38 +143,39 @@ void Simulation::choose_stepper() {
 
 std::optional<Divergence> Simulation::step() {
   begin_step_length();
-  const std::int64_t next = state_.step + 1;
-  const StepTimes times{state_.time, first_time_ + static_cast<double>(next - first_step_) * time_step_,
-                        time_step_};
+  const std::int64_t next = run_.state.step + 1;
+  const StepTimes times{run_.state.time,
+                        run_.first_time + static_cast<double>(next - run_.first_step) * run_.time_step,
+                        run_.time_step};
   interrupted_ = false;
-  if (contact_ || continuous_contact_) position_before_ = state_.position, velocity_before_ = state_.velocity;
-  if (limiter_) limiter_->begin_step(time_step_, state_, integrator_->drifts_with_end_velocity());
-  if (continuous_contact_ && stop_test_) {
-    ledger_before_ = ledger_;
+  if (contact_) position_before_ = run_.state.position, velocity_before_ = run_.state.velocity;
+  if (limiter_) limiter_->begin_step(run_.time_step, run_.state, integrator_->drifts_with_end_velocity());
+  if (has_continuous_contact() && stop_test_) {
+    ledger_before_ = run_.ledger;
     if (limiter_) tension_before_ = limiter_->tension();
   }
-  const IntegratorReport report = integrator_->step(system_, *forces_, times, state_, ledger_.forces);
+  const IntegratorReport report = integrator_->step(system_, *forces_, times, run_.state, run_.ledger.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
-  if (continuous_contact_ && !report.failure) resolve_continuous_contact(times);
-  if (last_contact_.interrupted && !report.failure) {
+  if (run_.last_contact.interrupted && !report.failure) {
     take_back_step();
     return std::nullopt;
   }
   if (limiter_ && !report.failure) book_limiter();
-  if (continuous_contact_ && report.failure) state_.position = position_before_;  // nothing has led it there
-  state_.time = times.end;
-  state_.step = next;
+  if (has_continuous_contact() && report.failure)
+    run_.state.position = position_before_;  // nothing has led it there
+  run_.state.time = times.end;
+  run_.state.step = next;
   count_step(report);
 
-  if (last_contact_.exhausted && !report.failure) return stop_at_exhaustion(*last_contact_.pinch);
-  if (last_contact_.pinch && !report.failure) return stop_at_pinch(*last_contact_.pinch);
+  if (run_.last_contact.exhausted && !report.failure) return stop_at_exhaustion(*run_.last_contact.pinch);
+  if (run_.last_contact.pinch && !report.failure) return stop_at_pinch(*run_.last_contact.pinch);
   if (!report.failure) {
     auto divergence = find_divergence(report);
     if (!divergence && watches_step_) {
       const double squares = report.speed_squares.value_or(
-          ordered_sum(state_.velocity.flat().size(),
-                      [v = state_.velocity.flat().data()](std::size_t k) { return v[k] * v[k]; }));
+          ordered_sum(run_.state.velocity.flat().size(),
+                      [v = run_.state.velocity.flat().data()](std::size_t k) { return v[k] * v[k]; }));
       watch_step(!is_surely_slow(squares));
     }
     return divergence;
@@ -194,54 +186,56 @@ std::optional<Divergence> Simulation::step() {
 }
 
 void Simulation::take_back_step() {
-  state_.position = position_before_;
-  state_.velocity = velocity_before_;
-  ledger_ = ledger_before_;
+  run_.state.position = position_before_;
+  run_.state.velocity = velocity_before_;
+  run_.ledger = ledger_before_;
   if (limiter_) limiter_->set_tension(tension_before_);
-  last_contact_ = {};
+  run_.last_contact = {};
   integrator_->forget(Change::state);
   interrupted_ = true;
 }
 
 void Simulation::set_stop_test(std::function<bool()> test) {
   stop_test_ = std::move(test);
-  if (continuous_contact_) continuous_contact_->set_stop_test(stop_test_);
+  if (contact_) contact_->set_stop_test(stop_test_);
 }
 
 void Simulation::count_step(const IntegratorReport& report) {
-  ++count_.steps;
-  count_.force_evaluations += report.force_evaluations;
-  count_.velocity_iterations += report.velocity_iterations;
-  count_.limiter_sweeps += last_limit_.sweeps;
-  count_.inner_steps += report.inner_steps;
-  count_.rejected_steps += report.rejected_steps;
-  count_.iterations += report.iterations;
-  count_.linear_iterations += report.linear_iterations;
-  count_.factorisations += report.factorisations;
-  count_.largest_residual = std::max(count_.largest_residual, report.residual);
+  ++run_.count.steps;
+  run_.count.force_evaluations += report.force_evaluations;
+  run_.count.velocity_iterations += report.velocity_iterations;
+  run_.count.limiter_sweeps += run_.last_limit.sweeps;
+  run_.count.inner_steps += report.inner_steps;
+  run_.count.rejected_steps += report.rejected_steps;
+  run_.count.iterations += report.iterations;
+  run_.count.linear_iterations += report.linear_iterations;
+  run_.count.factorisations += report.factorisations;
+  run_.count.largest_residual = std::max(run_.count.largest_residual, report.residual);
 }
 
 TriangleMesh Simulation::cloth_mesh() const {
   TriangleMesh mesh{{}, triangles_of(system_)};
-  for (std::size_t i = 0; i < state_.position.size(); ++i) mesh.vertices.push_back(state_.position[i]);
+  for (std::size_t i = 0; i < run_.state.position.size(); ++i)
+    mesh.vertices.push_back(run_.state.position[i]);
   return mesh;
 }
 
 /// Of the obstacles that an edit makes other ones than they are.
 ObstacleTransitions Simulation::find_transitions(const Scene& edited) const {
-  if (!has_continuous_contact(edited)) return {};
-  if (continuous_contact_ && edited.obstacles == scene_.obstacles) return carries_;
-  const std::vector<Pose> poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{};
-  return transitions_after({scene_.obstacles, poses, carries_}, edited, state_.time, cloth_mesh());
+  if (!cloth::has_continuous_contact(edited)) return {};
+  if (has_continuous_contact() && edited.obstacles == scene_.obstacles) return run_.transitions;
+  const std::vector<Pose> poses = contact_ ? contact_->poses() : std::vector<Pose>{};
+  return transitions_after({scene_.obstacles, poses, run_.transitions}, edited, run_.state.time,
+                           cloth_mesh());
 }
 
 void Simulation::edit(const Scene& scene) {
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
-  carries_ = find_transitions(scene);
-  thickness_transition_ = continuous_contact_ && has_continuous_contact(scene)
-                              ? thickness_after(scene_, thickness_transition_, scene, state_.time)
-                              : ThicknessTransition{};
+  run_.transitions = find_transitions(scene);
+  run_.thickness_transition = has_continuous_contact() && cloth::has_continuous_contact(scene)
+                                  ? thickness_after(scene_, run_.thickness_transition, scene, run_.state.time)
+                                  : ThicknessTransition{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
   system_ = make_cloth(scene_.cloth, material_of(scene_));
@@ -250,15 +244,15 @@ void Simulation::edit(const Scene& scene) {
     prepare_(system_, unused);
   }
   system_.start = start;
-  for (std::size_t i = 0; i < state_.velocity.size(); ++i)
-    if (system_.pinned[i]) state_.velocity.set(i, Vec3::Zero());
+  for (std::size_t i = 0; i < run_.state.velocity.size(); ++i)
+    if (system_.pinned[i]) run_.state.velocity.set(i, Vec3::Zero());
 
   take_step_of_scene();
   if (new_method) integrator_.reset();
   assemble();
-  if (new_method || !(contact_ || continuous_contact_)) end_contact();
+  if (new_method || !contact_) end_contact();
   integrator_->forget(Change::state);
-  ledger_.initial += total_energy() - before;
+  run_.ledger.initial += total_energy() - before;
 }
 
 std::size_t Checkpoint::bytes() const {
@@ -268,68 +262,37 @@ std::size_t Checkpoint::bytes() const {
   numbers += contact_memory.deferred.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
          contact_memory.held.size() + sizeof(Pose) * obstacle_poses.size() +
-         sizeof(ObstacleTransition) * carries.size();
+         sizeof(ObstacleTransition) * transitions.size();
 }
 
 Checkpoint Simulation::checkpoint() const {
-  return {.state = state_,
-          .method = scene_.integrator.method,
-          .memory = integrator_->remember(),
-          .ledger = ledger_,
-          .time_step = time_step_,
-          .first_time = first_time_,
-          .first_step = first_step_,
-          .automatic = automatic_,
-          .brush = brush_,
-          .pull = pull_,
-          .quantities = quantities_,
-          .count = count_,
-          .last_limit = last_limit_,
-          .last_contact = last_contact_,
-          .obstacle_poses = continuous_contact_ ? continuous_contact_->poses() : std::vector<Pose>{},
-          .carries = carries_,
-          .thickness_transition = thickness_transition_,
-          .obstacle_speed = obstacle_speed_,
-          .hand_energy = hand_energy_,
-          .contact_impulse = contact_impulse_,
-          .contact_memory = contact_memory_,
-          .tension = limiter_ ? limiter_->tension() : std::vector<double>(),
-          .rate_breach = rate_breach_};
+  Checkpoint checkpoint{run_};
+  checkpoint.method = scene_.integrator.method;
+  checkpoint.memory = integrator_->remember();
+  if (contact_) checkpoint.obstacle_poses = contact_->poses();
+  if (limiter_) checkpoint.tension = limiter_->tension();
+  return checkpoint;
 }
 
+/// The step that the scene says stays in force where the checkpoint had another.
 void Simulation::restore(const Checkpoint& checkpoint) {
-  state_ = checkpoint.state;
+  const double time_step = run_.time_step;
+  AutomaticStep automatic = std::move(run_.automatic);
+  run_ = checkpoint;
   was_finite_ = false;
-  ledger_ = checkpoint.ledger;
-  count_ = checkpoint.count;
-  set_brush(checkpoint.brush);
-  set_pull(checkpoint.pull);
-  quantities_.brush = checkpoint.quantities.brush;
-  quantities_.pull = checkpoint.quantities.pull;
-  const bool same_step = checkpoint.automatic.longest == automatic_.longest;
-  first_time_ = same_step ? checkpoint.first_time : state_.time;
-  first_step_ = same_step ? checkpoint.first_step : state_.step;
-  if (same_step && watches_step_) time_step_ = checkpoint.time_step;
-  if (same_step && watches_step_) automatic_ = checkpoint.automatic;
-  last_limit_ = checkpoint.last_limit;
+  if (run_.automatic.longest != automatic.longest)
+    run_.first_time = run_.state.time, run_.first_step = run_.state.step;
+  if (run_.automatic.longest != automatic.longest || !watches_step_)
+    run_.time_step = time_step, run_.automatic = std::move(automatic);
+  quantities_.brush = run_.was_brushed, quantities_.pull = run_.was_pulled;
+  apply_hand();
   if (limiter_) limiter_->set_tension(checkpoint.tension);
-  rate_breach_ = checkpoint.rate_breach;
-  last_contact_ = checkpoint.last_contact;
-  const bool same_obstacles = checkpoint.carries.size() == scene_.obstacles.size();
-  carries_ = same_obstacles ? checkpoint.carries : ObstacleTransitions{};
-  thickness_transition_ = checkpoint.thickness_transition;
-  obstacle_speed_ = checkpoint.obstacle_speed;
-  hand_energy_ = checkpoint.hand_energy;
-  contact_impulse_ = checkpoint.contact_impulse;
-  contact_memory_ = checkpoint.contact_memory;
-  if (checkpoint.method != scene_.integrator.method) end_contact();
-  if (continuous_contact_) {
-    continuous_contact_->set_transitions(carries_, thickness_transition_);
-    restore_obstacles(checkpoint.obstacle_poses);
-    continuous_contact_->forget_touches();
-  }
+  if (run_.transitions.size() != scene_.obstacles.size()) run_.transitions.clear();
+  const bool same_method = checkpoint.method == scene_.integrator.method;
+  if (!same_method) end_contact();
+  restore_obstacles(checkpoint.obstacle_poses);
   find_unreachable();
-  if (checkpoint.method == scene_.integrator.method)
+  if (same_method)
     integrator_->recall(checkpoint.memory);
   else
     integrator_->forget(Change::state);
@@ -337,10 +300,12 @@ void Simulation::restore(const Checkpoint& checkpoint) {
 
 /// Where the checkpoint's scene had others, they are where the present scene says.
 void Simulation::restore_obstacles(const std::vector<Pose>& poses) {
+  if (!has_continuous_contact()) return;
   std::vector<Pose> of_scene;
   for (std::size_t k = 0; k < scene_.obstacles.size(); ++k)
-    of_scene.push_back(pose_in_transition(scene_.obstacles, carries_, k, state_.time));
-  continuous_contact_->set_poses(poses.size() == of_scene.size() ? poses : of_scene);
+    of_scene.push_back(pose_in_transition(scene_.obstacles, run_.transitions, k, run_.state.time));
+  contact_->restore(poses.size() == of_scene.size() ? poses : of_scene, run_.transitions,
+                    run_.thickness_transition);
 }
 
 void Simulation::set_threads(int threads, ThreadUse use) {
@@ -353,7 +318,7 @@ void Simulation::set_threads(int threads, ThreadUse use) {
 /// Among the threads of the team, if there is one.
 void Simulation::share_work() {
   if (forces_->sweep()) forces_->sweep()->set_team(team_.get(), thread_use_);
-  if (continuous_contact_) continuous_contact_->set_team(team_.get());
+  if (contact_) contact_->set_team(team_.get());
 }
 
 int Simulation::threads() const {
@@ -361,53 +326,52 @@ int Simulation::threads() const {
 }
 
 void Simulation::set_brush(const std::optional<BrushGust>& brush) {
-  brush_ = brush;
-  if (brush && quantities_.air) quantities_.brush = true;
+  run_.brush = brush;
+  if (brush && quantities_.air) quantities_.brush = run_.was_brushed = true;
   forces_->set_brush(brush);
   choose_stepper();
 }
 
 void Simulation::set_pull(const std::optional<Pull>& pull) {
-  pull_ = pull;
-  if (pull) quantities_.pull = true;
-  hand_energy_ = std::max(hand_energy_, hand_energy());
+  run_.pull = pull;
+  if (pull) quantities_.pull = run_.was_pulled = true;
+  run_.hand_energy = std::max(run_.hand_energy, hand_energy());
   forces_->set_pull(pull, pull_strength_.stiffness, pull_strength_.damping);
   choose_stepper();
 }
 
 Pose Simulation::obstacle_pose(std::size_t obstacle, double time) const {
-  if (continuous_contact_ && time == state_.time) return continuous_contact_->poses()[obstacle];
-  return pose_in_transition(scene_.obstacles, carries_, obstacle, time);
+  if (has_continuous_contact() && time == run_.state.time) return contact_->poses()[obstacle];
+  return pose_in_transition(scene_.obstacles, run_.transitions, obstacle, time);
 }
 
 void Simulation::append_contact_marks(std::vector<ContactMark>& marks) const {
-  if (contact_) contact_->append_marks(state_.position, marks);
-  if (continuous_contact_) continuous_contact_->append_marks(state_.position, marks);
+  if (contact_) contact_->append_marks(run_.state.position, marks);
 }
 
 int Simulation::hierarchy_depth(int obstacle) const {
-  return continuous_contact_ ? continuous_contact_->hierarchy_depth(obstacle) : 0;
+  return contact_ ? contact_->hierarchy_depth(obstacle) : 0;
 }
 
 void Simulation::append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes) {
-  if (continuous_contact_) continuous_contact_->append_boxes(obstacle, level, state_.position, boxes);
+  if (contact_) contact_->append_boxes(obstacle, level, run_.state.position, boxes);
 }
 
 double Simulation::total_energy() const {
-  return measure_energy(system_, gravity_of(scene_), state_).total();
+  return measure_energy(system_, gravity_of(scene_), run_.state).total();
 }
 
 Measurement Simulation::measure() const {
-  return {.time = state_.time,
-          .step = state_.step,
-          .energy = measure_energy(system_, gravity_of(scene_), state_),
-          .ledger = ledger_,
-          .strain = measure_strain(system_, state_.position),
-          .limiter_sweeps = last_limit_.sweeps,
-          .limiter_excess = last_limit_.excess,
-          .contacts = last_contact_.contacts,
-          .held_back = last_contact_.held_back,
-          .contact_impulse = contact_impulse_};
+  return {.time = run_.state.time,
+          .step = run_.state.step,
+          .energy = measure_energy(system_, gravity_of(scene_), run_.state),
+          .ledger = run_.ledger,
+          .strain = measure_strain(system_, run_.state.position),
+          .limiter_sweeps = run_.last_limit.sweeps,
+          .limiter_excess = run_.last_limit.excess,
+          .contacts = run_.last_contact.contacts,
+          .held_back = run_.last_contact.held_back,
+          .contact_impulse = run_.contact_impulse};
 }
 
 }  // namespace cloth

@@ -9,8 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "contact/obstacle_contact.h"
-#include "contact/obstacle_transition.h"
+#include "contact/contact_stage.h"
 #include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
@@ -19,25 +18,11 @@
 #include "limiter/unreachable_rate.h"
 #include "measure/energy.h"
 #include "measure/strain.h"
-#include "simulation/automatic_step.h"
-#include "simulation/outcome.h"
+#include "simulation/run_state.h"
 
 namespace cloth {
 
-class ContinuousContact;
-class StiffContact;
 class WorkerTeam;
-
-/// What entered the cloth since t = 0, in J; the loss left it.
-struct EnergyLedger {
-  Work forces;
-  double limiter = 0;
-  double contact = 0;
-  double initial = 0;  ///< total energy at t = 0, moved by what edits added
-  double entered() const {
-    return forces.air + forces.brush + forces.pull + limiter + contact - forces.damping_loss;
-  }
-};
 
 /// Everything a row of a recording says about the present state.
 struct Measurement {
@@ -68,36 +53,6 @@ struct PullStrength {
   double stiffness = 0;  ///< N/m
   double damping = 0;    ///< N s/m
   bool operator==(const PullStrength&) const = default;
-};
-
-/// Enough to go on from here later, to the bit: what is not a function of the scene in force. Later steps may
-/// only cost something else, where a method fills a cache again.
-struct Checkpoint {
-  ClothState state;
-  std::string method;  ///< that `memory` is of
-  IntegratorMemory memory;
-  EnergyLedger ledger;
-  double time_step = 0;   ///< s, in force since `first_step`, which began at `first_time`
-  double first_time = 0;  ///< s
-  std::int64_t first_step = 0;
-  AutomaticStep automatic;
-  std::optional<BrushGust> brush;
-  std::optional<Pull> pull;
-  Quantities quantities;
-  StepCount count;
-  LimiterReport last_limit;
-  ContactReport last_contact;
-  std::vector<Pose> obstacle_poses;  ///< of continuous contact
-  ObstacleTransitions carries;
-  ThicknessTransition thickness_transition;
-  double obstacle_speed = 0;      ///< m/s, the highest so far
-  double hand_energy = 0;         ///< J, the most that the hand's spring has held so far
-  Vec3 contact_impulse{0, 0, 0};  ///< N s, of continuous contact since t = 0
-  ContactMemory contact_memory;
-  std::vector<double> tension;  ///< N, of the limited springs, as the limiter holds them
-  std::optional<RateBreach> rate_breach;
-
-  std::size_t bytes() const;
 };
 
 /// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
@@ -144,8 +99,8 @@ class Simulation {
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull);
-  const std::optional<BrushGust>& brush() const { return brush_; }
-  const std::optional<Pull>& pull() const { return pull_; }
+  const std::optional<BrushGust>& brush() const { return run_.brush; }
+  const std::optional<Pull>& pull() const { return run_.pull; }
 
   /// The strongest hand that the method stands at its step; and no stronger than `most` from now on, so that
   /// one hand can hold several simulations alike.
@@ -154,28 +109,28 @@ class Simulation {
 
   const Scene& scene() const { return scene_; }
   const ClothSystem& system() const { return system_; }
-  const ClothState& state() const { return state_; }
-  double time() const { return state_.time; }
-  double time_step() const { return time_step_; }
+  const ClothState& state() const { return run_.state; }
+  double time() const { return run_.state.time; }
+  double time_step() const { return run_.time_step; }
   /// The step after which the present time step came in force.
-  std::int64_t first_step() const { return first_step_; }
+  std::int64_t first_step() const { return run_.first_step; }
   /// The time then, s.
-  double first_time() const { return first_time_; }
+  double first_time() const { return run_.first_time; }
   /// Steps of the present length in a record interval, or in what was left of one at first_step().
   std::int64_t steps_to_row() const;
-  bool is_within_interval() const { return automatic_.next_change >= 0; }
+  bool is_within_interval() const { return run_.automatic.next_change >= 0; }
   /// Where "auto" has shortened the step since t = 0.
-  const std::vector<StepChange>& step_changes() const { return automatic_.changes; }
+  const std::vector<StepChange>& step_changes() const { return run_.automatic.changes; }
   const Quantities& quantities() const { return quantities_; }
-  const StepCount& count() const { return count_; }
+  const StepCount& count() const { return run_.count; }
   /// Of the last step.
-  const LimiterReport& last_limit() const { return last_limit_; }
+  const LimiterReport& last_limit() const { return run_.last_limit; }
   /// Where so far the deformation rate was not kept within its tolerance.
-  const std::optional<RateBreach>& rate_breach() const { return rate_breach_; }
-  const ContactReport& last_contact() const { return last_contact_; }  ///< of the last step
+  const std::optional<RateBreach>& rate_breach() const { return run_.rate_breach; }
+  const ContactReport& last_contact() const { return run_.last_contact; }  ///< of the last step
   const std::optional<UnreachableRate>& unreachable_rate() const { return unreachable_; }
 
-  /// Where an obstacle is at a time, in s, with what edits still carry of it.
+  /// Where an obstacle is at a time, in s, with the transition after an edit included.
   Pose obstacle_pose(std::size_t obstacle, double time) const;
 
   // Contact as one can see it. Nothing of it is computed unless it is asked for.
@@ -223,7 +178,7 @@ class Simulation {
   void end_contact();
   ObstacleTransitions find_transitions(const Scene& edited) const;
   void restore_obstacles(const std::vector<Pose>& poses);
-  void resolve_continuous_contact(const StepTimes& times);
+  bool has_continuous_contact() const { return contact_ && contact_->is_continuous(); }
   void take_back_step();
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);
@@ -240,49 +195,31 @@ class Simulation {
   Scene scene_;
   Preparation prepare_;
   ClothSystem system_;
-  ClothState state_;
+  RunState run_;
   std::unique_ptr<WorkerTeam> team_;  ///< none: one thread
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   bool is_fused_ = false;  ///< `integrator_` is a fused stepper
   std::optional<StepLimiter> limiter_;
-  bool limits_drift_ = false;                    ///< the method asks the limiter itself, within the step
-  std::optional<ObstacleContact> contact_;       ///< particle by particle
-  std::unique_ptr<StiffContact> stiff_contact_;  ///< of that, after methods that take long steps
-  std::unique_ptr<ContinuousContact> continuous_contact_;  ///< or without gaps
-  Vec3Field position_before_, velocity_before_;            ///< m, m/s, at the step's start, for contact
-  ContactMemory contact_memory_;
+  bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
+  std::unique_ptr<ContactStage> contact_;
+  Vec3Field position_before_, velocity_before_;  ///< m, m/s, at the step's start, for contact
 
   std::function<bool()> stop_test_;
   bool interrupted_ = false;
 
-  double time_step_ = 0;
-  double first_time_ = 0;  ///< time and step at which the present time step came in force
-  std::int64_t first_step_ = 0;
-  AutomaticStep automatic_;
   bool watches_step_ = false, watches_ledger_ = false;  ///< by the ledger: every few steps
-  EnergyLedger ledger_, ledger_before_;
+  EnergyLedger ledger_before_;                          ///< at the begin of a step that may be taken back
   Quantities quantities_;
-  StepCount count_;
-  LimiterReport last_limit_;
   std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
-  std::optional<RateBreach> rate_breach_;
-  ContactReport last_contact_;
-  Vec3 contact_impulse_{0, 0, 0};  ///< N s, of continuous contact since t = 0
   std::optional<UnreachableRate> unreachable_;
-  std::optional<BrushGust> brush_;
-  std::optional<Pull> pull_;
   PullStrength strongest_pull_, pull_strength_;
   std::optional<PullStrength> most_pull_;
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
-  double obstacle_speed_ = 0;                 ///< m/s, the highest of any point so far
-  double hand_energy_ = 0;                    ///< J, the most that the hand's spring has held so far
-  ObstacleTransitions carries_;
-  ThicknessTransition thickness_transition_;
-  bool was_finite_ = false;  ///< every position was finite after the last step
-  ClothState before_batch_;  ///< to go back to
+  bool was_finite_ = false;                   ///< every position was finite after the last step
+  ClothState before_batch_;                   ///< to go back to
 };
 
 }  // namespace cloth

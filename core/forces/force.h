@@ -70,6 +70,9 @@ class Force {
   /// out.
   virtual bool is_internal() const { return false; }
 
+  /// Whether this is the damping along springs, which the kernels compute apart from the rest of D.
+  virtual bool is_damper_of_springs() const { return false; }
+
   /// product += D v
   virtual void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
 

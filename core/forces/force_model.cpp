@@ -3,14 +3,10 @@
 #include <algorithm>
 
 #include "cloth/sums.h"
-#include "forces/air.h"
-#include "forces/gravity.h"
 #include "forces/pull_force.h"
-#include "forces/springs.h"
-#include "forces/viscous.h"
+#include "forces/registry.h"
 #include "kernels/grid_sweep.h"
 #include "kernels/mesh_sweep.h"
-#include "scene/scene.h"
 
 namespace cloth {
 namespace {
@@ -38,19 +34,12 @@ std::unique_ptr<SpringSweep> sweep_for(const ClothSystem& system) {
 
 }  // namespace
 
-/// The list of forces: each under the condition that the scene has it.
 ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(&system) {
-  const bool springs = !system.springs.empty();
-  if (scene.gravity && scene.gravity->squaredNorm() > 0)
-    forces_.push_back(std::make_unique<Gravity>(*scene.gravity));
-  if (springs) forces_.push_back(std::make_unique<SpringForce>());
-  if (springs && scene.springs->damping > 0) {
-    forces_.push_back(std::make_unique<SpringDamping>(system, scene.springs->damping));
-    dampers_ = forces_.back().get();
-  }
-  if (scene.damping && *scene.damping > 0)
-    forces_.push_back(std::make_unique<ViscousDamping>(*scene.damping));
-  if (scene.air && scene.air->drag > 0) forces_.push_back(std::make_unique<AirForce>(*scene.air));
+  for (const ForceEntry& entry : force_registry())
+    if (auto force = entry.make(scene, system)) {
+      forces_.push_back(std::move(force));
+      if (entry.work == &Work::damping_loss) has_damping_loss_ = true;
+    }
   system_changed();
 }
 
@@ -161,7 +150,7 @@ double ForceModel::coupled_damping(const Vec3Field& position, const Vec3Field& v
   bool is_all = sweeps_dampers() && !pull_;
   for (const auto& force : forces_) {
     NodeDamping unused;
-    if (is_swept_damper(*force) || force->add_node_damping(unused)) continue;
+    if (is_damped_by_sweep(*force) || force->add_node_damping(unused)) continue;
     force->add_damping(position, velocity, product);
     is_all = false;
   }
@@ -174,7 +163,7 @@ double ForceModel::damping_product(const Vec3Field& position, const Vec3Field& v
                                    Vec3Field& product) const {
   const double dampers = swept_dampers(position, velocity, product);
   for (const auto& force : forces_)
-    if (!is_swept_damper(*force)) force->add_damping(position, velocity, product);
+    if (!is_damped_by_sweep(*force)) force->add_damping(position, velocity, product);
   if (pull_) pull_->add_damping(position, velocity, product);
   return dampers;
 }
@@ -211,7 +200,7 @@ Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) con
 void ForceModel::add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity,
                                           Work& power) const {
   for (const auto& force : forces_)
-    if (!is_swept_damper(*force)) force->add_power(position, velocity, power);
+    if (!is_damped_by_sweep(*force)) force->add_power(position, velocity, power);
   if (pull_) pull_->add_power(position, velocity, power);
 }
 

@@ -55,6 +55,8 @@ class ForceModel {
 
   bool has_damping() const { return has_damping_; }
   bool has_power() const { return has_power_; }
+  /// Whether any power is booked as a loss by damping: more than air and hand.
+  bool has_damping_loss() const { return has_damping_loss_; }
 
   /// A = M + weights.velocity D + weights.position K at the last update.
   void linearise(const Vec3Field& position, const LinearisationWeights& weights, Linearisation& result) const;
@@ -85,14 +87,15 @@ class ForceModel {
  private:
   void sort_forces();
   bool sweeps_dampers() const { return sweep_ && swept_.spring_damping > 0; }
-  bool is_swept_damper(const Force& force) const { return sweeps_dampers() && &force == dampers_; }
+  bool is_damped_by_sweep(const Force& force) const {
+    return sweeps_dampers() && force.is_damper_of_springs();
+  }
   double swept_dampers(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   double damping_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   void add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity, Work& power) const;
 
   const ClothSystem* system_;
   std::vector<std::unique_ptr<Force>> forces_;
-  const Force* dampers_ = nullptr;  ///< along springs, of forces_
   std::unique_ptr<Force> pull_;
   std::unique_ptr<SpringSweep> sweep_;
   SweepTerms swept_;
@@ -100,7 +103,7 @@ class ForceModel {
   std::vector<Force*> apart_from_steps_;  ///< those that its whole steps do not compute
   Vec3Field position_force_;              ///< sized when first needed
   mutable Vec3Field product_;             ///< scratch, sized when first needed
-  bool has_damping_ = false, has_power_ = false;
+  bool has_damping_ = false, has_power_ = false, has_damping_loss_ = false;
 };
 
 }  // namespace cloth

@@ -29,6 +29,7 @@ class SpringDamping : public Force {
     terms.spring_damping = damping_;
     return SweptIn::every_pass;
   }
+  bool is_damper_of_springs() const override { return true; }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;

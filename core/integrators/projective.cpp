@@ -99,7 +99,7 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
 
   const NodeDamping parts = forces.damping_parts();
   const Coefficients numbers{.step = h,
-                             .node_damping = parts.isotropic + parts.along_normal,
+                             .node_damping = parts.isotropic + std::max(parts.along_normal, 0.0),
                              .spring_damping = parts.along_springs,
                              .held_particle = parts.held_particle,
                              .held_damping = parts.held_isotropic,

@@ -3,15 +3,6 @@
 #include "cloth/sums.h"
 
 namespace cloth {
-namespace {
-
-/// More than air and hand, whose work is not booked as a loss by damping.
-bool damps(const ForceModel& forces) {
-  const NodeDamping parts = forces.damping_parts();
-  return parts.isotropic > 0 || parts.along_springs > 0;
-}
-
-}  // namespace
 
 IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                               ClothState& state, Work& work) {
@@ -24,7 +15,7 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
-  const bool corrects = constraint_ && damps(forces);
+  const bool corrects = constraint_ && forces.has_damping_loss();
   if (corrects) keep_damping(forces, opening_damping_);
   add_acceleration(system, 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
@@ -53,7 +44,7 @@ void Verlet::keep_damping(const ForceModel& forces, Vec3Field& damping) const {
 /// before and after all others, change there: held tensions and the springs that they answer cancel in the
 /// next kick, and nothing has gone so fast.
 double Verlet::closing_correction(const ForceModel& forces, double step) {
-  if (!constraint_ || !damps(forces) || !constraint_->closing_change()) return 0;
+  if (!constraint_ || !forces.has_damping_loss() || !constraint_->closing_change()) return 0;
   keep_damping(forces, closing_damping_);
   return 0.5 * step * dot(closing_damping_.flat(), constraint_->closing_change()->flat());
 }

@@ -7,6 +7,7 @@
 
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
+#include "forces/registry.h"
 #include "measure/amplification.h"
 #include "measure/resting_frequency.h"
 #include "measure/spectrum.h"
@@ -144,8 +145,9 @@ SpringMaterial dampers_of(const SpringMaterial& springs) {
 DampingRates rates_of(const Scene& scene, FrequencyOf frequency) {
   DampingRates rates;
   const double mass = particle_mass(scene.cloth);
-  rates.least = rates.most = scene.damping.value_or(0) / mass;
-  if (scene.air) rates.most += scene.air->drag / mass;
+  const NodeDamping damping = particle_damping(scene);
+  rates.least = damping.isotropic / mass + std::min(damping.along_normal, 0.0) / mass;
+  rates.most = damping.isotropic / mass + std::max(damping.along_normal, 0.0) / mass;
   if (scene.springs && scene.springs->damping > 0) {
     // Spring damping is the stiffness matrix of springs without rest length.
     rates.most += std::pow(frequency(scene.cloth, dampers_of(*scene.springs)), 2);
@@ -165,7 +167,8 @@ double joint_euler_step(const Scene& scene) {
   const double mass = particle_mass(scene.cloth);
   const SpringMaterial& springs = *scene.springs;
   const SpringMaterial dampers = dampers_of(springs);
-  const double drag = scene.damping.value_or(0) + (scene.air ? scene.air->drag : 0);
+  const NodeDamping damping = particle_damping(scene);
+  const double drag = damping.isotropic + std::max(damping.along_normal, 0.0);
   const auto is_stable = [&](double h) {
     const SpringMaterial both{h * h * springs.structural + 2 * h * dampers.structural,
                               h * h * springs.shear + 2 * h * dampers.shear,

@@ -29,8 +29,8 @@ double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& mate
 
 /// Damping rates c = C/m in 1/s: x'' = -omega^2 x - c x'.
 struct DampingRates {
-  double least = 0;  ///< what every motion feels: viscous damping
-  double most = 0;   ///< with air along the normal and spring damping at its largest
+  double least = 0;  ///< what every motion feels
+  double most = 0;   ///< in the direction of the strongest drag, with spring damping at its largest
 };
 DampingRates damping_rates(const Scene& scene);
 

@@ -7,6 +7,7 @@
 #include "cloth/mesh_cloth.h"
 #include "cloth/sums.h"
 #include "contact/continuous_contact.h"
+#include "forces/registry.h"
 #include "integrators/registry.h"
 #include "kernels/worker_team.h"
 #include "measure/spectrum.h"
@@ -77,8 +78,8 @@ void Simulation::assemble() {
   run_.last_contact = {};
 
   quantities_ = Quantities{
-      .damping = scene_.damping.value_or(0) > 0 || (!system_.springs.empty() && scene_.springs->damping > 0),
-      .air = scene_.air && scene_.air->drag > 0,
+      .damping = has_work(scene_, system_, &Work::damping_loss),
+      .air = has_work(scene_, system_, &Work::air),
       .brush = run_.was_brushed,
       .pull = run_.was_pulled,
       .limiter = limiter_.has_value(),

@@ -7,6 +7,7 @@
 #include "cloth/grid.h"
 #include "forces/air.h"
 #include "forces/gravity.h"
+#include "forces/skin_friction.h"
 #include "forces/springs.h"
 #include "forces/viscous.h"
 
@@ -49,7 +50,7 @@ Stages explain_gravity(const Scene& scene, const ClothSystem&) {
 }
 
 StageInfo wind_stage(const Scene& scene) {
-  if (!scene.air || !(scene.air->drag > 0)) return {"wind", false, "there is no air to blow"};
+  if (!scene.air || !(scene.air->drag > 0 || scene.air->skin_friction > 0)) return {"wind", false, "there is no air to blow"};
   if (!(scene.air->wind.squaredNorm() > 0)) return {"wind", false, "air.wind is 0: the air only drags"};
   const bool gusts = scene.air->gust && scene.air->gust->amplitude > 0;
   return {"wind", true,
@@ -102,6 +103,16 @@ const std::vector<ForceEntry>& force_registry() {
        },
        .work = &Work::air,
        .explain = explain_air},
+      {.make = [](const Scene& scene, const ClothSystem&) -> Made {
+         if (!scene.air || !(scene.air->skin_friction > 0)) return nullptr;
+         return std::make_unique<SkinFriction>(*scene.air);
+       },
+       .work = &Work::air,
+       .explain =
+           [](const Scene& scene, const ClothSystem&) {
+             return Stages{coefficient_stage("skin friction", scene.air.has_value(), "air",
+                                             scene.air.value_or(Air{}).skin_friction, "air.skin_friction")};
+           }},
   };
   return entries;
 }

@@ -62,7 +62,8 @@ struct Gust {
 };
 
 struct Air {
-  double drag = 0.01;  ///< N s/m per particle, along the normal
+  double drag = 0.01;        ///< N s/m per particle, along the normal
+  double skin_friction = 0;  ///< N s/m per particle, along the cloth
   Vec3 wind{0, 0, 0};  ///< m/s
   std::optional<Gust> gust;
   bool operator==(const Air&) const = default;

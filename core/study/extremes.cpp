@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "contact/continuous_contact.h"
+#include "contact/obstacle_contact.h"
 #include "integrators/registry.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"

@@ -1,9 +1,7 @@
 // The same run gives the same bits.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 
-#include "kernels/instruction_set.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/recorder.h"
 #include "support/files.h"
@@ -32,15 +30,6 @@ TEST_P(Repeated, RunsGiveTheSameRecordAndFinalStateToTheBit) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Repeated,
                          ::testing::Values("pendulum", "ball", "curtain", "flag", "rectangle"),
                          [](const auto& scene) { return std::string(scene.param); });
-
-TEST(InstructionSets, TheOneThatTheEnvironmentNamesIsUsed) {
-  if (const std::string problem = instruction_set_problem(); !problem.empty()) GTEST_SKIP() << problem;
-  if (const char* wish = std::getenv(instruction_set_variable)) {
-    EXPECT_STREQ(name_of(active_instruction_set()), wish);
-  } else {
-    EXPECT_EQ(active_instruction_set(), supported_instruction_sets().back());
-  }
-}
 
 TEST(ARecordedScene, RunAgainFromItsFolderGivesTheSameRecord) {
   Scene scene = builtin_scene("flag");

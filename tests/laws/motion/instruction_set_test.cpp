@@ -1,0 +1,19 @@
+// These laws run once with each instruction set: here that the one asked for is in use.
+#include "kernels/instruction_set.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace cloth::test::instruction_set_test {
+
+TEST(InstructionSets, TheOneThatTheEnvironmentNamesIsUsed) {
+  if (const std::string problem = instruction_set_problem(); !problem.empty()) GTEST_SKIP() << problem;
+  if (const char* wish = std::getenv(instruction_set_variable)) {
+    EXPECT_STREQ(name_of(active_instruction_set()), wish);
+  } else {
+    EXPECT_EQ(active_instruction_set(), supported_instruction_sets().back());
+  }
+}
+
+}  // namespace cloth::test::instruction_set_test

@@ -32,12 +32,14 @@ double excess_of(const SpringBatch& batch, double squared_length) {
 
 }  // namespace
 
-DeformationLimiter::DeformationLimiter(const Deformation& deformation, const ClothSystem& system)
+DeformationLimiter::DeformationLimiter(const Deformation& deformation, const ClothSystem& system,
+                                       bool unreachable)
     : deformation_(deformation),
       kernels_(&active_kernels<SweepKernels>()),
       pieces_(row_by_row(pieces_of(system, limited_runs(deformation, system), deformation.rate))),
-      batches_(batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate),
-                          system.columns)) {
+      batches_(
+          batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate), system.columns)),
+      unreachable_(unreachable) {
   if (deformation.solver == "direct")
     nearest_.emplace(system, limited_runs(deformation, system), deformation.rate);
 }

@@ -29,7 +29,8 @@ class DeformationLimiter {
   /// rotated diverge from each other (tests/laws/invariance_test.cpp).
   static constexpr double over_relaxation = 1.5;
 
-  DeformationLimiter(const Deformation& deformation, const ClothSystem& system);
+  /// `unreachable`: the pins make the rate unreachable, which saves the direct solver the attempt.
+  DeformationLimiter(const Deformation& deformation, const ClothSystem& system, bool unreachable = false);
 
   /// True if this deformation limits any spring of this system.
   static bool is_needed(const Deformation& deformation, const ClothSystem& system);
@@ -42,9 +43,6 @@ class DeformationLimiter {
   /// depends on the arguments only.
   LimiterReport apply(const ClothSystem& system, double time_step, ClothState& state);
 
-  /// Whether the pins are known to make the rate unreachable: saves the direct solver the attempt.
-  void set_unreachable(bool unreachable) { unreachable_ = unreachable; }
-
  private:
   bool has_changed(const SpringBatch& batch, std::int64_t since) const;
   double shorten(const SpringBatch& batch, double relaxation, Vec3Field& position) const;
@@ -56,7 +54,7 @@ class DeformationLimiter {
   const SweepKernels* kernels_;
   std::vector<SpringBatch> pieces_, batches_;  ///< of the limited springs
   std::optional<NearestShape> nearest_;        ///< of the direct solver
-  bool unreachable_ = false;
+  bool unreachable_;
 
   // Of the present or last call.
   Vec3Field before_;                       ///< m

@@ -28,16 +28,11 @@ void size_like(const Vec3Field& field, Vec3Field& result) {
 
 }  // namespace
 
-StepLimiter::StepLimiter(const Deformation& deformation, const ClothSystem& system)
-    : deformation_(deformation), system_(&system), limiter_(deformation, system) {
+StepLimiter::StepLimiter(const Deformation& deformation, const ClothSystem& system, bool unreachable)
+    : deformation_(deformation), system_(&system), limiter_(deformation, system, unreachable) {
   if (deformation.solver != "auto") return;
-  tensions_.emplace(deformation, system);
+  tensions_.emplace(deformation, system, unreachable);
   tension_.assign(tensions_->springs().size(), 0.0);
-}
-
-void StepLimiter::set_unreachable(bool unreachable) {
-  limiter_.set_unreachable(unreachable);
-  if (tensions_) tensions_->set_unreachable(unreachable);
 }
 
 void StepLimiter::set_tension(const std::vector<double>& tension) {

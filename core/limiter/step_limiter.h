@@ -20,10 +20,8 @@ namespace cloth {
 
 class StepLimiter : public DriftConstraint {
  public:
-  StepLimiter(const Deformation& deformation, const ClothSystem& system);
-
-  /// Whether the pins are known to make the rate unreachable, from the next step on.
-  void set_unreachable(bool unreachable);
+  /// `unreachable`: the pins make the rate unreachable.
+  StepLimiter(const Deformation& deformation, const ClothSystem& system, bool unreachable);
 
   /// A step of `time_step` seconds begins, by a method with or without drifts_with_end_velocity().
   void begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity);

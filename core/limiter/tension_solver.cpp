@@ -26,10 +26,11 @@ bool is_finite(const Vec3Field& field) {
 
 }  // namespace
 
-TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& system)
+TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& system, bool unreachable)
     : deformation_(deformation),
       kernels_(&active_kernels<TensionKernels>()),
-      springs_(tension_springs(deformation, system)) {
+      springs_(tension_springs(deformation, system)),
+      unreachable_(unreachable) {
   hold_.reserve(springs_.size());
   for (const TensionSpring& spring : springs_)
     shortest_ = shortest_ > 0 ? std::min(shortest_, spring.rest_length) : spring.rest_length;

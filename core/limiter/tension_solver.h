@@ -40,7 +40,8 @@ struct TensionReport {
 
 class TensionSolver {
  public:
-  TensionSolver(const Deformation& deformation, const ClothSystem& system);
+  /// `unreachable`: the pins make the rate unreachable, so that springs are soft.
+  TensionSolver(const Deformation& deformation, const ClothSystem& system, bool unreachable = false);
   ~TensionSolver();
   TensionSolver(TensionSolver&&) noexcept;
   TensionSolver& operator=(TensionSolver&&) noexcept;
@@ -69,8 +70,6 @@ class TensionSolver {
   /// L/h^2, because a rotating spring would overshoot with more. Zero where the rate is unreachable.
   std::vector<double> held(const std::vector<double>& tension, double time_step) const;
 
-  /// Whether the pins are known to make the rate unreachable: springs are then soft.
-  void set_unreachable(bool unreachable) { unreachable_ = unreachable; }
   bool unreachable() const { return unreachable_; }
 
  private:
@@ -89,7 +88,7 @@ class TensionSolver {
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for
   double shortest_ = 0;
-  bool unreachable_ = false;
+  bool unreachable_;
 };
 
 }  // namespace cloth

@@ -6,10 +6,13 @@
 
 namespace cloth {
 
-/// Only of pins, which do not move between edits.
-void Simulation::find_unreachable() {
+/// For the pins as they stand; they do not move between edits.
+void Simulation::make_limiter(const std::vector<double>& tension) {
   unreachable_ = find_unreachable_rate(scene_, system_, run_.state.position);
-  if (limiter_) limiter_->set_unreachable(unreachable_.has_value());
+  limiter_.reset();
+  if (!scene_.deformation || !DeformationLimiter::is_needed(*scene_.deformation, system_)) return;
+  limiter_.emplace(*scene_.deformation, system_, unreachable_.has_value());
+  limiter_->set_tension(tension);
 }
 
 /// A start beyond the rate was not reached by any motion, so that bringing it within the rate makes none.

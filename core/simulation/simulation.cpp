@@ -57,17 +57,11 @@ Simulation::~Simulation() = default;
 
 void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
-  const std::vector<double> tension = limiter_ ? limiter_->tension() : std::vector<double>();
-  limiter_.reset();
-  if (scene_.deformation && DeformationLimiter::is_needed(*scene_.deformation, system_)) {
-    limiter_.emplace(*scene_.deformation, system_);
-    limiter_->set_tension(tension);
-  }
+  make_limiter(limiter_ ? limiter_->tension() : std::vector<double>());
   contact_ = make_contact_stage(scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
                                 run_.time_step > explicit_step_limit(scene_));
   share_work();
   if (contact_) contact_->set_stop_test(stop_test_);
-  find_unreachable();
   elastic_scale_ = elastic_scale_of(system_);
   total_mass_ = system_.total_mass();
   run_.obstacle_speed =
@@ -77,16 +71,15 @@ void Simulation::assemble() {
   run_.last_limit = {};
   run_.last_contact = {};
 
-  quantities_ = Quantities{
-      .damping = has_work(scene_, system_, &Work::damping_loss),
-      .air = has_work(scene_, system_, &Work::air),
-      .brush = run_.was_brushed,
-      .pull = run_.was_pulled,
-      .limiter = limiter_.has_value(),
-      .contact = contact_ != nullptr,
-      .structural = system_.spring_count(SpringFamily::structural) > 0,
-      .shear = system_.spring_count(SpringFamily::shear) > 0,
-      .continuous_contact = has_continuous_contact()};
+  quantities_ = Quantities{.damping = has_work(scene_, system_, &Work::damping_loss),
+                           .air = has_work(scene_, system_, &Work::air),
+                           .brush = run_.was_brushed,
+                           .pull = run_.was_pulled,
+                           .limiter = limiter_.has_value(),
+                           .contact = contact_ != nullptr,
+                           .structural = system_.spring_count(SpringFamily::structural) > 0,
+                           .shear = system_.spring_count(SpringFamily::shear) > 0,
+                           .continuous_contact = has_continuous_contact()};
 
   strongest_pull_ = find_strongest_pull();
   apply_hand();
@@ -286,13 +279,12 @@ void Simulation::restore(const Checkpoint& checkpoint) {
   if (run_.automatic.longest != automatic.longest || !watches_step_)
     run_.time_step = time_step, run_.automatic = std::move(automatic);
   quantities_.brush = run_.was_brushed, quantities_.pull = run_.was_pulled;
+  make_limiter(checkpoint.tension);
   apply_hand();
-  if (limiter_) limiter_->set_tension(checkpoint.tension);
   if (run_.transitions.size() != scene_.obstacles.size()) run_.transitions.clear();
   const bool same_method = checkpoint.method == scene_.integrator.method;
   if (!same_method) end_contact();
   restore_obstacles(checkpoint.obstacle_poses);
-  find_unreachable();
   if (same_method)
     integrator_->recall(checkpoint.memory);
   else

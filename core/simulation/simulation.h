@@ -168,7 +168,7 @@ class Simulation {
   void apply_hand();
   void choose_stepper();
   void share_work();
-  void find_unreachable();
+  void make_limiter(const std::vector<double>& tension);
   void limit_start();
   void limit_deformation();
   void book_limiter();

@@ -1,31 +1,22 @@
 #include "cloth/grid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 namespace cloth {
-namespace {
-
-/// The springs of one direction. A direction without columns joins whole rows, so that it is a single run.
-void append_runs(ClothSystem& system, const SpringDirection& direction, double rest_length,
-                 double stiffness) {
-  const int rows = system.rows - direction.rows;
-  const int columns = system.columns - std::abs(direction.columns);
-  if (rows <= 0 || columns <= 0) return;
-  const int offset = direction.rows * system.columns + direction.columns;
-  const auto run = [&](int first, int count) {
-    return SpringRun{direction.family, first, count, offset, rest_length, stiffness};
-  };
-  if (direction.columns == 0) {
-    system.springs.push_back(run(0, rows * columns));
-    return;
-  }
-  const int first_column = direction.columns < 0 ? -direction.columns : 0;
-  for (int row = 0; row < rows; ++row)
-    system.springs.push_back(run(system.index(row, first_column), columns));
+SpringBlock direction_block(const ClothSystem& grid, const SpringDirection& direction, double rest_length,
+                            double stiffness) {
+  const int rows = grid.rows - direction.rows;
+  const int columns = grid.columns - std::abs(direction.columns);
+  if (rows <= 0 || columns <= 0) return {{}, 0};
+  const int offset = direction.rows * grid.columns + direction.columns;
+  const int first = std::max(0, -direction.columns);
+  SpringRun run{direction.family, first, columns, offset, rest_length, stiffness};
+  if (direction.columns != 0) return {run, rows, grid.columns};
+  run.count = rows * columns;
+  return {run};
 }
-
-}  // namespace
 
 GridCell cell_of(const ClothSheet& sheet) {
   return {sheet.across.normalized() * (sheet.width / (sheet.columns - 1)),
@@ -83,7 +74,8 @@ ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
   for (const SpringDirection& direction : spring_directions()) {
     const double stiffness = stiffness_of(material, direction.family);
     const double rest_length = (direction.columns * cell.across + direction.rows * cell.down).norm();
-    if (stiffness > 0) append_runs(system, direction, rest_length, stiffness);
+    const SpringBlock block = direction_block(system, direction, rest_length, stiffness);
+    if (stiffness > 0 && block.rows > 0) system.springs.blocks().push_back(block);
   }
   return system;
 }

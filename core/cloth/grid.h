@@ -20,6 +20,11 @@ struct SpringDirection {
 /// structural (0,1) (1,0); shear (1,1) (1,-1); flexion (0,2) (2,0).
 const std::array<SpringDirection, 6>& spring_directions();
 
+/// The springs of one direction in a grid; of no rows where the grid is too small for any. A direction
+/// without columns joins whole rows, so that it is a single run. `rest_length` in m, `stiffness` in N/m.
+SpringBlock direction_block(const ClothSystem& grid, const SpringDirection& direction, double rest_length,
+                            double stiffness);
+
 double stiffness_of(const SpringMaterial& material, SpringFamily family);
 
 ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material);

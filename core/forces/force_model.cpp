@@ -26,7 +26,7 @@ void subtract_from(const Vec3Field& a, Vec3Field& b) {
 }
 
 std::unique_ptr<SpringSweep> sweep_for(const ClothSystem& system) {
-  if (const auto grid = recognise_grid(system))
+  if (const auto grid = grid_springs(system))
     return std::make_unique<GridSweep>(system, *grid, common_mass(system));
   if (suits_mesh_layout(system)) return std::make_unique<MeshSweep>(system, common_mass(system));
   return nullptr;

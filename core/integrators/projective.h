@@ -38,7 +38,7 @@ class Projective : public Integrator {
     double node_damping = 0, spring_damping = 0;
     int held_particle = -1;
     double held_damping = 0, held_stiffness = 0;
-    std::vector<SpringRun> springs;
+    SpringRuns springs;
     std::vector<double> mass;
     std::vector<std::uint8_t> pinned;
     bool operator==(const Coefficients&) const = default;

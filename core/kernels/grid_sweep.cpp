@@ -20,27 +20,6 @@ using kernels::RowBlock;
 constexpr std::array direction_bits{kernels::right_one,    kernels::down_one,  kernels::diagonal,
                                     kernels::antidiagonal, kernels::right_two, kernels::down_two};
 
-/// Takes the runs of one direction from `runs` on, as make_grid writes them. Returns how many there were.
-std::size_t take_direction(const ClothSystem& system, const SpringDirection& direction, std::size_t at,
-                           kernels::SpringKind& kind) {
-  const int rows = system.rows - direction.rows, columns = system.columns - std::abs(direction.columns);
-  if (rows <= 0 || columns <= 0) return 0;
-  const bool one_run = direction.columns == 0;
-  const std::size_t count = one_run ? 1 : static_cast<std::size_t>(rows);
-  if (at + count > system.springs.size()) return 0;
-  const SpringRun& first = system.springs[at];
-  for (std::size_t k = 0; k < count; ++k) {
-    SpringRun expected = first;
-    expected.family = direction.family;
-    expected.first = system.index(static_cast<int>(k), std::max(0, -direction.columns));
-    expected.count = one_run ? rows * columns : columns;
-    expected.offset = direction.rows * system.columns + direction.columns;
-    if (!(system.springs[at + k] == expected)) return 0;
-  }
-  kind = {first.stiffness, first.stiffness * first.rest_length};
-  return count;
-}
-
 /// A band repeats up to two rows of the one above, Runge-Kutta's up to eight on either side.
 constexpr int fewest_rows = 12;
 static_assert(fewest_rows >= kernels::runge_kutta_halo);
@@ -68,29 +47,31 @@ void copy_rows(const Vec3Field& from, int rows, int columns, const RowBlock& to)
 
 }  // namespace
 
-std::optional<Grid> recognise_grid(const ClothSystem& system) {
-  Grid grid;
-  grid.rows = system.rows, grid.columns = system.columns;
-  std::array<bool, 3> present{}, absent{};  // some direction of a family that could be there
-  std::size_t at = 0;
-  for (std::size_t d = 0; d < direction_bits.size(); ++d) {
-    const SpringDirection& direction = spring_directions()[d];
-    if (system.rows <= direction.rows || system.columns <= std::abs(direction.columns)) continue;
-    kernels::SpringKind kind;
-    const std::size_t taken = take_direction(system, direction, at, kind);
-    const auto family = static_cast<std::size_t>(direction.family);
-    (taken > 0 ? present : absent)[family] = true;
-    if (taken == 0) continue;
-    at += taken;
-    grid.kind[__builtin_ctz(direction_bits[d])] = kind;
-  }
-  if (at != system.springs.size() || at == 0) return std::nullopt;
+std::optional<Grid> grid_springs(const ClothSystem& system) {
   constexpr std::array families{kernels::structural_springs, kernels::shear_springs,
                                 kernels::flexion_springs};
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    if (present[f] && absent[f]) return std::nullopt;
-    if (present[f]) grid.springs |= families[f];
+  Grid grid;
+  grid.rows = system.rows, grid.columns = system.columns;
+  std::array<bool, families.size()> absent{};  // a direction of the family that could be there
+  const std::vector<SpringBlock>& blocks = system.springs.blocks();
+  std::size_t at = 0;
+  for (std::size_t d = 0; d < direction_bits.size(); ++d) {
+    const SpringRun* run = at < blocks.size() ? &blocks[at].run : nullptr;
+    const SpringBlock expected =
+        direction_block(system, spring_directions()[d], run ? run->rest_length : 0, run ? run->stiffness : 0);
+    if (expected.rows == 0) continue;
+    const auto family = static_cast<std::size_t>(spring_directions()[d].family);
+    if (!run || !(blocks[at] == expected)) {
+      absent[family] = true;
+      continue;
+    }
+    grid.springs |= families[family];
+    grid.kind[__builtin_ctz(direction_bits[d])] = {run->stiffness, run->stiffness * run->rest_length};
+    ++at;
   }
+  if (at != blocks.size() || at == 0) return std::nullopt;
+  for (std::size_t f = 0; f < families.size(); ++f)
+    if (absent[f] && (grid.springs & families[f])) return std::nullopt;
   return grid;
 }
 

@@ -19,9 +19,8 @@
 
 namespace cloth {
 
-/// The springs of `system` if they are those of make_grid: six directions of constant offset, each of one
-/// stiffness and rest length; whole families may be absent.
-std::optional<kernels::Grid> recognise_grid(const ClothSystem& system);
+/// The six directions of springs of `system` if they are those of make_grid; whole families may be absent.
+std::optional<kernels::Grid> grid_springs(const ClothSystem& system);
 
 class GridSweep : public SpringSweep {
  public:

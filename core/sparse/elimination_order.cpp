@@ -89,7 +89,7 @@ class Dissection {
 
 }  // namespace
 
-GridReach reach_of(const std::vector<SpringRun>& springs, int columns) {
+GridReach reach_of(const SpringRuns& springs, int columns) {
   GridReach reach{{1, 1, 1, 1}};
   for (const SpringRun& run : springs) {
     for (int i = run.first; i < run.first + run.count; ++i) {

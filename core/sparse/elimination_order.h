@@ -23,7 +23,7 @@ struct GridReach {
 };
 
 /// The furthest reach among the springs of a grid of so many columns.
-GridReach reach_of(const std::vector<SpringRun>& springs, int columns);
+GridReach reach_of(const SpringRuns& springs, int columns);
 
 /// The given particles of a grid, numbered row by row, in the order of elimination.
 std::vector<int> nested_dissection(const std::vector<int>& particles, int columns, const GridReach& reach);

@@ -199,8 +199,8 @@ void add_shapes(std::vector<ExtremeCase>& cases) {
                    "All shear springs have a rest length of zero and pull the cells together.",
                    "A spring of no length has no direction where its ends meet: its force is zero there.",
                    base_scene(), 300, [](ClothSystem& system, ClothState&) {
-                     for (SpringRun& run : system.springs)
-                       if (run.family == SpringFamily::shear) run.rest_length = 0;
+                     for (SpringBlock& block : system.springs.blocks())
+                       if (block.run.family == SpringFamily::shear) block.run.rest_length = 0;
                    }});
   Scene limited = base_scene();
   limited.deformation = Deformation{};

@@ -66,7 +66,7 @@ TEST_P(EveryInstructionSet, GivesTheForcesOfSpringsTakenOneByOne) {
       const Scene scene = sheet_of(rows, columns, families);
       const ClothSystem system = make_grid(scene.cloth, *scene.springs);
       if (system.springs.empty()) continue;
-      const auto grid = recognise_grid(system);
+      const auto grid = grid_springs(system);
       ASSERT_TRUE(grid) << rows << " x " << columns << ", families " << families;
       ClothState state = crumpled_state(system, 0.04, 0, random);
       state.position.set(1, state.position[0]);  // a spring of no length
@@ -118,7 +118,7 @@ TEST_P(EveryInstructionSet, GivesTheDampersOfSpringsTakenOneByOne) {
       ClothState state = crumpled_state(system, 0.04, 0.3, random);
       state.position.set(1, state.position[0]);  // a spring of no length
       Vec3Field product(state.position.size()), expected;
-      GridSweep sweep(system, *recognise_grid(system), common_mass(system));
+      GridSweep sweep(system, *grid_springs(system), common_mass(system));
       const double loss = sweep.damp(damping, state.position, state.velocity, product);
       const double expected_loss = damper_product(system, damping, state, expected);
       const std::string what =
@@ -132,7 +132,7 @@ TEST_P(EveryInstructionSet, LetsNothingNotFiniteReachWhereNoSpringLeads) {
   constexpr int rows = 9, columns = 21, row = 4, column = 9;
   const Scene scene = sheet_of(rows, columns, 7);
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
-  GridSweep sweep(system, *recognise_grid(system), common_mass(system));
+  GridSweep sweep(system, *grid_springs(system), common_mass(system));
   for (const double bad : {std::nan(""), HUGE_VAL}) {
     Vec3Field position = system.start, force(position.size());
     position.set(static_cast<std::size_t>(system.index(row, column)), Vec3(0, bad, 0));
@@ -226,19 +226,19 @@ TEST(InstructionSets, AgreeToRoundingAfterAThousandSteps) {
 TEST(GridSprings, AreRecognisedOnlyWhereEveryDirectionIsWhole) {
   const Scene scene = sheet_of(6, 7, 7);
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
-  ASSERT_TRUE(recognise_grid(system));
+  ASSERT_TRUE(grid_springs(system));
   ClothSystem other = system;
-  other.springs[2].rest_length *= 2;
-  EXPECT_FALSE(recognise_grid(other));
+  other.springs.blocks()[2].run.offset += 1;
+  EXPECT_FALSE(grid_springs(other));
   other = system;
-  other.springs.pop_back();
-  EXPECT_FALSE(recognise_grid(other));
+  other.springs.blocks().pop_back();
+  EXPECT_FALSE(grid_springs(other));
   other = system;
-  other.springs.front().count -= 1;
-  EXPECT_FALSE(recognise_grid(other));
+  other.springs.blocks().front().run.count -= 1;
+  EXPECT_FALSE(grid_springs(other));
   other = system;
-  other.springs.clear();
-  EXPECT_FALSE(recognise_grid(other));
+  other.springs.blocks().clear();
+  EXPECT_FALSE(grid_springs(other));
   other = system;
   other.mass[3] *= 2;
   EXPECT_FALSE(common_mass(other));

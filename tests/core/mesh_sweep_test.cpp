@@ -36,7 +36,7 @@ std::vector<ClothSystem> some_meshes(Random& random) {
   std::vector<ClothSystem> meshes{
       irregular_triangulation(3, 4, 80, true, random), irregular_triangulation(40, 53, 80, true, random),
       shuffled_grid(33, 30, random), irregular_triangulation(21, 30, 80, true, random)};
-  for (SpringRun& run : meshes.back().springs) run.stiffness *= random.uniform(0.5, 2);
+  for (SpringBlock& block : meshes.back().springs.blocks()) block.run.stiffness *= random.uniform(0.5, 2);
   for (std::size_t k = meshes.size(); k-- > 0;)
     meshes.push_back(renumbered(meshes[k], order_for_sweeps(meshes[k])));
   return meshes;
@@ -150,7 +150,7 @@ TEST_P(MeshSprings, OfZeroLengthPullNothingAndTheOthersGoOn) {
   Random random;
   const ClothSystem system = irregular_triangulation(9, 10, 80, false, random);
   Vec3Field position = crumpled(system, random);
-  for (const SpringRun& run : {system.springs[0], system.springs[50]})
+  for (const SpringRun& run : {system.springs.list()[0], system.springs.list()[50]})
     position.set(static_cast<std::size_t>(run.first + run.offset),
                  position[static_cast<std::size_t>(run.first)]);
   const Vec3Field expected = spring_forces(springs_of(system), position);
@@ -284,7 +284,7 @@ TEST_P(MeshSprings, HaveDampersThatAreTheSumOverTheSprings) {
   constexpr double damping = 0.7;
   for (const ClothSystem& system : some_meshes(random)) {
     ClothState state = crumpled_state(system, 0.02, 0.3, random);
-    const SpringRun& short_one = system.springs.front();  // of no length
+    const SpringRun short_one = *system.springs.begin();  // of no length
     state.position.set(static_cast<std::size_t>(short_one.first + short_one.offset),
                        state.position[static_cast<std::size_t>(short_one.first)]);
     Vec3Field product(state.position.size()), expected;

@@ -334,7 +334,7 @@ TEST(BothLocalMethods, StayBoundedFromDegenerateStartsAtAnyStiffness) {
       expect_bounded(scrambled, 20, 5, what + " scrambled");
 
       DirectRun shrunk(stiff_cloth(stiffness), choice);
-      for (SpringRun& run : shrunk.system.springs) run.rest_length = 0;
+      for (SpringBlock& block : shrunk.system.springs.blocks()) block.run.rest_length = 0;
       shrunk.forces.system_changed();
       expect_bounded(shrunk, 20, 5, what + " without rest length");
     }
@@ -398,7 +398,7 @@ TEST(Xpbd, LeavesOutSpringsWithoutStiffnessHoweverHeavyTheCloth) {
     scene.springs = only(SpringFamily::structural, 50 * mass);
     DirectRun weak(scene, xpbd(1, 10)), none(scene, xpbd(1, 10));
     for (DirectRun* run : {&weak, &none}) run->state.position.add(4, {0.02, 0, 0});
-    for (SpringRun& run : none.system.springs) run.stiffness = 0;
+    for (SpringBlock& block : none.system.springs.blocks()) block.run.stiffness = 0;
     none.forces.system_changed();
     weak.advance(1, 0.01), none.advance(1, 0.01);
     EXPECT_LT(weak.state.velocity[4].x(), -1e-3) << mass;

@@ -41,20 +41,16 @@ void add_block(double scale, const SymmetricBlock& block, double* to) {
 }  // namespace
 
 bool CholeskyFactors::fits(const ClothSystem& system) const {
-  if (pinned_ != system.pinned || offsets_.size() != system.springs.size() * 3) return false;
-  for (std::size_t k = 0; k < system.springs.size(); ++k) {
-    const SpringRun& run = system.springs[k];
-    if (offsets_[3 * k] != run.first || offsets_[3 * k + 1] != run.count || offsets_[3 * k + 2] != run.offset)
-      return false;
-  }
-  return true;
+  if (pinned_ != system.pinned || runs_.size() != system.springs.size()) return false;
+  return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
+                    [](const SpringRun& a, const SpringRun& b) {
+                      return a.first == b.first && a.count == b.count && a.offset == b.offset;
+                    });
 }
 
 void CholeskyFactors::analyse(const ClothSystem& system) {
   pinned_ = system.pinned;
-  offsets_.clear();
-  for (const SpringRun& run : system.springs)
-    offsets_.insert(offsets_.end(), {run.first, run.count, run.offset});
+  runs_ = system.springs;
   unknown_.assign(system.pinned.size(), -1);
   int unknowns = 0;
   for (std::size_t i = 0; i < unknown_.size(); ++i)

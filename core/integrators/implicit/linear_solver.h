@@ -27,7 +27,7 @@ class CholeskyFactors {
   void analyse(const ClothSystem& system);
 
   std::vector<std::uint8_t> pinned_;  ///< that the pattern was made for
-  std::vector<int> offsets_;          ///< of its spring runs
+  SpringRuns runs_;                   ///< of the springs that were analysed
   std::vector<int> unknown_;          ///< of each particle; -1 where pinned
   BlockCholesky factors_{3};
   std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch

@@ -146,7 +146,7 @@ CurrentLengthCloth current_length_cloth() {
   scene.integrator = {.method = "rk4", .time_step = 1e-4};
   scene.duration = 0.03;
   Simulation simulation(scene, [](ClothSystem& system, ClothState&) {
-    for (SpringRun& run : system.springs) run.rest_length = 0;
+    for (SpringBlock& block : system.springs.blocks()) block.run.rest_length = 0;
   });
 
   CurrentLengthCloth result;

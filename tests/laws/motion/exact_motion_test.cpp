@@ -227,7 +227,7 @@ TEST_P(ExactMotion, OfAClothWithoutRestLengthsIsFollowed) {
   const double c = 6;  // the slowest modes are damped above critical
   scene.damping = c * mass;
   Motion collapse{.system = make_grid(scene.cloth, *scene.springs), .scene = scene};
-  for (SpringRun& run : collapse.system.springs) run.rest_length = 0;
+  for (SpringBlock& block : collapse.system.springs.blocks()) block.run.rest_length = 0;
   collapse.start = starting_state(collapse.system);
   const LinearCloth linear(collapse.system, c, *scene.gravity);
   collapse.time = 0.25;
@@ -283,7 +283,7 @@ TEST_P(ExactMotion, OfAStretchedGridOutOfItsPlaneIsFollowed) {
   scene.springs = SpringMaterial{.structural = 40, .shear = 15, .flexion = 0, .damping = 0};
   scene.cloth.pins = {NamedPin::top_edge, NamedPin::bottom_edge, NamedPin::left_edge, NamedPin::right_edge};
   Motion wave{.system = make_grid(scene.cloth, *scene.springs), .scene = scene};
-  for (SpringRun& run : wave.system.springs) run.rest_length /= stretch;
+  for (SpringBlock& block : wave.system.springs.blocks()) block.run.rest_length /= stretch;
   const double qx = pi * p / (inner + 1), qy = pi * q / (inner + 1);
   const double omega =
       std::sqrt((1 - 1 / stretch) / mass *

@@ -19,7 +19,12 @@
 namespace clothlab::cli {
 
 void write_error(const std::string& text) {
-  cloth::write_bytes(STDERR_FILENO, text);  // where that fails there is nobody left to tell
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t part = ::write(STDERR_FILENO, text.data() + done, text.size() - done);
+    if (part < 0 && errno != EINTR) return;  // standard error is closed
+    if (part > 0) done += static_cast<std::size_t>(part);
+  }
 }
 
 void say(const std::string& message) {

@@ -1,5 +1,5 @@
-// An integrator advances a state by one step of m a = f(x, v, t). It knows neither which forces exist nor
-// what comes after it (limiter, contact); the loop owns time.
+// An integrator advances a state by one step of m a = f(x, v, t). It depends neither on which forces exist
+// nor on the stages after it (limiter, contact). The simulation owns time.
 #pragma once
 
 #include <optional>

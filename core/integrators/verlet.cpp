@@ -72,8 +72,8 @@ int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, doubl
   return 0;
 }
 
-/// Else the cloth beside a contact would feel the springs of where contact let nobody go, and at rest keep a
-/// speed of some omega^2 h^3 g that no position follows.
+/// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
+/// keep a speed of some omega^2 h^3 g that no position follows.
 void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                               const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
@@ -83,8 +83,8 @@ void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, con
   finish_velocity(system, forces, 0.5 * times.step, state);
 }
 
-/// Else the cloth beside a contact would be damped by how fast that would have gone without it, and at rest
-/// keep a speed of some h^2 g times damping over mass.
+/// Without it the cloth beside a contact would be damped by the speed that it would have had without contact,
+/// and at rest keep a speed of some h^2 g times damping over mass.
 void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
                                const Vec3Field& half_velocity, ClothState& state) {
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);

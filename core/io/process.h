@@ -12,7 +12,7 @@ namespace cloth {
 /// pipe and a file size limit become errors of write instead of signals.
 void settle_standard_streams();
 
-/// What ends a thread by an exception that nobody caught says so on standard error and ends the process with
+/// What ends a thread by an uncaught exception says so on standard error and ends the process with
 /// an exit code, not by a signal: `memory` where memory ran out, `defect` otherwise. `program` stands before
 /// the message.
 void end_by_exit_code(const char* program, int memory, int defect);

@@ -221,7 +221,7 @@ std::optional<IoError> ResultFolder::lock(const fs::path& folder, const FolderUs
       return IoError{path_, writer_of(list) + " is writing to this folder"};
     }  // a file system without locks is used without
   } while (!is_at(descriptor_, list));
-  look_for_old_files();  // now that nobody else changes them
+  look_for_old_files();  // now that no other process changes them
   if (auto error = refusal(use)) {
     release();
     return error;

@@ -1,6 +1,6 @@
 // What one pass of a kernel over the rows of a grid works on. Plain data only: the kernels are compiled with
-// flags of their own, and whatever they include must not hold inline functions that the linker might take
-// for everybody's.
+// flags of their own, and whatever they include must not hold inline functions, which the linker might use
+// for files compiled without those flags.
 #pragma once
 
 #include "kernels/kernel_table.h"
@@ -92,7 +92,7 @@ struct GridKernels {
   void (*euler)(const Pass& pass);
   /// Velocity Verlet with centred damping: `force` holds p(x) before and p(x') after.
   void (*verlet)(const Pass& pass);
-  /// The same in parts, for steps of which nobody sees the states between them. From the state at t to
+  /// The same in parts, for batches of steps whose states in between are not needed. From the state at t to
   /// v(t + h/2) and x(t + h); from those to v(t + 3h/2) and x(t + 2h), without `force`; and from those to
   /// v(t + h) and `force`.
   void (*verlet_open)(const Pass& pass);

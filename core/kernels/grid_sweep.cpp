@@ -152,7 +152,7 @@ void GridSweep::publish(const Plan& plan, std::size_t index, std::size_t pass) {
 }
 
 /// Lets the band see what the bands beside it have left for it. By then these have made the pass before, so
-/// that nobody needs any more what lies where the band will leave its own edges next.
+/// that the place where the band will leave its own edges next is free.
 void GridSweep::await_neighbours(const Plan& plan, std::size_t index, std::size_t pass) {
   Band& band = bands_[index];
   Band* above = index > 0 ? &bands_[index - 1] : nullptr;

@@ -47,7 +47,7 @@ class GridSweep : public SpringSweep {
   using Kernel = void (*)(const kernels::Pass&);
 
   /// A field of a pass. Where `halo_rows` are asked for, the pass steps the field in place and reads so many
-  /// of the rows around a band's own; else a band keeps to its own rows, or nobody writes.
+  /// of the rows around a band's own; else a band keeps to its own rows, or the field is only read.
   struct Attached {
     kernels::BandField kernels::Pass::*field;
     Vec3Field* values;

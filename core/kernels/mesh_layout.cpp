@@ -105,8 +105,8 @@ void append_slice(const std::vector<End>* springs, MeshLayout& layout) {
     MeshLayout::Indices neighbour;
     MeshLayout::Numbers stiffness, tension;
     for (int lane = 0; lane < slice_width; ++lane) {
-      const End end =
-          slot < springs[lane].size() ? springs[lane][slot] : End{kernels::nobody(layout.slices), 0, 0};
+      const End end = slot < springs[lane].size() ? springs[lane][slot]
+                                                  : End{kernels::padding_index(layout.slices), 0, 0};
       neighbour.lane[lane] = 4 * end.neighbour;
       stiffness.lane[lane] = end.stiffness, tension.lane[lane] = end.tension;
     }
@@ -150,7 +150,7 @@ void note_loads(MeshLayout& layout) {
     for (int slot = layout.slot_begin[static_cast<std::size_t>(first)];
          slot < layout.slot_begin[static_cast<std::size_t>(last)]; ++slot)
       for (const int offset : layout.neighbour[static_cast<std::size_t>(slot)].lane)
-        if (offset != 4 * kernels::nobody(layout.slices))
+        if (offset != 4 * kernels::padding_index(layout.slices))
           until = std::max(until, (offset / 4 / slice_width + 1) * slice_width);
     layout.load_until.push_back(until);
   }

@@ -13,8 +13,8 @@ inline constexpr int slice_width = 8, block_slices = 16, block_width = slice_wid
 inline constexpr int most_kinds = 8;
 
 /// All springs at both their ends: slot after slot, each with one spring of every particle of a slice. A lane
-/// without a spring left has nobody() for its neighbour, with stiffness 0. F_i = (k - k L / |d|) d, d = x_j -
-/// x_i.
+/// without a spring left has padding_index() for its neighbour, with stiffness 0. F_i = (k - k L / |d|) d, d
+/// = x_j - x_i.
 ///
 /// Stiffness and tension stand in full, or are looked up by kind where few different ones occur: `kind` is
 /// null where neither is.
@@ -28,7 +28,7 @@ struct MeshSlots {
 };
 
 /// The vector behind those of all slices: a place where no particle is.
-constexpr int nobody(int slices) {
+constexpr int padding_index(int slices) {
   return slices * slice_width;
 }
 inline constexpr double nowhere[4] = {3e5, 7e5, 11e5, 0};  // m

@@ -26,7 +26,7 @@ MeshSweep::MeshSweep(const ClothSystem& system, std::optional<double> mass)
       layout_(make_mesh_layout(system)),
       kernels_(&active_kernels<kernels::MeshKernels>()),
       inverse_mass_(system.inverse_mass),
-      vectors_((static_cast<std::size_t>(kernels::nobody(layout_.slices)) + 1) * 4),
+      vectors_((static_cast<std::size_t>(kernels::padding_index(layout_.slices)) + 1) * 4),
       squares_(static_cast<std::size_t>(layout_.blocks) * all_sums) {
   std::copy(std::begin(kernels::nowhere), std::end(kernels::nowhere), vectors_.end() - 4);
   number_ = inverse_of(layout_.order);
@@ -80,7 +80,7 @@ MeshPass MeshSweep::pass_with(const SweepLoads& loads, double step) {
   pass.damping = loads.damping;
   pass.spring_damping = loads.spring_damping;
   if (loads.spring_damping > 0) {
-    velocities_.resize(vectors_.size());  // nobody is at rest
+    velocities_.resize(vectors_.size());  // the padding particle is at rest
     pass.velocities = velocities_.data();
   }
   pass.dampers = squares_.data() + dampers * layout_.blocks;

@@ -109,7 +109,7 @@ struct Obstacle {
   double restitution = 0;
   Vec3 velocity{0, 0, 0};                ///< m/s
   Vec3 spin{0, 0, 0};                    ///< rad/s along the axis, about the pivot
-  std::vector<Keyframe> keyframes = {};  ///< ascending in time; any: velocity and spin say nothing
+  std::vector<Keyframe> keyframes = {};  ///< ascending in time; with any, velocity and spin are ignored
   bool operator==(const Obstacle&) const = default;
 };
 

@@ -86,7 +86,7 @@ SharedMesh prepared(const std::string& file, const TriangleMesh& from_file, bool
   return mesh;
 }
 
-/// Made once and for all: constant, and the same for everybody.
+/// Made once: constant, and shared by all users.
 SharedMesh built_in_mesh(const BuiltinMesh& which) {
   static std::mutex mutex;
   static std::map<std::string, SharedMesh> made;

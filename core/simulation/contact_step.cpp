@@ -8,7 +8,7 @@ namespace cloth {
 /// Continuous contact does not follow what has diverged: it stays where it was, and the run stops.
 void Simulation::resolve_contact(const StepTimes& times) {
   run_.last_contact = {};
-  if (contact_->is_continuous() && is_fast(kinetic_energy(system_, run_.state.velocity)) && has_run_away()) {
+  if (contact_->is_continuous() && is_fast(kinetic_energy(system_, run_.state.velocity)) && has_diverged()) {
     run_.state.position = position_before_;
     return;
   }

@@ -1,4 +1,4 @@
-// When a run has diverged, and the message of a stop.
+// When a run has diverged, and what a stop says.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace cloth {
 namespace {
 
-/// Unexplained energy this many times all that the scene can give is a run that has diverged.
+/// A run has diverged whose unexplained energy is this many times all that the scene can give.
 constexpr double divergence_factor = 10;
 
 /// Of the energy of all springs at twice their length: far above rounding, far below anything that moves.
@@ -96,11 +96,11 @@ bool Simulation::is_fast(double kinetic) const {
 /// By the ledger: whether more energy has come or gone, kinetic, elastic or of height, than works and losses
 /// and ten times what the scene could give explain. What a limiter has taken out may be missing once more; it
 /// explains no gain.
-bool Simulation::has_run_away() const {
+bool Simulation::has_diverged() const {
   const Energy energy = measure_energy(system_, gravity_of(scene_), run_.state);
   const double unexplained = energy.total() - run_.ledger.initial - run_.ledger.entered();
   const double missing = unexplained < 0 ? std::abs(run_.ledger.limiter) : 0;
-  return !(std::abs(unexplained) <= runaway_factor * (energy_scale_after(-energy.gravity) + missing));
+  return !(std::abs(unexplained) <= divergence_factor * (energy_scale_after(-energy.gravity) + missing));
 }
 
 /// Even if the heaviest mass were that of all. `speed_squares`: sum of |v|^2, (m/s)^2. Where the step is
@@ -112,8 +112,8 @@ bool Simulation::is_surely_slow(double speed_squares) const {
 }
 
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
-/// all does not make the speeds too much, nothing has diverged. Only else, and where a method without a limit
-/// or "auto" asks for it every few steps, the ledger is looked at.
+/// all does not make the speeds too much, nothing has diverged. Only otherwise, and where a method without a
+/// limit or "auto" asks for it every few steps, the ledger is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
   const bool looks = watches_ledger_ && run_.state.step % ledger_interval == 0;
   if (!looks && report.speed_squares && was_finite_ && !limiter_ && !contact_ &&
@@ -125,8 +125,8 @@ std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& re
   const bool lost = !std::isfinite(sum) && first_not_finite(run_.state.position);
   was_finite_ = !lost;
   if (!lost && !looks && !is_fast(kinetic_energy(system_, run_.state.velocity))) return std::nullopt;
-  if (!lost && !has_run_away()) return std::nullopt;
-  return stop_at_fastest("its energy is out of bounds");
+  if (!lost && !has_diverged()) return std::nullopt;
+  return stop_at_fastest("its energy exceeds what the scene can give");
 }
 
 Divergence Simulation::stop_at_fastest(const std::string& cause) const {

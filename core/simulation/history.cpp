@@ -113,7 +113,7 @@ void History::log(SessionAction action, const Simulation& simulation) {
   commands_.push_back({simulation.state().step, simulation.time(), std::move(action)});
   command_bytes_ += bytes_of(commands_.back());
   expected_hash_.clear();
-  if (edits) keep(simulation);  // dear to carry out again, and it may have stopped particles
+  if (edits) keep(simulation);  // costly to carry out again, and it may have stopped particles
 }
 
 bool History::cut(const Simulation& simulation) {

@@ -32,8 +32,8 @@ struct Divergence {
   double time_step = 0;  ///< s, as run
   double stable_step =
       0;  ///< s, the method's limit in every shape; 0 if there is none, infinity if any will do
-  bool solver_failed = false;  ///< the equations of the step could not be solved: nothing has diverged
-  bool pinched = false;        ///< an obstacle met cloth that cannot give way: nothing has diverged
+  bool solver_failed = false;  ///< the equations of the step could not be solved: no divergence
+  bool pinched = false;        ///< an obstacle met cloth that cannot give way: no divergence
 };
 
 /// A shorter step that came in force by itself.

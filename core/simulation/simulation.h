@@ -190,7 +190,7 @@ class Simulation {
   double hand_energy() const;
   double energy_scale_after(double fallen) const;
   bool is_fast(double kinetic) const;
-  bool has_run_away() const;
+  bool has_diverged() const;
 
   Scene scene_;
   Preparation prepare_;

@@ -39,7 +39,7 @@ Scene scene_with_stiffness(double stiffness) {
   return scene;
 }
 
-/// The same numbers everywhere: a standard engine, and a distribution that the standard leaves to nobody.
+/// The same numbers everywhere: a standard engine, and a distribution of our own, which no library changes.
 class Random {
  public:
   double uniform(double low, double high) {

@@ -1,6 +1,5 @@
 // work_precision_reference.f64: the states of a study's reference while the study is made, so that one that
-// goes on need not solve it again. Bits, not text: a table of them would be three times as long and is read
-// by nobody.
+// goes on need not solve it again. Binary: a table would be three times as long, and no one reads it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Frames from the worker to the window: newest wins, and the memory of a frame that nobody looks at any more
+// Frames from the worker to the window: newest wins, and the memory of a frame that is no longer shown
 // is used again, its reference count included: once a few frames have gone round, none allocates.
 #pragma once
 

@@ -26,7 +26,7 @@ void ChartStack::add(LiveChart* chart) {
   connect_chart(chart);
 }
 
-/// The time axis is everybody's, the y axis the chart's own.
+/// All charts share the time axis; each has its own y axis.
 void ChartStack::connect_chart(LiveChart* chart) {
   PlotView* view = &chart->view();
   connect(chart, &LiveChart::changed, this, &ChartStack::changed);

@@ -60,7 +60,7 @@ CompareDocument::CompareDocument(QObject* parent) : QObject(parent) {
 }
 
 CompareDocument::~CompareDocument() {
-  undo_stack_.disconnect(this);  // it is cleared after this body, when nobody may be told any more
+  undo_stack_.disconnect(this);  // it is cleared after this body, when no signal may be sent any more
 }
 
 QString CompareDocument::title() const {

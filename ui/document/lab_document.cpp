@@ -148,7 +148,7 @@ LabDocument::LabDocument(QObject* parent) : QObject(parent) {
 }
 
 LabDocument::~LabDocument() {
-  // The stack is cleared after this body, when nobody may be told any more.
+  // The stack is cleared after this body, when no signal may be sent any more.
   undo_stack_.disconnect(this);
 }
 

@@ -96,7 +96,7 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
     notice_->show("divergence", NoticeBar::Level::error, text);
 }
 
-/// Nothing has diverged: whatever is undone or moved, the run goes on from where it stands.
+/// No divergence: whatever is undone or moved, the run goes on from where it stands.
 void MainWindow::sayPinched(const cloth::Divergence& stop) {
   const QString text = tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.")
                            .arg(QString::fromStdString(cloth::describe(stop)));

@@ -1,5 +1,5 @@
 // A field for one exact number with its unit: what is typed is what is stored. It shows six digits while
-// nobody edits it and all of them while it has the focus; showing never changes the value.
+// it is not edited and all of them while it has the focus; showing never changes the value.
 #pragma once
 
 #include <QLineEdit>

@@ -103,7 +103,7 @@ void ClothView::fail(const QString& reason) {
          "parameters and recording.</p>")
           .arg(reason.toHtmlEscaped()));
   problem_label_->show();
-  // Not at once: nobody is connected yet while the view is being made.
+  // Not at once: nothing is connected yet while the view is being made.
   QTimer::singleShot(0, this, [this] { Q_EMIT openGlFailed(problem_); });
 }
 

@@ -75,7 +75,7 @@ class ClothView : public QWidget {
   void setCameraPose(const CameraPose& pose);
   bool cameraWasMoved() const { return camera_moved_; }  ///< by the user, since resetCamera()
   void frameAll();
-  /// Whether all of the cloth has left the picture, or under a camera that nobody moved nearly all. The view
+  /// Whether all of the cloth has left the picture, or under a camera that was not moved nearly all. The view
   /// then says how to see it.
   bool clothIsOutOfSight() const;
   void setPreset(CameraPreset preset);

@@ -86,9 +86,9 @@ void MemoryCanvas::redraw() {
   askForTurn();
 }
 
-/// A picture that nobody sees is drawn once it is painted.
+/// A hidden picture is drawn once it is painted.
 void MemoryCanvas::askForTurn() {
-  if (!unseen_ && !fence_ && isVisible()) DrawingTurns::ofTheApplication().ask(this);
+  if (!waits_to_be_shown_ && !fence_ && isVisible()) DrawingTurns::ofTheApplication().ask(this);
 }
 
 /// Hands the drawing over. OpenGL's own threads fill the pixels; waiting for them here would hold the window.
@@ -117,7 +117,7 @@ void MemoryCanvas::fetchPicture() {
   }
   dropFence();
   readPicture();
-  unseen_ = true;
+  waits_to_be_shown_ = true;
   update();
   if (drawing_ == Quality::smooth) return;
   if (!stale_ && smooth_at_rest_) rest_timer_.start();
@@ -167,7 +167,7 @@ void MemoryCanvas::readPicture() {
 }
 
 void MemoryCanvas::paintEvent(QPaintEvent*) {
-  unseen_ = false;
+  waits_to_be_shown_ = false;
   QPainter painter(this);
   if (picture_.isNull()) {
     QLinearGradient empty(0, 0, 0, height());

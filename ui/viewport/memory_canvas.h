@@ -71,7 +71,7 @@ class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Draw
 
   QImage picture_;
   bool stale_ = true;    // the scene has changed since the picture
-  bool unseen_ = false;  // the picture has not been put into the window yet: another would be for nobody
+  bool waits_to_be_shown_ = false;  // the picture has not been put into the window yet: no other is drawn
   bool rested_ = false;  // a smooth picture is wanted
   QTimer rest_timer_;    // since the last change
   bool smooth_at_rest_ = true;

@@ -152,7 +152,7 @@ Eigen::Vector3d dragged_by(const ObstacleHandle& handle, ObstacleHandle::Part pa
   if (part == Part::ring)
     return camera.on_screen_plane(now, handle.place) - camera.on_screen_plane(start, handle.place);
   const Eigen::Vector3d axis = Eigen::Vector3d::Unit(part == Part::x ? 0 : part == Part::y ? 1 : 2);
-  // The point of the axis that is nearest to the line of sight; one that looks along the axis says nothing.
+  // The point of the axis that is nearest to the line of sight; one along the axis gives none.
   const auto along = [&](const Eigen::Vector2d& cursor) {
     const Ray ray = camera.ray(cursor);
     const double cosine = axis.dot(ray.direction), sine_squared = 1 - cosine * cosine;

@@ -56,8 +56,8 @@ double verlet_limit(double omega, double) {
 }
 
 /// One entry holds all that is known of a method.
-const std::vector<Entry>& registry() {
-  static const std::vector<Entry> entries{
+std::vector<Entry> explicit_methods() {
+  return {
       {{.name = "explicit-euler",
         .title = "Explicit Euler",
         .order = 1,
@@ -113,6 +113,11 @@ const std::vector<Entry>& registry() {
        [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<DormandPrince>(choice.tolerance);
        }},
+  };
+}
+
+std::vector<Entry> implicit_methods() {
+  return {
       {{.name = "implicit-euler",
         .title = "Implicit Euler",
         .order = 1,
@@ -169,6 +174,15 @@ const std::vector<Entry>& registry() {
                                        static_cast<int>(choice.xpbd_iterations));
        }},
   };
+}
+
+/// In the order in which methods are listed everywhere.
+const std::vector<Entry>& registry() {
+  static const std::vector<Entry> entries = [] {
+    std::vector<Entry> all = explicit_methods();
+    for (const Entry& entry : implicit_methods()) all.push_back(entry);
+    return all;
+  }();
   return entries;
 }
 

@@ -1,10 +1,13 @@
 #include "forces/air.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
 #include "cloth/normals.h"
 #include "cloth/sums.h"
+#include "forces/registry.h"
 
 namespace cloth {
 
@@ -110,6 +113,33 @@ void AirForce::add_power(const Vec3Field&, const Vec3Field& velocity, Work& powe
                });
   if (brush_ && brush_force_.size() == velocity.size())
     power.brush += dot(brush_force_.flat(), velocity.flat());
+}
+
+namespace {
+
+StageInfo wind_stage(const Scene& scene) {
+  if (!scene.air || !(scene.air->drag > 0 || scene.air->skin_friction > 0))
+    return {"wind", false, "there is no air to blow"};
+  if (!(scene.air->wind.squaredNorm() > 0)) return {"wind", false, "air.wind is 0: the air only drags"};
+  const bool gusts = scene.air->gust && scene.air->gust->amplitude > 0;
+  return {"wind", true,
+          fmt::format("{:.4g} m/s{}", scene.air->wind.norm(), gusts ? " with gusts" : ", steady")};
+}
+
+}  // namespace
+
+ForceEntry air_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
+            if (!scene.air || !(scene.air->drag > 0)) return nullptr;
+            return std::make_unique<AirForce>(*scene.air);
+          },
+          .work = &Work::air,
+          .explain =
+              [](const Scene& scene, const ClothSystem&) {
+                return std::vector{coefficient_stage("air drag", scene.air.has_value(), "air",
+                                                     scene.air.value_or(Air{}).drag, "air.drag"),
+                                   wind_stage(scene)};
+              }};
 }
 
 }  // namespace cloth

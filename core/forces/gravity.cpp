@@ -1,6 +1,9 @@
 #include "forces/gravity.h"
 
+#include <fmt/format.h>
+
 #include "cloth/sums.h"
+#include "forces/registry.h"
 
 namespace cloth {
 
@@ -24,6 +27,25 @@ double gravity_energy(const ClothSystem& system, const Vec3& acceleration, const
                 ordered_sum(position.size(), [m = system.mass.data(), x = now[axis], x0 = then[axis]](
                                                  std::size_t i) { return m[i] * (x[i] - x0[i]); });
   return energy;
+}
+
+namespace {
+
+std::vector<StageInfo> explain_gravity(const Scene& scene, const ClothSystem&) {
+  if (!scene.gravity) return {{"gravity", false, "the scene has no \"gravity\""}};
+  if (!(scene.gravity->squaredNorm() > 0)) return {{"gravity", false, "gravity is 0"}};
+  const Vec3& g = *scene.gravity;
+  return {{"gravity", true, fmt::format("[{}, {}, {}] m/s^2", g.x(), g.y(), g.z())}};
+}
+
+}  // namespace
+
+ForceEntry gravity_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
+            if (!(gravity_of(scene).squaredNorm() > 0)) return nullptr;
+            return std::make_unique<Gravity>(*scene.gravity);
+          },
+          .explain = explain_gravity};
 }
 
 }  // namespace cloth

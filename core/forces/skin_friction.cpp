@@ -1,10 +1,39 @@
-#include "forces/skin_friction.h"
-
+// Drag of the air along the cloth, linear in the speed: F_i = c_t (I - n n^T) (u - v_i), with n the unit
+// normal and u the wind at the particle. AirForce is the part along the normal. The wind brush acts along the
+// normal alone.
 #include "cloth/normals.h"
 #include "cloth/sums.h"
 #include "forces/air.h"
+#include "forces/registry.h"
 
 namespace cloth {
+namespace {
+
+class SkinFriction : public Force {
+ public:
+  /// air.skin_friction is c_t in N s/m, of every particle.
+  explicit SkinFriction(const Air& air) : air_(air) {}
+
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
+  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
+  bool add_node_damping(NodeDamping& damping) const override;
+  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override;
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override;
+  bool has_asymmetric_part() const override { return true; }
+  void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
+                              const Vec3Field& direction, Vec3Field& product) const override;
+
+ private:
+  /// c_t times the part of `v` across the normal of particle i.
+  Vec3 across(std::size_t i, const Vec3& v) const {
+    return air_.skin_friction * (v - normal_[i].dot(v) * normal_[i]);
+  }
+
+  Air air_;
+  Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
+  Vec3Field normal_;
+};
 
 void SkinFriction::update(const ClothSystem& system, const Vec3Field& position, double time,
                           Vec3Field& force) {
@@ -47,6 +76,22 @@ void SkinFriction::add_asymmetric_product(const ClothSystem& system, const Vec3F
     const Vec3 n = normal_[i], dn = turned[i], w = wind_ - velocity[i];
     product.add(i, air_.skin_friction * (dn.dot(w) * n + n.dot(w) * dn));
   }
+}
+
+}  // namespace
+
+ForceEntry skin_friction_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
+            if (!scene.air || !(scene.air->skin_friction > 0)) return nullptr;
+            return std::make_unique<SkinFriction>(*scene.air);
+          },
+          .work = &Work::air,
+          .explain =
+              [](const Scene& scene, const ClothSystem&) {
+                return std::vector{coefficient_stage("skin friction", scene.air.has_value(), "air",
+                                                     scene.air.value_or(Air{}).skin_friction,
+                                                     "air.skin_friction")};
+              }};
 }
 
 }  // namespace cloth

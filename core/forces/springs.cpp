@@ -1,9 +1,13 @@
 #include "forces/springs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "cloth/grid.h"
 #include "cloth/sums.h"
+#include "forces/registry.h"
 
 namespace cloth {
 namespace {
@@ -180,6 +184,49 @@ void SpringDamping::add_power(const Vec3Field& position, const Vec3Field& veloci
                             return square > 0 ? rate * rate / square : 0;
                           });
   }
+}
+
+namespace {
+
+StageInfo family_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
+  const std::string name = fmt::format("{} springs", name_of(family));
+  if (!scene.springs) return {name, false, "the scene has no \"springs\""};
+  const double stiffness = stiffness_of(*scene.springs, family);
+  if (!(stiffness > 0)) return {name, false, fmt::format("springs.{} is 0", name_of(family))};
+  const auto count = system.spring_count(family);
+  if (count == 0 && family == SpringFamily::shear && system.is_mesh())
+    return {name, false, "a mesh has edges and no cells to shear"};
+  if (count == 0) return {name, false, "the grid is too small for any"};
+  return {name, true, fmt::format("{} springs of {} N/m", count, stiffness)};
+}
+
+std::vector<StageInfo> explain_springs(const Scene& scene, const ClothSystem& system) {
+  std::vector<StageInfo> stages;
+  for (const SpringFamily family : spring_families) stages.push_back(family_stage(scene, system, family));
+  return stages;
+}
+
+}  // namespace
+
+ForceEntry spring_entry() {
+  return {.make = [](const Scene&, const ClothSystem& system) -> std::unique_ptr<Force> {
+            return system.springs.empty() ? nullptr : std::make_unique<SpringForce>();
+          },
+          .explain = explain_springs};
+}
+
+ForceEntry spring_damping_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+            if (system.springs.empty() || !(scene.springs->damping > 0)) return nullptr;
+            return std::make_unique<SpringDamping>(system, scene.springs->damping);
+          },
+          .work = &Work::damping_loss,
+          .explain =
+              [](const Scene& scene, const ClothSystem&) {
+                return std::vector{coefficient_stage("spring damping", scene.springs.has_value(), "springs",
+                                                     scene.springs.value_or(SpringMaterial{}).damping,
+                                                     "springs.damping")};
+              }};
 }
 
 }  // namespace cloth

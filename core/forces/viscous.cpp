@@ -1,6 +1,7 @@
 #include "forces/viscous.h"
 
 #include "cloth/sums.h"
+#include "forces/registry.h"
 
 namespace cloth {
 
@@ -25,6 +26,19 @@ void ViscousDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
                                        const LinearisationWeights& weights, Linearisation& to) const {
   const double diagonal = weights.velocity * coefficient_;
   for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, {diagonal, 0, 0, diagonal, 0, diagonal});
+}
+
+ForceEntry viscous_damping_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
+            if (!(scene.damping.value_or(0) > 0)) return nullptr;
+            return std::make_unique<ViscousDamping>(*scene.damping);
+          },
+          .work = &Work::damping_loss,
+          .explain =
+              [](const Scene& scene, const ClothSystem&) {
+                return std::vector{coefficient_stage("viscous damping", scene.damping.has_value(), "damping",
+                                                     scene.damping.value_or(0), "damping")};
+              }};
 }
 
 }  // namespace cloth

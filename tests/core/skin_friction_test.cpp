@@ -1,5 +1,4 @@
 // Tangential drag of the air, alone and beside the drag along the normal.
-#include "forces/skin_friction.h"
 
 #include <gtest/gtest.h>
 

@@ -138,17 +138,19 @@ ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order) {
     result.pinned.push_back(system.pinned[at(old)]);
   }
   const ParticleOrder number = inverse_of(order);
+  std::vector<SpringRun> springs;
   for (const SpringRun& run : system.springs)
     for (int s = 0; s < run.count; ++s) {
       const auto [low, high] =
           std::minmax({number[at(run.first + s)], number[at(run.first + s + run.offset)]});
       SpringRun spring = run;
       spring.first = low, spring.offset = high - low, spring.count = 1;
-      result.springs.push_back(spring);
+      springs.push_back(spring);
     }
-  std::stable_sort(result.springs.begin(), result.springs.end(), [](const SpringRun& a, const SpringRun& b) {
+  std::stable_sort(springs.begin(), springs.end(), [](const SpringRun& a, const SpringRun& b) {
     return std::tuple(a.family, a.first, a.offset) < std::tuple(b.family, b.first, b.offset);
   });
+  result.springs = springs;
   return result;
 }
 

@@ -79,7 +79,7 @@ class Painter {
 double Painter::cell_pixels() const {
   if (extent_.isEmpty() || system_.springs.empty()) return 8;
   const double depth = frame_.to_eye(extent_.center()).z();
-  return system_.springs.front().rest_length * frame_.focal_length / std::max(depth, frame_.near);
+  return (*system_.springs.begin()).rest_length * frame_.focal_length / std::max(depth, frame_.near);
 }
 
 void Painter::add_obstacles() {
@@ -91,7 +91,7 @@ void Painter::add_obstacles() {
   surface.front = surface.back = linear_light(theme_.body);
   surface.nearer = -0.004F;
   const int matte = canvas_.add_surface(surface);
-  const double cell = system_.springs.empty() ? 0 : system_.springs.front().rest_length;
+  const double cell = system_.springs.empty() ? 0 : (*system_.springs.begin()).rest_length;
   for (const Obstacle& o : scene_.obstacles) {
     const Eigen::AlignedBox3d bounds = bounds_of(o, options_.time);
     if (bounds.isEmpty() || !bounds.min().allFinite() || !bounds.max().allFinite()) continue;

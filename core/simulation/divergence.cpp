@@ -126,7 +126,7 @@ std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& re
   was_finite_ = !lost;
   if (!lost && !looks && !is_fast(kinetic_energy(system_, run_.state.velocity))) return std::nullopt;
   if (!lost && !has_diverged()) return std::nullopt;
-  return stop_at_fastest("its energy exceeds what the scene can give");
+  return stop_at_fastest("its energy is out of bounds");
 }
 
 Divergence Simulation::stop_at_fastest(const std::string& cause) const {

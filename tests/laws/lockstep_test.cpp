@@ -373,7 +373,7 @@ TEST(AComparisonsReport, ShowsEveryPaneInItsStyleAndNamesThoseThatStopped) {
   EXPECT_EQ(plot.y.scale, AxisScale::logarithmic);
   EXPECT_EQ(read_xml(to_svg(plot)).error, "");
   const std::string page = comparison_page(run, "clothlab-cli compare x --out DIR");
-  EXPECT_NE(page.find("its energy exceeds what the scene can give"), std::string::npos);
+  EXPECT_NE(page.find("its energy is out of bounds"), std::string::npos);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "contact/start_check.h"
 #include "io/printable.h"
 #include "io/process.h"
 #include "io/text_file.h"
@@ -137,7 +138,7 @@ LoadedScene load_scene(const std::string& name, const std::vector<std::string>& 
   if (exit_code != done) return {std::nullopt, exit_code};
   cloth::MeshSource meshes;
   if (!is_file) meshes.folder = cloth::SceneFolder{.path = "", .built_in = true};
-  cloth::SceneReading reading = cloth::read_scene(text, name, *overrides, meshes);
+  cloth::SceneReading reading = cloth::read_runnable_scene(text, name, *overrides, meshes);
   if (!reading.scene) return {std::nullopt, report(reading.problems)};
   return {std::move(reading.scene), done};
 }

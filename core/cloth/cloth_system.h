@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cloth/spring_runs.h"
-#include "cloth/vec3_field.h"
 #include "geometry/triangle_mesh.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

@@ -1,8 +1,8 @@
 // The grid cloth of the model: where its particles start and which springs join them.
 #pragma once
 
+#include "cloth/cloth_sheet.h"
 #include "cloth/cloth_system.h"
-#include "scene/scene.h"
 
 namespace cloth {
 

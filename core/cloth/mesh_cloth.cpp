@@ -19,7 +19,7 @@ void append_springs(ClothSystem& system, SpringFamily family, const std::vector<
 }
 
 ClothSystem make_mesh_cloth(const ClothSheet& sheet, const SpringMaterial& material) {
-  const SceneMesh& mesh = *sheet.mesh.loaded;
+  const LoadedMesh& mesh = *sheet.mesh.loaded;
   ClothSystem system;
   const std::size_t particles = mesh.surface.vertices.size();
   system.rows = 1;

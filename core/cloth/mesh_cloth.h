@@ -1,8 +1,8 @@
 // The cloth of a scene, be it a grid or a triangle mesh.
 #pragma once
 
+#include "cloth/cloth_sheet.h"
 #include "cloth/cloth_system.h"
-#include "scene/scene.h"
 
 namespace cloth {
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/comparison_json.h"
+#include "contact/start_check.h"
 #include "io/json_reader.h"
 #include "io/json_syntax.h"
 #include "scene/builtin_scenes.h"
@@ -56,7 +57,7 @@ class ComparisonReader : public JsonReader<json> {
     } else {
       return problem("scene", value, "must be a scene in braces or the name of a built-in one");
     }
-    SceneReading reading = read_scene(scene_text_, place_, overrides_, meshes_);
+    SceneReading reading = read_runnable_scene(scene_text_, place_, overrides_, meshes_);
     add_problems("scene", std::move(reading.problems));
     has_scene_ = reading.scene.has_value();
     if (has_scene_) scene = *reading.scene;

@@ -3,6 +3,7 @@
 #include "compare/comparison_json.h"
 #include "integrators/registry.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -14,7 +15,7 @@ using json = nlohmann::ordered_json;
 Scene full_scene(const std::string& method) {
   Scene scene;
   add_every_block(scene);
-  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
+  for (const ObstacleShape* shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape->shape;
   scene.integrator.method = method;
   return scene;
 }

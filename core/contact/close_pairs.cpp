@@ -21,7 +21,7 @@ double furthest_reach(const SweptBounds& swept) {
 /// Equal poses, where the rotation of a sphere does not matter.
 bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
   return a == b ||
-         (body.shape == Shape::sphere && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
+         (body.kind == BodyKind::ball && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
 }
 
 double largest(const std::vector<double>& of, const PairParticles& pair, int begin, int end) {

@@ -1,7 +1,7 @@
 // Contact points, for display.
 #pragma once
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

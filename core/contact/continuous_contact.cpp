@@ -31,7 +31,7 @@ std::vector<ObstacleBody> bodies_of(const Scene& scene) {
 
 /// m, distance from the pivot of the furthest point that can touch the cloth.
 double reach_of(const Obstacle& obstacle, const Vec3Field& position) {
-  if (obstacle.shape != Shape::plane) return body_of(obstacle).reach;
+  if (shape_of(obstacle).body != BodyKind::half_space) return body_of(obstacle).reach;
   double reach = 0;
   for (std::size_t i = 0; i < position.size(); ++i)
     reach = std::max(reach, (position[i] - obstacle.point).norm());
@@ -49,7 +49,7 @@ double mean_edge(const Surface& surface, const Vec3Field& position) {
 bool has_continuous_contact(const Scene& scene) {
   return scene.contact || scene.self_contact ||
          std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                     [](const Obstacle& o) { return o.shape == Shape::mesh || moves(o); });
+                     [](const Obstacle& o) { return shape_of(o).body == BodyKind::surface || moves(o); });
 }
 
 double highest_obstacle_speed(const Scene& scene, const ObstacleTransitions& transitions,
@@ -89,7 +89,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     self_friction_ = scene.self_contact->friction;
   }
   const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
-                                    [](const Obstacle& o) { return o.shape == Shape::mesh; });
+                                    [](const Obstacle& o) { return shape_of(o).body == BodyKind::surface; });
   is_staggered_ = needs_stagger(obstacles_, surface_, system.start);
   set_thickness(time);
   longest_path_ = scene.self_contact || has_mesh ? edges_of_a_search * mean_edge_ : infinity;

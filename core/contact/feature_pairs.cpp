@@ -286,8 +286,9 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
     case PairKind::vertex_face:
       return vertex_face(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::edge_edge:
-      return body.shape == Shape::box ? edge_box_edge(pair, cloth, body, pose, within)
-                                      : edge_surface_edge(pair, cloth, far, false, slack_of_obstacle, within);
+      return body.kind == BodyKind::box
+                 ? edge_box_edge(pair, cloth, body, pose, within)
+                 : edge_surface_edge(pair, cloth, far, false, slack_of_obstacle, within);
     case PairKind::face_vertex:
       return face_vertex(pair, cloth, far(pair.foreign), within);
   }

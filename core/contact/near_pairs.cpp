@@ -92,14 +92,14 @@ class PairSearch::Step {
   void meet(int obstacle, const PoseInterpolation& path) {
     obstacle_ = obstacle;
     const ObstacleBody& body = search_.bodies_[at(obstacle)];
-    switch (body.shape) {
-      case Shape::plane:
+    switch (body.kind) {
+      case BodyKind::half_space:
         return meet_plane(body, path);
-      case Shape::sphere:
+      case BodyKind::ball:
         return meet_sphere(body, path);
-      case Shape::box:
+      case BodyKind::box:
         return meet_box(body, path);
-      case Shape::mesh:
+      case BodyKind::surface:
         return meet_mesh(body, path);
     }
   }
@@ -226,7 +226,7 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       mesh_trees_(bodies.size()),
       mesh_overlaps_(bodies.size()) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (bodies[k].shape != Shape::mesh) continue;
+    if (bodies[k].kind != BodyKind::surface) continue;
     needs_trees_ = true;
     const std::vector<Vec3>& vertices = bodies[k].vertices;
     std::vector<Bounds> boxes;
@@ -252,8 +252,8 @@ void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseI
   const auto stays = [&](std::size_t i) { return holds(cached_[i], particles_[i]); };
   bool kept = cached_.size() == particles_.size() && cached_reach_ == swept.reach;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    kept =
-        kept && (bodies_[k].shape != Shape::mesh || (paths[k].rests() && paths[k].to() == cached_poses_[k]));
+    kept = kept &&
+           (bodies_[k].kind != BodyKind::surface || (paths[k].rests() && paths[k].to() == cached_poses_[k]));
   for (std::size_t i = 0; kept && i < particles_.size(); ++i) kept = stays(i);
   if (kept) return;
 
@@ -273,7 +273,7 @@ void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseI
   }
   find_faces(cached_, 0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (bodies_[k].shape != Shape::mesh) continue;
+    if (bodies_[k].kind != BodyKind::surface) continue;
     seen_from_body(bodies_[k], paths[k], faces_, swept.reach, seen_);
     mesh_overlaps_[k].clear();
     in_parts(seen_.size(), least_queries, overlap_parts_, mesh_overlaps_[k],

@@ -23,15 +23,15 @@ void add_mesh(const Obstacle& obstacle, ObstacleBody& body) {
 
 ObstacleBody body_of(const Obstacle& obstacle) {
   ObstacleBody body;
-  body.shape = obstacle.shape;
+  body.kind = shape_of(obstacle).body;
   body.pivot = pivot_of(obstacle);
   body.center = obstacle.center;
   body.radius = obstacle.radius;
   body.point = obstacle.point;
   body.normal = obstacle.normal.normalized();
-  if (obstacle.shape == Shape::box) add_box(obstacle, body);
-  if (obstacle.shape == Shape::mesh) add_mesh(obstacle, body);
-  if (obstacle.shape == Shape::sphere) body.reach = obstacle.radius;
+  if (body.kind == BodyKind::box) add_box(obstacle, body);
+  if (body.kind == BodyKind::surface) add_mesh(obstacle, body);
+  if (body.kind == BodyKind::ball) body.reach = obstacle.radius;
   for (const Vec3& vertex : body.vertices) body.reach = std::max(body.reach, (vertex - body.pivot).norm());
   body.friction = obstacle.friction;
   body.restitution = obstacle.restitution;

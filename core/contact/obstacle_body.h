@@ -3,14 +3,15 @@
 
 #include <vector>
 
-#include "contact/rigid_motion.h"
 #include "contact/surface.h"
 #include "geometry/closest_points.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 
 struct ObstacleBody {
-  Shape shape = Shape::sphere;
+  BodyKind kind = BodyKind::ball;
   Vec3 pivot{0, 0, 0};
   Vec3 center{0, 0, 0};        ///< m, of a sphere
   double radius = 0;           ///< m

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "contact/contact_work.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -54,14 +55,14 @@ std::optional<SurfacePoint> plane_penetration(const Obstacle& plane, const Vec3&
 }  // namespace
 
 std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& position) {
-  switch (obstacle.shape) {
-    case Shape::sphere:
+  switch (shape_of(obstacle).body) {
+    case BodyKind::ball:
       return sphere_penetration(obstacle, position);
-    case Shape::box:
+    case BodyKind::box:
       return box_penetration(obstacle, position);
-    case Shape::plane:
+    case BodyKind::half_space:
       return plane_penetration(obstacle, position);
-    case Shape::mesh:
+    case BodyKind::surface:
       return std::nullopt;  // a surface without a thickness of its own: no particle is inside it
   }
   return std::nullopt;
@@ -95,9 +96,8 @@ std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obsta
                                               double time_step) {
   std::optional<TunnellingRisk> risk;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (obstacles[k].shape == Shape::plane || obstacles[k].shape == Shape::mesh) continue;
-    const double thickness =
-        obstacles[k].shape == Shape::sphere ? 2 * obstacles[k].radius : obstacles[k].size.minCoeff();
+    const double thickness = shape_of(obstacles[k]).thickness(obstacles[k]);
+    if (thickness == infinity) continue;
     if (!risk || thickness < risk->thickness) risk = TunnellingRisk{0, k, 0, thickness};
   }
   if (!risk) return std::nullopt;

@@ -47,7 +47,7 @@ ObstacleTransition entry_of(const Obstacle& obstacle, const TriangleMesh& cloth,
   ObstacleTransition transition{.begin = time};
   if (!touches(cloth, obstacle, pose)) return transition;
   const Vec3 pivot = pivot_of(obstacle), place = pose.at(pivot);
-  if (obstacle.shape == Shape::plane) {
+  if (shape_of(obstacle).body == BodyKind::half_space) {
     const Vec3 normal = pose.turn * obstacle.normal.normalized();
     transition.way = -depth_of(cloth, place, normal, thickness) * normal;
     return transition;

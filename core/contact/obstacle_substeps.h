@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "contact/obstacle_body.h"
-#include "contact/rigid_motion.h"
 #include "geometry/bounds.h"
+#include "scene/obstacle_motion.h"
 
 namespace cloth {
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "contact/obstacle_entry.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -22,34 +23,12 @@ std::optional<std::size_t> earlier_self(const ObstaclesBefore& before, const std
   const std::vector<Obstacle>& obstacles = before.obstacles;
   if (obstacles.size() == after.size()) {
     const bool same_body = obstacles[k].shape == after[k].shape &&
-                           (after[k].shape != Shape::mesh || obstacles[k].mesh == after[k].mesh);
+                           (!shape_of(after[k]).is_from_file || obstacles[k].mesh == after[k].mesh);
     return same_body ? std::optional(k) : std::nullopt;
   }
   const auto found = std::find(obstacles.begin(), obstacles.end(), after[k]);
   if (found == obstacles.end()) return std::nullopt;
   return static_cast<std::size_t>(found - obstacles.begin());
-}
-
-/// From the one as the scene describes it to the other, about their pivots.
-Vec3 stretch_between(const Obstacle& from, const Obstacle& to) {
-  switch (from.shape) {
-    case Shape::sphere:
-      return Vec3::Constant(to.radius / from.radius);
-    case Shape::box:
-      return to.size.cwiseQuotient(from.size);
-    case Shape::mesh:
-      return Vec3::Constant(to.scale / from.scale);
-    case Shape::plane:
-      break;
-  }
-  return Vec3::Ones();
-}
-
-Eigen::Matrix3d turn_between(const Obstacle& from, const Obstacle& to) {
-  if (from.shape == Shape::plane && from.normal != to.normal)
-    return Eigen::Quaterniond::FromTwoVectors(from.normal, to.normal).toRotationMatrix();
-  if (from.shape == Shape::mesh && from.rotate != to.rotate) return turn_of(to) * turn_of(from).transpose();
-  return Eigen::Matrix3d::Identity();
 }
 
 /// From what an obstacle now is to what it was, in the pose that it had.
@@ -58,9 +37,10 @@ ObstacleTransition transition_from(const Obstacle& then, const Pose& pose_then, 
   const Pose pose_now = pose_of(now, time);
   ObstacleTransition transition{.way = pose_then.at(pivot_of(then)) - pose_now.at(pivot_of(now)),
                                 .begin = time};
-  transition.stretch = pose_then.stretch.cwiseProduct(stretch_between(now, then));
-  if (now.shape != Shape::sphere)  // whose turn nothing has to follow
-    transition.turn = rotation_of(pose_now.turn.transpose() * pose_then.turn * turn_between(now, then));
+  transition.stretch = pose_then.stretch.cwiseProduct(shape_of(now).stretch_between(now, then));
+  if (shape_of(now).body != BodyKind::ball)  // whose turn nothing has to follow
+    transition.turn =
+        rotation_of(pose_now.turn.transpose() * pose_then.turn * shape_of(now).turn_between(now, then));
   return transition;
 }
 

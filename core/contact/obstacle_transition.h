@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "contact/rigid_motion.h"
 #include "geometry/triangle_mesh.h"
+#include "scene/obstacle_motion.h"
 
 namespace cloth {
 

@@ -119,9 +119,9 @@ ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plan
                                                         const std::vector<Pose>& to) const {
   const ObstacleBody& body = bodies_[at(obstacle)];
   const Pose &from = poses_[at(obstacle)], &end = to[at(obstacle)];
-  if (body.shape == Shape::sphere && end.stretch == from.stretch)
+  if (body.kind == BodyKind::ball && end.stretch == from.stretch)
     return {plane.point + end.at(body.center) - from.at(body.center), plane.normal};
-  if (body.shape == Shape::sphere) {
+  if (body.kind == BodyKind::ball) {
     const double growth = end.stretch.x() / from.stretch.x();
     return {end.at(body.center) + growth * (plane.point - from.at(body.center)), plane.normal};
   }
@@ -133,7 +133,7 @@ ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plan
 /// shift.
 double ContinuousContact::turn_limit(std::size_t obstacle) const {
   const PoseInterpolation& path = paths_[obstacle];
-  if (!(path.angle() > 0) || bodies_[obstacle].shape == Shape::sphere) return 1;
+  if (!(path.angle() > 0) || bodies_[obstacle].kind == BodyKind::ball) return 1;
   const Vec3 pivot = path.pivot(part_);
   double gap = infinity, radius = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "geometry/at.h"
-#include "contact/rigid_motion.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -29,9 +30,10 @@ bool is_flat(const Surface& surface, const Vec3Field& position) {
 /// Whether a cloth could lie on one obstacle and be compressed by another.
 bool can_be_compressed(const std::vector<Obstacle>& obstacles) {
   const auto is_floor = [](const Obstacle& o) {
-    return !moves(o) && (o.shape == Shape::plane || o.shape == Shape::box);
+    const BodyKind kind = shape_of(o).body;
+    return !moves(o) && (kind == BodyKind::half_space || kind == BodyKind::box);
   };
-  const auto is_press = [](const Obstacle& o) { return moves(o) && o.shape != Shape::sphere; };
+  const auto is_press = [](const Obstacle& o) { return moves(o) && shape_of(o).body != BodyKind::ball; };
   return std::any_of(obstacles.begin(), obstacles.end(), is_floor) &&
          std::any_of(obstacles.begin(), obstacles.end(), is_press);
 }

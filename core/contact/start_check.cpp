@@ -46,25 +46,25 @@ class TouchSearch {
   /// A face, or none.
   std::optional<int> first_in(const Obstacle& obstacle, const Pose& pose) const {
     const ObstacleBody body = body_of(obstacle);
-    switch (body.shape) {
-      case Shape::sphere:
+    switch (body.kind) {
+      case BodyKind::ball:
         return first_face([&](const Corners& t) {
           const auto closest = closest_on_triangle(pose.at(body.center), t[0], t[1], t[2]);
           const double radius = pose.stretch.x() * body.radius;
           return closest.squared_distance <= radius * radius;
         });
-      case Shape::plane: {
+      case BodyKind::half_space: {
         const Vec3 normal = pose.turn * body.normal, point = pose.at(body.point);
         return first_face([&](const Corners& t) {
           return std::any_of(t.begin(), t.end(), [&](const Vec3& x) { return normal.dot(x - point) <= 0; });
         });
       }
-      case Shape::box: {
+      case BodyKind::box: {
         const OrientedBox box{pose.at(body.box.center), pose.turn * body.box.axes,
                               body.box.half.cwiseProduct(pose.stretch)};
         return first_face([&](const Corners& t) { return meets_box(t, box); });
       }
-      case Shape::mesh:
+      case BodyKind::surface:
         return first_in_mesh(body, pose);
     }
     return std::nullopt;
@@ -233,6 +233,11 @@ class StartCheck {
 std::vector<Problem> find_start_problems(const Scene& scene) {
   if (!has_continuous_contact(scene) && scene.obstacles.empty()) return {};
   return StartCheck(scene).problems();
+}
+
+SceneReading read_runnable_scene(const std::string& text, const std::string& place,
+                                 const std::vector<Override>& overrides, const MeshSource& meshes) {
+  return read_scene(text, place, overrides, meshes, find_start_problems);
 }
 
 bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose) {

@@ -5,8 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "contact/rigid_motion.h"
 #include "geometry/triangle_mesh.h"
+#include "scene/obstacle_motion.h"
+#include "scene/scene_json.h"
 
 namespace cloth {
 
@@ -15,6 +16,10 @@ namespace cloth {
 /// continuous, one for each obstacle that a free particle starts in; it may touch.
 /// Precondition: the scene has no other problems.
 std::vector<Problem> find_start_problems(const Scene& scene);
+
+/// A scene that can be run from its start: read_scene, with the start's problems where there are no others.
+SceneReading read_runnable_scene(const std::string& text, const std::string& place,
+                                 const std::vector<Override>& overrides = {}, const MeshSource& meshes = {});
 
 /// Whether a cloth touches an obstacle in a pose, or is in it where that is solid (a mesh is not).
 bool touches(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose);

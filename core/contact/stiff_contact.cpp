@@ -7,6 +7,7 @@
 #include "geometry/at.h"
 #include "integrators/implicit/linear_choice.h"
 #include "integrators/integrator.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -22,7 +23,7 @@ constexpr double on_surface = 1e-9;    // m, above rounding
 /// went through.
 std::optional<SurfacePoint> entered(const Obstacle& obstacle, const Vec3& from, const Vec3& position) {
   auto inside = penetration(obstacle, position);
-  if (!inside || obstacle.shape != Shape::box) return inside;
+  if (!inside || shape_of(obstacle).body != BodyKind::box) return inside;
   int axis = -1;
   double latest = -1;  // part of the way
   for (int k = 0; k < 3; ++k) {
@@ -43,21 +44,21 @@ std::optional<SurfacePoint> entered(const Obstacle& obstacle, const Vec3& from, 
 
 /// The point of the surface nearest to one that has moved along it, unless it is beyond an edge.
 std::optional<Vec3> beside(const Obstacle& obstacle, const Vec3& normal, const Vec3& position) {
-  switch (obstacle.shape) {
-    case Shape::sphere: {
+  switch (shape_of(obstacle).body) {
+    case BodyKind::ball: {
       const Vec3 out = position - obstacle.center;
       return Vec3(obstacle.center + obstacle.radius * out.normalized());
     }
-    case Shape::plane:
+    case BodyKind::half_space:
       return Vec3(position - normal.dot(position - obstacle.point) * normal);
-    case Shape::box: {
+    case BodyKind::box: {
       const Vec3 out = 0.5 * obstacle.size.cwiseProduct(normal);
       const Vec3 back = position - normal.dot(position - obstacle.center - out) * normal;
       const Vec3 beyond = (back - obstacle.center).cwiseAbs() - 0.5 * obstacle.size;
       if (beyond.maxCoeff() > on_surface) return std::nullopt;
       return back;
     }
-    case Shape::mesh:
+    case BodyKind::surface:
       break;
   }
   return std::nullopt;

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

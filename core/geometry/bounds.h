@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

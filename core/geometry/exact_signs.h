@@ -3,7 +3,7 @@
 // coordinate differences leaves the range of doubles.
 #pragma once
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

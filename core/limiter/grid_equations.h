@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "cloth/aligned.h"
+#include "geometry/aligned.h"
 #include "limiter/grid_plan.h"
 #include "limiter/tension_kernels.h"
 

@@ -55,9 +55,9 @@ struct ParameterInfo {
   std::vector<Words> word_sets{};      ///< Kind::words: the combinations that are allowed
 };
 
-/// Magnitudes that a model of cloth in the air has no use for, by unit: beyond them sums of squares, times and
-/// counts of steps leave what doubles and whole numbers hold. `smallest` is of lengths, times and masses that
-/// may not be 0; 0 where a unit has none.
+/// Magnitudes that a model of cloth in the air has no use for, by unit: beyond them sums of squares, times
+/// and counts of steps leave what doubles and whole numbers hold. `smallest` is of lengths, times and masses
+/// that may not be 0; 0 where a unit has none.
 struct PhysicalBound {
   double largest, smallest;
 };
@@ -85,5 +85,8 @@ struct Field {
   std::function<ParameterValue(const Owner&)> get;
   std::function<void(Owner&, const ParameterValue&)> set;
 };
+
+template <class Owner>
+using Fields = std::vector<Field<Owner>>;
 
 }  // namespace cloth

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "cloth/vec3_field.h"
+#include "geometry/vec3_field.h"
 
 namespace cloth {
 

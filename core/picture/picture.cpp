@@ -4,10 +4,11 @@
 #include <cmath>
 
 #include "cloth/mesh_cloth.h"
-#include "contact/rigid_motion.h"
 #include "geometry/mesh_look.h"
 #include "picture/floor.h"
 #include "picture/shapes.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -93,12 +94,13 @@ void Painter::add_obstacles() {
   const int matte = canvas_.add_surface(surface);
   const double cell = system_.springs.empty() ? 0 : (*system_.springs.begin()).rest_length;
   for (const Obstacle& o : scene_.obstacles) {
-    const Eigen::AlignedBox3d bounds = bounds_of(o, options_.time);
+    const Eigen::AlignedBox3d bounds = shape_of(o).bounds_at(o, pose_of(o, options_.time));
     if (bounds.isEmpty() || !bounds.min().allFinite() || !bounds.max().allFinite()) continue;
     PictureMesh mesh;
-    if (o.shape == Shape::mesh) {
+    const BodyKind kind = shape_of(o).body;
+    if (kind == BodyKind::surface) {
       mesh = body_mesh(placed_mesh(o));
-    } else if (o.shape == Shape::sphere) {
+    } else if (kind == BodyKind::ball) {
       const double arc = o.radius > 0 ? std::min(cell * cell / (4 * o.radius), 0.05 * o.radius) : 0;
       mesh = sphere_mesh(o.center, o.radius - arc);
     } else {
@@ -220,7 +222,9 @@ void Painter::add_floors() {
   std::optional<double> level;
   for (const Obstacle& o : scene_.obstacles) {
     const double length = o.normal.norm();
-    if (o.shape != Shape::plane || !o.point.allFinite() || !std::isfinite(length) || !(length > 0)) continue;
+    if (shape_of(o).body != BodyKind::half_space || !o.point.allFinite() || !std::isfinite(length) ||
+        !(length > 0))
+      continue;
     const Pose pose = pose_of(o, options_.time);
     const Vec3 point = pose.at(o.point), normal = pose.turn * (o.normal / length);
     floors_.emplace_back(point, normal, extent_, theme_);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/rigid_motion.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -26,23 +27,6 @@ double slope_of(const PictureCamera& camera) {
 }
 
 }  // namespace
-
-Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle, double time) {
-  if (obstacle.shape == Shape::plane) return {};
-  const Pose pose = pose_of(obstacle, time);
-  Eigen::AlignedBox3d home, bounds;
-  if (obstacle.shape == Shape::mesh) {
-    home = placed_bounds(obstacle);
-  } else if (obstacle.shape == Shape::sphere) {
-    const Vec3 half = Vec3::Constant(obstacle.radius), center = pose.at(obstacle.center);
-    return {center - half, center + half};
-  } else {
-    home = {obstacle.center - obstacle.size / 2, obstacle.center + obstacle.size / 2};
-  }
-  for (int k = 0; k < 8 && !home.isEmpty(); ++k)
-    bounds.extend(pose.at(home.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
-  return bounds;
-}
 
 EyeFrame::EyeFrame(const PictureCamera& camera, int width, int height) {
   eye = camera.eye.allFinite() ? camera.eye : Vec3(0, 0, 0);
@@ -92,7 +76,7 @@ PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, cons
     for (const Vec3& end : {arrow.from, arrow.to})
       if (end.allFinite() && end.norm() < most_distance) points.push_back(end);
   for (const Obstacle& obstacle : scene.obstacles) {
-    const Eigen::AlignedBox3d box = bounds_of(obstacle, time);
+    const Eigen::AlignedBox3d box = shape_of(obstacle).bounds_at(obstacle, pose_of(obstacle, time));
     if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) continue;
     for (int corner = 0; corner < 8; ++corner)
       points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));

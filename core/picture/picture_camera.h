@@ -34,9 +34,6 @@ PictureCamera camera_showing(const Scene& scene, const Vec3Field& position,
                              const Vec3& direction = usual_direction, double aspect = 4.0 / 3.0,
                              std::span<const PictureArrow> arrows = {}, double time = 0);
 
-/// m, of an obstacle where it is at `time` (s); empty for a plane.
-Eigen::AlignedBox3d bounds_of(const Obstacle& obstacle, double time);
-
 /// What moves the eye to the origin: x right, y up, z into the picture. Finite whatever the camera is.
 struct EyeFrame {
   Vec3 eye, right, up, forward;       ///< m; unit vectors

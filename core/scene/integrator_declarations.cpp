@@ -1,8 +1,8 @@
 // The parameters of the time integrator: those of all methods and what some have of their own.
 #include <map>
 
-#include "scene/method_facts.h"
 #include "params/field_builders.h"
+#include "scene/method_facts.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {

@@ -1,82 +1,11 @@
-// The parameters of obstacles: of each shape, of their surface and of their motion.
+// The parameters of obstacles of any shape: of their surface and of their motion. Those of the shapes stand
+// in their files (scene/shapes/).
 #include "params/field_builders.h"
-#include "scene/mesh_field.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
 namespace {
-
-Fields<Obstacle> mesh_obstacle_fields() {
-  using O = Obstacle;
-  return {mesh_file(&O::mesh, {.key = "file",
-                               .label = "Mesh",
-                               .doc = "OBJ file, as seen from the scene's folder, or built-in mesh."}),
-          number(&O::scale, {.key = "scale",
-                             .label = "Scale",
-                             .doc = "Factor on the file's lengths.",
-                             .scale = Scale::logarithmic,
-                             .minimum = 0,
-                             .minimum_excluded = true,
-                             .smallest = 1e-9,
-                             .slider_minimum = 0.01,
-                             .slider_maximum = 100}),
-          vector(&O::rotate, {.key = "rotate",
-                              .label = "Rotation",
-                              .unit = "deg",
-                              .doc = "Turns about the x, then the y, then the z axis.",
-                              .slider_minimum = -180,
-                              .slider_maximum = 180}),
-          vector(&O::translate, {.key = "translate",
-                                 .label = "Position",
-                                 .unit = "m",
-                                 .doc = "Where the file's origin is put.",
-                                 .formula = "x = translate + R_z R_y R_x scale x_file",
-                                 .slider_minimum = -2,
-                                 .slider_maximum = 2})};
-}
-
-Fields<Obstacle> shape_fields(Shape shape) {
-  using O = Obstacle;
-  const ParameterInfo place{.unit = "m", .slider_minimum = -2, .slider_maximum = 2};
-  auto placed = [&](const char* key, const char* label, const char* doc) {
-    ParameterInfo info = place;
-    info.key = key, info.label = label, info.doc = doc;
-    return info;
-  };
-  switch (shape) {
-    case Shape::sphere:
-      return {vector(&O::center, placed("center", "Centre", "Centre of the sphere.")),
-              number(&O::radius, {.key = "radius",
-                                  .label = "Radius",
-                                  .unit = "m",
-                                  .doc = "Radius of the sphere.",
-                                  .minimum = 0,
-                                  .minimum_excluded = true,
-                                  .slider_minimum = 0.01,
-                                  .slider_maximum = 1})};
-    case Shape::box:
-      return {vector(&O::center, placed("center", "Centre", "Centre of the box.")),
-              vector(&O::size, {.key = "size",
-                                .label = "Size",
-                                .unit = "m",
-                                .doc = "Full lengths of the box along x, y and z.",
-                                .minimum = 0,
-                                .minimum_excluded = true,
-                                .slider_minimum = 0.01,
-                                .slider_maximum = 2})};
-    case Shape::plane:
-      return {vector(&O::point, placed("point", "Point", "A point of the plane.")),
-              vector(&O::normal, {.key = "normal",
-                                  .label = "Normal",
-                                  .doc = "Outward direction of the plane.",
-                                  .unit_vector = true,
-                                  .slider_minimum = -1,
-                                  .slider_maximum = 1})};
-    case Shape::mesh:
-      return mesh_obstacle_fields();
-  }
-  return {};
-}
 
 Fields<Obstacle> with_response(Fields<Obstacle> fields) {
   using O = Obstacle;
@@ -108,8 +37,8 @@ Fields<Obstacle> with_response(Fields<Obstacle> fields) {
 
 const Fields<Obstacle>& obstacle_fields(Shape shape) {
   static const auto all = [] {
-    std::array<Fields<Obstacle>, all_shapes.size()> fields;
-    for (std::size_t k = 0; k < fields.size(); ++k) fields[k] = with_response(shape_fields(all_shapes[k]));
+    std::vector<Fields<Obstacle>> fields;
+    for (const ObstacleShape* each : obstacle_shapes()) fields.push_back(with_response(each->fields()));
     return fields;
   }();
   return all[static_cast<std::size_t>(shape)];

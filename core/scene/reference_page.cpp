@@ -5,6 +5,7 @@
 #include <map>
 
 #include "scene/method_facts.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -14,7 +15,7 @@ namespace {
 Scene full_scene() {
   Scene scene;
   add_every_block(scene);
-  for (const Shape shape : all_shapes) scene.obstacles.emplace_back().shape = shape;
+  for (const ObstacleShape* shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape->shape;
   return scene;
 }
 

@@ -2,57 +2,15 @@
 // benchmarks start from the same scenes. An absent block is absent physics. SI units throughout.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
+#include "cloth/cloth_sheet.h"
 #include "params/parameter.h"
 #include "scene/scene_mesh.h"
 
 namespace cloth {
-
-enum class NamedPin {
-  top_left,
-  top_right,
-  bottom_left,
-  bottom_right,
-  top_edge,
-  bottom_edge,
-  left_edge,
-  right_edge
-};
-
-struct PinnedParticle {
-  int row = 0, column = 0;
-  bool operator==(const PinnedParticle&) const = default;
-};
-
-using Pin = std::variant<NamedPin, PinnedParticle>;
-
-/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0. With a mesh
-/// its vertices instead, shifted by `origin`: they count as one row, and width, height, across and down say
-/// nothing.
-struct ClothSheet {
-  MeshChoice mesh = {};  ///< no file: a grid
-  int columns = 33, rows = 33;
-  double width = 1.0, height = 1.0;  ///< m
-  double mass = 0.25;                ///< kg, of the whole cloth
-  Vec3 origin{-0.5, 1.0, 0.0};       ///< m, where particle (0, 0) starts
-  Vec3 across{1, 0, 0}, down{0, -1, 0};
-  std::vector<Pin> pins;
-  bool is_mesh() const { return !mesh.file.empty(); }
-  bool operator==(const ClothSheet&) const = default;
-};
-
-/// Stiffnesses in N/m; a family of stiffness 0 does not exist.
-struct SpringMaterial {
-  double structural = 0, shear = 0, flexion = 0;
-  double damping = 0;  ///< N s/m, along every spring
-  bool operator==(const SpringMaterial&) const = default;
-};
 
 /// wind * (1 + amplitude * sin(2 pi frequency t))
 struct Gust {
@@ -79,8 +37,8 @@ struct Deformation {
   bool operator==(const Deformation&) const = default;
 };
 
+/// What a shape is, its class says (scene/obstacle_shape.h).
 enum class Shape { sphere, box, plane, mesh };
-inline constexpr std::array<Shape, 4> all_shapes{Shape::sphere, Shape::box, Shape::plane, Shape::mesh};
 
 /// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene
 /// describes it.
@@ -92,7 +50,7 @@ struct Keyframe {
 };
 
 /// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal;
-/// mesh: mesh, scale, rotate, translate (placed_mesh).
+/// mesh: mesh, scale, rotate, translate.
 struct Obstacle {
   Shape shape = Shape::sphere;
   Vec3 center{0, 0, 0};
@@ -165,14 +123,5 @@ struct Scene {
 inline Vec3 gravity_of(const Scene& scene) {
   return scene.gravity.value_or(Vec3::Zero());
 }
-
-const char* name_of(Shape shape);
-const char* name_of(NamedPin pin);
-std::optional<NamedPin> pin_named(const std::string& name);
-inline constexpr int named_pin_count = 8;
-
-/// The particles (row * columns + column) that `pins` hold, ascending, each once. Pins outside the grid are
-/// ignored.
-std::vector<int> pinned_particles(const ClothSheet& cloth);
 
 }  // namespace cloth

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/obstacle_shape.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -24,7 +25,7 @@ void check_meshes(const Scene& scene, std::vector<Problem>& problems) {
   };
   if (scene.cloth.is_mesh()) check("cloth.mesh", scene.cloth.mesh);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
-    if (scene.obstacles[i].shape == Shape::mesh)
+    if (shape_of(scene.obstacles[i]).is_from_file)
       check(fmt::format("obstacles.{}.file", i), scene.obstacles[i].mesh);
 }
 

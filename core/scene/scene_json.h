@@ -1,6 +1,7 @@
 // Scenes as JSON: reading with every problem at once, writing, and the JSON Schema of the format.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,9 +35,15 @@ struct MeshSource {
   const Scene* known = nullptr;            ///< whose meshes need not be read again where they are the same
 };
 
-/// `place` names the text in messages.
+/// What must hold of a scene beside the reader's own rules.
+using SceneCheck = std::function<std::vector<Problem>(const Scene&)>;
+
+/// `place` names the text in messages. `further` looks at a scene that has no other problem; its problems get
+/// their places in the text too. A scene that is to be run from its start is read by read_runnable_scene
+/// (contact/start_check.h).
 SceneReading read_scene(const std::string& text, const std::string& place,
-                        const std::vector<Override>& overrides = {}, const MeshSource& meshes = {});
+                        const std::vector<Override>& overrides = {}, const MeshSource& meshes = {},
+                        const SceneCheck& further = {});
 
 /// Writes every value, defaults resolved, with numbers that read back to the same bits.
 std::string write_scene(const Scene& scene);

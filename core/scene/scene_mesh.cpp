@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <numbers>
 
 #include "geometry/builtin_meshes.h"
 #include "geometry/mesh_repair.h"
 #include "io/fnv_hash.h"
 #include "io/obj_reader.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -20,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using SharedMesh = std::shared_ptr<const SceneMesh>;
+using SharedMesh = std::shared_ptr<const LoadedMesh>;
 
 std::string hash_of(const TriangleMesh& mesh) {
   FnvHash hash;
@@ -51,7 +50,7 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-void list_edges(SceneMesh& mesh) {
+void list_edges(LoadedMesh& mesh) {
   for (const MeshEdge& edge : unique_edges(mesh.surface)) {
     mesh.edges.push_back({edge.from, edge.to});
     if (edge.triangles == 1) ++mesh.open_edges;
@@ -63,7 +62,7 @@ void list_edges(SceneMesh& mesh) {
 }
 
 SharedMesh prepared(const std::string& file, const TriangleMesh& from_file, bool built_in) {
-  auto mesh = std::make_shared<SceneMesh>();
+  auto mesh = std::make_shared<LoadedMesh>();
   mesh->file = file;
   mesh->built_in = built_in;
   Weld welded = weld(from_file, 0);
@@ -128,7 +127,7 @@ template <class SceneType, class Visit>  // visit(path, choice)
 void for_each_mesh(SceneType& scene, Visit visit) {
   if (scene.cloth.is_mesh()) visit(std::string("cloth.mesh"), scene.cloth.mesh);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
-    if (scene.obstacles[i].shape == Shape::mesh)
+    if (shape_of(scene.obstacles[i]).is_from_file)
       visit(fmt::format("obstacles.{}.file", i), scene.obstacles[i].mesh);
 }
 
@@ -142,11 +141,6 @@ SharedMesh find_loaded(const Scene* scene, const SceneFolder& folder, const std:
 }
 
 }  // namespace
-
-bool MeshChoice::operator==(const MeshChoice& other) const {
-  if (file != other.file || is_loaded() != other.is_loaded()) return false;
-  return !is_loaded() || loaded == other.loaded || loaded->hash == other.loaded->hash;
-}
 
 std::vector<Problem> load_meshes(Scene& scene, const Scene* known) {
   std::vector<Problem> problems;
@@ -198,36 +192,11 @@ Scene moved_to_folder(const Scene& scene, const std::string& folder) {
   for_each_mesh(moved, [&](const std::string&, MeshChoice& mesh) {
     if (!mesh.is_loaded() || mesh.loaded->built_in || fs::path(mesh.file).is_absolute()) return;
     const fs::path seen = (from / mesh.file).lexically_normal().lexically_relative(to.lexically_normal());
-    auto renamed = std::make_shared<SceneMesh>(*mesh.loaded);
+    auto renamed = std::make_shared<LoadedMesh>(*mesh.loaded);
     mesh.file = renamed->file = (seen.empty() ? from / mesh.file : seen).generic_string();
     mesh.loaded = std::move(renamed);
   });
   return moved;
-}
-
-Eigen::Matrix3d turn_of(const Obstacle& obstacle) {
-  const Vec3 angle = obstacle.rotate * (std::numbers::pi / 180);
-  using Turn = Eigen::AngleAxisd;
-  return (Turn(angle.z(), Vec3::UnitZ()) * Turn(angle.y(), Vec3::UnitY()) * Turn(angle.x(), Vec3::UnitX()))
-      .toRotationMatrix();
-}
-
-Eigen::AlignedBox3d placed_bounds(const Obstacle& obstacle) {
-  Eigen::AlignedBox3d bounds;
-  if (!obstacle.mesh.is_loaded()) return bounds;
-  const Eigen::Matrix3d turn = obstacle.scale * turn_of(obstacle);
-  for (int k = 0; k < 8; ++k) {
-    const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(k);
-    bounds.extend(Vec3(obstacle.translate + turn * obstacle.mesh.loaded->bounds.corner(corner)));
-  }
-  return bounds;
-}
-
-TriangleMesh placed_mesh(const Obstacle& obstacle) {
-  TriangleMesh mesh = obstacle.mesh.loaded->surface;
-  const Eigen::Matrix3d turn = obstacle.scale * turn_of(obstacle);
-  for (Vec3& vertex : mesh.vertices) vertex = obstacle.translate + turn * vertex;
-  return mesh;
 }
 
 }  // namespace cloth

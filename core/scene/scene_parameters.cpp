@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "scene/blocks.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -14,13 +15,11 @@ Block obstacle_block(const Scene& scene, std::size_t index) {
   const auto same_before =
       std::count_if(scene.obstacles.begin(), scene.obstacles.begin() + static_cast<long>(index),
                     [&](const Obstacle& other) { return other.shape == shape; });
-  std::string title = name_of(shape);
-  title.front() = static_cast<char>(std::toupper(title.front()));
   const auto of_scene = [index](Scene& s) -> Obstacle& { return s.obstacles.at(index); };
   std::vector<Parameter> parameters = bound<Obstacle>(path, obstacle_fields(shape), of_scene);
   for (Parameter& parameter : bound<Obstacle>(path, motion_fields(), of_scene))
     parameters.push_back(std::move(parameter));
-  return {path, title + " " + std::to_string(same_before + 1),
+  return {path, std::string(shape_of(shape).title) + " " + std::to_string(same_before + 1),
           "An obstacle that the cloth's particles cannot enter.", true, std::move(parameters)};
 }
 
@@ -28,8 +27,6 @@ Block obstacle_block(const Scene& scene, std::size_t index) {
 Eigen::AlignedBox3d bounds_of(const ClothSheet& cloth) {
   return cloth.mesh.is_loaded() ? cloth.mesh.loaded->bounds : Eigen::AlignedBox3d(Vec3(Vec3::Zero()));
 }
-
-constexpr const char* starter_mesh = "bunny.obj";
 
 /// The height at which a new obstacle meets the cloth: below its lower edge if it hangs, under its middle if
 /// it lies.
@@ -39,20 +36,12 @@ Vec3 middle_of(const ClothSheet& cloth) {
          0.5 * cloth.height * cloth.down.normalized();
 }
 
-Obstacle starter_obstacle(Shape shape, const ClothSheet& cloth) {
+Obstacle starter_obstacle(const ObstacleShape& shape, const ClothSheet& cloth) {
   Obstacle obstacle;
-  obstacle.shape = shape;
+  obstacle.shape = shape.shape;
   const double span =
       cloth.is_mesh() ? bounds_of(cloth).sizes().maxCoeff() : std::max(cloth.width, cloth.height);
-  obstacle.radius = 0.25 * span;
-  obstacle.size = Vec3::Constant(0.4 * span);
-  obstacle.center = middle_of(cloth) - Vec3(0, 0.75 * span, 0);
-  obstacle.point = middle_of(cloth) - Vec3(0, 1.25 * span, 0);
-  if (shape == Shape::mesh) {
-    obstacle.mesh.file = starter_mesh;
-    obstacle.scale = 0.5 * span;
-    obstacle.translate = middle_of(cloth) - Vec3(0, span, 0);
-  }
+  shape.start(obstacle, middle_of(cloth), span);
   return obstacle;
 }
 
@@ -64,7 +53,7 @@ Scene starter_scene(const Scene& like) {
   add_every_block(scene);
   scene.integrator.method = like.integrator.method;
   for (const Obstacle& obstacle : like.obstacles)
-    scene.obstacles.push_back(starter_obstacle(obstacle.shape, like.cloth));
+    scene.obstacles.push_back(starter_obstacle(shape_of(obstacle), like.cloth));
   return scene;
 }
 
@@ -116,16 +105,13 @@ std::vector<BlockOffer> offers_for(const Scene& scene) {
   for (const BlockRow& row : block_rows())
     if (row.optional && !row.is_present(scene) && row.optional->suits(scene))
       offers.push_back({row.path, row.title, row.doc, row.optional->start});
-  const auto obstacle = [&](Shape shape, const char* title, const char* doc) {
-    offers.push_back({name_of(shape), title, doc, [shape](Scene& s) {
-                        s.obstacles.push_back(starter_obstacle(shape, s.cloth));
+  for (const ObstacleShape* shape : obstacle_shapes())
+    offers.push_back({shape->name, shape->title, shape->doc,
+                      [shape](Scene& s) {
+                        s.obstacles.push_back(starter_obstacle(*shape, s.cloth));
                         load_meshes(s);
-                      }});
-  };
-  obstacle(Shape::sphere, "Sphere", "A ball under the cloth.");
-  obstacle(Shape::box, "Box", "A cube or rectangle under the cloth.");
-  obstacle(Shape::plane, "Plane", "A floor under the cloth.");
-  obstacle(Shape::mesh, "Mesh", "A body of any shape under the cloth, from an OBJ file.");
+                      },
+                      true});
   return offers;
 }
 

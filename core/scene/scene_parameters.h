@@ -9,9 +9,6 @@
 
 namespace cloth {
 
-template <class Owner>
-using Fields = std::vector<Field<Owner>>;
-
 /// Declarations that depend on a choice; those of the other blocks stand in their rows (scene/blocks.h).
 const Fields<ClothSheet>& cloth_fields(bool is_mesh);
 const Fields<Obstacle>& obstacle_fields(Shape shape);
@@ -58,6 +55,7 @@ struct BlockOffer {
   std::string title;
   std::string doc;
   std::function<void(Scene&)> add;
+  bool is_obstacle = false;
 };
 std::vector<BlockOffer> offers_for(const Scene& scene);
 

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "contact/rigid_motion.h"
-#include "contact/start_check.h"
 #include "io/json_reader.h"
 #include "io/json_syntax.h"
 #include "io/printable.h"
 #include "scene/blocks.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 
@@ -152,23 +152,22 @@ class SceneReader : public JsonReader<json> {
     if (!list) return;
     const json& value = *list;
     if (!value.is_array()) return problem("obstacles", value, "must be a list");
-    const std::string shapes = "\"sphere\", \"box\", \"plane\" or \"mesh\"";
     for (std::size_t i = 0; i < value.size(); ++i) {
       const std::string path = fmt::format("obstacles.{}", i);
       Obstacle& obstacle = obstacles.emplace_back();
       if (!object(value[i], path)) continue;
       const json* shape = member(value[i], "shape");
       if (!shape) {
-        add_problem(path + ".shape", "must be given: " + shapes);
+        add_problem(path + ".shape", "must be given: " + shape_names());
         continue;
       }
-      const auto known = std::find_if(all_shapes.begin(), all_shapes.end(),
-                                      [&](Shape one) { return *shape == name_of(one); });
-      if (known == all_shapes.end()) {
-        problem(path + ".shape", *shape, "must be " + shapes);
+      const auto known = std::find_if(obstacle_shapes().begin(), obstacle_shapes().end(),
+                                      [&](const ObstacleShape* one) { return *shape == one->name; });
+      if (known == obstacle_shapes().end()) {
+        problem(path + ".shape", *shape, "must be " + shape_names());
         continue;
       }
-      obstacle.shape = *known;
+      obstacle.shape = (*known)->shape;
       known_keys(value[i], path,
                  keys_of(obstacle_fields(obstacle.shape), keys_of(motion_fields(), {"shape", "keyframes"})));
       fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);
@@ -176,6 +175,17 @@ class SceneReader : public JsonReader<json> {
       if (const json* keys = member(value[i], "keyframes"))
         read_keyframes(*keys, path + ".keyframes", obstacle);
     }
+  }
+
+  static std::string shape_names() {
+    std::string names;
+    for (const ObstacleShape* shape : obstacle_shapes())
+      names += fmt::format("{}\"{}\"",
+                           names.empty()                       ? ""
+                           : shape == obstacle_shapes().back() ? " or "
+                                                               : ", ",
+                           shape->name);
+    return names;
   }
 
   void read_keyframes(const json& value, const std::string& path, Obstacle& obstacle) {
@@ -311,7 +321,8 @@ std::optional<Override> parse_override(const std::string& text) {
 }
 
 SceneReading read_scene(const std::string& text, const std::string& place,
-                        const std::vector<Override>& overrides, const MeshSource& meshes) {
+                        const std::vector<Override>& overrides, const MeshSource& meshes,
+                        const SceneCheck& further) {
   if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
   json document = json::parse(text);
   const Placer place_problem(text, place, overrides);
@@ -330,8 +341,7 @@ SceneReading read_scene(const std::string& text, const std::string& place,
   for (const Problem& problem : reader.problems) named.insert(problem.path);
   for (Problem& problem : find_problems(scene))
     if (!named.count(problem.path)) reader.problems.push_back(std::move(problem));
-  const bool edits_a_run = meshes.known != nullptr;  // the cloth is elsewhere by now
-  if (reader.problems.empty() && !edits_a_run) reader.problems = find_start_problems(scene);
+  if (reader.problems.empty() && further) reader.problems = further(scene);
 
   if (reader.problems.empty()) return {std::move(scene), {}};
   for (Problem& problem : reader.problems) place_problem(problem);

@@ -3,6 +3,7 @@
 
 #include "scene/blocks.h"
 #include "scene/method_facts.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_json.h"
 
 namespace cloth {
@@ -82,11 +83,11 @@ json cloth_schema() {
 
 json obstacles_schema() {
   json shapes = json::array();
-  for (const Shape shape : all_shapes) {
-    json entry = object_schema(obstacle_fields(shape), {{"shape", {{"const", name_of(shape)}}}});
+  for (const ObstacleShape* shape : obstacle_shapes()) {
+    json entry = object_schema(obstacle_fields(shape->shape), {{"shape", {{"const", shape->name}}}});
     entry["properties"].update(object_schema(motion_fields())["properties"]);
     entry["properties"]["keyframes"] = {{"type", "array"}, {"items", object_schema(keyframe_fields())}};
-    entry["required"] = shape == Shape::mesh ? json::array({"shape", "file"}) : json::array({"shape"});
+    entry["required"] = shape->is_from_file ? json::array({"shape", "file"}) : json::array({"shape"});
     shapes.push_back(std::move(entry));
   }
   return {{"type", "array"}, {"items", {{"anyOf", std::move(shapes)}}}};

@@ -4,6 +4,7 @@
 
 #include "io/fnv_hash.h"
 #include "scene/blocks.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_json.h"
 
 namespace cloth {
@@ -49,7 +50,7 @@ void put_motion(const Obstacle& obstacle, json& into) {
 json obstacles_json(const Scene& scene) {
   json list = json::array();
   for (const Obstacle& obstacle : scene.obstacles) {
-    json entry{{"shape", name_of(obstacle.shape)}};
+    json entry{{"shape", shape_of(obstacle).name}};
     put_fields(obstacle_fields(obstacle.shape), obstacle, entry);
     put_motion(obstacle, entry);
     list.push_back(std::move(entry));

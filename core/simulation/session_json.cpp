@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "contact/start_check.h"
 #include "io/json_reader.h"
 #include "io/json_syntax.h"
 #include "scene/scene_checks.h"
@@ -80,7 +81,7 @@ class SessionReader : public JsonReader<json> {
     const json* value = required(root, "", "scene");
     if (!value) return;
     SceneReading reading =
-        read_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "", {}, {folder_});
+        read_runnable_scene(value->dump(-1, ' ', false, json::error_handler_t::replace), "", {}, {folder_});
     if (reading.scene) session.scene = std::move(*reading.scene);
     add_problems("scene", std::move(reading.problems));
   }

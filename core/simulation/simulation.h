@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "contact/contact_stage.h"
-#include "contact/rigid_motion.h"
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"

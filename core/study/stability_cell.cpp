@@ -25,7 +25,7 @@ double shortest_spacing(const ClothSheet& sheet) {
     const GridCell grid = cell_of(sheet);
     return std::min(grid.across.norm(), grid.down.norm());
   }
-  const SceneMesh& mesh = *sheet.mesh.loaded;
+  const LoadedMesh& mesh = *sheet.mesh.loaded;
   double shortest = infinity;
   for (const auto& [a, b] : mesh.edges)
     shortest = std::min(shortest, (mesh.surface.vertices[static_cast<std::size_t>(a)] -

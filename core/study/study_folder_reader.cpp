@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/start_check.h"
 #include "integrators/registry.h"
 #include "io/csv.h"
 #include "io/json_entry.h"
@@ -106,7 +107,8 @@ std::vector<std::string> methods_of(const JsonEntry& options) {
 
 Scene read_scene_of(const JsonEntry& root, const std::filesystem::path& folder) {
   const MeshSource meshes{.folder = SceneFolder{.path = folder.string()}};
-  SceneReading reading = read_scene(root.at("scene").value().dump(), "study.json, scene", {}, meshes);
+  SceneReading reading =
+      read_runnable_scene(root.at("scene").value().dump(), "study.json, scene", {}, meshes);
   if (!reading.scene) throw BadFolder{reading.problems.front().text()};
   return std::move(*reading.scene);
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "scene/reference_page.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
@@ -24,13 +25,10 @@ Scene full_scene() {
   scene.contact.emplace();
   // So far apart that no value below lets the cloth start in an obstacle.
   scene.cloth.origin = {-0.5, 20, 30};
-  for (const Shape shape : all_shapes) {
+  for (const ObstacleShape* one : obstacle_shapes()) {
     Obstacle& obstacle = scene.obstacles.emplace_back();
-    obstacle.shape = shape;
-    Vec3& place = shape == Shape::plane  ? obstacle.point
-                  : shape == Shape::mesh ? obstacle.translate
-                                         : obstacle.center;
-    place = {0, -50, 0};
+    obstacle.shape = one->shape;
+    one->place(obstacle) = {0, -50, 0};
   }
   scene.obstacles.back().mesh.file = "disc.obj";
   load_meshes(scene);
@@ -154,10 +152,7 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
   EXPECT_EQ(offered, std::set<std::string>({"springs", "deformation", "damping", "gravity", "air",
                                             "self_contact", "sphere", "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
-    EXPECT_TRUE(offer.path == "self_contact" ||
-                std::any_of(all_shapes.begin(), all_shapes.end(),
-                            [&](Shape shape) { return offer.path == name_of(shape); }))
-        << offer.path;
+    EXPECT_TRUE(offer.path == "self_contact" || offer.is_obstacle) << offer.path;
 }
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {

@@ -9,6 +9,7 @@
 
 #include "cloth/grid.h"
 #include "picture/shapes.h"
+#include "scene/obstacle_shape.h"
 #include "support/random.h"
 #include "support/scenes.h"
 
@@ -288,8 +289,8 @@ TEST(Picture, IsMadeOfWhateverItIsGiven) {
   options.wireframe = true;
   options.arrows = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {std::nan(""), 0, 0}}};
   Obstacle odd = sheet.ball_at(0);
-  for (const Shape shape : all_shapes) {
-    odd.shape = shape;
+  for (const ObstacleShape* one : obstacle_shapes()) {
+    odd.shape = one->shape;
     odd.radius = 0;
     odd.size = odd.normal = {0, 0, 0};
     sheet.scene.obstacles.push_back(odd);

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "scene/obstacle_shape.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_edits.h"
 #include "scene/scene_parameters.h"
@@ -178,8 +179,8 @@ TEST_F(SceneMeshFile, IsNamedAsSeenFromWhereTheSceneIsWritten) {
 }
 
 TEST(SceneMesh, IsScaledThenTurnedAboutXYAndZThenMoved) {
-  Obstacle obstacle;
-  auto mesh = std::make_shared<SceneMesh>();
+  Obstacle obstacle{.shape = Shape::mesh};
+  auto mesh = std::make_shared<LoadedMesh>();
   mesh->file = obstacle.mesh.file = "x";
   mesh->surface = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};
   for (const Vec3& vertex : mesh->surface.vertices) mesh->bounds.extend(vertex);
@@ -192,7 +193,7 @@ TEST(SceneMesh, IsScaledThenTurnedAboutXYAndZThenMoved) {
   EXPECT_NEAR((placed.vertices[1] - Vec3(10, 0, 2)).norm(), 0, 1e-12);  // y -> z -> z
   EXPECT_NEAR((placed.vertices[2] - Vec3(12, 0, 0)).norm(), 0, 1e-12);  // z -> -y -> x
   for (const Vec3& vertex : placed.vertices)
-    EXPECT_LT(placed_bounds(obstacle).exteriorDistance(vertex), 1e-12);
+    EXPECT_LT(shape_of(obstacle).bounds(obstacle).exteriorDistance(vertex), 1e-12);
 }
 
 TEST(SceneMesh, AnObstacleIsOfferedWithABuiltInMesh) {

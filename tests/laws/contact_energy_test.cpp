@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/rigid_motion.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_motion.h"
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contact/continuous_contact.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_scenes.h"
 
 namespace cloth::test::obstacle_drag_test {
@@ -92,7 +93,7 @@ std::vector<Case> all_drags() {
 
 INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle, ::testing::ValuesIn(all_drags()), [](const auto& tested) {
   const Case& drag = tested.param;
-  std::string name = std::string(name_of(drag.shape)) + "_" + drag.method + "_" + drag.drag.name;
+  std::string name = std::string(shape_of(drag.shape).name) + "_" + drag.method + "_" + drag.drag.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });

@@ -75,7 +75,7 @@ ObstacleBody random_body(Shape shape, Random& random) {
   obstacle.normal = random.vector(1);
   if (shape != Shape::mesh) return body_of(obstacle);
   ObstacleBody body;
-  body.shape = shape;
+  body.kind = shape_of(shape).body;
   body.pivot = random.vector(0.1);
   set_mesh(body, random);
   for (const Vec3& vertex : body.vertices) body.reach = std::max(body.reach, (vertex - body.pivot).norm());
@@ -94,8 +94,8 @@ PoseInterpolation random_interpolation(const ObstacleBody& body, Random& random)
   const Vec3 rotation = random.uniform(0, most_angle) * random.vector(1).normalized();
   const Eigen::Matrix3d turn = random.coin() ? from.turn : turn_by(rotation) * from.turn;
   Vec3 stretch = Vec3::Ones();
-  if (random.coin() && body.shape != Shape::plane) stretch = Vec3::Constant(random.uniform(0.3, 2));
-  if (random.coin() && body.shape == Shape::box) stretch.y() = random.uniform(0.3, 2);
+  if (random.coin() && body.kind != BodyKind::half_space) stretch = Vec3::Constant(random.uniform(0.3, 2));
+  if (random.coin() && body.kind == BodyKind::box) stretch.y() = random.uniform(0.3, 2);
   const Pose begin = about(body.pivot, from.turn, from.at(body.pivot), stretch);
   if (random.coin()) stretch.setOnes();
   return {body.pivot, begin, about(body.pivot, turn, pivot, stretch)};
@@ -154,11 +154,11 @@ std::vector<FeaturePair> all_pairs(const Surface& cloth, const std::vector<Obsta
     const auto add = [&](PairKind kind, std::size_t features, std::size_t foreign) {
       add_all(obstacle, kind, features, foreign, pairs);
     };
-    if (body.shape == Shape::plane) add(PairKind::vertex_plane, vertices, 1);
-    if (body.shape == Shape::sphere) add(PairKind::face_sphere, faces, 1);
-    if (body.shape == Shape::box) add(PairKind::vertex_box, vertices, 1);
-    if (body.shape == Shape::mesh) add(PairKind::vertex_face, vertices, body.surface.triangles.size());
-    if (body.shape == Shape::box || body.shape == Shape::mesh) {
+    if (body.kind == BodyKind::half_space) add(PairKind::vertex_plane, vertices, 1);
+    if (body.kind == BodyKind::ball) add(PairKind::face_sphere, faces, 1);
+    if (body.kind == BodyKind::box) add(PairKind::vertex_box, vertices, 1);
+    if (body.kind == BodyKind::surface) add(PairKind::vertex_face, vertices, body.surface.triangles.size());
+    if (body.kind == BodyKind::box || body.kind == BodyKind::surface) {
       add(PairKind::edge_edge, edges, body.surface.edges.size());
       add(PairKind::face_vertex, faces, body.vertices.size());
     }

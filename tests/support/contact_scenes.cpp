@@ -5,8 +5,9 @@
 #include <stdexcept>
 
 #include "cloth/mesh_cloth.h"
-#include "contact/rigid_motion.h"
 #include "geometry/builtin_meshes.h"
+#include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth::test {
 namespace {

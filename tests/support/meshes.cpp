@@ -91,7 +91,7 @@ ClothSystem shuffled_grid(int rows, int columns, Random& random) {
 }
 
 MeshChoice mesh_of_scene(const TriangleMesh& surface) {
-  auto mesh = std::make_shared<SceneMesh>();
+  auto mesh = std::make_shared<LoadedMesh>();
   mesh->file = "made.obj";
   mesh->surface = surface;
   for (const MeshEdge& edge : unique_edges(surface)) {

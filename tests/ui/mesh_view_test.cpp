@@ -7,8 +7,8 @@ namespace clothlab::test::mesh_view_test {
 
 namespace {
 
-std::shared_ptr<const cloth::SceneMesh> scene_mesh(const cloth::TriangleMesh& surface) {
-  auto mesh = std::make_shared<cloth::SceneMesh>();
+std::shared_ptr<const cloth::LoadedMesh> scene_mesh(const cloth::TriangleMesh& surface) {
+  auto mesh = std::make_shared<cloth::LoadedMesh>();
   mesh->file = "made.obj";
   mesh->surface = surface;
   for (const cloth::MeshEdge& edge : unique_edges(surface)) mesh->edges.push_back({edge.from, edge.to});

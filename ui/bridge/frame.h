@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "contact/rigid_motion.h"
+#include "scene/obstacle_motion.h"
 #include "scene/scene.h"
 
 namespace clothlab {
@@ -36,8 +36,8 @@ struct ContactPicture {
 struct ClothFrame {
   std::uint64_t topology = 0;  ///< changes when rows, columns or a new start change the mesh
   int rows = 0, columns = 0;   ///< of a mesh 1 and the number of vertices
-  std::shared_ptr<const cloth::SceneMesh> mesh;  ///< what a cloth from a mesh is made of; none: a grid
-  std::vector<float> positions;                  ///< m; x y z of particle 0, of particle 1, ... (row-major)
+  std::shared_ptr<const cloth::LoadedMesh> mesh;  ///< what a cloth from a mesh is made of; none: a grid
+  std::vector<float> positions;                   ///< m; x y z of particle 0, of particle 1, ... (row-major)
   std::vector<float> normals;        ///< like positions; along the sum of the neighbouring triangles' areas
   std::vector<float> strain;         ///< per particle: largest |d|/L - 1 of its structural and shear springs
   float largest_strain = 0;          ///< of `strain`, at least 0

@@ -3,6 +3,7 @@
 #include <QFileInfo>
 #include <QSettings>
 
+#include "contact/start_check.h"
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/session_json.h"
@@ -26,7 +27,7 @@ cloth::SceneFolder folder_of(const QString& path) {
 }
 
 OpenedScene read_text(const std::string& text, const std::string& place, const QString& path) {
-  cloth::SceneReading reading = cloth::read_scene(text, place, {}, {folder_of(path)});
+  cloth::SceneReading reading = cloth::read_runnable_scene(text, place, {}, {folder_of(path)});
   return {std::move(reading.scene), {}, path, lines_of(reading.problems)};
 }
 

@@ -14,7 +14,7 @@ namespace {
 const char* const cloth_path = "cloth.mesh";
 
 /// The mesh that a path of the scene names, once it is read.
-const cloth::SceneMesh* mesh_at(const cloth::Scene& scene, const std::string& path) {
+const cloth::LoadedMesh* mesh_at(const cloth::Scene& scene, const std::string& path) {
   if (path == cloth_path) return scene.cloth.mesh.loaded.get();
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     if (path == "obstacles." + std::to_string(k) + ".file") return scene.obstacles[k].mesh.loaded.get();
@@ -33,7 +33,7 @@ bool names_mesh(const cloth::Parameter& parameter) {
          (parameter.info.key == "mesh" || parameter.info.key == "file");
 }
 
-QString mesh_report(const cloth::SceneMesh& mesh, bool is_cloth) {
+QString mesh_report(const cloth::LoadedMesh& mesh, bool is_cloth) {
   QString text = QObject::tr("%1 vertices, %2 triangles, ")
                      .arg(grouped(mesh.surface.vertices.size()), grouped(mesh.surface.triangles.size()));
   if (mesh.open_edges == 0)
@@ -80,7 +80,7 @@ QList<QWidget*> MeshEditor::tabStops() const {
 
 void MeshEditor::showValue(const cloth::ParameterValue& value) {
   TextEditor::showValue(value);
-  const cloth::SceneMesh* mesh = mesh_at(document().scene(), path());
+  const cloth::LoadedMesh* mesh = mesh_at(document().scene(), path());
   report_->setVisible(mesh != nullptr);
   if (mesh) report_->setText(mesh_report(*mesh, path() == cloth_path));
 }

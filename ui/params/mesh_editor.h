@@ -31,6 +31,6 @@ class MeshEditor : public TextEditor {
 bool names_mesh(const cloth::Parameter& parameter);
 
 /// How large a mesh is, whether it is closed, and what is unusual about it.
-QString mesh_report(const cloth::SceneMesh& mesh, bool is_cloth);
+QString mesh_report(const cloth::LoadedMesh& mesh, bool is_cloth);
 
 }  // namespace clothlab

@@ -101,10 +101,8 @@ void ParameterPanel::fillAddMenu() {
   menu_->clear();
   bool among_obstacles = false;
   for (const cloth::BlockOffer& offer : offers_for(document_.scene())) {
-    const bool obstacle = std::any_of(cloth::all_shapes.begin(), cloth::all_shapes.end(),
-                                      [&](cloth::Shape shape) { return offer.path == name_of(shape); });
-    if (obstacle && !among_obstacles && !menu_->isEmpty()) menu_->addSeparator();
-    among_obstacles = obstacle;
+    if (offer.is_obstacle && !among_obstacles && !menu_->isEmpty()) menu_->addSeparator();
+    among_obstacles = offer.is_obstacle;
     QAction* action = menu_->addAction(QString::fromStdString(offer.title));
     action->setObjectName("offer:" + QString::fromStdString(offer.path));
     action->setToolTip(QString::fromStdString(offer.doc));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/obstacle_shape.h"
 #include "viewport/picking.h"
 
 namespace clothlab {
@@ -47,19 +48,21 @@ double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, c
   const Eigen::Vector3d pivot = cloth::pivot_of(o);
   const cloth::Pose placed = cloth::about(pivot, pose.turn, pose.at(pivot));  // as large as it is to be
   const Ray local{placed.back(ray.origin), placed.turn.transpose() * ray.direction};
-  switch (o.shape) {
-    case cloth::Shape::sphere:
+  switch (shape_of(o).body) {
+    case cloth::BodyKind::ball:
       return distance_to_sphere(local, o.center, o.radius);
-    case cloth::Shape::box:
+    case cloth::BodyKind::box:
       return distance_to_box({local.origin - o.center, local.direction}, 0.5 * o.size);
-    case cloth::Shape::mesh: {
-      if (!o.mesh.loaded || !(o.scale > 0)) return infinity;
-      const Eigen::Matrix3d back = cloth::turn_of(o).transpose();
-      return o.scale *
-             distance_to_mesh({back * (local.origin - o.translate) / o.scale, back * local.direction},
-                              o.mesh.loaded->surface);
+    case cloth::BodyKind::surface: {
+      const cloth::PlacedSurface surface = shape_of(o).surface(o);
+      if (!surface.mesh || !(surface.scale.minCoeff() > 0)) return infinity;
+      const cloth::Pose put{surface.turn, surface.place, surface.scale};
+      // Along the unscaled way, so that it is a length in the world whatever the scale of each axis.
+      const Eigen::Vector3d along = (surface.turn.transpose() * local.direction).cwiseQuotient(surface.scale);
+      const double length = along.norm();
+      return distance_to_mesh({put.back(local.origin), along / length}, *surface.mesh) / length;
     }
-    case cloth::Shape::plane:
+    case cloth::BodyKind::half_space:
       break;
   }
   return infinity;
@@ -80,18 +83,7 @@ cloth::Obstacle moved_by(const cloth::Obstacle& obstacle, const Eigen::Vector3d&
     for (cloth::Keyframe& key : moved.keyframes) key.position += by;
     return moved;
   }
-  switch (moved.shape) {
-    case cloth::Shape::sphere:
-    case cloth::Shape::box:
-      moved.center += by;
-      break;
-    case cloth::Shape::plane:
-      moved.point += by;
-      break;
-    case cloth::Shape::mesh:
-      moved.translate += by;
-      break;
-  }
+  shape_of(moved).place(moved) += by;
   return moved;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/obstacle_shape.h"
+
 namespace clothlab {
 namespace {
 
@@ -12,22 +14,8 @@ Eigen::Vector3d particle(const ClothFrame& frame, std::size_t i) {
   return {p[0], p[1], p[2]};
 }
 
-/// As the scene describes it.
-Eigen::AlignedBox3d bounds_at_home(const cloth::Obstacle& o) {
-  if (o.shape == cloth::Shape::mesh) return cloth::placed_bounds(o);
-  return {o.center - o.size / 2, o.center + o.size / 2};
-}
-
 void extend_by(const cloth::Obstacle& o, const cloth::Pose& pose, Eigen::AlignedBox3d& box) {
-  if (o.shape == cloth::Shape::plane) return;
-  if (o.shape == cloth::Shape::sphere) {
-    const Eigen::Vector3d center = pose.at(o.center), half = Eigen::Vector3d::Constant(o.radius);
-    box.extend(Eigen::AlignedBox3d(center - half, center + half));
-    return;
-  }
-  const Eigen::AlignedBox3d home = bounds_at_home(o);
-  for (int k = 0; k < 8 && !home.isEmpty(); ++k)
-    box.extend(pose.at(home.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
+  box.extend(shape_of(o).bounds_at(o, pose));
 }
 
 }  // namespace
@@ -82,7 +70,7 @@ Eigen::AlignedBox3d reach_of_cloth(const ClothFrame& frame) {
 }
 
 bool is_level(const cloth::Obstacle& obstacle) {
-  if (obstacle.shape != cloth::Shape::plane) return false;
+  if (shape_of(obstacle).body != cloth::BodyKind::half_space) return false;
   return std::abs(obstacle.normal.normalized().y()) > 0.999;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cloth/sums.h"
+#include "contact/start_check.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/step_batches.h"
 
@@ -61,7 +62,8 @@ SceneRun scene_run(const std::string& name, const std::vector<std::string>& sett
     const bool quoted = setting.find_first_of(" []\"") != std::string::npos;
     command += " --set " + (quoted ? "'" + setting + "'" : setting);
   }
-  SceneReading reading = read_scene(find_builtin_scene(name)->text, name, overrides, {SceneFolder{"", true}});
+  SceneReading reading =
+      read_runnable_scene(find_builtin_scene(name)->text, name, overrides, {SceneFolder{"", true}});
   assert(reading.scene);
   return {*std::move(reading.scene), command + " --out " + name};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
 
 namespace cloth::speed {
@@ -41,7 +42,7 @@ Scene without_contact(Scene scene) {
 std::size_t triangles_in(const std::vector<Obstacle>& obstacles) {
   std::size_t triangles = 0;
   for (const Obstacle& obstacle : obstacles)
-    if (obstacle.shape == Shape::mesh) triangles += placed_mesh(obstacle).triangles.size();
+    if (shape_of(obstacle).body == BodyKind::surface) triangles += placed_mesh(obstacle).triangles.size();
   return triangles;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "geometry/bounds.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_bodies.h"
 #include "support/crossings.h"
 
@@ -58,8 +59,8 @@ struct Setting {
 Setting random_setting(Random& random) {
   Setting setting;
   setting.sheet = random_sheet(4, 4, random);
-  for (const Shape shape : all_shapes) {
-    setting.bodies.push_back(random_body(shape, random));
+  for (const ObstacleShape* one : obstacle_shapes()) {
+    setting.bodies.push_back(random_body(one->shape, random));
     setting.poses.push_back(random_interpolation(setting.bodies.back(), random).at(random.uniform(0, 1)));
   }
   return setting;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/rigid_motion.h"
+#include "scene/obstacle_motion.h"
 #include "scene/scene_json.h"
 #include "support/contact_scenes.h"
 #include "support/random.h"

@@ -9,6 +9,7 @@
 
 #include "contact/close_pairs.h"
 #include "geometry/at.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_bodies.h"
 
 namespace cloth::test::near_pairs_test {
@@ -110,9 +111,9 @@ struct Intersection {
 Intersection random_meeting(Random& random) {
   Intersection meeting;
   meeting.sheet = random_sheet(random.integer(3, 6), random.integer(3, 6), random);
-  for (const Shape shape : all_shapes) {
+  for (const ObstacleShape* one : obstacle_shapes()) {
     if (random.coin()) continue;
-    meeting.bodies.push_back(random_body(shape, random));
+    meeting.bodies.push_back(random_body(one->shape, random));
     meeting.paths.push_back(random_interpolation(meeting.bodies.back(), random));
   }
   return meeting;

@@ -1,9 +1,9 @@
-#include "contact/rigid_motion.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "scene/obstacle_motion.h"
 
 namespace cloth::test::rigid_motion_test {
 namespace {

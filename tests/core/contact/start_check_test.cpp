@@ -63,7 +63,7 @@ TEST(StartCheck, OfContactParticleByParticleFindsFreeParticlesInsideAndLetsThemT
   scene.obstacles[0].center.y() += 1e-3;
   EXPECT_EQ(start_problem(scene),
             "obstacles.0: the cloth starts in this obstacle, first near particle 8 at (0.2, 0, 0.2) m");
-  const SceneReading reading = read_scene(write_scene(scene), "inside");
+  const SceneReading reading = read_runnable_scene(write_scene(scene), "inside");
   EXPECT_FALSE(reading.scene);
   scene.cloth.pins = {PinnedParticle{2, 2}};
   EXPECT_TRUE(find_start_problems(scene).empty()) << "a pin stays where it is";
@@ -189,7 +189,7 @@ TEST(SelfIntersection, IsThereWhereACellIsFoldedOntoItsNeighbourAndNowhereElse) 
 }
 
 TEST(StartCheck, StandsInTheReadersMessageWithItsLine) {
-  const SceneReading reading = read_scene(
+  const SceneReading reading = read_runnable_scene(
       "{ \"cloth\": {}, \"contact\": {},\n"
       "  \"obstacles\": [\n"
       "    { \"shape\": \"plane\", \"point\": [0, 9, 0] } ] }",

@@ -10,6 +10,7 @@
 
 #include "geometry/round_numbers.h"
 #include "geometry/mesh_look.h"
+#include "scene/obstacle_shape.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
 #include "viewport/gl/uniforms.h"
@@ -47,7 +48,8 @@ QColor mixed(const QColor& a, const QColor& b, float share_of_b) {
 
 /// So that a processor takes long to draw it once more for its shadow.
 bool is_large(const cloth::Obstacle& o) {
-  return o.shape == cloth::Shape::mesh && o.mesh.loaded && o.mesh.loaded->surface.triangles.size() > 20000;
+  const auto mesh = shape_of(o).surface(o).mesh;
+  return mesh && mesh->triangles.size() > 20000;
 }
 
 }  // namespace
@@ -195,15 +197,16 @@ void ClothRenderer::draw_targets(const Shot& shot, const Theme& theme) {
 
 void ClothRenderer::draw_obstacle(QOpenGLShaderProgram& program, const cloth::Obstacle& o,
                                   const cloth::Pose& pose) {
-  if (o.shape == cloth::Shape::plane || (o.shape == cloth::Shape::mesh && !o.mesh.loaded)) return;
-  const bool is_mesh = o.shape == cloth::Shape::mesh;
-  const Eigen::Matrix3d turn = is_mesh ? Eigen::Matrix3d(pose.turn * cloth::turn_of(o)) : pose.turn;
+  using cloth::BodyKind;
+  const BodyKind kind = shape_of(o).body;
+  const cloth::PlacedSurface surface = shape_of(o).surface(o);
+  if (kind == BodyKind::half_space || (kind == BodyKind::surface && !surface.mesh)) return;
   program.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
-  program.setUniformValue("turn", uniform_matrix(turn));
-  if (is_mesh) {
-    program.setUniformValue("scale", uniform_vector(o.scale * pose.stretch));
-    bodies_->draw(*o.mesh.loaded);
-  } else if (o.shape == cloth::Shape::sphere) {
+  program.setUniformValue("turn", uniform_matrix(Eigen::Matrix3d(pose.turn * surface.turn)));
+  if (kind == BodyKind::surface) {
+    program.setUniformValue("scale", uniform_vector(surface.scale.cwiseProduct(pose.stretch)));
+    bodies_->draw(*surface.mesh);
+  } else if (kind == BodyKind::ball) {
     const double arc = o.radius > 0 ? cell_length_ * cell_length_ / (4 * o.radius) : 0;
     program.setUniformValue("scale",
                             uniform_vector((o.radius - std::min(arc, 0.05 * o.radius)) * pose.stretch));
@@ -275,7 +278,7 @@ void ClothRenderer::find_floors(const Shot& shot) {
   for (const bool level_ones : {true, false}) {
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
       const cloth::Obstacle& o = obstacles_[k];
-      if (o.shape != cloth::Shape::plane) continue;
+      if (shape_of(o).body != cloth::BodyKind::half_space) continue;
       const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
       const Eigen::Vector3d normal = pose.turn * o.normal.normalized();
       const bool is_level = std::abs(normal.y()) > 0.999;

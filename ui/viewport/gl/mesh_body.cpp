@@ -1,8 +1,7 @@
 #include "viewport/gl/mesh_body.h"
 
-#include <algorithm>
-
 #include "geometry/mesh_look.h"
+#include "scene/obstacle_shape.h"
 
 namespace clothlab {
 
@@ -11,26 +10,23 @@ MeshBodies::~MeshBodies() {
 }
 
 void MeshBodies::keep(const std::vector<cloth::Obstacle>& obstacles) {
-  const auto is_shown = [&](const cloth::SceneMesh* mesh) {
-    return std::any_of(obstacles.begin(), obstacles.end(), [&](const cloth::Obstacle& o) {
-      return o.shape == cloth::Shape::mesh && o.mesh.loaded.get() == mesh;
-    });
-  };
+  std::map<const cloth::TriangleMesh*, std::shared_ptr<const cloth::TriangleMesh>> shown;
+  for (const cloth::Obstacle& o : obstacles)
+    if (const auto mesh = shape_of(o).surface(o).mesh) shown.emplace(mesh.get(), mesh);
   for (auto body = bodies_.begin(); body != bodies_.end();) {
-    if (is_shown(body->first)) {
+    if (shown.count(body->first)) {
       ++body;
       continue;
     }
     release(body->second);
     body = bodies_.erase(body);
   }
-  for (const cloth::Obstacle& o : obstacles)
-    if (o.shape == cloth::Shape::mesh && o.mesh.loaded && !bodies_.count(o.mesh.loaded.get()))
-      bodies_.emplace(o.mesh.loaded.get(), upload(o.mesh.loaded));
+  for (const auto& [key, mesh] : shown)
+    if (!bodies_.count(key)) bodies_.emplace(key, upload(mesh));
 }
 
-MeshBodies::Body MeshBodies::upload(std::shared_ptr<const cloth::SceneMesh> mesh) {
-  const cloth::TriangleMesh& surface = mesh->surface;
+MeshBodies::Body MeshBodies::upload(std::shared_ptr<const cloth::TriangleMesh> mesh) {
+  const cloth::TriangleMesh& surface = *mesh;
   const std::vector<cloth::Vec3> normals = cloth::corner_normals(surface);
   std::vector<float> values;  // position and normal of each corner
   values.reserve(6 * normals.size());
@@ -61,7 +57,7 @@ void MeshBodies::release(const Body& body) {
   gl_.glDeleteBuffers(1, &body.vertices);
 }
 
-void MeshBodies::draw(const cloth::SceneMesh& mesh) {
+void MeshBodies::draw(const cloth::TriangleMesh& mesh) {
   const auto found = bodies_.find(&mesh);
   if (found == bodies_.end()) return;
   gl_.glBindVertexArray(found->second.vertex_array);

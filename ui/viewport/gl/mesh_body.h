@@ -1,4 +1,4 @@
-// A mesh obstacle in the graphics memory: uploaded once for each mesh, placed by the shader.
+// Obstacles that are surfaces in the graphics memory: uploaded once for each mesh, placed by the shader.
 #pragma once
 
 #include <QOpenGLFunctions_3_3_Core>
@@ -21,19 +21,19 @@ class MeshBodies {
   /// Uploads the meshes of these obstacles that are not there yet, and lets go of those that none of them
   /// has.
   void keep(const std::vector<cloth::Obstacle>& obstacles);
-  void draw(const cloth::SceneMesh& mesh);  ///< as its file has it; one of those that are kept
+  void draw(const cloth::TriangleMesh& mesh);  ///< before it is placed; one of those that are kept
 
  private:
   struct Body {
-    std::shared_ptr<const cloth::SceneMesh> mesh;  ///< so that its address is not given to another
+    std::shared_ptr<const cloth::TriangleMesh> mesh;  ///< so that its address is not given to another
     GLuint vertex_array = 0, vertices = 0;
     GLsizei count = 0;
   };
-  Body upload(std::shared_ptr<const cloth::SceneMesh> mesh);
+  Body upload(std::shared_ptr<const cloth::TriangleMesh> mesh);
   void release(const Body& body);
 
   QOpenGLFunctions_3_3_Core& gl_;
-  std::map<const cloth::SceneMesh*, Body> bodies_;
+  std::map<const cloth::TriangleMesh*, Body> bodies_;
 };
 
 }  // namespace clothlab

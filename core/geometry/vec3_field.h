@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-#include "cloth/aligned.h"
+#include "geometry/aligned.h"
 
 namespace cloth {
 

@@ -1,10 +1,10 @@
-// Where an obstacle is: by its own motion, a function of time alone, it turns and shifts; what an edit has
-// made larger or smaller is stretched as well until it has its size (contact/obstacle_transition).
+// Rigid motion: turns and shifts, and the way from one to another; what an edit has made larger or smaller is
+// stretched as well until it has its size (contact/obstacle_transition).
 #pragma once
 
 #include <algorithm>
 
-#include "scene/scene.h"
+#include "params/parameter.h"
 
 namespace cloth {
 
@@ -27,18 +27,6 @@ Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now
 /// A turn by |rotation| about it, in rad; and the rotation of a turn, the short way.
 Eigen::Matrix3d turn_by(const Vec3& rotation);
 Vec3 rotation_of(const Eigen::Matrix3d& turn);
-
-/// The point about which an obstacle spins: centre of a sphere or box, point of a plane, origin of a placed
-/// mesh. In m, before any motion.
-Vec3 pivot_of(const Obstacle& obstacle);
-
-bool moves(const Obstacle& obstacle);
-
-/// `time` in s.
-Pose pose_of(const Obstacle& obstacle, double time);
-
-/// m/s, at most, of any point within `reach` metres of the pivot, at any time.
-double highest_speed(const Obstacle& obstacle, double reach);
 
 /// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the stretch
 /// evenly.

@@ -1,4 +1,4 @@
-#include "scene/scene.h"
+#include "cloth/cloth_sheet.h"
 
 #include <algorithm>
 #include <array>
@@ -42,20 +42,6 @@ ParticleRange range_of(const PinnedParticle& pin, int rows, int columns) {
 }
 
 }  // namespace
-
-const char* name_of(Shape shape) {
-  switch (shape) {
-    case Shape::sphere:
-      return "sphere";
-    case Shape::box:
-      return "box";
-    case Shape::plane:
-      return "plane";
-    case Shape::mesh:
-      return "mesh";
-  }
-  return "";
-}
 
 const char* name_of(NamedPin pin) {
   return pin_names[static_cast<std::size_t>(pin)];

@@ -1,0 +1,40 @@
+#include "params/field_builders.h"
+#include "scene/obstacle_shape.h"
+
+namespace cloth {
+namespace {
+
+class PlaneShape final : public ObstacleShape {
+ public:
+  PlaneShape()
+      : ObstacleShape({Shape::plane, "plane", "Plane", "A floor under the cloth.", BodyKind::half_space}) {}
+
+  Fields<Obstacle> fields() const override {
+    return {vector(&Obstacle::point, place_info("point", "Point", "A point of the plane.")),
+            vector(&Obstacle::normal, {.key = "normal",
+                                       .label = "Normal",
+                                       .doc = "Outward direction of the plane.",
+                                       .unit_vector = true,
+                                       .slider_minimum = -1,
+                                       .slider_maximum = 1})};
+  }
+  Vec3& place(Obstacle& plane) const override { return plane.point; }
+  void start(Obstacle& plane, const Vec3& middle, double span) const override {
+    plane.point = middle - Vec3(0, 1.25 * span, 0);
+  }
+  Eigen::AlignedBox3d bounds(const Obstacle&) const override { return {}; }
+  Vec3 stretch_between(const Obstacle&, const Obstacle&) const override { return Vec3::Ones(); }
+  Eigen::Matrix3d turn_between(const Obstacle& from, const Obstacle& to) const override {
+    if (from.normal == to.normal) return Eigen::Matrix3d::Identity();
+    return Eigen::Quaterniond::FromTwoVectors(from.normal, to.normal).toRotationMatrix();
+  }
+};
+
+}  // namespace
+
+const ObstacleShape& plane_shape() {
+  static const PlaneShape shape;
+  return shape;
+}
+
+}  // namespace cloth

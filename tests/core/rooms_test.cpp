@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// From the ground up.
-const std::vector<std::string> rooms{"params",     "geometry", "cloth",       "io",      "scene",   "kernels",
+const std::vector<std::string> rooms{"params",     "geometry", "io", "cloth",      "scene",   "kernels",
                                      "sparse",     "forces",   "integrators", "limiter", "contact", "measure",
                                      "simulation", "picture",  "report",      "study",   "compare"};
 

@@ -260,7 +260,8 @@ std::size_t Checkpoint::bytes() const {
 }
 
 Checkpoint Simulation::checkpoint() const {
-  Checkpoint checkpoint{run_};
+  Checkpoint checkpoint;
+  static_cast<RunState&>(checkpoint) = run_;
   checkpoint.method = scene_.integrator.method;
   checkpoint.memory = integrator_->remember();
   if (contact_) checkpoint.obstacle_poses = contact_->poses();

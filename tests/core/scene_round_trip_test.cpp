@@ -122,7 +122,7 @@ Scene any_scene(Random& random) {
         SpringMaterial{positive(random), positive(random), positive(random), random.uniform(0, 1)};
   if (random.coin()) scene.damping = random.coin() ? 0.0 : positive(random);
   if (random.coin()) scene.gravity = any_vector(random);
-  if (random.coin()) scene.air = Air{positive(random), any_vector(random), std::nullopt};
+  if (random.coin()) scene.air = Air{positive(random), positive(random), any_vector(random), std::nullopt};
   if (scene.air && random.coin()) scene.air->gust = Gust{positive(random), positive(random)};
   if (random.coin()) scene.deformation = any_deformation(random);
   for (int n = random.integer(0, 3); n > 0; --n) scene.obstacles.push_back(any_obstacle(random));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/at.h"
 #include "geometry/bounds.h"
 #include "scene/obstacle_shape.h"
 #include "support/contact_bodies.h"

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// From the ground up.
-const std::vector<std::string> rooms{"params",     "geometry", "io", "cloth",      "scene",   "kernels",
+const std::vector<std::string> rooms{"params",     "geometry", "io",          "cloth",   "scene",   "kernels",
                                      "sparse",     "forces",   "integrators", "limiter", "contact", "measure",
                                      "simulation", "picture",  "report",      "study",   "compare"};
 
@@ -78,20 +78,22 @@ TEST(Rooms, IncludeOnlyWhatStandsBeforeThem) {
 
 TEST(Rooms, OfCoreIncludeNothingOfQt) {
   for (const auto& entry : fs::recursive_directory_iterator(source("core")))
-    if (entry.is_regular_file())
+    if (entry.is_regular_file()) {
       EXPECT_FALSE(std::regex_search(text_of(entry.path()), std::regex("#include <Q[A-Z]"))) << entry.path();
+    }
 }
 
-/// A table: the room of a row includes the room of a column so many times. Nothing stands above the diagonal.
+/// A table: the room of a row includes the room of a column so many times. A column has its name beside the
+/// diagonal, above which there is nothing.
 std::string drawn() {
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const std::string& room : rooms)
     for (const Include& include : includes_below(source("core") / room))
       if (include.room() != room && place_of(include.room()) < std::ssize(rooms))
         ++counts[{room, include.room()}];
-  constexpr int cell = 30, label = 110, top = 100;
+  constexpr int cell = 30, label = 110, top = 10;
   const int size = static_cast<int>(rooms.size());
-  const int width = label + cell * size + 10, height = top + cell * size + 10;
+  const int width = label + cell * size + 90, height = top + cell * size + 10;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n"
@@ -102,20 +104,17 @@ std::string drawn() {
     const std::string& name = rooms[static_cast<std::size_t>(k)];
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#222222\">{}</text>\n", label - 8,
                        y + 20, name);
-    svg += fmt::format("<text transform=\"translate({},{}) rotate(-60)\" fill=\"#222222\">{}</text>\n",
-                       x + 18, top - 8, name);
+    svg += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"#6b7480\">{}</text>\n", x + cell + 6, y + 20, name);
     svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#d8dde3\"/>\n", x, y,
                        cell - 2, cell - 2);
   }
   for (const auto& [pair, count] : counts) {
     const auto x = label + cell * place_of(pair.second), y = top + cell * place_of(pair.first);
-    const double shade = std::min(1.0, 0.25 + count / 24.0);
-    svg += fmt::format(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#2f6fa8\" "
-        "fill-opacity=\"{:.2f}\"/>\n",
-        x, y, cell - 2, cell - 2, shade);
+    const bool many = count > 9;
+    svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", x, y, cell - 2,
+                       cell - 2, many ? "#2f6fa8" : "#b9d2e8");
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{}\">{}</text>\n",
-                       x + (cell - 2) / 2, y + 19, shade > 0.6 ? "#ffffff" : "#222222", count);
+                       x + (cell - 2) / 2, y + 19, many ? "#ffffff" : "#222222", count);
   }
   return svg + "</svg>\n";
 }
@@ -123,9 +122,8 @@ std::string drawn() {
 TEST(Rooms, AreThoseOfThePictureInTheDocumentation) {
   const fs::path path = source("docs") / "pictures" / "rooms.svg";
   const std::string now = drawn();
-  if (const char* write = std::getenv("CLOTHLAB_WRITE_PICTURES"); write && *write) {
+  if (const char* write = std::getenv("CLOTHLAB_WRITE_PICTURES"); write && *write)
     std::ofstream(path, std::ios::binary) << now;
-  }
   EXPECT_TRUE(text_of(path) == now) << "CLOTHLAB_WRITE_PICTURES=1 with this test writes " << path << " anew";
 }
 

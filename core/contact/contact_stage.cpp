@@ -67,7 +67,7 @@ class PathContact : public ContactStage {
   bool is_continuous() const override { return true; }
   void set_team(WorkerTeam* team) override { contact_.set_team(team); }
   void set_stop_test(const std::function<bool()>& test) override { contact_.set_stop_test(test); }
-  std::vector<Pose> poses() const override { return contact_.poses(); }
+  const std::vector<Pose>& poses() const override { return contact_.poses(); }
   void restore(const std::vector<Pose>& poses, const ObstacleTransitions& transitions,
                const ThicknessTransition& thickness) override {
     contact_.set_transitions(transitions, thickness);

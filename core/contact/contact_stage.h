@@ -50,7 +50,10 @@ class ContactStage {
   /// Asked within a step; where it says so the report is `interrupted`.
   virtual void set_stop_test(const std::function<bool()>&) {}
   /// Where the obstacles are as the next step begins, one of each; none: where the scene says.
-  virtual std::vector<Pose> poses() const { return {}; }
+  virtual const std::vector<Pose>& poses() const {
+    static const std::vector<Pose> none;
+    return none;
+  }
   /// Goes on from there, with the transitions that edits have begun; the touches of the last step are
   /// forgotten.
   virtual void restore(const std::vector<Pose>&, const ObstacleTransitions&, const ThicknessTransition&) {}

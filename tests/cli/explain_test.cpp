@@ -28,6 +28,7 @@ TEST(Explain, SaysWhichStagesAreInAndWhyTheRestIsLeftOut) {
   EXPECT_EQ(left_out,
             (std::map<std::string, std::string>{{"viscous damping", "the scene has no \"damping\""},
                                                 {"air drag", "the scene has no \"air\""},
+                                                {"skin friction", "the scene has no \"air\""},
                                                 {"wind", "there is no air to blow"},
                                                 {"deformation rate", "the scene has no \"deformation\""},
                                                 {"contact", "the scene has no \"obstacles\""},

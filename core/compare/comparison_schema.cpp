@@ -15,7 +15,7 @@ using json = nlohmann::ordered_json;
 Scene full_scene(const std::string& method) {
   Scene scene;
   add_every_block(scene);
-  for (const ObstacleShape* shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape->shape;
+  for (const Shape shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape;
   scene.integrator.method = method;
   return scene;
 }

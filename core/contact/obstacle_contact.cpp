@@ -24,54 +24,10 @@ double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds,
   return work_of(contact, speeds);
 }
 
-std::optional<SurfacePoint> sphere_penetration(const Obstacle& sphere, const Vec3& position) {
-  const Vec3 out = position - sphere.center;
-  const double squared = out.squaredNorm();
-  if (!(squared < sphere.radius * sphere.radius)) return std::nullopt;
-  // The centre itself is equally far from every point of the surface: up is as good as any.
-  const Vec3 normal = squared > 0 ? Vec3(out / std::sqrt(squared)) : Vec3(0, 1, 0);
-  return SurfacePoint{sphere.center + sphere.radius * normal, normal};
-}
-
-std::optional<SurfacePoint> box_penetration(const Obstacle& box, const Vec3& position) {
-  const Vec3 inside = position - box.center;
-  const Vec3 depth = 0.5 * box.size - inside.cwiseAbs();
-  int axis = 0;
-  if (!(depth.minCoeff(&axis) > 0)) return std::nullopt;
-  const double side = inside[axis] < 0 ? -1 : 1;
-  SurfacePoint surface{position, Vec3::Zero()};
-  surface.normal[axis] = side;
-  surface.point[axis] = box.center[axis] + side * 0.5 * box.size[axis];
-  return surface;
-}
-
-std::optional<SurfacePoint> plane_penetration(const Obstacle& plane, const Vec3& position) {
-  const Vec3 normal = plane.normal.normalized();
-  const double height = normal.dot(position - plane.point);
-  if (!(height < 0)) return std::nullopt;
-  return SurfacePoint{position - height * normal, normal};
-}
-
 }  // namespace
 
-std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& position) {
-  switch (shape_of(obstacle).body) {
-    case BodyKind::ball:
-      return sphere_penetration(obstacle, position);
-    case BodyKind::box:
-      return box_penetration(obstacle, position);
-    case BodyKind::half_space:
-      return plane_penetration(obstacle, position);
-    case BodyKind::surface:
-      return std::nullopt;  // a surface without a thickness of its own: no particle is inside it
-  }
-  return std::nullopt;
-}
-
 Obstacle grown(Obstacle obstacle, double length) {
-  obstacle.radius += length;
-  obstacle.size += Vec3::Constant(2 * length);
-  obstacle.point += length * obstacle.normal.normalized();
+  shape_of(obstacle).grow(obstacle, length);
   return obstacle;
 }
 

@@ -12,18 +12,9 @@
 #include "contact/contact_mark.h"
 #include "contact/contact_memory.h"
 #include "contact/contact_report.h"
-#include "scene/scene.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth {
-
-/// Where a penetrating particle belongs.
-struct SurfacePoint {
-  Vec3 point;
-  Vec3 normal;  ///< outward, of length one
-};
-
-/// The nearest surface point, or nothing if `position` is outside or on the surface.
-std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& position);
 
 /// The velocity after contact, only changed if it goes inward. coulomb: v_n -> -restitution v_n, and the
 /// tangential part loses up to friction |change of v_n|. reflect (report, Eq. (17)): v -> friction (v - 2 v_n

@@ -15,29 +15,6 @@
 namespace cloth {
 namespace {
 
-/// The solid box |x| <= half and a triangle in its frame: a corner or an edge of the triangle in the box, or
-/// an edge of the box through the triangle.
-bool meets_box(const Corners& triangle, const OrientedBox& box) {
-  Corners local;
-  for (std::size_t k = 0; k < 3; ++k) local[k] = box.axes.transpose() * (triangle[k] - box.center);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 p = local[k], way = local[(k + 1) % 3] - p;
-    double from = 0, to = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double a = (-box.half[axis] - p[axis]) / way[axis], b = (box.half[axis] - p[axis]) / way[axis];
-      if (way[axis] != 0)
-        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
-      else if (std::abs(p[axis]) > box.half[axis])
-        to = -1;
-    }
-    if (from <= to) return true;
-  }
-  const std::array<Vec3, 8> corner = corners(box);
-  return std::any_of(box_edges.begin(), box_edges.end(), [&](const auto& edge) {
-    return intersection_of(corner[at(edge[0])], corner[at(edge[1])], triangle) != Intersection::apart;
-  });
-}
-
 /// Where a cloth first touches something, or itself.
 class TouchSearch {
  public:
@@ -45,29 +22,9 @@ class TouchSearch {
 
   /// A face, or none.
   std::optional<int> first_in(const Obstacle& obstacle, const Pose& pose) const {
-    const ObstacleBody body = body_of(obstacle);
-    switch (body.kind) {
-      case BodyKind::ball:
-        return first_face([&](const Corners& t) {
-          const auto closest = closest_on_triangle(pose.at(body.center), t[0], t[1], t[2]);
-          const double radius = pose.stretch.x() * body.radius;
-          return closest.squared_distance <= radius * radius;
-        });
-      case BodyKind::half_space: {
-        const Vec3 normal = pose.turn * body.normal, point = pose.at(body.point);
-        return first_face([&](const Corners& t) {
-          return std::any_of(t.begin(), t.end(), [&](const Vec3& x) { return normal.dot(x - point) <= 0; });
-        });
-      }
-      case BodyKind::box: {
-        const OrientedBox box{pose.at(body.box.center), pose.turn * body.box.axes,
-                              body.box.half.cwiseProduct(pose.stretch)};
-        return first_face([&](const Corners& t) { return meets_box(t, box); });
-      }
-      case BodyKind::surface:
-        return first_in_mesh(body, pose);
-    }
-    return std::nullopt;
+    const ObstacleShape& shape = shape_of(obstacle);
+    if (shape.body == BodyKind::surface) return first_in_mesh(body_of(obstacle), pose);
+    return first_face([&](const Corners& face) { return shape.touches(obstacle, pose, face); });
   }
 
   /// The first place where the cloth passes through itself; where it does not, the first where it touches

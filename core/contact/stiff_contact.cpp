@@ -18,65 +18,20 @@ constexpr double accepted_work = 0.5;  // of the residual along a step that is s
 constexpr double least_work = 1e-3;    // of the first iteration's work: stops below
 constexpr double on_surface = 1e-9;    // m, above rounding
 
-/// The surface point for a particle that moved inside from `from`. Of a box it is not on the nearest face,
-/// which after a long step may be beyond an edge or on the far side, but on the face that the straight path
-/// went through.
-std::optional<SurfacePoint> entered(const Obstacle& obstacle, const Vec3& from, const Vec3& position) {
-  auto inside = penetration(obstacle, position);
-  if (!inside || shape_of(obstacle).body != BodyKind::box) return inside;
-  int axis = -1;
-  double latest = -1;  // part of the way
-  for (int k = 0; k < 3; ++k) {
-    const double half = 0.5 * obstacle.size[k];
-    const double side = from[k] < obstacle.center[k] ? -1 : 1;
-    const double before = side * (from[k] - obstacle.center[k]) - half;
-    const double after = side * (position[k] - obstacle.center[k]) - half;
-    if (!(before >= -on_surface) || !(after < before)) continue;
-    if (const double part = std::max(before, 0.0) / (before - after); part > latest) latest = part, axis = k;
-  }
-  if (axis < 0) return inside;
-  const double side = from[axis] < obstacle.center[axis] ? -1 : 1;
-  SurfacePoint face{position, Vec3::Zero()};
-  face.normal[axis] = side;
-  face.point[axis] = obstacle.center[axis] + side * 0.5 * obstacle.size[axis];
-  return face;
-}
-
-/// The point of the surface nearest to one that has moved along it, unless it is beyond an edge.
-std::optional<Vec3> beside(const Obstacle& obstacle, const Vec3& normal, const Vec3& position) {
-  switch (shape_of(obstacle).body) {
-    case BodyKind::ball: {
-      const Vec3 out = position - obstacle.center;
-      return Vec3(obstacle.center + obstacle.radius * out.normalized());
-    }
-    case BodyKind::half_space:
-      return Vec3(position - normal.dot(position - obstacle.point) * normal);
-    case BodyKind::box: {
-      const Vec3 out = 0.5 * obstacle.size.cwiseProduct(normal);
-      const Vec3 back = position - normal.dot(position - obstacle.center - out) * normal;
-      const Vec3 beyond = (back - obstacle.center).cwiseAbs() - 0.5 * obstacle.size;
-      if (beyond.maxCoeff() > on_surface) return std::nullopt;
-      return back;
-    }
-    case BodyKind::surface:
-      break;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 /// Moves particles out of the obstacles, and the active ones back to the surface along which they have moved;
 /// lists the particles on a surface.
 void StiffContact::hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position) {
   for (const HeldParticle& held : active_)
-    if (const auto back = beside(obstacles[held.obstacle], held.normal, position[held.particle]))
+    if (const Obstacle& obstacle = obstacles[held.obstacle];
+        const auto back = shape_of(obstacle).along(obstacle, held.normal, position[held.particle]))
       position.set(held.particle, *back);
   held_.clear();
   for (std::size_t i = 0; i < position.size(); ++i) {
     if (system.pinned[i]) continue;
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      if (const auto out = entered(obstacles[k], begin_[i], position[i])) {
+      if (const auto out = shape_of(obstacles[k]).entry(obstacles[k], begin_[i], position[i])) {
         position.set(i, out->point);
         held_.push_back({i, k, out->normal, 0});
       } else if (const auto on = penetration(grown(obstacles[k], on_surface), position[i])) {

@@ -1,5 +1,7 @@
 // The parameters of obstacles of any shape: of their surface and of their motion. Those of the shapes stand
 // in their files (scene/shapes/).
+#include <map>
+
 #include "params/field_builders.h"
 #include "scene/obstacle_shape.h"
 #include "scene/scene_parameters.h"
@@ -37,11 +39,11 @@ Fields<Obstacle> with_response(Fields<Obstacle> fields) {
 
 const Fields<Obstacle>& obstacle_fields(Shape shape) {
   static const auto all = [] {
-    std::vector<Fields<Obstacle>> fields;
-    for (const ObstacleShape* each : obstacle_shapes()) fields.push_back(with_response(each->fields()));
+    std::map<Shape, Fields<Obstacle>> fields;
+    for (const Shape each : obstacle_shapes()) fields[each] = with_response(each->fields());
     return fields;
   }();
-  return all[static_cast<std::size_t>(shape)];
+  return all.at(shape);
 }
 
 const Fields<Obstacle>& motion_fields() {

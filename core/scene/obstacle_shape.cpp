@@ -8,16 +8,27 @@ const std::vector<const ObstacleShape*>& obstacle_shapes() {
   return shapes;
 }
 
-const ObstacleShape& shape_of(Shape shape) {
-  return *obstacle_shapes()[static_cast<std::size_t>(shape)];
-}
-
 Eigen::AlignedBox3d ObstacleShape::bounds_at(const Obstacle& obstacle, const Pose& pose) const {
   const Eigen::AlignedBox3d home = bounds(obstacle);
   Eigen::AlignedBox3d moved;
   for (int k = 0; k < 8 && !home.isEmpty(); ++k)
     moved.extend(pose.at(home.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
   return moved;
+}
+
+std::optional<SurfacePoint> ObstacleShape::entry(const Obstacle& obstacle, const Vec3& /*from*/,
+                                                 const Vec3& point) const {
+  return penetration(obstacle, point);
+}
+
+std::optional<Vec3> ObstacleShape::along(const Obstacle&, const Vec3&, const Vec3&) const {
+  return std::nullopt;
+}
+
+void ObstacleShape::grow(Obstacle&, double) const {}
+
+bool ObstacleShape::touches(const Obstacle&, const Pose&, const Corners&) const {
+  return false;
 }
 
 TriangleMesh placed_mesh(const Obstacle& obstacle) {

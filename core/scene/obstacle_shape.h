@@ -5,9 +5,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "geometry/rigid_motion.h"
+#include "geometry/triangle_intersection.h"
 #include "scene/scene.h"
 
 namespace cloth {
@@ -19,7 +21,6 @@ namespace cloth {
 enum class BodyKind { half_space, ball, box, surface };
 
 struct ShapeFacts {
-  Shape shape;
   const char* name;   ///< in scene files
   const char* title;  ///< for people: "Sphere"
   const char* doc;    ///< in the Add menu
@@ -33,6 +34,12 @@ struct PlacedSurface {
   Vec3 place{0, 0, 0};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Vec3 scale{1, 1, 1};
+};
+
+/// Where a particle inside an obstacle belongs.
+struct SurfacePoint {
+  Vec3 point;   ///< m
+  Vec3 normal;  ///< outward, of length one
 };
 
 /// Of one shape; every obstacle that is given to its functions has it.
@@ -65,6 +72,24 @@ class ObstacleShape : public ShapeFacts {
     return Eigen::Matrix3d::Identity();
   }
 
+  /// The nearest point of the surface to a point inside; none where it is outside or on the surface, and of
+  /// a body that is a surface, which has no inside.
+  virtual std::optional<SurfacePoint> penetration(const Obstacle&, const Vec3&) const { return {}; }
+
+  /// The surface point for a particle that moved inside from `from`.
+  virtual std::optional<SurfacePoint> entry(const Obstacle& obstacle, const Vec3& from,
+                                            const Vec3& point) const;
+
+  /// The point of the surface nearest to one that has moved along it, where it had this normal; none beyond
+  /// an edge.
+  virtual std::optional<Vec3> along(const Obstacle&, const Vec3& normal, const Vec3& point) const;
+
+  /// Moves the surface outward by `length` in m.
+  virtual void grow(Obstacle&, double length) const;
+
+  /// Whether the solid body in a pose touches a triangle; contact asks this of bodies that are no surface.
+  virtual bool touches(const Obstacle&, const Pose&, const Corners& triangle) const;
+
   /// Of a body that is a surface; contact and the view take it from here.
   virtual PlacedSurface surface(const Obstacle&) const { return {}; }
 
@@ -72,12 +97,15 @@ class ObstacleShape : public ShapeFacts {
   explicit ObstacleShape(const ShapeFacts& facts) : ShapeFacts(facts) {}
 };
 
-/// In the order of Shape, in which menus and pages list them.
+/// In the order in which menus and pages list them.
 const std::vector<const ObstacleShape*>& obstacle_shapes();
 
-const ObstacleShape& shape_of(Shape shape);
 inline const ObstacleShape& shape_of(const Obstacle& obstacle) {
-  return shape_of(obstacle.shape);
+  return *obstacle.shape;
+}
+
+inline std::optional<SurfacePoint> penetration(const Obstacle& obstacle, const Vec3& point) {
+  return shape_of(obstacle).penetration(obstacle, point);
 }
 
 /// The triangles in the world, m. Precondition: they have been read.
@@ -86,8 +114,7 @@ TriangleMesh placed_mesh(const Obstacle& obstacle);
 /// What the declaration of a place shares with those of others.
 ParameterInfo place_info(const char* key, const char* label, const char* doc);
 
-// The shapes, a file each.
-const ObstacleShape& sphere_shape();
+// The shapes, a file each; the sphere, with which an obstacle begins, is declared in scene/scene.h.
 const ObstacleShape& box_shape();
 const ObstacleShape& plane_shape();
 const ObstacleShape& mesh_shape();

@@ -15,7 +15,7 @@ namespace {
 Scene full_scene() {
   Scene scene;
   add_every_block(scene);
-  for (const ObstacleShape* shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape->shape;
+  for (const Shape shape : obstacle_shapes()) scene.obstacles.emplace_back().shape = shape;
   return scene;
 }
 

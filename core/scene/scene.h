@@ -22,7 +22,7 @@ struct Gust {
 struct Air {
   double drag = 0.01;        ///< N s/m per particle, along the normal
   double skin_friction = 0;  ///< N s/m per particle, along the cloth
-  Vec3 wind{0, 0, 0};  ///< m/s
+  Vec3 wind{0, 0, 0};        ///< m/s
   std::optional<Gust> gust;
   bool operator==(const Air&) const = default;
 };
@@ -37,8 +37,10 @@ struct Deformation {
   bool operator==(const Deformation&) const = default;
 };
 
-/// What a shape is, its class says (scene/obstacle_shape.h).
-enum class Shape { sphere, box, plane, mesh };
+/// A shape of obstacles is a class (scene/obstacle_shape.h), of which there is one instance.
+class ObstacleShape;
+using Shape = const ObstacleShape*;
+const ObstacleShape& sphere_shape();
 
 /// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene
 /// describes it.
@@ -52,7 +54,7 @@ struct Keyframe {
 /// Which members matter depends on `shape`: sphere: center, radius; box: center, size; plane: point, normal;
 /// mesh: mesh, scale, rotate, translate.
 struct Obstacle {
-  Shape shape = Shape::sphere;
+  Shape shape = &sphere_shape();
   Vec3 center{0, 0, 0};
   double radius = 0.3;
   Vec3 size{0.4, 0.4, 0.4};

@@ -19,7 +19,7 @@ Block obstacle_block(const Scene& scene, std::size_t index) {
   std::vector<Parameter> parameters = bound<Obstacle>(path, obstacle_fields(shape), of_scene);
   for (Parameter& parameter : bound<Obstacle>(path, motion_fields(), of_scene))
     parameters.push_back(std::move(parameter));
-  return {path, std::string(shape_of(shape).title) + " " + std::to_string(same_before + 1),
+  return {path, std::string(shape->title) + " " + std::to_string(same_before + 1),
           "An obstacle that the cloth's particles cannot enter.", true, std::move(parameters)};
 }
 
@@ -38,7 +38,7 @@ Vec3 middle_of(const ClothSheet& cloth) {
 
 Obstacle starter_obstacle(const ObstacleShape& shape, const ClothSheet& cloth) {
   Obstacle obstacle;
-  obstacle.shape = shape.shape;
+  obstacle.shape = &shape;
   const double span =
       cloth.is_mesh() ? bounds_of(cloth).sizes().maxCoeff() : std::max(cloth.width, cloth.height);
   shape.start(obstacle, middle_of(cloth), span);

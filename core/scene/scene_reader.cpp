@@ -167,7 +167,7 @@ class SceneReader : public JsonReader<json> {
         problem(path + ".shape", *shape, "must be " + shape_names());
         continue;
       }
-      obstacle.shape = (*known)->shape;
+      obstacle.shape = *known;
       known_keys(value[i], path,
                  keys_of(obstacle_fields(obstacle.shape), keys_of(motion_fields(), {"shape", "keyframes"})));
       fields(value[i], path, obstacle_fields(obstacle.shape), obstacle);

@@ -84,7 +84,7 @@ json cloth_schema() {
 json obstacles_schema() {
   json shapes = json::array();
   for (const ObstacleShape* shape : obstacle_shapes()) {
-    json entry = object_schema(obstacle_fields(shape->shape), {{"shape", {{"const", shape->name}}}});
+    json entry = object_schema(obstacle_fields(shape), {{"shape", {{"const", shape->name}}}});
     entry["properties"].update(object_schema(motion_fields())["properties"]);
     entry["properties"]["keyframes"] = {{"type", "array"}, {"items", object_schema(keyframe_fields())}};
     entry["required"] = shape->is_from_file ? json::array({"shape", "file"}) : json::array({"shape"});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "scene/obstacle_shape.h"
 #include "study/extremes.h"
 
 namespace cloth {
@@ -296,7 +297,7 @@ void add_outside(std::vector<ExtremeCase>& cases) {
        "up to a half.",
        hurricane, 500});
   Scene around = base_scene();
-  around.obstacles = {Obstacle{.shape = Shape::sphere, .center = around.cloth.origin, .radius = 0.25}};
+  around.obstacles = {Obstacle{.shape = &sphere_shape(), .center = around.cloth.origin, .radius = 0.25}};
   cases.push_back(
       {"obstacle-around-a-pin",
        "A ball of 0.25 m with one of the two pins in its centre: the pin stays, its neighbours "
@@ -307,7 +308,7 @@ void add_outside(std::vector<ExtremeCase>& cases) {
        "base step.",
        around, 300});
   Scene bullet = base_scene();
-  bullet.obstacles = {Obstacle{.shape = Shape::box, .center = {0.4, -0.4, -0.25}, .size = {2, 2, 0.01}}};
+  bullet.obstacles = {Obstacle{.shape = &box_shape(), .center = {0.4, -0.4, -0.25}, .size = {2, 2, 0.01}}};
   cases.push_back(
       {"particle-at-1-km/s",
        "The middle particle starts at 1 km/s toward a box 10 mm thick and 0.25 m away: 2 m in the "

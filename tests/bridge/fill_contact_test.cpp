@@ -4,6 +4,7 @@
 
 #include "bridge/fill_frame.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "support/count_allocations.h"
 
 namespace clothlab::fill_contact_test {
@@ -78,7 +79,7 @@ TEST(FillContact, TheBoxesOfAMeshAreInItsOwnCoordinates) {
   ContactFiller().fill(simulation, {.box_level = 1}, frame);
   ASSERT_FALSE(frame.contact.groups.empty());
   EXPECT_EQ(simulation.scene().obstacles[static_cast<std::size_t>(frame.contact.groups[0].obstacle)].shape,
-            cloth::Shape::mesh);
+            &cloth::mesh_shape());
 }
 
 TEST(FillContact, AllocatesNothingOnceItHasBeenAsMuch) {

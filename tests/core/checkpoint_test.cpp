@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "integrators/registry.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
 #include "simulation/time_step.h"
 #include "support/scenes.h"
@@ -33,7 +34,7 @@ const std::vector<Case>& cases() {
          scene.springs->damping = 0.01;
          scene.deformation = Deformation{.rate = 0.02};
          Obstacle box;
-         box.shape = Shape::box;
+         box.shape = &box_shape();
          box.center = {0.3, -0.7, 0.3};
          scene.obstacles = {box};
        }},

@@ -46,7 +46,7 @@ TEST(Comparison, GivesEachPaneTheSharedSceneWithItsOwnValues) {
 TEST(AComparisonsFile, IsRefusedWhereAPanesClothStartsInAnObstacle) {
   for (const bool continuous : {false, true}) {
     Comparison comparison = two_panes();
-    comparison.scene.obstacles = {Obstacle{.shape = Shape::sphere, .center = {0, -5, 0}, .radius = 0.2}};
+    comparison.scene.obstacles = {Obstacle{.shape = &sphere_shape(), .center = {0, -5, 0}, .radius = 0.2}};
     if (continuous) comparison.scene.contact = ContactSettings{};
     ASSERT_TRUE(read_comparison(write_comparison(comparison), "two").comparison);
     set_own(comparison.panes[1], "obstacles.0.center", Vec3(0.2, -0.2, 0));
@@ -58,7 +58,8 @@ TEST(AComparisonsFile, IsRefusedWhereAPanesClothStartsInAnObstacle) {
     ASSERT_EQ(find_start_problems(comparison).size(), 1u);
 
     comparison = two_panes();
-    comparison.scene.obstacles = {Obstacle{.shape = Shape::sphere, .center = {0.2, -0.2, 0}, .radius = 0.2}};
+    comparison.scene.obstacles = {
+        Obstacle{.shape = &sphere_shape(), .center = {0.2, -0.2, 0}, .radius = 0.2}};
     if (continuous) comparison.scene.contact = ContactSettings{};
     ASSERT_EQ(find_start_problems(comparison).size(), 1u) << "said once of what all share";
     EXPECT_EQ(find_start_problems(comparison)[0].path, "scene.obstacles.0");

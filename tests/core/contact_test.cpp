@@ -4,6 +4,7 @@
 
 #include "cloth/grid.h"
 #include "contact/obstacle_contact.h"
+#include "scene/obstacle_shape.h"
 #include "support/random.h"
 #include "support/scenes.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 Obstacle sphere() {
   Obstacle obstacle;
-  obstacle.shape = Shape::sphere;
+  obstacle.shape = &sphere_shape();
   obstacle.center = {1, 2, 3};
   obstacle.radius = 0.5;
   return obstacle;
@@ -20,7 +21,7 @@ Obstacle sphere() {
 
 Obstacle box() {
   Obstacle obstacle;
-  obstacle.shape = Shape::box;
+  obstacle.shape = &box_shape();
   obstacle.center = {1, 0, 0};
   obstacle.size = {2, 4, 6};  // x in [0, 2], y in [-2, 2], z in [-3, 3]
   return obstacle;
@@ -28,7 +29,7 @@ Obstacle box() {
 
 Obstacle plane() {
   Obstacle obstacle;
-  obstacle.shape = Shape::plane;
+  obstacle.shape = &plane_shape();
   obstacle.point = {5, 1, 5};
   obstacle.normal = {0, 2, 0};  // of any length
   return obstacle;

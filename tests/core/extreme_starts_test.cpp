@@ -6,6 +6,7 @@
 #include "contact/obstacle_contact.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
 #include "support/scenes.h"
 
@@ -67,9 +68,9 @@ TEST(AStopOfAPreparedCloth, NamesTheLimitOfItsMasses) {
 }
 
 TEST(Tunnelling, IsPossibleWhereAParticleMovesFurtherThanTheThinnestObstacle) {
-  const std::vector<Obstacle> obstacles{Obstacle{.shape = Shape::sphere, .radius = 0.3},
-                                        Obstacle{.shape = Shape::box, .size = {1, 0.05, 1}},
-                                        Obstacle{.shape = Shape::plane}};
+  const std::vector<Obstacle> obstacles{Obstacle{.shape = &sphere_shape(), .radius = 0.3},
+                                        Obstacle{.shape = &box_shape(), .size = {1, 0.05, 1}},
+                                        Obstacle{.shape = &plane_shape()}};
   Scene scene = bare_sheet(2, 2);
   scene.integrator.time_step = 0.01;
   const Simulation simulation(scene);
@@ -83,7 +84,7 @@ TEST(Tunnelling, IsPossibleWhereAParticleMovesFurtherThanTheThinnestObstacle) {
   EXPECT_EQ(risk->obstacle, 1u);
   EXPECT_DOUBLE_EQ(risk->travel, 0.051);
   EXPECT_DOUBLE_EQ(risk->thickness, 0.05);
-  EXPECT_FALSE(find_tunnelling({Obstacle{.shape = Shape::plane}}, simulation.system(), state, 0.01));
+  EXPECT_FALSE(find_tunnelling({Obstacle{.shape = &plane_shape()}}, simulation.system(), state, 0.01));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Scene full_scene() {
   scene.cloth.origin = {-0.5, 20, 30};
   for (const ObstacleShape* one : obstacle_shapes()) {
     Obstacle& obstacle = scene.obstacles.emplace_back();
-    obstacle.shape = one->shape;
+    obstacle.shape = one;
     one->place(obstacle) = {0, -50, 0};
   }
   scene.obstacles.back().mesh.file = "disc.obj";

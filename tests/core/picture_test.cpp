@@ -114,7 +114,7 @@ TEST(Picture, ShowsTheNearerOfTwoSurfaces) {
 TEST(Picture, OfABoxCoversItsFacesFromEverySide) {
   Sheet sheet;
   Obstacle box;
-  box.shape = Shape::box;
+  box.shape = &box_shape();
   box.center = sheet.middle;
   box.size = {1, 1, 1};
   sheet.scene.obstacles = {box};
@@ -179,7 +179,7 @@ TEST(Picture, OfASpringHasTheColourOfItsFamily) {
 TEST(Picture, OfABodyBehindAClothIsDarkerInItsShadow) {
   Sheet sheet;
   Obstacle wall;
-  wall.shape = Shape::box;
+  wall.shape = &box_shape();
   wall.center = sheet.middle - Vec3(0, 0, 1.3);
   wall.size = {2, 2, 2};
   sheet.scene.obstacles = {wall};
@@ -220,7 +220,7 @@ TEST(Picture, HasObstaclesThatMoveWhereTheyAreAtItsTime) {
 TEST(Picture, HasTurnedObstaclesTurned) {
   Sheet sheet;
   Obstacle box;
-  box.shape = Shape::box;
+  box.shape = &box_shape();
   box.center = sheet.middle + Vec3(0, 0, 0.5);
   box.size = {0.3, 0.06, 0.06};
   sheet.scene.obstacles = {box};
@@ -290,7 +290,7 @@ TEST(Picture, IsMadeOfWhateverItIsGiven) {
   options.arrows = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {std::nan(""), 0, 0}}};
   Obstacle odd = sheet.ball_at(0);
   for (const ObstacleShape* one : obstacle_shapes()) {
-    odd.shape = one->shape;
+    odd.shape = one;
     odd.radius = 0;
     odd.size = odd.normal = {0, 0, 0};
     sheet.scene.obstacles.push_back(odd);

@@ -179,7 +179,7 @@ TEST_F(SceneMeshFile, IsNamedAsSeenFromWhereTheSceneIsWritten) {
 }
 
 TEST(SceneMesh, IsScaledThenTurnedAboutXYAndZThenMoved) {
-  Obstacle obstacle{.shape = Shape::mesh};
+  Obstacle obstacle{.shape = &mesh_shape()};
   auto mesh = std::make_shared<LoadedMesh>();
   mesh->file = obstacle.mesh.file = "x";
   mesh->surface = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};

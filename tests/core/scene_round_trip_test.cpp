@@ -7,6 +7,7 @@
 #include "contact/start_check.h"
 #include "integrators/registry.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "support/random.h"
@@ -92,12 +93,13 @@ ClothSheet any_sheet(Random& random) {
 
 Obstacle any_obstacle(Random& random) {
   Obstacle obstacle;
-  obstacle.shape = static_cast<Shape>(random.integer(0, 2));
-  if (obstacle.shape == Shape::sphere)
+  obstacle.shape = obstacle_shapes()[static_cast<std::size_t>(random.integer(0, 2))];
+  if (obstacle.shape == &sphere_shape())
     obstacle.center = any_vector(random), obstacle.radius = positive(random);
-  if (obstacle.shape == Shape::box)
+  if (obstacle.shape == &box_shape())
     obstacle.center = any_vector(random), obstacle.size = {positive(random), 1, 2};
-  if (obstacle.shape == Shape::plane) obstacle.point = any_vector(random), obstacle.normal = random.vector(1);
+  if (obstacle.shape == &plane_shape())
+    obstacle.point = any_vector(random), obstacle.normal = random.vector(1);
   obstacle.response = random.coin() ? "coulomb" : "reflect";
   obstacle.friction = positive(random), obstacle.restitution = random.uniform(0, 1);
   return obstacle;
@@ -140,7 +142,8 @@ TEST(RandomScenes, ReadBackAfterWriting) {
   for (int trial = 0; trial < 1000 && !::testing::Test::HasFailure(); ++trial) {
     Scene scene = any_scene(random);
     if (!scene.obstacles.empty()) {  // the start is looked at particle by particle
-      scene.cloth.columns = std::min(scene.cloth.columns, 16), scene.cloth.rows = std::min(scene.cloth.rows, 16);
+      scene.cloth.columns = std::min(scene.cloth.columns, 16),
+      scene.cloth.rows = std::min(scene.cloth.rows, 16);
       scene.cloth.pins.clear();
       if (!find_start_problems(scene).empty()) continue;
     }

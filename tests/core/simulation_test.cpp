@@ -7,6 +7,7 @@
 
 #include "integrators/registry.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/recorder.h"
 #include "simulation/stages.h"
 #include "support/scenes.h"
@@ -86,7 +87,7 @@ TEST(Simulation, ContactComesAfterTheLimiter) {
   scene.gravity = Vec3(0, -10, 0);
   scene.deformation = Deformation{};
   scene.integrator = {"semi-implicit-euler", 0.1};
-  scene.obstacles.emplace_back().shape = Shape::plane;
+  scene.obstacles.emplace_back().shape = &plane_shape();
   scene.obstacles[0].point = {0, -0.105, 0};
   Simulation simulation(scene);
   simulation.step();

@@ -10,6 +10,7 @@
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 #include "support/random.h"
@@ -119,7 +120,7 @@ Obstacle random_obstacle(Random& random) {
   obstacle.restitution = random.coin() ? 0 : random.uniform(0, 1);
   if (random.coin()) obstacle.velocity = random.vector(3);
   if (random.coin()) obstacle.spin = random.vector(10);
-  if (obstacle.shape == Shape::plane) obstacle.spin *= 0.05;
+  if (obstacle.shape == &plane_shape()) obstacle.spin *= 0.05;
   return obstacle;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "contact/continuous_contact.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/session.h"
 #include "support/contact_scenes.h"
 
@@ -64,7 +65,7 @@ Obstacle obstacle(Shape shape, const Vec3& place) {
   obstacle.radius = 0.08;
   obstacle.size = {0.1, 0.12, 0.14};
   obstacle.scale = 0.3;
-  if (shape == Shape::mesh) obstacle.mesh.file = "cone-bed.obj";
+  if (shape == &mesh_shape()) obstacle.mesh.file = "cone-bed.obj";
   return obstacle;
 }
 
@@ -128,27 +129,27 @@ const EditCase edits[]{
     {"contact_with_cones_gets_thicker", "cones", [](Scene& s) { s.contact->thickness = 0.02; }, 6},
     {"contact_with_itself_gets_thicker", "itself", [](Scene& s) { s.self_contact->thickness = 0.02; }, 6},
     {"ball_becomes_a_box", "sphere",
-     [](Scene& s) { s.obstacles[0] = obstacle(Shape::box, s.obstacles[0].center + Vec3(0, 0.06, 0)); }, 8},
+     [](Scene& s) { s.obstacles[0] = obstacle(&box_shape(), s.obstacles[0].center + Vec3(0, 0.06, 0)); }, 8},
     {"box_becomes_a_bed_of_cones", "box",
-     [](Scene& s) { s.obstacles[0] = obstacle(Shape::mesh, s.obstacles[0].center); }, 10},
+     [](Scene& s) { s.obstacles[0] = obstacle(&mesh_shape(), s.obstacles[0].center); }, 10},
     {"ball_comes_into_the_cloth", "hanging",
      [](Scene& s) {
-       s.obstacles = {obstacle(Shape::sphere, {0.01, -0.3, 0.03})};
+       s.obstacles = {obstacle(&sphere_shape(), {0.01, -0.3, 0.03})};
      },
      8},
     {"box_comes_with_its_middle_in_the_cloth", "hanging",
      [](Scene& s) {
-       s.obstacles = {obstacle(Shape::box, {0.01, -0.3, 0})};
+       s.obstacles = {obstacle(&box_shape(), {0.01, -0.3, 0})};
      },
      8},
     {"cones_come_into_the_cloth", "hanging",
      [](Scene& s) {
-       s.obstacles = {obstacle(Shape::mesh, {0.01, -0.3, -0.01})};
+       s.obstacles = {obstacle(&mesh_shape(), {0.01, -0.3, -0.01})};
      },
      15},
     {"plane_comes_over_half_of_the_cloth", "sphere",
      [](Scene& s) {
-       s.obstacles.push_back(obstacle(Shape::plane, {0, -0.05, 0}));
+       s.obstacles.push_back(obstacle(&plane_shape(), {0, -0.05, 0}));
      },
      8},
     {"contact_comes", "without-contact", [](Scene& s) { s.contact = ContactSettings{}; }, 8},
@@ -206,7 +207,7 @@ TEST(AnEditThatLetsABallGrow, StopsARunWhereTheClothCannotGiveWay) {
   Scene scene = resting("plane");
   Simulation simulation(scene);
   run(simulation, 100);
-  scene.obstacles.push_back(obstacle(Shape::sphere, {0.01, 0.03, 0}));  // it reaches into the plane
+  scene.obstacles.push_back(obstacle(&sphere_shape(), {0.01, 0.03, 0}));  // it reaches into the plane
   simulation.edit(scene);
   std::optional<Divergence> stop;
   for (int step = 0; step < 100; ++step) {
@@ -269,7 +270,7 @@ TEST(AnEditOfTheScene, MayAddAndTakeAwayObstaclesBesideOneInUse) {
   Simulation simulation(scene);
   run(simulation, 60);
   Obstacle floor;
-  floor.shape = Shape::plane;
+  floor.shape = &plane_shape();
   floor.point = {0, -0.25, 0};
   scene.obstacles.push_back(floor);
   simulation.edit(scene);
@@ -297,7 +298,7 @@ TEST(ACheckpointOfContact, SaysWhatItTakesInMemory) {
   Scene scene = contact_scene("sphere");
   const std::size_t one = Simulation(scene).checkpoint().bytes();
   Obstacle floor;
-  floor.shape = Shape::plane;
+  floor.shape = &plane_shape();
   floor.point = {0, -1, 0};
   for (int n = 0; n < 10; ++n) scene.obstacles.push_back(floor);
   Simulation simulation(scene);

@@ -8,6 +8,7 @@
 #include "cloth/mesh_cloth.h"
 #include "contact/near_pairs.h"
 #include "geometry/mesh_repair.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_scenes.h"
 #include "support/meshes.h"
 
@@ -44,7 +45,7 @@ Scene layers(int count, double thickness) {
   scene.damping = 0.001;
   scene.gravity = Vec3(0, -9.81, 0);
   Obstacle plane;
-  plane.shape = Shape::plane;
+  plane.shape = &plane_shape();
   scene.obstacles = {plane};
   scene.contact = ContactSettings{};
   scene.self_contact = SelfContact{.thickness = thickness};
@@ -116,7 +117,7 @@ TEST(AClothThatIsExactlyFlat, BucklesWhereItIsSqueezedOnAPlane) {
   scene.self_contact = SelfContact{};
   scene.integrator.time_step = 4e-4;
   Obstacle plane, box;
-  plane.shape = Shape::plane, box.shape = Shape::box;
+  plane.shape = &plane_shape(), box.shape = &box_shape();
   box.size = {0.2, 0.2, 1};
   scene.obstacles = {plane, box, box};
   scene.obstacles[1].center = {-0.36, 0.09, 0}, scene.obstacles[1].velocity = {0.4, 0, 0};

@@ -8,6 +8,7 @@
 #include "integrators/registry.h"
 #include "measure/energy.h"
 #include "scene/builtin_scenes.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_scenes.h"
 #include "support/random.h"
 
@@ -37,7 +38,7 @@ Scene on_slope(double friction) {
   scene.cloth.across = along;
   scene.cloth.origin = -0.2 * along + 0.005 * normal;
   scene.obstacles.resize(1);
-  scene.obstacles[0].shape = Shape::plane;
+  scene.obstacles[0].shape = &plane_shape();
   scene.obstacles[0].normal = normal;
   scene.obstacles[0].friction = friction;
   scene.integrator = {.method = "verlet", .time_step = 0.002};
@@ -179,7 +180,7 @@ TEST(AParticleAtAKilometreASecond, StopsAtABoxAMillimetreThick) {
   scene.cloth.origin = {-0.2, 0.2, 0.5};
   scene.cloth.down = {0, -1, 0};
   scene.obstacles.resize(1);
-  scene.obstacles[0].shape = Shape::box;
+  scene.obstacles[0].shape = &box_shape();
   scene.obstacles[0].center = {0, 0, 0};
   scene.obstacles[0].size = {2, 2, 0.001};
   for (const double step : {1e-4, 1e-2}) {
@@ -240,7 +241,7 @@ TEST(ABladeThatTurnsOnceInAStep, PushesTheClothAsideOrIsReportedAsStuck) {
     scene.cloth.down = {0, -1, 0};
     scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
     scene.obstacles.resize(1);
-    scene.obstacles[0].shape = Shape::box;
+    scene.obstacles[0].shape = &box_shape();
     scene.obstacles[0].center = {0.01, 0, 0.15};
     scene.obstacles[0].size = {0.36, 0.02, 0.02};
     scene.obstacles[0].spin = {0, 2 * std::numbers::pi * turns / step, 0};

@@ -53,7 +53,7 @@ double ahead_of(const Simulation& simulation) {
   for (std::size_t i = 0; i < simulation.state().position.size(); ++i)
     furthest = std::min(furthest, simulation.state().position[i].z());
   const Obstacle& obstacle = simulation.scene().obstacles[0];
-  const double half = obstacle.shape == Shape::sphere ? obstacle.radius : 0.5 * obstacle.size.z();
+  const double half = obstacle.shape == &sphere_shape() ? obstacle.radius : 0.5 * obstacle.size.z();
   return simulation.obstacle_pose(0, simulation.time()).at(obstacle.center).z() - half - furthest;
 }
 
@@ -85,7 +85,7 @@ TEST_P(DraggedObstacle, LetsNothingThrough) {
 
 std::vector<Case> all_drags() {
   std::vector<Case> cases;
-  for (const Shape shape : {Shape::sphere, Shape::box})
+  for (const Shape shape : {&sphere_shape(), &box_shape()})
     for (const char* method : {"semi-implicit-euler", "verlet", "rk4"})
       for (const Drag& drag : {gentle, sudden}) cases.push_back({shape, method, drag});
   return cases;
@@ -93,13 +93,13 @@ std::vector<Case> all_drags() {
 
 INSTANTIATE_TEST_SUITE_P(Contact, DraggedObstacle, ::testing::ValuesIn(all_drags()), [](const auto& tested) {
   const Case& drag = tested.param;
-  std::string name = std::string(shape_of(drag.shape).name) + "_" + drag.method + "_" + drag.drag.name;
+  std::string name = std::string(drag.shape->name) + "_" + drag.method + "_" + drag.drag.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
 
 TEST(ObstacleTransition, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
-  Scene scene = hung_cloth(Shape::sphere, "verlet");
+  Scene scene = hung_cloth(&sphere_shape(), "verlet");
   scene.obstacles[0].velocity = {0.2, 0, 0};
   Simulation simulation(scene);
   while (simulation.time() < 0.1) ASSERT_FALSE(simulation.step());
@@ -119,7 +119,7 @@ TEST(ObstacleTransition, StaysWhereItIsAtTheEditAndArrivesInItsTime) {
 }
 
 TEST(ObstacleTransition, AnEditOfAVelocityDoesNotMoveTheObstacleEither) {
-  Scene scene = hung_cloth(Shape::box, "verlet");
+  Scene scene = hung_cloth(&box_shape(), "verlet");
   scene.obstacles[0].velocity = {0, 0, 0.1};
   Simulation simulation(scene);
   while (simulation.time() < 0.1) ASSERT_FALSE(simulation.step());
@@ -131,7 +131,7 @@ TEST(ObstacleTransition, AnEditOfAVelocityDoesNotMoveTheObstacleEither) {
 }
 
 TEST(ObstacleTransition, GoesOnFromACheckpointToTheBit) {
-  Scene scene = hung_cloth(Shape::sphere, "semi-implicit-euler");
+  Scene scene = hung_cloth(&sphere_shape(), "semi-implicit-euler");
   Simulation first(scene), second(scene);
   scene.obstacles[0].center.z() -= 0.25;
   first.edit(scene);
@@ -147,14 +147,14 @@ TEST(ObstacleTransition, GoesOnFromACheckpointToTheBit) {
 }
 
 TEST(ObstacleTransition, CountsForTheHighestSpeedOfAnObstacle) {
-  const Scene scene = hung_cloth(Shape::sphere, "verlet");
+  const Scene scene = hung_cloth(&sphere_shape(), "verlet");
   EXPECT_EQ(highest_obstacle_speed(scene, {}, {}), 0);
   EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleTransition{.way = {0, 0, 0.1}}}, {}),
               0.1 / transition_time, 1e-12);
 }
 
 TEST(ObstacleTransition, IsNotThereWhereObstaclesAreTestedParticleByParticle) {
-  Scene scene = hung_cloth(Shape::sphere, "verlet");
+  Scene scene = hung_cloth(&sphere_shape(), "verlet");
   scene.contact.reset();
   Simulation simulation(scene);
   scene.obstacles[0].center.z() -= 0.25;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "contact/continuous_contact.h"
+#include "scene/obstacle_shape.h"
 #include "support/contact_scenes.h"
 #include "support/random.h"
 
@@ -42,7 +43,7 @@ Scene hung_before(Shape shape, const Vec3& way, const Vec3& turn) {
 TEST(AnObstacleThatGoesFarInAStep, PassesClothThatHangsByItsTopEdgeAlone) {
   Random random;
   for (int round = 0; round < 8; ++round) {
-    const Shape shape = round % 4 == 3 ? Shape::mesh : Shape::box;
+    const Shape shape = round % 4 == 3 ? &mesh_shape() : &box_shape();
     const Vec3 turn = 2.2 * random.vector(1).normalized();
     Scene scene = hung_before(shape, {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0), -0.5}, turn);
     if (round % 3 == 2) scene.self_contact = SelfContact{};
@@ -57,13 +58,13 @@ TEST(AnObstacleThatGoesFarInAStep, PassesClothThatHangsByItsTopEdgeAlone) {
 }
 
 TEST(AnObstacleThatGoesFarInAStep, PushesTheClothAsFastAsItGoes) {
-  Simulation simulation(hung_before(Shape::box, {0, 0, -0.5}, {0, 0, 2.2}));
+  Simulation simulation(hung_before(&box_shape(), {0, 0, -0.5}, {0, 0, 2.2}));
   for (int k = 0; k < 3; ++k) ASSERT_FALSE(simulation.step());
   EXPECT_LT(simulation.state().velocity[6 * 13 + 6].z(), -0.9 * 0.5 / step) << "m/s, before the box's middle";
 }
 
 TEST(AnObstacleThatSpinsTooFastToFollow, StopsTheRunWithinTheBudgetOfAStep) {
-  Scene scene = hung_before(Shape::box, {0, 0, 0}, {0, 0, 0});
+  Scene scene = hung_before(&box_shape(), {0, 0, 0}, {0, 0, 0});
   scene.obstacles[0].keyframes.clear();
   scene.obstacles[0].center.z() = 0.08;
   scene.obstacles[0].spin = {0, 1e9, 0};
@@ -78,7 +79,7 @@ TEST(AnObstacleThatSpinsTooFastToFollow, StopsTheRunWithinTheBudgetOfAStep) {
 }
 
 TEST(AStepOfContact, EndsWhenItIsAskedToAndLeavesTheStateBeforeIt) {
-  Simulation simulation(hung_before(Shape::box, {0, 0, -0.5}, {0, 0, 2.2}));
+  Simulation simulation(hung_before(&box_shape(), {0, 0, -0.5}, {0, 0, 2.2}));
   for (int k = 0; k < 2; ++k) ASSERT_FALSE(simulation.step());
   const Checkpoint before = simulation.checkpoint();
   int asked = 0;

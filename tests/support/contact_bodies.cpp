@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/at.h"
+#include "scene/obstacle_shape.h"
 #include "support/crossings.h"
 
 namespace cloth::test {
@@ -73,9 +74,9 @@ ObstacleBody random_body(Shape shape, Random& random) {
   obstacle.radius = random.uniform(0.03, 0.2);
   obstacle.size = {random.uniform(0.02, 0.4), random.uniform(0.02, 0.4), random.uniform(0.02, 0.4)};
   obstacle.normal = random.vector(1);
-  if (shape != Shape::mesh) return body_of(obstacle);
+  if (shape != &mesh_shape()) return body_of(obstacle);
   ObstacleBody body;
-  body.kind = shape_of(shape).body;
+  body.kind = shape->body;
   body.pivot = random.vector(0.1);
   set_mesh(body, random);
   for (const Vec3& vertex : body.vertices) body.reach = std::max(body.reach, (vertex - body.pivot).norm());

@@ -21,19 +21,19 @@ Obstacle obstacle_of(Shape shape, const Vec3& center) {
 }
 
 Obstacle box_of(const Vec3& center, double side) {
-  Obstacle box = obstacle_of(Shape::box, center);
+  Obstacle box = obstacle_of(&box_shape(), center);
   box.size = Vec3::Constant(side);
   return box;
 }
 
 Obstacle ball_of(const Vec3& center, double radius) {
-  Obstacle ball = obstacle_of(Shape::sphere, center);
+  Obstacle ball = obstacle_of(&sphere_shape(), center);
   ball.radius = radius;
   return ball;
 }
 
 Obstacle cones() {
-  Obstacle bed = obstacle_of(Shape::mesh, {0, -0.07, 0});
+  Obstacle bed = obstacle_of(&mesh_shape(), {0, -0.07, 0});
   bed.scale = 0.4;
   bed.mesh.file = "cone-bed.obj";
   return bed;
@@ -45,15 +45,15 @@ TriangleMesh moved(TriangleMesh mesh, const Pose& pose) {
 }
 
 Count crossings_of(const TriangleMesh& cloth, const Obstacle& obstacle, const Pose& pose) {
-  switch (obstacle.shape) {
-    case Shape::sphere:
+  switch (shape_of(obstacle).body) {
+    case BodyKind::ball:
       return triangles_in_sphere(cloth, pose.at(obstacle.center), pose.stretch.x() * obstacle.radius);
-    case Shape::box:
+    case BodyKind::box:
       return triangles_in_solid(cloth, box_triangles(pose.at(obstacle.center), pose.turn,
                                                      0.5 * pose.stretch.cwiseProduct(obstacle.size)));
-    case Shape::plane:
+    case BodyKind::half_space:
       return vertices_below_plane(cloth, pose.at(obstacle.point), pose.turn * obstacle.normal);
-    case Shape::mesh:
+    case BodyKind::surface:
       return crossings(cloth, moved(placed_mesh(obstacle), pose));
   }
   return {};
@@ -92,7 +92,7 @@ Scene contact_scene(const std::string& name) {
     box.keyframes = {{0, box.center, {-0.6755108, 0, 0.6755108}}};
     scene.obstacles = {box};
   } else if (name == "plane") {
-    scene.obstacles = {obstacle_of(Shape::plane, Vec3::Zero())};
+    scene.obstacles = {obstacle_of(&plane_shape(), Vec3::Zero())};
   } else if (name == "cones") {
     scene.obstacles = {cones()};
   } else if (name == "ball-from-below") {
@@ -105,7 +105,7 @@ Scene contact_scene(const std::string& name) {
     scene.cloth.origin = {-0.2, 0.42, 0};
     scene.cloth.down = {0, -1, 0.1};
     scene.springs->flexion = 0.5;
-    scene.obstacles = {obstacle_of(Shape::plane, Vec3::Zero())};
+    scene.obstacles = {obstacle_of(&plane_shape(), Vec3::Zero())};
     scene.self_contact = SelfContact{};
   } else {
     throw std::invalid_argument(name);

@@ -8,6 +8,7 @@
 
 #include "cloth/grid.h"
 #include "geometry/bounds.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth::test {
 namespace {
@@ -153,7 +154,7 @@ void draw_obstacle(ViolentScene& violent, Draw& draw) {
   constexpr double gap = 0.02;  // m
   const Vec3 below((low.x() + high.x()) / 2, low.y() - gap, (low.z() + high.z()) / 2);
   const int kind = draw.integer(0, 2);
-  obstacle.shape = kind == 0 ? Shape::sphere : kind == 1 ? Shape::box : Shape::plane;
+  obstacle.shape = kind == 0 ? &sphere_shape() : kind == 1 ? &box_shape() : &plane_shape();
   obstacle.radius = draw.uniform(0.1, 0.6);
   obstacle.center = below - Vec3(0, obstacle.radius, 0);
   obstacle.size = Vec3(1, 1, 1) * draw.uniform(0.1, 1);

@@ -41,7 +41,7 @@ std::shared_ptr<ClothFrame> hexagon() {
 
 cloth::Obstacle plate() {
   cloth::Obstacle plate;
-  plate.shape = cloth::Shape::mesh;
+  plate.shape = &cloth::mesh_shape();
   plate.mesh.file = "made.obj";
   plate.mesh.loaded = scene_mesh({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}});
   plate.scale = 0.2;
@@ -139,3 +139,4 @@ const Listed listed{"mesh_view_test", test_main<MeshViewTest>};
 }  // namespace clothlab::test::mesh_view_test
 
 #include "mesh_view_test.moc"
+#include "scene/obstacle_shape.h"

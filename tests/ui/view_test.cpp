@@ -165,7 +165,7 @@ class ViewTest : public ViewFixture {
     const QImage before = picture();
     cloth::Obstacle ball, box;
     ball.center = {0, 0.5, 0.5}, ball.radius = 0.15;
-    box.shape = cloth::Shape::box, box.center = {0.8, 0.5, 0}, box.size = {0.2, 0.2, 0.2};
+    box.shape = &cloth::box_shape(), box.center = {0.8, 0.5, 0}, box.size = {0.2, 0.2, 0.2};
     frame->obstacles = {ball, box};
     view_->showFrame(frame);
     const QImage after = picture();
@@ -266,7 +266,7 @@ class ViewTest : public ViewFixture {
     QVERIFY(!below.is_obstacle);
     QVERIFY2(below.height < 1 - std::numbers::sqrt2 + 0.05, "the diagonal hangs down from the pin");
     cloth::Obstacle plane;
-    plane.shape = cloth::Shape::plane;
+    plane.shape = &cloth::plane_shape();
     plane.point = {0, -0.3, 0};
     QVERIFY(ground_below(reach_of_cloth(*lying), {plane}).is_obstacle);
     QCOMPARE(ground_below(reach_of_cloth(*lying), {plane}).height, -0.3);
@@ -277,4 +277,5 @@ const Listed listed{"view_test", test_main<ViewTest>};
 
 }  // namespace clothlab::test::view_test
 
+#include "scene/obstacle_shape.h"
 #include "view_test.moc"

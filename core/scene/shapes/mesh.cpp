@@ -18,7 +18,7 @@ Eigen::Matrix3d turn_of(const Obstacle& mesh) {
 class MeshShape final : public ObstacleShape {
  public:
   MeshShape()
-      : ObstacleShape({Shape::mesh, "mesh", "Mesh", "A body of any shape under the cloth, from an OBJ file.",
+      : ObstacleShape({"mesh", "Mesh", "A body of any shape under the cloth, from an OBJ file.",
                        BodyKind::surface, true}) {}
 
   Fields<Obstacle> fields() const override {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "params/field_builders.h"
 #include "scene/obstacle_shape.h"
 
@@ -6,8 +8,7 @@ namespace {
 
 class PlaneShape final : public ObstacleShape {
  public:
-  PlaneShape()
-      : ObstacleShape({Shape::plane, "plane", "Plane", "A floor under the cloth.", BodyKind::half_space}) {}
+  PlaneShape() : ObstacleShape({"plane", "Plane", "A floor under the cloth.", BodyKind::half_space}) {}
 
   Fields<Obstacle> fields() const override {
     return {vector(&Obstacle::point, place_info("point", "Point", "A point of the plane.")),
@@ -27,6 +28,23 @@ class PlaneShape final : public ObstacleShape {
   Eigen::Matrix3d turn_between(const Obstacle& from, const Obstacle& to) const override {
     if (from.normal == to.normal) return Eigen::Matrix3d::Identity();
     return Eigen::Quaterniond::FromTwoVectors(from.normal, to.normal).toRotationMatrix();
+  }
+  std::optional<SurfacePoint> penetration(const Obstacle& plane, const Vec3& point) const override {
+    const Vec3 normal = plane.normal.normalized();
+    const double height = normal.dot(point - plane.point);
+    if (!(height < 0)) return std::nullopt;
+    return SurfacePoint{point - height * normal, normal};
+  }
+  std::optional<Vec3> along(const Obstacle& plane, const Vec3& normal, const Vec3& point) const override {
+    return Vec3(point - normal.dot(point - plane.point) * normal);
+  }
+  void grow(Obstacle& plane, double length) const override {
+    plane.point += length * plane.normal.normalized();
+  }
+  bool touches(const Obstacle& plane, const Pose& pose, const Corners& triangle) const override {
+    const Vec3 normal = pose.turn * plane.normal.normalized(), point = pose.at(plane.point);
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [&](const Vec3& x) { return normal.dot(x - point) <= 0; });
   }
 };
 

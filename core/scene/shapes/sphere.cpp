@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include "geometry/closest_points.h"
 #include "params/field_builders.h"
 #include "scene/obstacle_shape.h"
 
@@ -6,8 +9,7 @@ namespace {
 
 class SphereShape final : public ObstacleShape {
  public:
-  SphereShape()
-      : ObstacleShape({Shape::sphere, "sphere", "Sphere", "A ball under the cloth.", BodyKind::ball}) {}
+  SphereShape() : ObstacleShape({"sphere", "Sphere", "A ball under the cloth.", BodyKind::ball}) {}
 
   Fields<Obstacle> fields() const override {
     return {vector(&Obstacle::center, place_info("center", "Centre", "Centre of the sphere.")),
@@ -34,6 +36,24 @@ class SphereShape final : public ObstacleShape {
   double thickness(const Obstacle& sphere) const override { return 2 * sphere.radius; }
   Vec3 stretch_between(const Obstacle& from, const Obstacle& to) const override {
     return Vec3::Constant(to.radius / from.radius);
+  }
+  std::optional<SurfacePoint> penetration(const Obstacle& sphere, const Vec3& point) const override {
+    const Vec3 out = point - sphere.center;
+    const double squared = out.squaredNorm();
+    if (!(squared < sphere.radius * sphere.radius)) return std::nullopt;
+    // The centre itself is equally far from every point of the surface: up is as good as any.
+    const Vec3 normal = squared > 0 ? Vec3(out / std::sqrt(squared)) : Vec3(0, 1, 0);
+    return SurfacePoint{sphere.center + sphere.radius * normal, normal};
+  }
+  std::optional<Vec3> along(const Obstacle& sphere, const Vec3&, const Vec3& point) const override {
+    const Vec3 out = point - sphere.center;
+    return Vec3(sphere.center + sphere.radius * out.normalized());
+  }
+  void grow(Obstacle& sphere, double length) const override { sphere.radius += length; }
+  bool touches(const Obstacle& sphere, const Pose& pose, const Corners& t) const override {
+    const auto closest = closest_on_triangle(pose.at(sphere.center), t[0], t[1], t[2]);
+    const double radius = pose.stretch.x() * sphere.radius;
+    return closest.squared_distance <= radius * radius;
   }
 };
 

@@ -11,6 +11,7 @@
 #include "contact/obstacle_contact.h"
 #include "forces/force_model.h"
 #include "integrators/registry.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
 #include "study/reproduce/printed_methods.h"
 #include "study/reproduce/study_page.h"
@@ -165,7 +166,7 @@ CurrentLengthCloth current_length_cloth() {
 }
 
 CubePush cube_push() {
-  Obstacle cube{.shape = Shape::box};
+  Obstacle cube{.shape = &box_shape()};
   cube.size = {2, 2, 2};
   const auto corner_of = [](const Vec3& p) {
     return Vec3(std::copysign(1.0, p.x()), std::copysign(1.0, p.y()), std::copysign(1.0, p.z()));
@@ -186,7 +187,7 @@ CubePush cube_push() {
 }
 
 std::pair<Leaving, Leaving> leaving_particle() {
-  Obstacle ball{.shape = Shape::sphere, .response = "reflect", .friction = 0.9};
+  Obstacle ball{.shape = &sphere_shape(), .response = "reflect", .friction = 0.9};
   Leaving printed = follow(ball, true), right = follow(ball, false);
   printed.time_lost = time_outside(printed, 0.01) - time_outside(right, 0.01);
   return {std::move(printed), std::move(right)};

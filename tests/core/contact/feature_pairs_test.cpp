@@ -143,7 +143,7 @@ TEST(TheNearestPair, AmongTheFacesThatAParticleSeesOfAConvexMeshIsOne) {
   for (int trial = 0; trial < trials; ++trial) {
     Setting setting;
     setting.sheet = random_sheet(3, 3, random);
-    ObstacleBody body = random_body(Shape::mesh, random);
+    ObstacleBody body = random_body(&mesh_shape(), random);
     TriangleMesh box = box_triangles(Vec3::Zero(), Eigen::Matrix3d::Identity(), {0.1, 0.2, 0.15});
     body.vertices = box.vertices;
     body.surface = make_surface(8, box.triangles);
@@ -176,7 +176,7 @@ TEST(TheNearestPair, OfASphereIsTheFaceWithTheClosestPoint) {
   for (int trial = 0; trial < 500; ++trial) {
     Setting setting;
     setting.sheet = random_sheet(4, 4, random);
-    setting.bodies = {random_body(Shape::sphere, random)};
+    setting.bodies = {random_body(&sphere_shape(), random)};
     setting.poses = {Pose{Eigen::Matrix3d::Identity(), random.vector(0.2)}};
     std::vector<FeaturePair> pairs = all_pairs(setting.sheet.surface, setting.bodies, false);
     double least = HUGE_VAL;
@@ -194,7 +194,7 @@ TEST(APairThatMeets, HasNoNormalAndIsNoPush) {
   Setting setting;
   Random random;
   setting.sheet = random_sheet(3, 3, random);
-  setting.bodies = {random_body(Shape::mesh, random)};
+  setting.bodies = {random_body(&mesh_shape(), random)};
   setting.poses = {Pose{}};
   const auto& [a, b, c] = setting.bodies[0].surface.triangles[0];
   const auto& vertices = setting.bodies[0].vertices;
@@ -211,7 +211,7 @@ TEST(AParticleInABox, IsToldTheNearestWayOut) {
   Random random;
   setting.sheet = random_sheet(3, 3, random);
   Obstacle box;
-  box.shape = Shape::box;
+  box.shape = &box_shape();
   box.size = {1, 1, 1};
   setting.bodies = {body_of(box)};
   setting.poses = {Pose{}};

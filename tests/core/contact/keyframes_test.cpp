@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 #include "scene/scene_json.h"
 #include "support/contact_scenes.h"
 #include "support/random.h"
@@ -78,7 +79,7 @@ TEST(Keyframes, OfWrongTypesAreReportedWithTheirPlaces) {
 
 TEST(Keyframes, AreReachedToTheBitAndPassedWithoutAJump) {
   Obstacle box;
-  box.shape = Shape::box;
+  box.shape = &box_shape();
   box.center = {0.3, -0.2, 0.1};
   box.keyframes = {{0.5, {0, 1, 0}, {0, 0, 0}}, {0.75, {1, 1, 0}, {0, 2, 0}}, {2, {1, 1, 3}, {1, 0, 0}}};
   for (const Keyframe& key : box.keyframes) {
@@ -99,7 +100,7 @@ TEST(Keyframes, AreReachedToTheBitAndPassedWithoutAJump) {
 
 TEST(Keyframes, TurnEvenlyBetweenByTheShortWay) {
   Obstacle box;
-  box.shape = Shape::box;
+  box.shape = &box_shape();
   const double most = 0.9 * std::numbers::pi;
   box.keyframes = {{0, {0, 0, 0}, {0, 0, most}}, {1, {0, 0, 0}, {0, 0, -most}}};  // 0.2 pi apart through pi
   for (const double part : {0.25, 0.5, 0.75}) {

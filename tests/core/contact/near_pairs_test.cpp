@@ -166,7 +166,7 @@ TEST(NearPairs, MissNoneThatAnObstacleSweepsOverAsItTurnsAndShifts) {
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE(trial);
     Intersection meeting;
-    meeting.bodies = {random_body(random.coin() ? Shape::mesh : Shape::plane, random)};
+    meeting.bodies = {random_body(random.coin() ? &mesh_shape() : &plane_shape(), random)};
     const ObstacleBody& body = meeting.bodies[0];
     const Pose to = about(body.pivot, turn_by(random.uniform(0.5, 2) * random.vector(1).normalized()),
                           body.pivot + random.vector(0.3));
@@ -205,7 +205,7 @@ TEST(NearPairs, OfObstaclesFarAwayAreNone) {
   Random random;
   Intersection meeting;
   meeting.sheet = random_sheet(4, 4, random);
-  for (const Shape shape : {Shape::sphere, Shape::box, Shape::mesh}) {
+  for (const Shape shape : {&sphere_shape(), &box_shape(), &mesh_shape()}) {
     meeting.bodies.push_back(random_body(shape, random));
     meeting.paths.emplace_back(Vec3::Zero(), Pose{}, Pose{});
     meeting.paths.back() =

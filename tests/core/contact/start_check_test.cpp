@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/obstacle_shape.h"
 #include "scene/scene_json.h"
 #include "support/contact_scenes.h"
 #include "support/random.h"
@@ -33,7 +34,7 @@ Obstacle shaped(Shape shape, const Vec3& center) {
 }
 
 TEST(StartCheck, NamesObstacleRuleParticleAndPlace) {
-  Obstacle ball = shaped(Shape::sphere, {0.1, 0, 0.1});
+  Obstacle ball = shaped(&sphere_shape(), {0.1, 0, 0.1});
   ball.radius = 0.05;
   EXPECT_EQ(
       start_problem(sheet_on(ball)),
@@ -41,20 +42,20 @@ TEST(StartCheck, NamesObstacleRuleParticleAndPlace) {
 }
 
 TEST(StartCheck, FindsATouchAndNotAMiss) {
-  Obstacle ball = shaped(Shape::sphere, {0.15, -0.25, 0.1});
+  Obstacle ball = shaped(&sphere_shape(), {0.15, -0.25, 0.1});
   ball.radius = 0.25;
   EXPECT_NE(start_problem(sheet_on(ball)), "");
   ball.radius = 0.2499;
   EXPECT_TRUE(find_start_problems(sheet_on(ball)).empty());
 
-  Obstacle floor = shaped(Shape::plane, {7, 0, 7});
+  Obstacle floor = shaped(&plane_shape(), {7, 0, 7});
   EXPECT_NE(start_problem(sheet_on(floor)), "");
   floor.point.y() = -1e-9;
   EXPECT_TRUE(find_start_problems(sheet_on(floor)).empty());
 }
 
 TEST(StartCheck, OfContactParticleByParticleFindsFreeParticlesInsideAndLetsThemTouch) {
-  Obstacle ball = shaped(Shape::sphere, {0.2, -0.25, 0.2});
+  Obstacle ball = shaped(&sphere_shape(), {0.2, -0.25, 0.2});
   ball.radius = 0.25;
   Scene scene = sheet_on(ball);
   scene.contact.reset();
@@ -68,7 +69,7 @@ TEST(StartCheck, OfContactParticleByParticleFindsFreeParticlesInsideAndLetsThemT
   scene.cloth.pins = {PinnedParticle{2, 2}};
   EXPECT_TRUE(find_start_problems(scene).empty()) << "a pin stays where it is";
 
-  scene = sheet_on(shaped(Shape::plane, {7, 0, 7}));
+  scene = sheet_on(shaped(&plane_shape(), {7, 0, 7}));
   scene.contact.reset();
   scene.self_contact.reset();
   EXPECT_TRUE(find_start_problems(scene).empty());
@@ -77,7 +78,7 @@ TEST(StartCheck, OfContactParticleByParticleFindsFreeParticlesInsideAndLetsThemT
 }
 
 TEST(StartCheck, FindsABoxByItsCornerItsEdgeAndItsInside) {
-  Obstacle box = shaped(Shape::box, {0.05, -0.2, 0.12});
+  Obstacle box = shaped(&box_shape(), {0.05, -0.2, 0.12});
   box.size = {0.05, 0.3, 0.05};
   EXPECT_TRUE(find_start_problems(sheet_on(box)).empty());
   box.size.y() = 0.5;  // only its upright edges meet the inside of a face
@@ -92,7 +93,7 @@ TEST(StartCheck, FindsABoxByItsCornerItsEdgeAndItsInside) {
 }
 
 TEST(StartCheck, FindsAMeshWhereItIsAtTheStart) {
-  Obstacle cones = shaped(Shape::mesh, {0, -0.03, 0});
+  Obstacle cones = shaped(&mesh_shape(), {0, -0.03, 0});
   cones.scale = 0.4;
   cones.mesh.file = "cone-bed.obj";
   Scene scene = sheet_on(cones);
@@ -103,9 +104,9 @@ TEST(StartCheck, FindsAMeshWhereItIsAtTheStart) {
 }
 
 TEST(StartCheck, NamesEveryObstacleThatIsTouched) {
-  Scene scene = sheet_on(shaped(Shape::sphere, {0, 0, 0}));
-  scene.obstacles.push_back(shaped(Shape::sphere, {0, -5, 0}));
-  scene.obstacles.push_back(shaped(Shape::plane, {0, 1, 0}));
+  Scene scene = sheet_on(shaped(&sphere_shape(), {0, 0, 0}));
+  scene.obstacles.push_back(shaped(&sphere_shape(), {0, -5, 0}));
+  scene.obstacles.push_back(shaped(&plane_shape(), {0, 1, 0}));
   const std::vector<Problem> problems = find_start_problems(scene);
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0].path, "obstacles.0");

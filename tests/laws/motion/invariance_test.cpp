@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "integrators/registry.h"
+#include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/scenes.h"
@@ -27,7 +28,7 @@ Scene with_obstacles(const std::string& method) {
   Scene scene = smooth(method);
   scene.obstacles.emplace_back();
   scene.obstacles[0].center = {0.6, -0.7, 0.35}, scene.obstacles[0].radius = 0.25;
-  scene.obstacles.emplace_back().shape = Shape::plane;
+  scene.obstacles.emplace_back().shape = &plane_shape();
   scene.obstacles[1].point = {0, -1.45, 0};
   return scene;
 }

@@ -136,9 +136,7 @@ ForceEntry air_entry() {
           .work = &Work::air,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("air drag", scene.air.has_value(), "air",
-                                                     scene.air.value_or(Air{}).drag, "air.drag"),
-                                   wind_stage(scene)};
+                return std::vector{coefficient_stage("air drag", scene, "air.drag"), wind_stage(scene)};
               }};
 }
 

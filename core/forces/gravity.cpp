@@ -4,6 +4,7 @@
 
 #include "cloth/sums.h"
 #include "forces/registry.h"
+#include "scene/blocks.h"
 
 namespace cloth {
 
@@ -32,7 +33,7 @@ double gravity_energy(const ClothSystem& system, const Vec3& acceleration, const
 namespace {
 
 std::vector<StageInfo> explain_gravity(const Scene& scene, const ClothSystem&) {
-  if (!scene.gravity) return {{"gravity", false, "the scene has no \"gravity\""}};
+  if (auto absent = absent_stage("gravity", scene, "gravity")) return {*absent};
   if (!(scene.gravity->squaredNorm() > 0)) return {{"gravity", false, "gravity is 0"}};
   const Vec3& g = *scene.gravity;
   return {{"gravity", true, fmt::format("[{}, {}, {}] m/s^2", g.x(), g.y(), g.z())}};

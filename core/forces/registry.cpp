@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "scene/blocks.h"
+
 namespace cloth {
 
 // Each in the file of its force.
@@ -21,11 +23,13 @@ const std::vector<ForceEntry>& force_registry() {
   return entries;
 }
 
-StageInfo coefficient_stage(const char* name, bool has_block, const char* block, double value,
-                            const char* key) {
-  if (!has_block) return {name, false, fmt::format("the scene has no \"{}\"", block)};
-  if (!(value > 0)) return {name, false, fmt::format("{} is 0", key)};
-  return {name, true, fmt::format("{} = {} N s/m", key, value)};
+StageInfo coefficient_stage(const char* name, const Scene& scene, const std::string& path) {
+  const auto block = parent_path(path);
+  if (auto absent = absent_stage(name, scene, block.empty() ? path : block)) return *absent;
+  const auto parameter = find_parameter(scene, path);
+  const double value = std::get<double>(parameter->get(scene));
+  if (!(value > 0)) return {name, false, fmt::format("{} is 0", path)};
+  return {name, true, fmt::format("{} = {} {}", path, value, parameter->info.unit)};
 }
 
 bool has_work(const Scene& scene, const ClothSystem& system, double Work::*work) {

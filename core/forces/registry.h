@@ -19,9 +19,8 @@ struct ForceEntry {
   std::vector<StageInfo> (*explain)(const Scene&, const ClothSystem&);
 };
 
-/// The stage of a force that is present where a coefficient in N s/m is above 0.
-StageInfo coefficient_stage(const char* name, bool has_block, const char* block, double value,
-                            const char* key);
+/// The stage of a force that is present where the number at a parameter's path is above 0.
+StageInfo coefficient_stage(const char* name, const Scene& scene, const std::string& path);
 
 /// In the order in which their forces are added.
 const std::vector<ForceEntry>& force_registry();

@@ -88,9 +88,7 @@ ForceEntry skin_friction_entry() {
           .work = &Work::air,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("skin friction", scene.air.has_value(), "air",
-                                                     scene.air.value_or(Air{}).skin_friction,
-                                                     "air.skin_friction")};
+                return std::vector{coefficient_stage("skin friction", scene, "air.skin_friction")};
               }};
 }
 

@@ -8,6 +8,7 @@
 #include "cloth/grid.h"
 #include "cloth/sums.h"
 #include "forces/registry.h"
+#include "scene/blocks.h"
 
 namespace cloth {
 namespace {
@@ -190,7 +191,7 @@ namespace {
 
 StageInfo family_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
   const std::string name = fmt::format("{} springs", name_of(family));
-  if (!scene.springs) return {name, false, "the scene has no \"springs\""};
+  if (auto absent = absent_stage(name, scene, "springs")) return *absent;
   const double stiffness = stiffness_of(*scene.springs, family);
   if (!(stiffness > 0)) return {name, false, fmt::format("springs.{} is 0", name_of(family))};
   const auto count = system.spring_count(family);
@@ -223,9 +224,7 @@ ForceEntry spring_damping_entry() {
           .work = &Work::damping_loss,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("spring damping", scene.springs.has_value(), "springs",
-                                                     scene.springs.value_or(SpringMaterial{}).damping,
-                                                     "springs.damping")};
+                return std::vector{coefficient_stage("spring damping", scene, "springs.damping")};
               }};
 }
 

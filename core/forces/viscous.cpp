@@ -36,8 +36,7 @@ ForceEntry viscous_damping_entry() {
           .work = &Work::damping_loss,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("viscous damping", scene.damping.has_value(), "damping",
-                                                     scene.damping.value_or(0), "damping")};
+                return std::vector{coefficient_stage("viscous damping", scene, "damping")};
               }};
 }
 

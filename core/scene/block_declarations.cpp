@@ -1,5 +1,7 @@
 // The blocks of a scene: their parameters, their texts and what the Add menu fills in, each declared once.
 // Designated initialisers keep the order of ParameterInfo's members.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "params/field_builders.h"
@@ -417,6 +419,14 @@ const std::vector<const BlockRow*>& block_rows_of_file() {
     return rows;
   }();
   return in_order;
+}
+
+std::optional<StageInfo> absent_stage(const std::string& stage, const Scene& scene,
+                                      const std::string& block) {
+  const auto& rows = block_rows();
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const BlockRow& r) { return r.path == block; });
+  if (row->is_present(scene)) return std::nullopt;
+  return StageInfo{stage, false, fmt::format("the scene has no \"{}\"", block)};
 }
 
 std::string parent_path(const std::string& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/scene_parameters.h"
+#include "scene/stage_info.h"
 
 namespace cloth {
 
@@ -36,6 +37,9 @@ const std::vector<BlockRow>& block_rows();
 
 /// In the order of a file.
 const std::vector<const BlockRow*>& block_rows_of_file();
+
+/// What `explain` says of a stage whose block the scene does not have; none where it has it.
+std::optional<StageInfo> absent_stage(const std::string& stage, const Scene& scene, const std::string& block);
 
 /// "springs" of "springs.shear", "" of "damping": the object of a file in which a parameter or block stands.
 std::string parent_path(const std::string& path);

@@ -10,13 +10,14 @@
 #include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
+#include "scene/blocks.h"
 
 namespace cloth {
 namespace {
 
 StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
   const char* name = "deformation rate";
-  if (!scene.deformation) return {name, false, "the scene has no \"deformation\""};
+  if (auto absent = absent_stage(name, scene, "deformation")) return *absent;
   if (!DeformationLimiter::is_needed(*scene.deformation, system))
     return {name, false, "no spring of the families in deformation.springs exists"};
   const Deformation& deformation = *scene.deformation;
@@ -29,7 +30,7 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
 }
 
 StageInfo contact_stage(const Scene& scene) {
-  if (scene.obstacles.empty()) return {"contact", false, "the scene has no \"obstacles\""};
+  if (auto absent = absent_stage("contact", scene, "obstacles")) return *absent;
   const std::string count =
       fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s");
   if (!has_continuous_contact(scene)) return {"contact", true, count};
@@ -41,7 +42,7 @@ StageInfo contact_stage(const Scene& scene) {
 }
 
 StageInfo self_contact_stage(const Scene& scene) {
-  if (!scene.self_contact) return {"self-contact", false, "the scene has no \"self_contact\""};
+  if (auto absent = absent_stage("self-contact", scene, "self_contact")) return *absent;
   return {"self-contact", true, fmt::format("without gaps, {} m thick", scene.self_contact->thickness)};
 }
 

@@ -6,9 +6,20 @@
 #include <cstdlib>
 
 namespace cloth::test::instruction_set_test {
+namespace {
+
+/// Ends the program before its first test where the processor lacks the instruction set that is asked for.
+class Processor : public ::testing::Environment {
+  void SetUp() override {
+    if (const std::string problem = instruction_set_problem(); !problem.empty()) GTEST_SKIP() << problem;
+  }
+};
+
+[[maybe_unused]] const auto* const processor = ::testing::AddGlobalTestEnvironment(new Processor);
+
+}  // namespace
 
 TEST(InstructionSets, TheOneThatTheEnvironmentNamesIsUsed) {
-  if (const std::string problem = instruction_set_problem(); !problem.empty()) GTEST_SKIP() << problem;
   if (const char* wish = std::getenv(instruction_set_variable)) {
     EXPECT_STREQ(name_of(active_instruction_set()), wish);
   } else {

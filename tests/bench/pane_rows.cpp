@@ -70,8 +70,8 @@ json pane_row(TimedApplication& application, int panes, int side, const std::str
                        drawn_in.push_back(application.event_number());
                        drawings.push_back(milliseconds);
                      });
-  window.simulation().send(compare_command::Speed{std::numeric_limits<double>::infinity()});
-  window.simulation().send(compare_command::Play{});
+  window.simulation().send(command::Speed{std::numeric_limits<double>::infinity()});
+  window.simulation().send(command::Play{});
   run_events(warm_up);
   drawn_in.clear();
   drawings.clear();
@@ -95,7 +95,7 @@ json pane_row(TimedApplication& application, int panes, int side, const std::str
                  {"simulated_s", window.simulation().status().time - began},
                  {"machine_load", machine_load()},
                  {"kinds", kinds_json(application)}};
-  window.simulation().send(compare_command::Pause{});
+  window.simulation().send(command::Pause{});
   window.simulation().settle();
   return row;
 }

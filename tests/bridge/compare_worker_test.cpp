@@ -14,8 +14,6 @@
 namespace clothlab::test::compare_worker_test {
 namespace {
 
-namespace command = compare_command;
-
 constexpr double fastest = std::numeric_limits<double>::infinity();
 
 cloth::Comparison small_comparison(const std::vector<std::string>& methods = {"verlet", "rk4", "bdf2"}) {

@@ -9,27 +9,24 @@
 namespace clothlab {
 namespace {
 
-using Clock = WorkerPace::Clock;
-
 int threads_for(int wanted) {
   if (wanted > 0) return wanted;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
 }
 
+using LoadComparison = command::Load<cloth::Comparison>;
+using EditComparison = command::Edit<cloth::Comparison>;
+
 /// Whether the command has to wait for a common time.
 bool acts_on_the_panes(const CompareCommand& command) {
-  using namespace compare_command;
-  return std::holds_alternative<Edit>(command) || std::holds_alternative<SingleStep>(command) ||
-         std::holds_alternative<Brush>(command) || std::holds_alternative<Pull>(command) ||
-         std::holds_alternative<StartRecording>(command) || std::holds_alternative<StopRecording>(command);
+  return command::is_one_of<EditComparison, command::SingleStep, command::Brush, command::Pull,
+                            command::StartRecording, command::StopRecording>(command);
 }
 
 /// Of several of one kind only the newest counts: a slider or a hand moves faster than panes do.
 bool is_overtaken_by(const CompareCommand& command, const CompareCommand& next) {
-  using namespace compare_command;
   return command.index() == next.index() &&
-         (std::holds_alternative<Load>(command) || std::holds_alternative<Edit>(command) ||
-          std::holds_alternative<Brush>(command) || std::holds_alternative<Pull>(command));
+         command::is_one_of<LoadComparison, EditComparison, command::Brush, command::Pull>(command);
 }
 
 }  // namespace
@@ -54,7 +51,7 @@ void CompareWorker::run(const std::stop_token& stop) {
     }
     publish_status();
     if (!under_way_) settled_ = handled_;
-    channel_.settle(settled_, has_work());
+    report_done(settled_, has_work());
   }
   end_recording();
 }
@@ -81,7 +78,7 @@ void CompareWorker::wait_for_work(const std::stop_token& stop) {
   if (has_work()) due = Clock::now();
   if (status_.playing && waiting_.empty() && !under_way_)
     due = pace_.due_time(lockstep_->time_of(lockstep_->index() + 1));
-  auto commands = channel_.receive(stop, due);
+  auto commands = receive(stop, due);
   std::move(commands.begin(), commands.end(), std::back_inserter(waiting_));
 }
 
@@ -105,19 +102,19 @@ void CompareWorker::handle_waiting() {
 
 /// Such an edit is not overtaken: a pane that was copied and then changed is another than a new one.
 bool CompareWorker::changes_panes(const CompareCommand& command) const {
-  const auto* edit = std::get_if<compare_command::Edit>(&command);
+  const auto* edit = std::get_if<EditComparison>(&command);
   return edit && lockstep_ &&
-         !std::equal(edit->comparison.panes.begin(), edit->comparison.panes.end(),
+         !std::equal(edit->content.panes.begin(), edit->content.panes.end(),
                      lockstep_->comparison().panes.begin(), lockstep_->comparison().panes.end(),
                      [](const cloth::Pane& one, const cloth::Pane& other) { return one.name == other.name; });
 }
 
-void CompareWorker::handle(const compare_command::Load& load) {
+void CompareWorker::handle(const LoadComparison& load) {
   status_.playing = false;
-  start(load.comparison);
+  start(load.content);
 }
 
-void CompareWorker::handle(const compare_command::Restart&) {
+void CompareWorker::handle(const command::Restart&) {
   if (!lockstep_) return;
   status_.playing = false;
   start(cloth::Comparison(lockstep_->comparison()));
@@ -136,71 +133,67 @@ void CompareWorker::start(const cloth::Comparison& comparison) {
   under_way_.reset();
   lockstep_ = std::make_unique<cloth::LockStep>(comparison);
   ++topology_;
-  pace_.restart(0, Clock::now());
-  meter_.restart(0, Clock::now());
-  channel_.drop_samples();  // of the run before
+  restart_clock(0);
+  drop_samples();  // of the run before
   take_sample(true);
   publish_frames();
 }
 
-void CompareWorker::handle(const compare_command::Edit& edit) {
-  if (!lockstep_) return start(edit.comparison);
+void CompareWorker::handle(const EditComparison& edit) {
+  if (!lockstep_) return start(edit.content);
   status_.refusal.clear();
-  if (const auto problems = cloth::find_problems(edit.comparison); !problems.empty()) {
+  if (const auto problems = cloth::find_problems(edit.content); !problems.empty()) {
     status_.refusal = problems.front().text();
     return;
   }
-  if (!cloth::acts_at_once(lockstep_->comparison(), edit.comparison)) {
+  if (!cloth::acts_at_once(lockstep_->comparison(), edit.content)) {
     if (lockstep_->index() > 0) ++status_.new_starts;
-    return start(edit.comparison);
+    return start(edit.content);
   }
-  if (recorder_) log(cloth::comparison_log_lines(lockstep_->comparison(), edit.comparison, now()));
-  lockstep_->edit(edit.comparison);
+  if (recorder_) log(cloth::comparison_log_lines(lockstep_->comparison(), edit.content, now()));
+  lockstep_->edit(edit.content);
   publish_frames();
 }
 
-void CompareWorker::handle(const compare_command::Play&) {
+void CompareWorker::handle(const command::Play&) {
   if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
   status_.playing = true;
-  const double time = now();
-  pace_.restart(time, Clock::now());
-  meter_.restart(time, Clock::now());
+  restart_clock(now());
 }
 
-void CompareWorker::handle(const compare_command::Pause&) {
+void CompareWorker::handle(const command::Pause&) {
   status_.playing = false;
   if (lockstep_ && !under_way_) publish_frames();  // what was computed since the last ones
 }
 
-void CompareWorker::handle(const compare_command::SingleStep&) {
+void CompareWorker::handle(const command::SingleStep&) {
   status_.playing = false;
   if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
   under_way_ = lockstep_->index() + 1;
 }
 
-void CompareWorker::handle(const compare_command::Speed& speed) {
-  status_.speed = speed.factor;
-  pace_.set_speed(speed.factor, lockstep_ ? lockstep_->time_of(lockstep_->index()) : 0, Clock::now());
+void CompareWorker::handle(const command::Speed& speed) {
+  set_speed(speed.factor, lockstep_ ? now() : 0);
 }
 
-void CompareWorker::handle(const compare_command::Brush& brush) {
+void CompareWorker::handle(const command::Brush& brush) {
   if (!lockstep_) return;
   if (recorder_) log(cloth::comparison_log_lines(brush.gust, now()));
   lockstep_->set_brush(brush.gust);
 }
 
-void CompareWorker::handle(const compare_command::Pull& pull) {
+void CompareWorker::handle(const command::Pull& pull) {
   if (!lockstep_) return;
   if (recorder_) log(cloth::comparison_log_lines(pull.pull, now()));
   lockstep_->set_pull(pull.pull);
 }
 
-void CompareWorker::handle(const compare_command::Colour& colour) {
+void CompareWorker::handle(const command::Colour& colour) {
   colouring_ = colour.by;
   if (lockstep_) publish_frames();
 }
 
-void CompareWorker::handle(const compare_command::StartRecording& start) {
+void CompareWorker::handle(const command::StartRecording& start) {
   end_recording();
   if (!lockstep_) return;
   status_.recording_error.clear();
@@ -213,7 +206,7 @@ void CompareWorker::handle(const compare_command::StartRecording& start) {
   ++status_.recorded_rows;
 }
 
-void CompareWorker::handle(const compare_command::StopRecording&) {
+void CompareWorker::handle(const command::StopRecording&) {
   end_recording();
 }
 
@@ -234,7 +227,7 @@ void CompareWorker::play_for_a_moment() {
     under_way_ = next;
   }
   const std::stop_token stop = thread_.get_stop_token();
-  const auto may_go_on = [this, &stop] { return !channel_.has_mail() && !stop.stop_requested(); };
+  const auto may_go_on = [this, &stop] { return !has_mail() && !stop.stop_requested(); };
   lockstep_->set_stop_test([stop] { return stop.stop_requested(); });
   if (!lockstep_->advance(*under_way_, may_go_on, threads_)) return;
   under_way_.reset();
@@ -242,8 +235,7 @@ void CompareWorker::play_for_a_moment() {
 }
 
 void CompareWorker::arrive() {
-  const double time = now();
-  meter_.count(1, time, Clock::now());
+  meter_.count(1, now(), Clock::now());
   if (lockstep_->all_stopped()) {
     status_.playing = false;
     end_recording();
@@ -267,7 +259,7 @@ void CompareWorker::arrive() {
 }
 
 void CompareWorker::take_sample(bool is_start) {
-  CompareSample sample{.time_s = lockstep_->time_of(lockstep_->index()), .is_start = is_start, .panes = {}};
+  CompareSample sample{.time_s = now(), .is_start = is_start, .panes = {}};
   for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) {
     const cloth::Lane& lane = lockstep_->lane(i);
     if (!lane.going()) continue;
@@ -279,19 +271,12 @@ void CompareWorker::take_sample(bool is_start) {
     pane.step_ms = 1e3 * lane.step_time;
     if (const cloth::Difference* difference = lockstep_->difference(i)) pane.rms_m = difference->rms;
   }
-  if (!channel_.deliver(sample)) ++status_.lost_samples;
-}
-
-void CompareWorker::note_record(const std::optional<cloth::IoError>& error) {
-  if (!error) return;
-  status_.recording_error = error->text();
-  end_recording();
+  deliver(sample);
 }
 
 void CompareWorker::end_recording() {
   if (!recorder_) return;
-  const auto error = recorder_->close();
-  if (error && status_.recording_error.empty()) status_.recording_error = error->text();
+  note_end(recorder_->close());
   recorder_.reset();
 }
 
@@ -318,7 +303,7 @@ void CompareWorker::publish_status() {
   status_.recording = recorder_.has_value();
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   if (lockstep_ && !under_way_) {
-    status_.time = lockstep_->time_of(lockstep_->index());
+    status_.time = now();
     status_.duration = lockstep_->time_of(lockstep_->last_index());
     if (!status_.comparison || *status_.comparison != lockstep_->comparison())
       status_.comparison = std::make_shared<cloth::Comparison>(lockstep_->comparison());
@@ -329,7 +314,7 @@ void CompareWorker::publish_status() {
     status_.reference_failure = failed ? cloth::describe(*lockstep_->lane(*reference).divergence) : "";
     status_.floor = lockstep_->floor() ? std::optional(lockstep_->floor()->rms) : std::nullopt;
   }
-  channel_.publish(status_);
+  publish();
 }
 
 }  // namespace clothlab

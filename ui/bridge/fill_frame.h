@@ -6,9 +6,8 @@
 
 namespace clothlab {
 
-/// All but `topology`, which the worker counts, and `shows_difference`. The state may be an earlier one of the
-/// simulation. `normals` is scratch. Neither allocates when the cloth has
-/// the size of the last time.
+/// All but `topology`, which the worker counts, and `shows_difference`. The state may be an earlier one of
+/// the simulation. `normals` is scratch. Neither allocates when the cloth has the size of the last time.
 void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& state,
                 cloth::Vec3Field& normals, ClothFrame& frame);
 void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame);

@@ -11,8 +11,6 @@
 namespace clothlab {
 namespace {
 
-using Clock = WorkerPace::Clock;
-
 constexpr auto batch_time = std::chrono::milliseconds(5);  // between two looks at the inbox
 
 /// Why a scene cannot be run, or nothing.
@@ -24,10 +22,9 @@ std::string refusal_of(const cloth::Scene& scene) {
 
 /// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big
 /// cloth assembles.
-bool is_overtaken_by(const Command& command, const Command& next) {
-  return (std::holds_alternative<command::Load>(command) || std::holds_alternative<command::Edit>(command) ||
-          std::holds_alternative<command::GoTo>(command)) &&
-         command.index() == next.index();
+bool is_overtaken_by(const SceneCommand& command, const SceneCommand& next) {
+  return command.index() == next.index() &&
+         command::is_one_of<command::Load<cloth::Scene>, command::Edit<cloth::Scene>, command::GoTo>(command);
 }
 
 }  // namespace
@@ -43,7 +40,7 @@ SimulationWorker::~SimulationWorker() {
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {
-    const std::vector<Command> commands = wait_for_work(stop);
+    const std::vector<SceneCommand> commands = wait_for_work(stop);
     try {
       carry_out(commands);
       if (status_.playing) play_for_a_moment();
@@ -53,12 +50,12 @@ void SimulationWorker::run(const std::stop_token& stop) {
     }
     status_.commands += commands.size();
     publish_status();
-    channel_.settle(status_.commands, status_.playing);
+    report_done(status_.commands, status_.playing);
   }
-  if (recording_.is_active()) end_recording();
+  end_recording();
 }
 
-void SimulationWorker::carry_out(const std::vector<Command>& commands) {
+void SimulationWorker::carry_out(const std::vector<SceneCommand>& commands) {
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
       batch_is_done_ = i + 1 == commands.size();
@@ -72,25 +69,25 @@ void SimulationWorker::give_up(const std::string& why) {
   playing_again_ = false;
   status_.refusal = why;
   gave_up_ = true;
-  if (recording_.is_active() && simulation_) end_recording();
+  end_recording();
   simulation_.reset();
 }
 
 /// Until there is a command, or the next step is due.
-std::vector<Command> SimulationWorker::wait_for_work(const std::stop_token& stop) {
-  if (!status_.playing) return channel_.receive(stop, std::nullopt);
-  return channel_.receive(stop, pace_.due_time(simulation_->time() + simulation_->time_step()));
+std::vector<SceneCommand> SimulationWorker::wait_for_work(const std::stop_token& stop) {
+  if (!status_.playing) return receive(stop, std::nullopt);
+  return receive(stop, pace_.due_time(simulation_->time() + simulation_->time_step()));
 }
 
-void SimulationWorker::handle(const command::Load& load) {
-  if (recording_.is_active()) end_recording();
-  if (start_simulation(load.scene)) ++topology_;
+void SimulationWorker::handle(const command::Load<cloth::Scene>& load) {
+  end_recording();
+  if (start_simulation(load.content)) ++topology_;
   publish_frame();
 }
 
 void SimulationWorker::handle(const command::Restart&) {
   if (!simulation_) return;
-  if (recording_.is_active()) end_recording();
+  end_recording();
   const cloth::Scene scene = simulation_->scene();
   start_simulation(scene);
   publish_frame();
@@ -117,18 +114,18 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   energy_ = {};
   wall_since_row_ = 0;
   steps_since_row_ = 0;
-  meter_.restart(0, Clock::now());
-  channel_.drop_samples();  // of the run before
+  restart_clock(0);
+  drop_samples();  // of the run before
   take_sample();
   return true;
 }
 
-void SimulationWorker::handle(const command::Edit& edit) {
-  if (gave_up_) return handle(command::Load{edit.scene});
+void SimulationWorker::handle(const command::Edit<cloth::Scene>& edit) {
+  if (gave_up_) return handle(command::Load{edit.content});
   if (!simulation_) return;
-  status_.refusal = refusal_of(edit.scene);
+  status_.refusal = refusal_of(edit.content);
   if (!status_.refusal.empty()) return;
-  const auto problems = perform(cloth::edits_between(simulation_->scene(), edit.scene));
+  const auto problems = perform(cloth::edits_between(simulation_->scene(), edit.content));
   if (!problems.empty()) status_.refusal = problems.front().text();
   publish_frame();
 }
@@ -166,8 +163,7 @@ void SimulationWorker::handle(const command::Play&) {
   status_.divergence.reset();
   status_.playing = true;
   playing_again_ = false;
-  pace_.restart(simulation_->time(), Clock::now());
-  meter_.restart(simulation_->time(), Clock::now());
+  restart_clock(simulation_->time());
 }
 
 void SimulationWorker::handle(const command::Pause&) {
@@ -183,8 +179,7 @@ void SimulationWorker::handle(const command::SingleStep&) {
 }
 
 void SimulationWorker::handle(const command::Speed& speed) {
-  status_.speed = speed.factor;
-  pace_.set_speed(speed.factor, simulation_ ? simulation_->time() : 0, Clock::now());
+  set_speed(speed.factor, simulation_ ? simulation_->time() : 0);
 }
 
 void SimulationWorker::handle(const command::Brush& brush) {
@@ -197,7 +192,7 @@ void SimulationWorker::handle(const command::Pull& pull) {
 
 void SimulationWorker::handle(const command::StartRecording& start) {
   if (!simulation_) return;
-  if (recording_.is_active()) end_recording();
+  end_recording();
   status_.recording_error.clear();
   rows_.origin = simulation_->state().step;
   history_.keep(*simulation_);  // a divergence does not lead back to before the recording
@@ -209,7 +204,7 @@ void SimulationWorker::handle(const command::StartRecording& start) {
 }
 
 void SimulationWorker::handle(const command::StopRecording&) {
-  if (recording_.is_active()) end_recording();
+  end_recording();
 }
 
 void SimulationWorker::handle(const command::ShowContact& show) {
@@ -290,10 +285,6 @@ void SimulationWorker::take_sample() {
   deliver(sample);
 }
 
-void SimulationWorker::deliver(const ChartSample& sample) {
-  if (!channel_.deliver(sample)) ++status_.lost_samples;
-}
-
 /// The view keeps the last good state, and so does the simulation: after an edit it can go on from there.
 void SimulationWorker::diverge(const cloth::Divergence& divergence) {
   status_.divergence = divergence;
@@ -301,22 +292,16 @@ void SimulationWorker::diverge(const cloth::Divergence& divergence) {
   playing_again_ = false;
   history_.return_from(divergence, *simulation_);
   drop_later_samples();
-  if (recording_.is_active()) end_recording();
+  end_recording();
   rows_.follow(*simulation_);
   rows_.origin = simulation_->state().step;
   ++status_.jumps;
   publish_frame();
 }
 
-void SimulationWorker::note_record(const std::optional<cloth::IoError>& error) {
-  if (!error) return;
-  status_.recording_error = error->text();
-  if (recording_.is_active()) end_recording();
-}
-
 void SimulationWorker::end_recording() {
-  const auto error = recording_.end(*simulation_, simulation_->state(), status_.divergence);
-  if (error && status_.recording_error.empty()) status_.recording_error = error->text();
+  if (recording_.is_active())
+    note_end(recording_.end(*simulation_, simulation_->state(), status_.divergence));
 }
 
 void SimulationWorker::publish_frame() {
@@ -358,7 +343,7 @@ void SimulationWorker::publish_status() {
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   status_.recording = recording_.is_active();
   status_.recorded_rows = recording_.rows();
-  channel_.publish(status_);
+  publish();
 }
 
 }  // namespace clothlab

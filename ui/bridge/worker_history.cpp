@@ -7,14 +7,12 @@
 namespace clothlab {
 namespace {
 
-using Clock = WorkerPace::Clock;
-
 constexpr auto glimpse_interval = std::chrono::milliseconds(100);  // on a long way
 
 /// A way through the history is not gone to its end when the next thing is to go elsewhere.
-bool ends_a_way(const Command& next) {
-  return std::holds_alternative<command::GoTo>(next) || std::holds_alternative<command::Load>(next) ||
-         std::holds_alternative<command::Restart>(next) || std::holds_alternative<command::OpenSession>(next);
+bool ends_a_way(const SceneCommand& next) {
+  return command::is_one_of<command::GoTo, command::Load<cloth::Scene>, command::Restart,
+                            command::OpenSession>(next);
 }
 
 }  // namespace
@@ -22,7 +20,7 @@ bool ends_a_way(const Command& next) {
 void SimulationWorker::handle(const command::GoTo& go) {
   status_.playing = false;
   if (!simulation_) return;
-  if (recording_.is_active()) end_recording();
+  end_recording();
   playing_again_ = false;
   status_.divergence.reset();
   status_.refusal.clear();  // what was refused is left behind
@@ -40,7 +38,7 @@ bool SimulationWorker::may_go_on() {
   rows_.follow(*simulation_);
   if (rows_.due(simulation_->state().step)) take_sample();
   if (thread_.get_stop_token().stop_requested()) return false;
-  if (batch_is_done_ && channel_.next_is(ends_a_way)) return false;
+  if (batch_is_done_ && next_is(ends_a_way)) return false;
   if (Clock::now() - last_frame_ < glimpse_interval) return true;
   publish_frame();
   publish_status();
@@ -118,7 +116,7 @@ void SimulationWorker::handle(const command::OpenSession& open) {
   } else {
     session = std::get<cloth::Session>(open.session);
   }
-  if (recording_.is_active()) end_recording();
+  end_recording();
   if (!start_simulation(session.scene)) {
     std::swap(status_.session_error, status_.refusal);
     return;

@@ -19,4 +19,13 @@ void WorkerLink::wake() {
   if (!timer_.isActive()) timer_.start();
 }
 
+void SimulationLink::tellFrames(SimulationWorker& worker) {
+  if (const auto frame = worker.take_frame()) Q_EMIT frameReady(frame);
+}
+
+void CompareLink::tellFrames(CompareWorker& worker) {
+  for (std::size_t pane = 0; pane < cloth::most_panes; ++pane)
+    if (const auto frame = worker.take_frame(pane)) Q_EMIT frameReady(pane, frame);
+}
+
 }  // namespace clothlab

@@ -81,7 +81,7 @@ void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
   ChartRecord record = empty_record();
   std::array<double, quantities * cloth::most_panes> row;
   for (std::size_t i = 0; i < record_.samples.size(); ++i) {
-    row.fill(PaneSample::none);
+    row.fill(no_value);
     for (std::size_t q = 0; q < quantities; ++q)
       for (const int style : styles) row[column_of(q, style)] = record_.samples.value(column_of(q, style), i);
     record.samples.append(record_.samples.time(i), row);

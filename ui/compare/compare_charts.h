@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "bridge/compare_status.h"
+#include "bridge/worker_status.h"
 #include "charts/chart_stack.h"
 #include "charts/live_chart.h"
 

@@ -114,11 +114,11 @@ void CompareWindow::connectDocument() {
     followDocument();
     grid_->resetCamera();
     notice_->withdraw("new-start");
-    link_.send(compare_command::Load{document_.comparison()});
+    link_.send(command::Load{document_.comparison()});
   });
   connect(&document_, &CompareDocument::changed, this, [this] {
     followDocument();
-    link_.send(compare_command::Edit{document_.comparison()});
+    link_.send(command::Edit{document_.comparison()});
   });
   connect(&document_, &CompareDocument::scopeChanged, this, &CompareWindow::showScope);
   connect(&document_, &CompareDocument::titleChanged, this, &CompareWindow::updateTitle);
@@ -147,10 +147,10 @@ void CompareWindow::connectPanes() {
     followDocument();  // the menu's check mark, also where nothing changed
   });
   connect(grid_, &PaneGrid::pullChanged, this,
-          [this](const cloth::Pull& pull) { link_.send(compare_command::Pull{pull}); });
-  connect(grid_, &PaneGrid::pullEnded, this, [this] { link_.send(compare_command::Pull{}); });
+          [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
+  connect(grid_, &PaneGrid::pullEnded, this, [this] { link_.send(command::Pull{}); });
   connect(grid_, &PaneGrid::brushChanged, this, &CompareWindow::brush);
-  connect(grid_, &PaneGrid::brushEnded, this, [this] { link_.send(compare_command::Brush{}); });
+  connect(grid_, &PaneGrid::brushEnded, this, [this] { link_.send(command::Brush{}); });
   connect(grid_, &PaneGrid::pinToggled, this, [this](int particle) {
     const int columns = document_.comparison().scene.cloth.columns;
     document_.togglePin(particle / columns, particle % columns);
@@ -254,14 +254,14 @@ void CompareWindow::chooseReference(int index) {
 }
 
 void CompareWindow::setColouring(ViewMode mode, Colouring colouring) {
-  link_.send(compare_command::Colour{colouring});
+  link_.send(command::Colour{colouring});
   grid_->setMode(mode);
 }
 
 void CompareWindow::brush(const cloth::BrushGust& gust) {
   const auto& air = document_.comparison().scene.air;
   if (air && air->drag > 0) {
-    link_.send(compare_command::Brush{gust});
+    link_.send(command::Brush{gust});
     return;
   }
   notice_->show("brush", NoticeBar::Level::info,
@@ -317,7 +317,7 @@ void CompareWindow::followStatus(const CompareStatus& status) {
 }
 
 void CompareWindow::startRecording(const QString& folder) {
-  link_.send(compare_command::StartRecording{folder.toStdString()});
+  link_.send(command::StartRecording{folder.toStdString()});
 }
 
 void CompareWindow::updateTitle() {
@@ -336,8 +336,8 @@ void CompareWindow::closeEvent(QCloseEvent* event) {
     event->ignore();
     return;
   }
-  link_.send(compare_command::Pause{});
-  link_.send(compare_command::StopRecording{});
+  link_.send(command::Pause{});
+  link_.send(command::StopRecording{});
   event->accept();
 }
 

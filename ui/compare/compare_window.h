@@ -4,7 +4,7 @@
 
 #include <QMainWindow>
 
-#include "bridge/compare_link.h"
+#include "bridge/worker_link.h"
 #include "compare/compare_charts.h"
 #include "compare/compare_document.h"
 #include "compare/pane_grid.h"

@@ -45,10 +45,10 @@ void CompareWindow::makeActions() {
                    QKeySequence("Ctrl+Shift+R"), "record");
   record_->setCheckable(true);
   connect(play_, &QAction::triggered, this, [this](bool play) {
-    play ? link_.send(compare_command::Play{}) : link_.send(compare_command::Pause{});
+    play ? link_.send(command::Play{}) : link_.send(command::Pause{});
   });
-  connect(step_, &QAction::triggered, this, [this] { link_.send(compare_command::SingleStep{}); });
-  connect(reset_, &QAction::triggered, this, [this] { link_.send(compare_command::Restart{}); });
+  connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
+  connect(reset_, &QAction::triggered, this, [this] { link_.send(command::Restart{}); });
   connect(record_, &QAction::triggered, this, &CompareWindow::toggleRecording);
 }
 
@@ -189,7 +189,7 @@ void CompareWindow::makeTransport() {
   speed_->addItem(tr("Fastest"), std::numeric_limits<double>::infinity());
   speed_->setCurrentIndex(3);
   connect(speed_, &QComboBox::currentIndexChanged, this,
-          [this](int index) { link_.send(compare_command::Speed{speed_->itemData(index).toDouble()}); });
+          [this](int index) { link_.send(command::Speed{speed_->itemData(index).toDouble()}); });
   row->addWidget(speed_);
   row->addSpacing(spacing);
   time_ = new Reading("000.000 of 00.00 s", Reading::Look::bold, frame);
@@ -237,7 +237,7 @@ void CompareWindow::toggleRecording(bool on) {
   if (on)
     startRecording(new_folder(results_folder(), {document_.title()}));
   else
-    link_.send(compare_command::StopRecording{});
+    link_.send(command::StopRecording{});
 }
 
 }  // namespace clothlab

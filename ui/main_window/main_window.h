@@ -5,7 +5,7 @@
 #include <QMainWindow>
 #include <QPointer>
 
-#include "bridge/simulation_link.h"
+#include "bridge/worker_link.h"
 #include "charts/chart_panel.h"
 #include "document/lab_document.h"
 #include "main_window/transport_bar.h"

@@ -24,8 +24,8 @@ void follow_playing(QAction& play, bool playing) {
   dress(play, playing, playing ? QObject::tr("Pause") : QObject::tr("Play"), playing ? "pause" : "play");
 }
 
-void follow_recording(QAction& record, NoticeBar& notice, const RecordingStatus& before,
-                      const RecordingStatus& now) {
+void follow_recording(QAction& record, NoticeBar& notice, const RunStatus& before,
+                      const RunStatus& now) {
   dress(record, now.recording, now.recording ? QObject::tr("Stop recording") : QObject::tr("Record"),
         now.recording ? "stop-record" : "record");
   if (now.recording_error != before.recording_error && !now.recording_error.empty()) {

@@ -1,7 +1,7 @@
 // How the actions that play and record show what the worker does, and what a recording leaves to say.
 #pragma once
 
-#include "bridge/recording_status.h"
+#include "bridge/worker_status.h"
 
 class QAction;
 
@@ -13,7 +13,7 @@ class NoticeBar;
 void follow_playing(QAction& play, bool playing);
 
 /// The action, and a notice when a recording has ended or could not go on.
-void follow_recording(QAction& record, NoticeBar& notice, const RecordingStatus& before,
-                      const RecordingStatus& now);
+void follow_recording(QAction& record, NoticeBar& notice, const RunStatus& before,
+                      const RunStatus& now);
 
 }  // namespace clothlab

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,15 +11,23 @@
 #include <utility>
 #include <vector>
 
+#include "bridge/worker_pace.h"
+#include "bridge/worker_status.h"
+#include "io/text_file.h"
+
 namespace clothlab {
 
-template <class Command, class Sample, class Status>
-class WorkerChannel {
+/// The base of a worker that owns what it computes and a thread for it.
+template <class CommandType, class SampleType, class StatusType>
+class Worker {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Command = CommandType;
+  using Sample = SampleType;
+  using Status = StatusType;
   static constexpr std::size_t most_samples = 1 << 18;  ///< an hour at 60 a second
 
-  // --- The window's side ---
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
 
   void send(Command command) {
     {
@@ -45,21 +51,26 @@ class WorkerChannel {
     std::shared_ptr<const Status> newest;
     {
       const std::lock_guard lock(mutex_);
-      newest = status_;
+      newest = published_;
     }
     return *newest;
   }
 
-  /// True while fetching is worth while.
+  /// True while fetching is worth while: playing, or something is waiting to be done or fetched.
   bool is_busy() const { return busy_; }
 
-  /// Blocks until every command sent before is in force.
+  /// Blocks until every command sent before is in force. For tests and for closing; the window never calls
+  /// it.
   void wait_until_idle() {
     std::unique_lock lock(mutex_);
     idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
   }
 
-  // --- The worker's side ---
+ protected:  // for the worker's thread
+  using Clock = WorkerPace::Clock;
+
+  Worker() = default;
+  ~Worker() = default;
 
   /// The commands that have come; waits for one until `due`, or for as long as it takes.
   std::vector<Command> receive(const std::stop_token& stop, std::optional<Clock::time_point> due) {
@@ -83,12 +94,13 @@ class WorkerChannel {
     return !inbox_.empty() && is(inbox_.front());
   }
 
-  /// False: the window has not fetched for so long that this one is lost.
-  bool deliver(const Sample& sample) {
+  /// A sample is lost where the window has not fetched any for very long.
+  void deliver(const Sample& sample) {
     const std::lock_guard lock(mutex_);
-    if (samples_.size() >= most_samples) return false;
-    samples_.push_back(sample);
-    return true;
+    if (samples_.size() < most_samples)
+      samples_.push_back(sample);
+    else
+      ++status_.lost_samples;
   }
 
   /// Those that were not fetched.
@@ -97,14 +109,15 @@ class WorkerChannel {
     samples_.clear();
   }
 
-  void publish(const Status& status) {
-    auto newest = std::make_shared<const Status>(status);
+  /// `status_` as it is now.
+  void publish() {
+    auto newest = std::make_shared<const Status>(status_);
     const std::lock_guard lock(mutex_);
-    status_.swap(newest);  // the one before goes after the lock
+    published_.swap(newest);  // the one before goes after the lock
   }
 
   /// `done` commands since the start are in force; `busy`: there is more to come than what waits here.
-  void settle(std::uint64_t done, bool busy) {
+  void report_done(std::uint64_t done, bool busy) {
     const std::lock_guard lock(mutex_);
     busy_ = busy || !inbox_.empty();
     if (done_ == done) return;
@@ -112,12 +125,40 @@ class WorkerChannel {
     idle_.notify_all();
   }
 
+  /// From now on simulated time runs from `time`, in s.
+  void restart_clock(double time) {
+    pace_.restart(time, Clock::now());
+    meter_.restart(time, Clock::now());
+  }
+  void set_speed(double factor, double time) {
+    status_.speed = factor;
+    pace_.set_speed(factor, time, Clock::now());
+  }
+
+  /// Nothing if nothing is recorded.
+  virtual void end_recording() = 0;
+  /// What a write to the recording gave: an error ends it.
+  void note_record(const std::optional<cloth::IoError>& error) {
+    if (!error) return;
+    status_.recording_error = error->text();
+    end_recording();
+  }
+  /// What the end of the recording gave. The first error is the one to be shown.
+  void note_end(const std::optional<cloth::IoError>& error) {
+    if (error && status_.recording_error.empty()) status_.recording_error = error->text();
+  }
+
+  Status status_;
+  WorkerPace pace_;
+  RateMeter meter_;
+  Clock::time_point last_frame_{};
+
  private:
   mutable std::mutex mutex_;
   std::condition_variable_any wake_, idle_;
   std::vector<Command> inbox_;
   std::vector<Sample> samples_;
-  std::shared_ptr<const Status> status_ = std::make_shared<const Status>();
+  std::shared_ptr<const Status> published_ = std::make_shared<const Status>();
   std::uint64_t sent_ = 0, done_ = 0;  ///< commands
   std::atomic<bool> busy_{false}, has_mail_{false};
 };

@@ -1,6 +1,7 @@
 // A cloth from a mesh and obstacles of any shape in the 3-D view: drawn, picked, in every look.
 #include "geometry/mesh_repair.h"
 #include "listed_test.h"
+#include "scene/obstacle_shape.h"
 #include "view_fixture.h"
 
 namespace clothlab::test::mesh_view_test {
@@ -139,4 +140,3 @@ const Listed listed{"mesh_view_test", test_main<MeshViewTest>};
 }  // namespace clothlab::test::mesh_view_test
 
 #include "mesh_view_test.moc"
-#include "scene/obstacle_shape.h"

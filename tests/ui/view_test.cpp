@@ -1,6 +1,7 @@
 // Laws of the 3-D view: what is drawn where, and where the camera looks from. Runs on a real display (Xvfb
 // with GLX will do).
 #include "listed_test.h"
+#include "scene/obstacle_shape.h"
 #include "view_fixture.h"
 
 namespace clothlab::test::view_test {
@@ -277,5 +278,4 @@ const Listed listed{"view_test", test_main<ViewTest>};
 
 }  // namespace clothlab::test::view_test
 
-#include "scene/obstacle_shape.h"
 #include "view_test.moc"

@@ -5,7 +5,7 @@
 #include <QSurfaceFormat>
 #include <clocale>
 
-#include "compare/compare_window.h"
+#include "main_window/compare_window.h"
 #include "compare/comparison_files.h"
 #include "io/process.h"
 #include "io/machine.h"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "bench_tools.h"
-#include "compare/compare_window.h"
+#include "main_window/compare_window.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab {

@@ -9,7 +9,7 @@
 #include <QToolButton>
 #include <QtTest>
 
-#include "compare/compare_window.h"
+#include "main_window/compare_window.h"
 #include "params/exact_field.h"
 #include "scene/builtin_scenes.h"
 
@@ -80,7 +80,7 @@ class CompareBench {
   }
 
   void play_to_the_end() {
-    window.findChild<QComboBox*>("speed")->setCurrentIndex(7);  // fastest
+    window.findChild<QComboBox*>("speed")->setCurrentText("Fastest");
     QTest::mouseClick(window.findChild<QToolButton*>("playButton"), Qt::LeftButton);
     settle();
     QTRY_VERIFY_WITH_TIMEOUT(!status().playing, 120000);

@@ -1,16 +1,12 @@
 #include "compare/compare_charts.h"
 
-#include <QEvent>
-#include <QPainter>
 #include <algorithm>
 
-#include "charts/chart_export.h"
+#include "charts/live_chart.h"
 #include "compare/pane_style.h"
 
 namespace clothlab {
 namespace {
-
-constexpr int refresh_interval = 34;  // ms
 
 /// Columns of the record: a group for each quantity, a column in it for each pane that there can be, by its
 /// style.
@@ -45,15 +41,8 @@ ChartRecord empty_record() {
 }  // namespace
 
 CompareCharts::CompareCharts(QWidget* parent)
-    : QWidget(parent), record_(empty_record()), stack_(record_, TimeView::Span::whole_run) {
+    : ChartArea(empty_record(), TimeView::Span::whole_run, {1600, 1400}, parent) {
   setObjectName("compareCharts");
-  setAccessibleName(tr("Charts"));
-  timer_.setSingleShot(true);
-  timer_.setInterval(refresh_interval);
-  connect(&timer_, &QTimer::timeout, this, &CompareCharts::refresh);
-  connect(&stack_, &ChartStack::changed, this, &CompareCharts::changeLater);
-  connect(&stack_, &ChartStack::hovered, this,
-          [this](LiveChart*, std::optional<double> time_s) { readAt(time_s); });
 }
 
 CompareCharts::~CompareCharts() {
@@ -114,8 +103,8 @@ void CompareCharts::makeCharts() {
     specs_.push_back(std::move(spec));
     chart->show();
   }
-  layOut();
-  changeLater();
+  lay_out();
+  data_changed();
 }
 
 LiveChart* CompareCharts::chart(const QString& key) const {
@@ -138,79 +127,22 @@ void CompareCharts::append(const std::vector<CompareSample>& samples) {
     }
     record_.samples.append(sample.time_s, row);
   }
-  changeLater();
+  data_changed();
 }
 
-QString CompareCharts::exportPng(const QString& path, QSize size) {
-  refresh();
-  return save_png(path, size, {record_, stack_.charts(), font()});
-}
-
-QString CompareCharts::exportSvg(const QString& path, QSize size) {
-  refresh();
-  return save_svg(path, size, {record_, stack_.charts(), font()});
-}
-
-QString CompareCharts::exportCsv(const QString& path) const {
+std::vector<CsvColumn> CompareCharts::csv_columns() const {
   std::vector<CsvColumn> columns;
   const auto all = chart_quantities();
   for (std::size_t i = 0; i < curves_.styles.size(); ++i)
     for (std::size_t q = 0; q < quantities; ++q)
       columns.push_back({curves_.names[i].toUtf8() + '_' + all[q].column, Source::samples,
                          column_of(q, curves_.styles[i])});
-  return save_csv(path, record_, columns, stack_.shown_times());
+  return columns;
 }
 
-void CompareCharts::saveAs() {
-  save_charts_by_dialog(this, [this](const QString& path, const QString& ending) {
-    return ending == "png" ? exportPng(path) : ending == "svg" ? exportSvg(path) : exportCsv(path);
-  });
-}
-
-void CompareCharts::changeLater() {
-  if (isVisible() && !timer_.isActive()) timer_.start();
-}
-
-void CompareCharts::refresh() {
-  if (stack_.charts().empty()) return;
-  stack_.draw();
+void CompareCharts::show_message() {
   const bool begun = record_.samples.size() > 1;
   stack_.charts().front()->set_message(begun ? QString() : tr("Press play to compare the panes"));
-  readAt(cursor_);
-}
-
-void CompareCharts::readAt(std::optional<double> time_s) {
-  cursor_ = time_s;
-  std::optional<double> at;
-  if (time_s && !record_.samples.empty()) at = record_.samples.time(record_.samples.nearest(*time_s));
-  stack_.read(at);
-}
-
-void CompareCharts::layOut() {
-  stack_.lay_out({0, spacing, width(), height() - spacing - spacing / 2});
-}
-
-void CompareCharts::changeEvent(QEvent* event) {
-  QWidget::changeEvent(event);
-  if (event->type() != QEvent::PaletteChange && event->type() != QEvent::FontChange) return;
-  for (LiveChart* chart : stack_.charts()) chart->apply_look();
-  layOut();
-  changeLater();
-}
-
-void CompareCharts::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  layOut();
-  refresh();
-}
-
-void CompareCharts::resizeEvent(QResizeEvent*) {
-  layOut();
-  if (isVisible()) refresh();
-}
-
-void CompareCharts::paintEvent(QPaintEvent*) {
-  QPainter(this).fillRect(rect(), theme().panel);
 }
 
 }  // namespace clothlab

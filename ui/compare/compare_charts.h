@@ -2,18 +2,11 @@
 // simulated time, a curve for each pane in its colour and marker.
 #pragma once
 
-#include <QTimer>
-#include <QWidget>
-#include <memory>
-#include <vector>
-
-#include "bridge/worker_status.h"
-#include "charts/chart_stack.h"
-#include "charts/live_chart.h"
+#include "charts/chart_area.h"
 
 namespace clothlab {
 
-class CompareCharts : public QWidget {
+class CompareCharts : public ChartArea {
   Q_OBJECT
 
  public:
@@ -24,26 +17,10 @@ class CompareCharts : public QWidget {
   void setPanes(const cloth::Comparison& comparison);
   void append(const std::vector<CompareSample>& samples);
 
-  /// The charts as they look, `size` in logical px. Empty, or what went wrong in a sentence for the user.
-  QString exportPng(const QString& path, QSize size = {1600, 1400});
-  QString exportSvg(const QString& path, QSize size = {1600, 1400});
-  /// The recorded points of the times shown: time_s, then for each pane A_total_J, A_max_strain, A_step_ms,
-  /// A_rms_difference_m (see chart_export.h).
-  QString exportCsv(const QString& path) const;
-  /// Asks for a file name; the ending chooses PNG, SVG or CSV.
-  void saveAs();
-
-  const ChartRecord& record() const { return record_; }
   LiveChart* chart(const QString& key) const;
 
   QSize sizeHint() const override { return {400, 600}; }
   QSize minimumSizeHint() const override { return {230, 320}; }
-
- protected:
-  void changeEvent(QEvent* event) override;
-  void paintEvent(QPaintEvent* event) override;
-  void resizeEvent(QResizeEvent* event) override;
-  void showEvent(QShowEvent* event) override;
 
  private:
   struct Curves {
@@ -55,17 +32,12 @@ class CompareCharts : public QWidget {
   void makeCharts();
   void deleteCharts();
   void forgetAllBut(const std::vector<int>& styles);
-  void changeLater();
-  void refresh();
-  void layOut();
-  void readAt(std::optional<double> time_s);
+  std::vector<CsvColumn> csv_columns() const override;
+  void show_message() override;
+  int lay_out_head() override { return spacing; }
 
   Curves curves_;
   std::vector<std::unique_ptr<ChartSpec>> specs_;  ///< charts refer to them
-  ChartRecord record_;
-  ChartStack stack_;
-  QTimer timer_;
-  std::optional<double> cursor_;  ///< s
 };
 
 }  // namespace clothlab

@@ -54,40 +54,24 @@ class CompareDocument::EditCommand : public QUndoCommand {
   std::string place_;  ///< scope and parameter
 };
 
-CompareDocument::CompareDocument(QObject* parent) : QObject(parent) {
-  connect(&undo_stack_, &QUndoStack::cleanChanged, this, [this] { Q_EMIT modifiedChanged(isModified()); });
+CompareDocument::CompareDocument(QObject* parent) : Document(parent) {
   connect(&form_, &LabDocument::sceneChanged, this, &CompareDocument::takeFormEdit);
-}
-
-CompareDocument::~CompareDocument() {
-  undo_stack_.disconnect(this);  // it is cleared after this body, when no signal may be sent any more
 }
 
 QString CompareDocument::title() const {
   if (!comparison_.title.empty()) return QString::fromStdString(comparison_.title);
   if (!comparison_.scene.title.empty()) return QString::fromStdString(comparison_.scene.title);
-  return path_.isEmpty() ? tr("Untitled") : QFileInfo(path_).baseName();
+  return path().isEmpty() ? tr("Untitled") : QFileInfo(path()).baseName();
 }
 
 void CompareDocument::load(Comparison comparison, const QString& path, bool unsaved) {
   comparison_ = std::move(comparison);
-  path_ = path;
-  changed_since_load_ = unsaved;
-  undo_stack_.clear();
+  beginHistory(path, unsaved);
   scope_.reset();
   showScope();
   Q_EMIT loaded();
   Q_EMIT scopeChanged();
   Q_EMIT titleChanged();
-  Q_EMIT modifiedChanged(isModified());
-}
-
-void CompareDocument::markSaved(const QString& path) {
-  path_ = path;
-  changed_since_load_ = false;
-  undo_stack_.setClean();
-  Q_EMIT titleChanged();
-  Q_EMIT modifiedChanged(false);
 }
 
 void CompareDocument::setScope(std::optional<std::size_t> pane) {
@@ -174,7 +158,7 @@ void CompareDocument::togglePin(int row, int column) {
 void CompareDocument::push(const QString& text, Comparison after, int drag, const std::string& place) {
   drop_orphans(after);
   if (after == comparison_) return;
-  undo_stack_.push(new EditCommand(*this, text, std::move(after), drag, place));
+  undoStack().push(new EditCommand(*this, text, std::move(after), drag, place));
 }
 
 void CompareDocument::apply(const Comparison& target) {

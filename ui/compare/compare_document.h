@@ -3,7 +3,6 @@
 // becomes its own value.
 #pragma once
 
-#include <QUndoStack>
 #include <optional>
 
 #include "compare/comparison.h"
@@ -11,26 +10,21 @@
 
 namespace clothlab {
 
-class CompareDocument : public QObject {
+class CompareDocument : public Document {
   Q_OBJECT
 
  public:
   explicit CompareDocument(QObject* parent = nullptr);
-  ~CompareDocument() override;
 
   const cloth::Comparison& comparison() const { return comparison_; }
   std::size_t paneCount() const { return comparison_.panes.size(); }
-  QUndoStack& undoStack() { return undo_stack_; }
-  QString path() const { return path_; }  ///< of the file; empty for one that was never saved
-  QString title() const;                  ///< the comparison's, else the scene's, else "Untitled"
-  bool isModified() const { return changed_since_load_ || !undo_stack_.isClean(); }
+  QString title() const override;
 
   /// Takes another comparison over and forgets the history. `unsaved`: it lies in no file yet.
   void load(cloth::Comparison comparison, const QString& path = {}, bool unsaved = false);
-  void markSaved(const QString& path);
 
   /// The scene that the form edits, and whose it is: a pane's index, or nothing for what all share.
-  LabDocument& form() { return form_; }
+  LabDocument& form() override { return form_; }
   std::optional<std::size_t> scope() const { return scope_; }
   void setScope(std::optional<std::size_t> pane);
 
@@ -45,10 +39,7 @@ class CompareDocument : public QObject {
 
  Q_SIGNALS:
   void changed();       ///< by an edit, undo or redo
-  void loaded();        ///< the whole comparison is new
   void scopeChanged();  ///< also when the scope's pane went
-  void titleChanged();
-  void modifiedChanged(bool modified);
 
  private:
   class EditCommand;
@@ -59,9 +50,6 @@ class CompareDocument : public QObject {
   void showScope();
 
   cloth::Comparison comparison_;
-  QString path_;
-  bool changed_since_load_ = false;
-  QUndoStack undo_stack_;
   LabDocument form_;
   std::optional<std::size_t> scope_;
   bool following_form_ = false;  ///< the form has the edit already

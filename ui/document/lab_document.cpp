@@ -141,15 +141,8 @@ class LabDocument::EditCommand : public QUndoCommand {
   bool is_new_ = true;
 };
 
-LabDocument::LabDocument(QObject* parent) : QObject(parent) {
+LabDocument::LabDocument(QObject* parent) : Document(parent) {
   qRegisterMetaType<SceneChange>();
-  connect(&undo_stack_, &QUndoStack::cleanChanged, this,
-          [this](bool clean) { Q_EMIT modifiedChanged(!clean); });
-}
-
-LabDocument::~LabDocument() {
-  // The stack is cleared after this body, when no signal may be sent any more.
-  undo_stack_.disconnect(this);
 }
 
 std::optional<ParameterValue> LabDocument::value(const std::string& path) const {
@@ -160,23 +153,16 @@ std::optional<ParameterValue> LabDocument::value(const std::string& path) const 
 
 QString LabDocument::title() const {
   if (!scene_.title.empty()) return QString::fromStdString(scene_.title);
-  if (path_.isEmpty()) return tr("Untitled");
-  const QString name = QFileInfo(path_).fileName();
+  if (path().isEmpty()) return tr("Untitled");
+  const QString name = QFileInfo(path()).fileName();
   return name.endsWith(".scene.json") ? name.chopped(11) : name;
 }
 
 void LabDocument::load(Scene scene, const QString& path) {
   drag_ = 0;
   scene_ = std::move(scene);
-  path_ = path;
-  undo_stack_.clear();
+  beginHistory(path, false);
   Q_EMIT loaded();
-  Q_EMIT titleChanged();
-}
-
-void LabDocument::markSaved(const QString& path) {
-  path_ = path;
-  undo_stack_.setClean();
   Q_EMIT titleChanged();
 }
 
@@ -211,9 +197,9 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
 /// Within a drag each edit starts from the scene before the drag, so that pins which a small grid lost on the
 /// way are there again when the drag ends on a larger one.
 const Scene& LabDocument::sceneBefore(const std::string& path) const {
-  const int index = undo_stack_.index();
-  if (drag_ == 0 || index == 0 || undo_stack_.isClean()) return scene_;
-  const auto* last = static_cast<const EditCommand*>(undo_stack_.command(index - 1));
+  const QUndoStack& edits = undoStack();
+  if (drag_ == 0 || edits.index() == 0 || edits.isClean()) return scene_;
+  const auto* last = static_cast<const EditCommand*>(edits.command(edits.index() - 1));
   return last->belongs_to(drag_, path) ? last->before() : scene_;
 }
 
@@ -289,7 +275,7 @@ void LabDocument::togglePin(int row, int column) {
 void LabDocument::follow(const Scene& scene) {
   if (edits_between(scene_, scene).empty()) return;
   drag_ = 0;
-  if (undo_stack_.count() == 0) return apply(scene, {Effect::none, {}});
+  if (undoStack().count() == 0) return apply(scene, {Effect::none, {}});
   Effect effect = Effect::live;
   for (const std::string& path : differing_parameters(scene_, scene))
     effect = std::max(effect, effect_of(find_parameter(scene, path)->info.cost));
@@ -299,7 +285,7 @@ void LabDocument::follow(const Scene& scene) {
 void LabDocument::push(const QString& text, Scene after, SceneChange change, int drag) {
   if (after == scene_) return;
   const Scene before = drag == following ? scene_ : sceneBefore(change.path);
-  undo_stack_.push(new EditCommand(*this, text, before, std::move(after), std::move(change), drag));
+  undoStack().push(new EditCommand(*this, text, before, std::move(after), std::move(change), drag));
 }
 
 void LabDocument::apply(const Scene& target, const SceneChange& change) {

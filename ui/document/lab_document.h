@@ -3,13 +3,11 @@
 // no widget.
 #pragma once
 
-#include <QObject>
-#include <QString>
-#include <QUndoStack>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "document/document.h"
 #include "scene/scene.h"
 #include "scene/scene_parameters.h"
 
@@ -23,26 +21,21 @@ struct SceneChange {
   std::string path;  ///< of the parameter or block; "cloth.pins" for pins; empty for a scene followed
 };
 
-class LabDocument : public QObject {
+class LabDocument : public Document {
   Q_OBJECT
 
  public:
   explicit LabDocument(QObject* parent = nullptr);
-  ~LabDocument() override;
 
   const cloth::Scene& scene() const { return scene_; }
   /// The value at `path`, if the scene has that parameter.
   std::optional<cloth::ParameterValue> value(const std::string& path) const;
 
-  QUndoStack& undoStack() { return undo_stack_; }
-  QString path() const { return path_; }  ///< of the file; empty for built-in and unsaved scenes
-  QString title() const;                  ///< the scene's, else the file's name, else "Untitled"
-  bool isModified() const { return !undo_stack_.isClean(); }
+  QString title() const override;
+  LabDocument& form() override { return *this; }
 
   /// Takes another scene over and forgets the history.
   void load(cloth::Scene scene, const QString& path = {});
-  /// The scene as it is now lies in the file `path`.
-  void markSaved(const QString& path);
 
   /// Changes one parameter. Returns the rule that `value` breaks ("must be >= 0") and then changes nothing;
   /// returns an empty string when done. An equal value is no edit.
@@ -82,10 +75,7 @@ class LabDocument : public QObject {
   void
   blocksChanged();  ///< blocks or parameters came or went; comes before parameterChanged of the same edit
   void pinsChanged();
-  void loaded();  ///< the whole scene is new; no other signal about its content comes with it
   void sceneChanged(const clothlab::SceneChange& change);  ///< once for each edit, undo and redo; last
-  void titleChanged();
-  void modifiedChanged(bool modified);
 
  private:
   class EditCommand;
@@ -96,8 +86,6 @@ class LabDocument : public QObject {
   const cloth::Scene& sceneBefore(const std::string& path) const;
 
   cloth::Scene scene_;
-  QString path_;
-  QUndoStack undo_stack_;
   int drag_ = 0;  ///< number of the present drag; 0: none
   int last_drag_ = 0;
 };

@@ -1,7 +1,7 @@
 #include "main_window/cloth_file.h"
 
-#include "cloth/mesh_cloth.h"
 #include "cloth/cloth_obj.h"
+#include "cloth/mesh_cloth.h"
 #include "io/obj_writer.h"
 #include "io/user_file.h"
 

@@ -6,13 +6,9 @@
 #include <QDragEnterEvent>
 #include <QMessageBox>
 #include <QMimeData>
-#include <QScreen>
-#include <QToolBar>
 #include <QUrl>
-#include <QVBoxLayout>
 #include <utility>
 
-#include "document/document_actions.h"
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
@@ -25,20 +21,31 @@ namespace {
 constexpr QSize pleasant_size{1440, 900};
 constexpr int parameters_width = 330, charts_width = 400;  // px
 constexpr int studies_height = 400;                        // px
-constexpr int title_bar_height = 32;                       // px, at least what a desktop puts above a window
 
 }  // namespace
 
-MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
+MainWindow::MainWindow(QWidget* parent)
+    : LabWindow(
+          std::make_unique<LabDocument>(),
+          {.document = tr("scene"),
+           .open_title = tr("Open a scene or a session"),
+           .filter = tr("Clothlab scenes and sessions (*.scene.json *.session.json *.json);;All files (*)"),
+           .ending = ".scene.json",
+           .title = QStringLiteral("%1[*] – Clothlab"),
+           .unsaved = tr("\"%1\" was changed. Save the changes?"),
+           .play_tip = tr("Play or pause"),
+           .step_tip = tr("One step of the method"),
+           .record_tip = tr("Record energy, strain and times to CSV while it runs"),
+           .widest_time = "000.000 s",
+           .widest_rate = "000 000 steps/s, 0.00x real time"},
+          pleasant_size, parent),
+      document_(anyDocument().form()) {
   setObjectName("mainWindow");
   setAcceptDrops(true);
-  const QSize room = screen()->availableSize() - QSize(0, title_bar_height);
-  resize(pleasant_size.boundedTo(room));
   setDockNestingEnabled(true);
   view_ = new ClothView(this);
   charts_ = new ChartPanel(this);
-  parameters_ = new ParameterPanel(document_, this);
-  notice_ = new NoticeBar(this);
+  makeForm();
   studies_ = new StudiesPanel(document_, this);
   makeActions();
   makeLayout();
@@ -46,48 +53,21 @@ MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {
   connectDocument();
   connectView();
   connectSimulation();
-  updateTitle();
 }
 
 MainWindow::~MainWindow() {
-  // The widgets refer to the document and the link, which as members would go first.
-  delete takeCentralWidget();
-  qDeleteAll(findChildren<QDockWidget*>());
+  deleteWidgets();
 }
 
 void MainWindow::makeLayout() {
-  transport_ = new TransportBar({play_, step_, reset_, record_}, this);
+  addTransport();
   timeline_ = new Timeline(play_again_, this);
   view_bar_ = new ViewBar(*view_, save_picture_, this);
   view_->setMinimumSize(320, 240);
 
-  auto* middle = new QWidget(this);
-  auto* column = new QVBoxLayout(middle);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  column->addWidget(view_bar_);
-  column->addWidget(notice_);
-  column->addWidget(view_, 1);
-  column->addWidget(timeline_);
-  setCentralWidget(middle);
-
-  auto* bottom = new QToolBar(tr("Run"), this);
-  bottom->setObjectName("transportToolBar");
-  bottom->setMovable(false);
-  bottom->addWidget(transport_);
-  addToolBar(Qt::BottomToolBarArea, bottom);
-
-  const auto dock = [this](const QString& title, const char* name, QWidget* content,
-                           Qt::DockWidgetArea area) {
-    auto* widget = new QDockWidget(title, this);
-    widget->setObjectName(name);
-    widget->setTitleBarWidget(new QWidget(widget));  // the panels have heads of their own
-    widget->setWidget(content);
-    addDockWidget(area, widget);
-    return widget;
-  };
-  QDockWidget* left = dock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
-  QDockWidget* right = dock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
+  setMiddle({view_bar_, notice_, view_, timeline_}, view_);
+  QDockWidget* left = addDock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
+  QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
   studies_dock_ = new QDockWidget(tr("Studies"), this);
   studies_dock_->setObjectName("studiesDock");
@@ -108,10 +88,7 @@ void MainWindow::showStudies() {
 void MainWindow::openRun(const cloth::Scene& scene, const QString& note) {
   if (!mayLoseChanges()) return;
   document_.load(scene);
-  if (note.isEmpty())
-    notice_->withdraw("run");
-  else
-    notice_->show("run", NoticeBar::Level::info, note);
+  say("run", NoticeBar::Level::info, note);
 }
 
 void MainWindow::connectDocument() {
@@ -122,8 +99,6 @@ void MainWindow::connectDocument() {
     view_->resetCamera();
     startSimulation();
   });
-  connect(&document_, &LabDocument::titleChanged, this, &MainWindow::updateTitle);
-  connect(&document_, &LabDocument::modifiedChanged, this, &MainWindow::updateTitle);
 }
 
 void MainWindow::connectView() {
@@ -159,17 +134,15 @@ void MainWindow::connectSimulation() {
   connect(&link_, &SimulationLink::samplesReady, this,
           [this](const std::vector<ChartSample>& samples) { charts_->append(samples); });
   connect(&link_, &SimulationLink::statusChanged, this, &MainWindow::followStatus);
-  connect(transport_, &TransportBar::speedChosen, this,
-          [this](double factor) { link_.send(command::Speed{factor}); });
   connect(&timeline_->track(), &TimelineTrack::timeWanted, this, [this](double time) {
     paused_again_ = false;
     link_.send(command::GoTo{{.step = {}, .time = time}});
   });
-  connect(play_, &QAction::triggered, this, &MainWindow::play);
   connect(play_again_, &QAction::triggered, this, [this] { link_.send(command::PlayAgain{}); });
-  connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
-  connect(reset_, &QAction::triggered, this, &MainWindow::restart);
-  connect(record_, &QAction::triggered, this, &MainWindow::toggleRecording);
+}
+
+void MainWindow::send(const RunCommand& command) {
+  std::visit([this](const auto& each) { link_.send(each); }, command);
 }
 
 void MainWindow::openScene(const QString& name) {
@@ -204,19 +177,14 @@ void MainWindow::startSimulation() {
 void MainWindow::restart() {
   charts_->clear();
   paused_again_ = false;
-  link_.send(command::Restart{});
+  LabWindow::restart();
 }
 
 /// Goes on with what the pause ended; otherwise from here on something new begins.
 void MainWindow::play(bool on) {
-  if (!on) {
-    paused_again_ = shown_status_.playing_again;
-    link_.send(command::Pause{});
-  } else if (std::exchange(paused_again_, false)) {
-    link_.send(command::PlayAgain{});
-  } else {
-    link_.send(command::Play{});
-  }
+  if (on && std::exchange(paused_again_, false)) return link_.send(command::PlayAgain{});
+  if (!on) paused_again_ = shown_status_.playing_again;
+  LabWindow::play(on);
 }
 
 void MainWindow::followChange(const SceneChange& change) {
@@ -317,21 +285,6 @@ void MainWindow::addStillAir() {
   document_.undoStack().endMacro();
 }
 
-void MainWindow::startRecording(const QString& folder) {
-  link_.send(command::StartRecording{folder.toStdString()});
-}
-
-void MainWindow::updateTitle() {
-  setWindowTitle(QStringLiteral("%1[*] – Clothlab").arg(document_.title()));
-  setWindowModified(document_.isModified());
-}
-
-bool MainWindow::mayLoseChanges() {
-  if (!asks_to_save_ || !document_.isModified()) return true;
-  return ask_to_save(this, tr("\"%1\" was changed. Save the changes?").arg(document_.title()),
-                     [this] { return save(); });
-}
-
 bool MainWindow::mayStopStudy() {
   if (!studies_->isRunning()) return true;
   return QMessageBox::question(this, tr("A study is running"),
@@ -341,14 +294,9 @@ bool MainWindow::mayStopStudy() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!mayStopStudy() || !mayLoseChanges()) {
-    event->ignore();
-    return;
-  }
-  studies_->stop();
-  link_.send(command::Pause{});
-  link_.send(command::StopRecording{});
-  event->accept();
+  if (!mayStopStudy()) return event->ignore();
+  LabWindow::closeEvent(event);
+  if (event->isAccepted()) studies_->stop();
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {

@@ -2,20 +2,12 @@
 // rooms and decides nothing that one of them could.
 #pragma once
 
-#include <QMainWindow>
-#include <QPointer>
-
 #include "bridge/worker_link.h"
 #include "charts/chart_panel.h"
 #include "document/lab_document.h"
-#include "main_window/transport_bar.h"
-#include "params/parameter_panel.h"
+#include "main_window/lab_window.h"
 #include "timeline/timeline.h"
 #include "viewport/cloth_view.h"
-#include "widgets/notice_bar.h"
-
-class QDockWidget;
-class QMenu;
 
 namespace clothlab {
 
@@ -23,7 +15,7 @@ struct OpenedScene;
 class StudiesPanel;
 class ViewBar;
 
-class MainWindow : public QMainWindow {
+class MainWindow : public LabWindow {
   Q_OBJECT
 
  public:
@@ -34,21 +26,13 @@ class MainWindow : public QMainWindow {
   /// opened is said in the window, and the scene before stays.
   void openScene(const QString& name);
 
-  /// Records into `folder` until the record action is switched off.
-  void startRecording(const QString& folder);
-
   /// The run so far, with everything that was done to it (docs/sessions.md).
   void saveSession(const QString& path);
-
-  /// Whether closing or opening another scene asks about unsaved changes.
-  void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
   LabDocument& document() { return document_; }
   SimulationLink& simulation() { return link_; }
   ClothView& view() { return *view_; }
   ChartPanel& charts() { return *charts_; }
-  ParameterPanel& parameters() { return *parameters_; }
-  NoticeBar& notice() { return *notice_; }
   Timeline& timeline() { return *timeline_; }
   StudiesPanel& studies() { return *studies_; }
   void showStudies();
@@ -60,6 +44,11 @@ class MainWindow : public QMainWindow {
 
  private:
   // main_window.cpp
+  void send(const RunCommand& command) override;
+  void open(const QString& path) override { openScene(path); }
+  QString write(const QString& path) override;
+  void play(bool on) override;
+  void restart() override;
   void makeLayout();
   void connectDocument();
   void connectView();
@@ -67,8 +56,6 @@ class MainWindow : public QMainWindow {
   void takeScene(const OpenedScene& opened);
   void followChange(const SceneChange& change);
   void startSimulation();
-  void restart();
-  void play(bool on);
   void readStability();
   void takeStableStep();
   void brush(const cloth::BrushGust& gust);
@@ -78,8 +65,6 @@ class MainWindow : public QMainWindow {
   void noteKeyframes();
   void addStillAir();
   bool hasAir() const;
-  void updateTitle();
-  bool mayLoseChanges();
   bool mayStopStudy();
   void openRun(const cloth::Scene& scene, const QString& note);
 
@@ -95,38 +80,26 @@ class MainWindow : public QMainWindow {
   void makeActions();
   void makeMenus();
   void fillRecentMenu();
-  void openWithDialog();
-  bool save();
-  bool saveAs();
   void saveSessionAs();
   void compareMethods();
   void openComparison();
   void savePicture();
   void saveCloth();
-  void toggleRecording(bool on);
   void showAbout();
 
-  LabDocument document_;
+  LabDocument& document_;
   SimulationLink link_;
   ClothView* view_ = nullptr;
   ChartPanel* charts_ = nullptr;
-  ParameterPanel* parameters_ = nullptr;
-  NoticeBar* notice_ = nullptr;
   StudiesPanel* studies_ = nullptr;
   QDockWidget* studies_dock_ = nullptr;
-  TransportBar* transport_ = nullptr;
   Timeline* timeline_ = nullptr;
   ViewBar* view_bar_ = nullptr;
   QMenu* recent_menu_ = nullptr;
 
-  QAction* play_ = nullptr;
   QAction* play_again_ = nullptr;
-  QAction* step_ = nullptr;
-  QAction* reset_ = nullptr;
-  QAction* record_ = nullptr;
   QAction* save_picture_ = nullptr;
   QAction* save_cloth_ = nullptr;
-  QAction* save_plots_ = nullptr;
 
   WorkerStatus shown_status_;
   std::shared_ptr<const cloth::Scene> followed_;  ///< the worker's scene that the document knows
@@ -134,7 +107,6 @@ class MainWindow : public QMainWindow {
   QString saving_session_;                        ///< the file, until it is written
   bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
   std::optional<cloth::Obstacle> dragged_;        ///< an obstacle, as it was before the hand took it
-  bool asks_to_save_ = true;
 };
 
 }  // namespace clothlab

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "main_window/main_window.h"
-#include "widgets/run_actions.h"
 
 namespace clothlab {
 namespace {
@@ -23,26 +22,15 @@ QString as_sentences(const std::string& notices) {
 }  // namespace
 
 void MainWindow::followStatus(const WorkerStatus& status) {
-  follow_playing(*play_, status.playing);
-  play_->setEnabled(status.refusal.empty());
-  step_->setEnabled(status.refusal.empty());
   transport_->showStatus(status);
   timeline_->showStatus(status, link_.isUpToDate());
   play_again_->setEnabled(status.refusal.empty() && !status.playing &&
                           status.step < status.history.last_step);
-
-  if (!status.refusal.empty())
-    notice_->show("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
-  else
-    notice_->withdraw("refusal");
-  if (status.notice != shown_status_.notice) {
-    if (status.notice.empty())
-      notice_->withdraw("quality");
-    else
-      notice_->show("quality", NoticeBar::Level::warning, as_sentences(status.notice));
-  }
+  followRun(status);
+  if (status.notice != shown_status_.notice)
+    say("quality", NoticeBar::Level::warning, as_sentences(status.notice));
   followDivergence(status);
-  follow_recording(*record_, *notice_, shown_status_, status);
+  followRecording(shown_status_, status);
   followSession(status);
   followScene(status);
   shown_status_ = status;

@@ -3,18 +3,15 @@
 #include <QApplication>
 #include <QDockWidget>
 #include <QFileDialog>
-#include <QFileInfo>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QToolBar>
 #include <QToolButton>
 
 #include "compare/builtin_comparisons.h"
-#include "compare/compare_window.h"
-#include "document/document_actions.h"
-#include "document/result_files.h"
 #include "io/machine.h"
 #include "main_window/cloth_file.h"
+#include "main_window/compare_window.h"
 #include "main_window/main_window.h"
 #include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
@@ -23,13 +20,6 @@
 
 namespace clothlab {
 namespace {
-
-const char* const scene_filter =
-    "Clothlab scenes and sessions (*.scene.json *.session.json *.json);;All files (*)";
-
-QString with_ending(const QString& path, const QString& ending) {
-  return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
-}
 
 /// A window of its own that outlives this one and goes when it is closed.
 CompareWindow* new_compare_window() {
@@ -42,41 +32,21 @@ CompareWindow* new_compare_window() {
 }  // namespace
 
 void MainWindow::makeActions() {
-  const auto action = [this](const char* icon_name, const QString& text, const QString& tip,
-                             const QKeySequence& key, const char* name) {
-    auto* made = new QAction(icon(icon_name), text, this);
-    made->setObjectName(name);
-    made->setShortcut(key);
-    const QString shortcut = key.toString(QKeySequence::NativeText);
-    made->setToolTip(shortcut.isEmpty() ? tip : QStringLiteral("%1 (%2)").arg(tip, shortcut));
-    addAction(made);
-    return made;
-  };
-  play_ = action("play", tr("Play"), tr("Play or pause"), Qt::Key_Space, "play");
-  play_->setCheckable(true);
-  play_again_ = action("play-again", tr("Play again"), tr("Play what the timeline has, from here to its end"),
-                       QKeySequence("Shift+Space"), "playAgain");
-  step_ = action("step", tr("Step"), tr("One step of the method"), Qt::Key_Period, "step");
-  reset_ = action("reset", tr("Reset"), tr("Back to the start, paused"), QKeySequence("Ctrl+R"), "reset");
-  record_ = action("record", tr("Record"), tr("Record energy, strain and times to CSV while it runs"),
-                   QKeySequence("Ctrl+Shift+R"), "record");
-  record_->setCheckable(true);
-  save_picture_ = action("save-picture", tr("Save picture…"), tr("Save a picture of the view"),
-                         QKeySequence("Ctrl+P"), "savePicture");
-  save_cloth_ = action("mesh", tr("Save cloth…"), tr("Save the cloth as the view shows it as an OBJ file"),
-                       QKeySequence("Ctrl+Shift+O"), "saveCloth");
-  save_plots_ = action("export-plot", tr("Save plots…"), tr("Save the charts as PNG, SVG or CSV"),
-                       QKeySequence("Ctrl+Shift+P"), "savePlots");
+  play_again_ =
+      makeAction("play-again", tr("Play again"), tr("Play what the timeline has, from here to its end"),
+                 QKeySequence("Shift+Space"), "playAgain");
+  save_picture_ = makeAction("save-picture", tr("Save picture…"), tr("Save a picture of the view"),
+                             QKeySequence("Ctrl+P"), "savePicture");
+  save_cloth_ =
+      makeAction("mesh", tr("Save cloth…"), tr("Save the cloth as the view shows it as an OBJ file"),
+                 QKeySequence("Ctrl+Shift+O"), "saveCloth");
   connect(save_picture_, &QAction::triggered, this, &MainWindow::savePicture);
   connect(save_cloth_, &QAction::triggered, this, &MainWindow::saveCloth);
   connect(save_plots_, &QAction::triggered, this, [this] { charts_->saveAs(); });
 }
 
 void MainWindow::makeMenus() {
-  QMenu* file = menuBar()->addMenu(tr("&File"));
-  QAction* open =
-      file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &MainWindow::openWithDialog);
-  open->setToolTip(tr("Open a scene or a session (Ctrl+O)"));
+  QMenu* file = addFileMenu();
   QMenu* builtin = file->addMenu(tr("Built-in scenes"));
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
     const QString name = QString::fromStdString(scene.name);
@@ -86,11 +56,7 @@ void MainWindow::makeMenus() {
   }
   recent_menu_ = file->addMenu(tr("Recent"));
   connect(recent_menu_, &QMenu::aboutToShow, this, &MainWindow::fillRecentMenu);
-  file->addSeparator();
-  QAction* save_action =
-      file->addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
-  save_action->setToolTip(tr("Save the scene (Ctrl+S)"));
-  file->addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
+  addSaveEntries(*file);
   QAction* save_session =
       file->addAction(tr("Save session as…"), QKeySequence("Ctrl+Alt+S"), this, &MainWindow::saveSessionAs);
   save_session->setObjectName("saveSession");
@@ -99,14 +65,8 @@ void MainWindow::makeMenus() {
   file->addSeparator();
   file->addAction(tr("Quit"), QKeySequence::Quit, this, &QWidget::close);
 
-  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  const auto [undo, redo] = make_undo_actions(document_.undoStack(), this);
-  edit->addActions({undo, redo});
-
-  QMenu* run = menuBar()->addMenu(tr("&Run"));
-  run->addActions({play_, play_again_, step_, reset_});
-  run->addSeparator();
-  run->addAction(record_);
+  addEditMenu();
+  QMenu* run = addRunMenu({play_, play_again_, step_, reset_});
   run->addSeparator();
   run->addAction(icon("chart"), tr("Studies…"), QKeySequence("Ctrl+T"), this, &MainWindow::showStudies)
       ->setObjectName("studies");
@@ -127,7 +87,7 @@ void MainWindow::makeMenus() {
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);
   view->addSeparator();
-  for (QDockWidget* dock : findChildren<QDockWidget*>()) view->addAction(dock->toggleViewAction());
+  addDockEntries(*view);
 
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("About Clothlab"), this, &MainWindow::showAbout);
@@ -145,9 +105,9 @@ void MainWindow::makeMenus() {
   scenes->setPopupMode(QToolButton::InstantPopup);
   scenes->setToolTip(tr("Open a built-in scene"));
   bar->addWidget(scenes);
-  bar->addActions({open, save_action});
+  bar->addActions({open_, save_});
   bar->addSeparator();
-  bar->addActions({undo, redo});
+  bar->addActions({undo_, redo_});
   bar->addSeparator();
   bar->addAction(save_plots_);
 }
@@ -159,43 +119,15 @@ void MainWindow::fillRecentMenu() {
   if (recent.isEmpty()) recent_menu_->addAction(tr("No scene was opened yet"))->setEnabled(false);
 }
 
-void MainWindow::openWithDialog() {
-  const QString path =
-      QFileDialog::getOpenFileName(this, tr("Open a scene or a session"), document_.path(), tr(scene_filter));
-  if (!path.isEmpty()) openScene(path);
-}
-
-bool MainWindow::save() {
-  if (document_.path().isEmpty()) return saveAs();
-  const QString problem = save_scene_file(document_.scene(), document_.path());
-  if (!problem.isEmpty()) {
-    notice_->show("save", NoticeBar::Level::error, tr("The scene was not saved. %1").arg(problem));
-    return false;
-  }
-  document_.markSaved(document_.path());
-  remember_scene(document_.path());
-  return true;
-}
-
-bool MainWindow::saveAs() {
-  const QString path = with_ending(
-      QFileDialog::getSaveFileName(this, tr("Save the scene"), document_.path(), tr(scene_filter)),
-      ".scene.json");
-  if (path.isEmpty()) return false;
+QString MainWindow::write(const QString& path) {
   const QString problem = save_scene_file(document_.scene(), path);
-  if (!problem.isEmpty()) {
-    notice_->show("save", NoticeBar::Level::error, tr("The scene was not saved. %1").arg(problem));
-    return false;
-  }
-  document_.markSaved(path);
-  remember_scene(path);
-  return true;
+  if (problem.isEmpty()) remember_scene(path);
+  return problem;
 }
 
 void MainWindow::saveSessionAs() {
-  const QString path = with_ending(QFileDialog::getSaveFileName(this, tr("Save the session"), {},
-                                                                tr("Clothlab sessions (*.session.json)")),
-                                   ".session.json");
+  const QString path =
+      askForPath(tr("Save the session"), tr("Clothlab sessions (*.session.json)"), ".session.json");
   if (!path.isEmpty()) saveSession(path);
 }
 
@@ -212,9 +144,7 @@ void MainWindow::openComparison() {
 
 void MainWindow::savePicture() {
   const QImage picture = view_->grabPicture();
-  const QString path = with_ending(
-      QFileDialog::getSaveFileName(this, tr("Save a picture of the view"), {}, tr("Pictures (*.png *.jpg)")),
-      ".png");
+  const QString path = askForPath(tr("Save a picture of the view"), tr("Pictures (*.png *.jpg)"), ".png");
   if (path.isEmpty()) return;
   if (!picture.save(path))
     notice_->show("picture", NoticeBar::Level::error, tr("%1: the picture could not be written.").arg(path));
@@ -225,21 +155,11 @@ void MainWindow::saveCloth() {
   const auto shown = view_->frame();
   if (!shown || !shown->has_cloth()) return;
   const ClothFrame frame = *shown;
-  const QString path =
-      with_ending(QFileDialog::getSaveFileName(this, tr("Save the cloth"), {}, tr("Meshes (*.obj)")), ".obj");
+  const QString path = askForPath(tr("Save the cloth"), tr("Meshes (*.obj)"), ".obj");
   if (path.isEmpty()) return;
   const QString problem = save_cloth_file(frame, document_.title(), path);
-  if (problem.isEmpty())
-    notice_->withdraw("cloth");
-  else
-    notice_->show("cloth", NoticeBar::Level::error, tr("The cloth was not saved. %1").arg(problem));
-}
-
-void MainWindow::toggleRecording(bool on) {
-  if (on)
-    startRecording(new_folder(results_folder(), {document_.title()}));
-  else
-    link_.send(command::StopRecording{});
+  say("cloth", NoticeBar::Level::error,
+      problem.isEmpty() ? QString() : tr("The cloth was not saved. %1").arg(problem));
 }
 
 void MainWindow::showAbout() {

@@ -27,11 +27,12 @@ QString grouped(double value) {
 
 }  // namespace
 
-TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
+TransportBar::TransportBar(const TransportActions& actions, const QString& widest_time,
+                           const QString& widest_rate, QWidget* parent)
     : QFrame(parent),
       speed_(new QComboBox(this)),
-      time_(new Reading("000.000 s", Reading::Look::bold, this)),
-      rate_(new Reading("000 000 steps/s, 0.00x real time", Reading::Look::muted, this)),
+      time_(new Reading(widest_time, Reading::Look::bold, this)),
+      rate_(new Reading(widest_rate, Reading::Look::muted, this)),
       recording_(new Reading("000 000 rows", Reading::Look::plain, this)),
       gauge_(new StabilityGauge(this)) {
   setObjectName("transportBar");
@@ -41,9 +42,8 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
   QToolButton* play = make_action_button(actions.play, this);
   play->setIconSize({24, 24});
   row->addWidget(play);
-  row->addWidget(make_action_button(actions.step, this));
-  row->addWidget(make_action_button(actions.reset, this));
-  row->addWidget(make_action_button(actions.record, this));
+  for (QAction* action : {actions.step, actions.reset, actions.record})
+    row->addWidget(make_action_button(action, this));
   row->addSpacing(spacing);
   row->addWidget(speed_);
   row->addSpacing(spacing);
@@ -56,7 +56,7 @@ TransportBar::TransportBar(const TransportActions& actions, QWidget* parent)
   row->addWidget(gauge_);
 
   fillSpeeds();
-  showStatus({});
+  showStatus(WorkerStatus{});
 }
 
 void TransportBar::fillSpeeds() {
@@ -99,6 +99,17 @@ void TransportBar::showStatus(const WorkerStatus& status) {
   recording_->setVisible(status.recording);
   if (status.recording)
     recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
+}
+
+void TransportBar::showStatus(const CompareStatus& status) {
+  if (status.time > status.duration)  // played on beyond its end
+    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
+  else
+    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
+  if (status.playing)
+    rate_->setText(tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2));
+  else
+    rate_->setText(status.time > 0 && status.time >= status.duration ? tr("Finished") : tr("Paused"));
 }
 
 }  // namespace clothlab

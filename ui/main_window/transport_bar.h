@@ -25,11 +25,14 @@ class TransportBar : public QFrame {
   Q_OBJECT
 
  public:
-  TransportBar(const TransportActions& actions, QWidget* parent = nullptr);
+  /// With room for the widest texts of time and rate.
+  TransportBar(const TransportActions& actions, const QString& widest_time, const QString& widest_rate,
+               QWidget* parent);
 
   void showStatus(const WorkerStatus& status);
-  /// For a newly opened scene: one that is over in the blink of an eye begins slowed down, and the next one of
-  /// usual length goes back to the speed of before.
+  void showStatus(const CompareStatus& status);
+  /// For a newly opened scene: one that is over in the blink of an eye begins slowed down, and the next one
+  /// of usual length goes back to the speed of before.
   void suitDuration(double seconds);
   StabilityGauge& gauge() { return *gauge_; }
 

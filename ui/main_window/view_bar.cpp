@@ -1,7 +1,5 @@
 #include "main_window/view_bar.h"
 
-#include <QAction>
-#include <QActionGroup>
 #include <QHBoxLayout>
 #include <QMenu>
 #include <QSpinBox>
@@ -12,97 +10,88 @@
 #include "widgets/action_button.h"
 
 namespace clothlab {
-namespace {
 
-QString with_shortcut(const QString& tip, const QString& shortcut) {
-  return QStringLiteral("%1 (%2)").arg(tip, shortcut);
+QAction* make_view_action(const char* icon_name, const QString& text, const QString& tip,
+                          const QString& shortcut, const char* name, QObject* parent) {
+  auto* action = new QAction(icon(icon_name), text, parent);
+  action->setObjectName(name);
+  action->setShortcut(shortcut);
+  action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, shortcut));
+  return action;
 }
 
-}  // namespace
+QToolButton* make_camera_button(QWidget* parent, const std::function<void(CameraPreset)>& choose) {
+  const std::pair<CameraPreset, QString> presets[] = {
+      {CameraPreset::front, ViewBar::tr("Front")}, {CameraPreset::back, ViewBar::tr("Back")},
+      {CameraPreset::left, ViewBar::tr("Left")},   {CameraPreset::right, ViewBar::tr("Right")},
+      {CameraPreset::top, ViewBar::tr("Top")},     {CameraPreset::isometric, ViewBar::tr("Isometric")}};
+  auto* menu = new QMenu(parent);
+  int key = 0;
+  for (const auto& [preset, name] : presets) {
+    QAction* action = menu->addAction(name, parent, [choose, which = preset] { choose(which); });
+    action->setShortcut(QStringLiteral("F%1").arg(++key));
+  }
+  auto* button = new QToolButton(parent);
+  button->setObjectName("cameraButton");
+  button->setIcon(icon("camera-iso"));
+  button->setIconSize({20, 20});
+  button->setAutoRaise(true);
+  button->setMenu(menu);
+  button->setPopupMode(QToolButton::InstantPopup);
+  button->setToolTip(ViewBar::tr("Look from the front, back, left, right, top or a corner"));
+  button->setAccessibleName(ViewBar::tr("Camera"));
+  return button;
+}
 
-ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent)
-    : QFrame(parent),
-      view_(view),
-      tools_(new QActionGroup(this)),
-      modes_(new QActionGroup(this)),
-      frame_all_(nullptr) {
+ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent) : QFrame(parent), view_(view) {
   setObjectName("viewBar");
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
   row->setSpacing(spacing / 2);
-  addTools(*row);
-  row->addSpacing(2 * spacing);
-  addModes(*row);
-  row->addSpacing(2 * spacing);
+  addTools();
+  addModes();
+  for (const QActionGroup* group : {tools_, modes_}) {
+    for (QAction* action : group->actions()) row->addWidget(make_action_button(action, this));
+    row->addSpacing(2 * spacing);
+  }
   addContact(*row);
   row->addStretch(1);
   addCamera();
   keepLast(make_action_button(save_picture, this));
 }
 
-QAction* ViewBar::addChoice(QActionGroup* group, const char* icon_name, const QString& text,
-                            const QString& tip, const QString& shortcut, const QString& name) {
-  auto* action = new QAction(icon(icon_name), text, group);
-  action->setCheckable(true);
-  action->setShortcut(shortcut);
-  action->setToolTip(with_shortcut(tip, shortcut));
-  action->setObjectName(name);
-  return action;
-}
-
-void ViewBar::addTools(QHBoxLayout& row) {
-  const struct {
-    Tool tool;
-    const char* icon;
-    QString text, tip, shortcut, name;
-  } tools[] = {
+void ViewBar::addTools() {
+  const std::vector<ViewChoice<Tool>> tools{
       {Tool::pull, "pull", tr("Pull"), tr("Drag the cloth to pull a particle; drag beside it to orbit"), "1",
        "toolPull"},
       {Tool::brush, "brush", tr("Wind brush"),
        tr("Drag to blow where the cursor is; also with Shift held. Wheel while blowing: radius"), "2",
        "toolBrush"},
-      {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"},
-  };
-  for (const auto& entry : tools) {
-    QAction* action = addChoice(tools_, entry.icon, entry.text, entry.tip, entry.shortcut, entry.name);
-    action->setChecked(entry.tool == view_.tool());
-    connect(action, &QAction::triggered, this, [this, tool = entry.tool] { view_.setTool(tool); });
-    connect(&view_, &ClothView::toolChanged, action,
-            [action, tool = entry.tool](Tool chosen) { action->setChecked(tool == chosen); });
-    row.addWidget(make_action_button(action, this));
-  }
+      {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"}};
+  tools_ = make_choices(this, tools, [this](Tool tool) { view_.setTool(tool); });
+  connect(&view_, &ClothView::toolChanged, this,
+          [this](Tool tool) { tools_->actions()[static_cast<int>(tool)]->setChecked(true); });
 }
 
-void ViewBar::addModes(QHBoxLayout& row) {
-  const struct {
-    ViewMode mode;
-    const char* icon;
-    QString text, tip, shortcut, name;
-  } modes[] = {
+void ViewBar::addModes() {
+  const std::vector<ViewChoice<ViewMode>> modes{
       {ViewMode::textured, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T",
        "modeTextured"},
       {ViewMode::wireframe, "view-wireframe", tr("Wireframe"), tr("The grid of structural springs"), "W",
        "modeWireframe"},
       {ViewMode::strain, "view-strain", tr("Strain"),
-       tr("Colours for the strain of structural and shear springs"), "S", "modeStrain"},
-  };
-  for (const auto& entry : modes) {
-    QAction* action = addChoice(modes_, entry.icon, entry.text, entry.tip, entry.shortcut, entry.name);
-    action->setChecked(entry.mode == view_.mode());
-    connect(action, &QAction::triggered, this, [this, mode = entry.mode] { view_.setMode(mode); });
-    connect(&view_, &ClothView::modeChanged, action,
-            [action, mode = entry.mode](ViewMode chosen) { action->setChecked(mode == chosen); });
-    row.addWidget(make_action_button(action, this));
-  }
+       tr("Colours for the strain of structural and shear springs"), "S", "modeStrain"}};
+  modes_ = make_choices(this, modes, [this](ViewMode mode) { view_.setMode(mode); });
+  connect(&view_, &ClothView::modeChanged, this,
+          [this](ViewMode mode) { modes_->actions()[static_cast<int>(mode)]->setChecked(true); });
 }
 
 /// The spin box is there only where a scene has a hierarchy of boxes.
 void ViewBar::addContact(QHBoxLayout& row) {
-  contact_ = new QAction(icon("contact"), tr("Contact"), this);
-  contact_->setObjectName("showContact");
+  contact_ = make_view_action("contact", tr("Contact"),
+                              tr("Where the cloth touches something, and the way it is pushed"), "C",
+                              "showContact", this);
   contact_->setCheckable(true);
-  contact_->setShortcut(QStringLiteral("C"));
-  contact_->setToolTip(with_shortcut(tr("Where the cloth touches something, and the way it is pushed"), "C"));
   row.addWidget(make_action_button(contact_, this));
 
   box_level_ = new QSpinBox(this);
@@ -132,36 +121,11 @@ void ViewBar::addContact(QHBoxLayout& row) {
 }
 
 void ViewBar::addCamera() {
-  const struct {
-    CameraPreset preset;
-    QString text, shortcut;
-  } presets[] = {
-      {CameraPreset::front, tr("Front"), "F1"}, {CameraPreset::back, tr("Back"), "F2"},
-      {CameraPreset::left, tr("Left"), "F3"},   {CameraPreset::right, tr("Right"), "F4"},
-      {CameraPreset::top, tr("Top"), "F5"},     {CameraPreset::isometric, tr("Isometric"), "F6"},
-  };
-  auto* menu = new QMenu(this);
-  for (const auto& entry : presets) {
-    auto* action = menu->addAction(entry.text);
-    action->setShortcut(entry.shortcut);
-    connect(action, &QAction::triggered, this, [this, preset = entry.preset] { view_.setPreset(preset); });
-    camera_.append(action);
-  }
-  auto* button = new QToolButton(this);
-  button->setObjectName("cameraButton");
-  button->setIcon(icon("camera-iso"));
-  button->setIconSize({20, 20});
-  button->setAutoRaise(true);
-  button->setMenu(menu);
-  button->setPopupMode(QToolButton::InstantPopup);
-  button->setToolTip(tr("Look from the front, back, left, right, top or a corner"));
-  button->setAccessibleName(tr("Camera"));
+  QToolButton* button = make_camera_button(this, [this](CameraPreset preset) { view_.setPreset(preset); });
+  camera_ = button->menu()->actions();
   keepLast(button);
-
-  frame_all_ = new QAction(icon("frame-all"), tr("Frame all"), this);
-  frame_all_->setObjectName("frameAll");
-  frame_all_->setShortcut(QStringLiteral("F"));
-  frame_all_->setToolTip(with_shortcut(tr("Fit the cloth and the obstacles into the view"), "F"));
+  frame_all_ = make_view_action("frame-all", tr("Frame all"),
+                                tr("Fit the cloth and the obstacles into the view"), "F", "frameAll", this);
   connect(frame_all_, &QAction::triggered, &view_, &ClothView::frameAll);
   keepLast(make_action_button(frame_all_, this));
 }

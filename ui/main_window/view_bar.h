@@ -2,16 +2,49 @@
 // last buttons go; what they do is in the menus.
 #pragma once
 
+#include <QAction>
+#include <QActionGroup>
 #include <QFrame>
+#include <functional>
+#include <vector>
 
 #include "viewport/cloth_view.h"
 
-class QActionGroup;
 class QHBoxLayout;
 class QMenu;
 class QSpinBox;
+class QToolButton;
 
 namespace clothlab {
+
+/// One of several things to choose, as a bar and a menu show it.
+template <class Value>
+struct ViewChoice {
+  Value value;
+  const char* icon;
+  QString text, tip, shortcut;
+  const char* name;
+};
+
+/// Its tooltip tells the shortcut.
+QAction* make_view_action(const char* icon_name, const QString& text, const QString& tip,
+                          const QString& shortcut, const char* name, QObject* parent);
+
+/// Of which one is checked, at first the first.
+template <class Value, class Choose>
+QActionGroup* make_choices(QObject* parent, const std::vector<ViewChoice<Value>>& choices, Choose choose) {
+  auto* group = new QActionGroup(parent);
+  for (const ViewChoice<Value>& entry : choices) {
+    QAction* action = make_view_action(entry.icon, entry.text, entry.tip, entry.shortcut, entry.name, group);
+    action->setCheckable(true);
+    QObject::connect(action, &QAction::triggered, parent, [choose, value = entry.value] { choose(value); });
+  }
+  group->actions().constFirst()->setChecked(true);
+  return group;
+}
+
+/// A button with a menu of the places to look from.
+QToolButton* make_camera_button(QWidget* parent, const std::function<void(CameraPreset)>& choose);
 
 class ViewBar : public QFrame {
   Q_OBJECT
@@ -28,10 +61,8 @@ class ViewBar : public QFrame {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  QAction* addChoice(QActionGroup* group, const char* icon_name, const QString& text, const QString& tip,
-                     const QString& shortcut, const QString& name);
-  void addTools(QHBoxLayout& row);
-  void addModes(QHBoxLayout& row);
+  void addTools();
+  void addModes();
   void addContact(QHBoxLayout& row);
   void addCamera();
   void keepLast(QWidget* button);
@@ -40,13 +71,12 @@ class ViewBar : public QFrame {
   void suitWidth();
 
   ClothView& view_;
-  QActionGroup* tools_;
-  QActionGroup* modes_;
+  QActionGroup *tools_ = nullptr, *modes_ = nullptr;
   QAction* contact_ = nullptr;
   QSpinBox* box_level_ = nullptr;
   QList<QAction*> camera_;
   QList<QWidget*> last_;  ///< those that may go, from left to right: the first to go is the last
-  QAction* frame_all_;
+  QAction* frame_all_ = nullptr;
 };
 
 }  // namespace clothlab

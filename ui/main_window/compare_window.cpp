@@ -1,11 +1,9 @@
-#include "compare/compare_window.h"
+#include "main_window/compare_window.h"
 
 #include <QAction>
-#include <QCloseEvent>
 #include <QComboBox>
 #include <QDockWidget>
 #include <QLabel>
-#include <QScreen>
 #include <QSignalBlocker>
 #include <QTabBar>
 #include <QVBoxLayout>
@@ -13,48 +11,54 @@
 
 #include "compare/comparison_files.h"
 #include "compare/pane_style.h"
-#include "document/document_actions.h"
 #include "params/wording.h"
 #include "scene/scene_parameters.h"
 #include "theme/theme.h"
-#include "widgets/run_actions.h"
 
 namespace clothlab {
 namespace {
 
-constexpr QSize pleasant_size{1600, 1000};
-constexpr int parameters_width = 284, charts_width = 330, ranking_height = 170;  // px
-constexpr int title_bar_height = 32;
+constexpr QSize comparison_size{1600, 1000};
+constexpr int form_width = 284, curves_width = 330, ranking_height = 170;  // px
 constexpr int ranking_interval = 200;  // ms between two fillings of the table while it runs
 
 }  // namespace
 
-CompareWindow::CompareWindow(QWidget* parent) : QMainWindow(parent) {
+CompareWindow::CompareWindow(QWidget* parent)
+    : LabWindow(std::make_unique<CompareDocument>(),
+                {.document = tr("comparison"),
+                 .open_title = tr("Open a comparison"),
+                 .filter = tr("Clothlab comparisons (*.compare.json);;All files (*)"),
+                 .ending = ".compare.json",
+                 .title = tr("%1[*] – Comparison – Clothlab"),
+                 .unsaved = tr("The comparison \"%1\" was changed. Save it?"),
+                 .play_tip = tr("Play or pause all panes"),
+                 .step_tip = tr("To the next common time of all panes"),
+                 .record_tip = tr("Record a CSV file of each pane and compare.csv while it runs"),
+                 .widest_time = "000.000 of 00.00 s",
+                 .widest_rate = "00.00x real time"},
+                comparison_size, parent),
+      document_(static_cast<CompareDocument&>(anyDocument())) {
   setObjectName("compareWindow");
-  resize(pleasant_size.boundedTo(screen()->availableSize() - QSize(0, title_bar_height)));
   grid_ = new PaneGrid(this);
   charts_ = new CompareCharts(this);
   ranking_ = new RankingTable(this);
-  parameters_ = new ParameterPanel(document_.form(), this);
-  notice_ = new NoticeBar(this);
+  makeForm();
   makeScopeTabs();
-  makeActions();
   makeViewBar();
   makeLayout();
-  makeTransport();
+  addTransport();
+  transport_->gauge().hide();
   makeMenus();
   connectDocument();
   connectPanes();
   connectSimulation();
   ranking_clock_.start();
   grid_->setFocus();
-  updateTitle();
 }
 
 CompareWindow::~CompareWindow() {
-  // The widgets refer to the document and the link, which as members would go first.
-  delete takeCentralWidget();
-  qDeleteAll(findChildren<QDockWidget*>());
+  deleteWidgets();
 }
 
 void CompareWindow::makeScopeTabs() {
@@ -75,14 +79,7 @@ void CompareWindow::makeScopeTabs() {
 }
 
 void CompareWindow::makeLayout() {
-  auto* middle = new QWidget(this);
-  auto* column = new QVBoxLayout(middle);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  column->addWidget(notice_);
-  column->addWidget(grid_, 1);
-  setCentralWidget(middle);
-
+  setMiddle({notice_, grid_}, grid_);
   auto* form = new QWidget(this);
   auto* rows = new QVBoxLayout(form);
   rows->setContentsMargins(0, 0, 0, 0);
@@ -93,19 +90,10 @@ void CompareWindow::makeLayout() {
 
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-  const auto dock = [this](const QString& title, const char* name, QWidget* content,
-                           Qt::DockWidgetArea area) {
-    auto* widget = new QDockWidget(title, this);
-    widget->setObjectName(name);
-    widget->setTitleBarWidget(new QWidget(widget));
-    widget->setWidget(content);
-    addDockWidget(area, widget);
-    return widget;
-  };
-  QDockWidget* left = dock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
-  QDockWidget* right = dock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
-  QDockWidget* bottom = dock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
-  resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
+  QDockWidget* left = addDock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
+  QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
+  QDockWidget* bottom = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
+  resizeDocks({left, right}, {form_width, curves_width}, Qt::Horizontal);
   resizeDocks({bottom}, {ranking_height}, Qt::Vertical);
 }
 
@@ -121,8 +109,6 @@ void CompareWindow::connectDocument() {
     link_.send(command::Edit{document_.comparison()});
   });
   connect(&document_, &CompareDocument::scopeChanged, this, &CompareWindow::showScope);
-  connect(&document_, &CompareDocument::titleChanged, this, &CompareWindow::updateTitle);
-  connect(&document_, &CompareDocument::modifiedChanged, this, &CompareWindow::updateTitle);
   connect(parameters_, &ParameterPanel::noteButtonClicked, this, [this](const std::string& path) {
     if (document_.scope()) document_.useShared(*document_.scope(), path);
   });
@@ -172,15 +158,11 @@ void CompareWindow::openComparison(const QString& name) {
     return;
   }
   notice_->withdraw("open");
-  takeComparison(std::move(*opened.comparison), opened.path, false);
+  document_.load(std::move(*opened.comparison), opened.path);
 }
 
 void CompareWindow::compareScene(const cloth::Scene& scene) {
-  takeComparison(comparison_of_scene(scene), {}, true);
-}
-
-void CompareWindow::takeComparison(cloth::Comparison comparison, const QString& path, bool unsaved) {
-  document_.load(std::move(comparison), path, unsaved);
+  document_.load(comparison_of_scene(scene), {}, true);
 }
 
 void CompareWindow::followDocument() {
@@ -269,33 +251,18 @@ void CompareWindow::brush(const cloth::BrushGust& gust) {
 }
 
 void CompareWindow::followStatus(const CompareStatus& status) {
-  follow_playing(*play_, status.playing);
-  play_->setEnabled(status.refusal.empty());
-  step_->setEnabled(status.refusal.empty());
-  if (status.time > status.duration)  // played on beyond its end
-    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
-  else
-    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
-  if (status.playing)
-    rate_->setText(tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2));
-  else
-    rate_->setText(status.time > 0 && status.time >= status.duration ? tr("Finished") : tr("Paused"));
-
+  transport_->showStatus(status);
   grid_->showResults(status);
   const bool news = status.time != shown_status_.time || status.panes.size() != shown_status_.panes.size();
   if (!status.playing || (news && ranking_clock_.elapsed() > ranking_interval)) {
     ranking_->showResults(status.panes);
     ranking_clock_.restart();
   }
-  if (!status.refusal.empty())
-    notice_->show("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
-  else
-    notice_->withdraw("refusal");
-  if (!status.reference_failure.empty())
-    notice_->show("reference", NoticeBar::Level::warning,
-                  tr("The reference stopped: it %1").arg(QString::fromStdString(status.reference_failure)));
-  else
-    notice_->withdraw("reference");
+  followRun(status);
+  say("reference", NoticeBar::Level::warning,
+      status.reference_failure.empty()
+          ? QString()
+          : tr("The reference stopped: it %1").arg(QString::fromStdString(status.reference_failure)));
   QStringList breaches;
   for (const cloth::PaneResult& pane : status.panes)
     if (auto breach = pane.rate_breach) {
@@ -304,41 +271,21 @@ void CompareWindow::followStatus(const CompareStatus& status) {
                       .arg(QString::fromStdString(pane.name),
                            QString::fromStdString(cloth::describe(*breach)));
     }
-  if (breaches.isEmpty())
-    notice_->withdraw("rate");
-  else
-    notice_->show("rate", NoticeBar::Level::warning, breaches.join('\n'));
+  say("rate", NoticeBar::Level::warning, breaches.join('\n'));
   reference_->setToolTip(tr("Differences are from: %1").arg(QString::fromStdString(status.reference)));
   if (status.new_starts != shown_status_.new_starts)
     notice_->show("new-start", NoticeBar::Level::info,
                   tr("Started anew from 0 s: this change cannot be put in force in the middle of a run."));
-  follow_recording(*record_, *notice_, shown_status_, status);
+  followRecording(shown_status_, status);
   shown_status_ = status;
 }
 
-void CompareWindow::startRecording(const QString& folder) {
-  link_.send(command::StartRecording{folder.toStdString()});
+void CompareWindow::send(const RunCommand& command) {
+  std::visit([this](const auto& each) { link_.send(each); }, command);
 }
 
-void CompareWindow::updateTitle() {
-  setWindowTitle(tr("%1[*] – Comparison – Clothlab").arg(document_.title()));
-  setWindowModified(document_.isModified());
-}
-
-bool CompareWindow::mayLoseChanges() {
-  if (!asks_to_save_ || !document_.isModified()) return true;
-  return ask_to_save(this, tr("The comparison \"%1\" was changed. Save it?").arg(document_.title()),
-                     [this] { return save(); });
-}
-
-void CompareWindow::closeEvent(QCloseEvent* event) {
-  if (!mayLoseChanges()) {
-    event->ignore();
-    return;
-  }
-  link_.send(command::Pause{});
-  link_.send(command::StopRecording{});
-  event->accept();
+QString CompareWindow::write(const QString& path) {
+  return save_comparison_file(document_.comparison(), path);
 }
 
 }  // namespace clothlab

@@ -1,0 +1,76 @@
+// What every panel of charts does: draws what is recorded as it comes and as a hand zooms and pans, reads
+// values under the pointer, and saves pictures and points. Every sample appended is kept; what is drawn is
+// decimated to the width of the plots.
+//
+// Costs nothing while hidden or while nothing new arrives: samples are only stored, and drawn once the panel
+// is seen.
+#pragma once
+
+#include <QTimer>
+#include <QWidget>
+
+#include "charts/chart_export.h"
+#include "charts/chart_stack.h"
+
+namespace clothlab {
+
+class ChartArea : public QWidget {
+  Q_OBJECT
+ public:
+  /// Whether the charts follow the run; zooming and panning stop that, goLive() and a double-click bring it
+  /// back.
+  bool isLive() const { return stack_.is_live(); }
+  void goLive() { stack_.follow(); }
+
+  /// The charts as they look, `size` in logical px; none: the usual one. Empty, or what went wrong in a
+  /// sentence for the user.
+  QString exportPng(const QString& path, QSize size = {});
+  QString exportSvg(const QString& path, QSize size = {});
+  /// The recorded points of the times shown, 17 significant digits, one header row with units (see
+  /// chart_export.h).
+  QString exportCsv(const QString& path) const;
+  /// Asks for a file name; the ending chooses PNG, SVG or CSV.
+  void saveAs();
+
+  const ChartRecord& record() const { return record_; }
+
+ Q_SIGNALS:
+  void liveChanged(bool live);
+
+ protected:
+  ChartArea(ChartRecord record, TimeView::Span span, QSize export_size, QWidget* parent);
+
+  /// Of a file with points.
+  virtual std::vector<CsvColumn> csv_columns() const = 0;
+  /// Says on a chart that nothing is recorded yet, or no more.
+  virtual void show_message() = 0;
+  /// Lays out what stands above the charts. Returns where they begin, in px.
+  virtual int lay_out_head() = 0;
+
+  void data_changed();
+  void view_changed();
+  void lay_out();
+  void apply_look();
+
+  void changeEvent(QEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+
+  ChartRecord record_;
+  ChartStack stack_;
+
+ private:
+  void refresh();
+  void update_read_out();
+
+  QSize export_size_;
+  QTimer data_timer_;  ///< runs only while there is something new and somebody to see it
+  QTimer view_timer_;  ///< joins the mouse moves between two paints into one update
+  bool stale_ = true;
+  bool was_live_ = true;
+  std::optional<double> cursor_x_;  ///< px in the plots' views
+};
+
+}  // namespace clothlab

@@ -1,0 +1,251 @@
+#include "main_window/lab_window.h"
+
+#include <QAction>
+#include <QCloseEvent>
+#include <QDesktopServices>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QScreen>
+#include <QToolBar>
+#include <QUrl>
+#include <QVBoxLayout>
+
+#include "document/result_files.h"
+#include "theme/theme.h"
+
+namespace clothlab {
+namespace {
+
+constexpr int title_bar_height = 32;  // px, at least what a desktop puts above a window
+
+/// A click has switched the action already, but not its icon: the text tells which one it has. An action that
+/// is told what it knows would have its bar laid out anew all the same.
+void dress(QAction& action, bool on, const QString& text, const char* icon_name) {
+  action.setChecked(on);
+  if (action.text() == text) return;
+  action.setText(text);
+  action.setIcon(icon(icon_name));
+}
+
+}  // namespace
+
+LabWindow::LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size,
+                     QWidget* parent)
+    : QMainWindow(parent), any_document_(std::move(document)), wording_(std::move(wording)) {
+  resize(pleasant_size.boundedTo(screen()->availableSize() - QSize(0, title_bar_height)));
+  play_ = makeAction("play", tr("Play"), wording_.play_tip, Qt::Key_Space, "play");
+  play_->setCheckable(true);
+  step_ = makeAction("step", tr("Step"), wording_.step_tip, Qt::Key_Period, "step");
+  reset_ = makeAction("reset", tr("Reset"), tr("Back to the start, paused"), QKeySequence("Ctrl+R"), "reset");
+  record_ = makeAction("record", tr("Record"), wording_.record_tip, QKeySequence("Ctrl+Shift+R"), "record");
+  record_->setCheckable(true);
+  save_plots_ = makeAction("export-plot", tr("Save plots…"), tr("Save the charts as PNG, SVG or CSV"),
+                           QKeySequence("Ctrl+Shift+P"), "savePlots");
+  connect(play_, &QAction::triggered, this, &LabWindow::play);
+  connect(step_, &QAction::triggered, this, [this] { send(command::SingleStep{}); });
+  connect(reset_, &QAction::triggered, this, &LabWindow::restart);
+  connect(record_, &QAction::triggered, this, [this](bool on) {
+    if (on)
+      startRecording(new_folder(results_folder(), {any_document_->title()}));
+    else
+      send(command::StopRecording{});
+  });
+  connect(any_document_.get(), &Document::titleChanged, this, &LabWindow::updateTitle);
+  connect(any_document_.get(), &Document::modifiedChanged, this, &LabWindow::updateTitle);
+  updateTitle();
+}
+
+void LabWindow::makeForm() {
+  parameters_ = new ParameterPanel(any_document_->form(), this);
+  notice_ = new NoticeBar(this);
+}
+
+void LabWindow::deleteWidgets() {
+  delete takeCentralWidget();
+  qDeleteAll(findChildren<QDockWidget*>());
+}
+
+void LabWindow::play(bool on) {
+  if (on)
+    send(command::Play{});
+  else
+    send(command::Pause{});
+}
+
+void LabWindow::restart() {
+  send(command::Restart{});
+}
+
+void LabWindow::startRecording(const QString& folder) {
+  send(command::StartRecording{folder.toStdString()});
+}
+
+QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const QString& tip,
+                               const QKeySequence& key, const char* name) {
+  auto* action = new QAction(icon(icon_name), text, this);
+  action->setObjectName(name);
+  action->setShortcut(key);
+  action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, key.toString(QKeySequence::NativeText)));
+  addAction(action);
+  return action;
+}
+
+void LabWindow::setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched) {
+  auto* middle = new QWidget(this);
+  auto* column = new QVBoxLayout(middle);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  for (QWidget* part : parts) column->addWidget(part, part == stretched ? 1 : 0);
+  setCentralWidget(middle);
+}
+
+QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
+                                Qt::DockWidgetArea area) {
+  auto* dock = new QDockWidget(title, this);
+  dock->setObjectName(name);
+  dock->setTitleBarWidget(new QWidget(dock));  // the panels have heads of their own
+  dock->setWidget(content);
+  addDockWidget(area, dock);
+  return dock;
+}
+
+void LabWindow::addTransport() {
+  transport_ =
+      new TransportBar({play_, step_, reset_, record_}, wording_.widest_time, wording_.widest_rate, this);
+  connect(transport_, &TransportBar::speedChosen, this,
+          [this](double factor) { send(command::Speed{factor}); });
+  auto* bottom = new QToolBar(tr("Run"), this);
+  bottom->setObjectName("transportToolBar");
+  bottom->setMovable(false);
+  bottom->addWidget(transport_);
+  addToolBar(Qt::BottomToolBarArea, bottom);
+}
+
+QMenu* LabWindow::addFileMenu() {
+  QMenu* file = menuBar()->addMenu(tr("&File"));
+  open_ = file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &LabWindow::openWithDialog);
+  open_->setToolTip(tr("%1 (Ctrl+O)").arg(wording_.open_title));
+  return file;
+}
+
+void LabWindow::addSaveEntries(QMenu& file) {
+  file.addSeparator();
+  save_ = file.addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
+  save_->setToolTip(tr("Save the %1 (Ctrl+S)").arg(wording_.document));
+  file.addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
+}
+
+QMenu* LabWindow::addEditMenu() {
+  QUndoStack& stack = any_document_->undoStack();
+  undo_ = stack.createUndoAction(this, tr("Undo"));
+  undo_->setObjectName("undo");
+  undo_->setIcon(icon("undo"));
+  undo_->setShortcut(QKeySequence::Undo);
+  redo_ = stack.createRedoAction(this, tr("Redo"));
+  redo_->setObjectName("redo");
+  redo_->setIcon(icon("redo"));
+  redo_->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
+  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
+  edit->addActions({undo_, redo_});
+  return edit;
+}
+
+QMenu* LabWindow::addRunMenu(const QList<QAction*>& actions) {
+  QMenu* run = menuBar()->addMenu(tr("&Run"));
+  run->addActions(actions);
+  run->addSeparator();
+  run->addAction(record_);
+  return run;
+}
+
+void LabWindow::addDockEntries(QMenu& view) {
+  for (QDockWidget* dock : findChildren<QDockWidget*>()) view.addAction(dock->toggleViewAction());
+}
+
+void LabWindow::say(const QString& cause, NoticeBar::Level level, const QString& text) {
+  if (text.isEmpty())
+    notice_->withdraw(cause);
+  else
+    notice_->show(cause, level, text);
+}
+
+void LabWindow::followRun(const RunStatus& now) {
+  dress(*play_, now.playing, now.playing ? tr("Pause") : tr("Play"), now.playing ? "pause" : "play");
+  play_->setEnabled(now.refusal.empty());
+  step_->setEnabled(now.refusal.empty());
+  say("refusal", NoticeBar::Level::error, QString::fromStdString(now.refusal));
+}
+
+void LabWindow::followRecording(const RunStatus& before, const RunStatus& now) {
+  dress(*record_, now.recording, now.recording ? tr("Stop recording") : tr("Record"),
+        now.recording ? "stop-record" : "record");
+  if (now.recording_error != before.recording_error && !now.recording_error.empty()) {
+    notice_->show("recording", NoticeBar::Level::error,
+                  tr("Recording stopped: %1. What was written before is valid.")
+                      .arg(QString::fromStdString(now.recording_error)));
+  } else if (before.recording && !now.recording) {
+    const QString folder = QString::fromStdString(now.recording_folder.string());
+    notice_->show("recording", NoticeBar::Level::info,
+                  tr("Recorded %1 rows in %2").arg(now.recorded_rows).arg(folder), tr("Open folder"),
+                  [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
+  }
+}
+
+void LabWindow::updateTitle() {
+  setWindowTitle(wording_.title.arg(any_document_->title()));
+  setWindowModified(any_document_->isModified());
+}
+
+/// Save, discard or cancel: whether to go on.
+bool LabWindow::mayLoseChanges() {
+  if (!asks_to_save_ || !any_document_->isModified()) return true;
+  const auto answer = QMessageBox::question(
+      this, tr("Unsaved changes"), wording_.unsaved.arg(any_document_->title()),
+      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
+  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
+}
+
+void LabWindow::closeEvent(QCloseEvent* event) {
+  if (!mayLoseChanges()) return event->ignore();
+  send(command::Pause{});
+  send(command::StopRecording{});
+  event->accept();
+}
+
+void LabWindow::openWithDialog() {
+  const QString path =
+      QFileDialog::getOpenFileName(this, wording_.open_title, any_document_->path(), wording_.filter);
+  if (!path.isEmpty()) open(path);
+}
+
+QString LabWindow::askForPath(const QString& title, const QString& filter, const QString& ending,
+                              const QString& present) {
+  const QString path = QFileDialog::getSaveFileName(this, title, present, filter);
+  return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
+}
+
+bool LabWindow::save() {
+  return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path());
+}
+
+bool LabWindow::saveAs() {
+  const QString path = askForPath(tr("Save the %1").arg(wording_.document), wording_.filter, wording_.ending,
+                                  any_document_->path());
+  return !path.isEmpty() && saveTo(path);
+}
+
+bool LabWindow::saveTo(const QString& path) {
+  const QString problem = write(path);
+  if (!problem.isEmpty()) {
+    notice_->show("save", NoticeBar::Level::error,
+                  tr("The %1 was not saved. %2").arg(wording_.document, problem));
+    return false;
+  }
+  any_document_->markSaved(path);
+  return true;
+}
+
+}  // namespace clothlab

@@ -1,0 +1,105 @@
+// What the windows of a scene and of a comparison have in common: the actions and menus of files, edits and
+// runs, the question before changes are lost, messages, docks, and recording.
+#pragma once
+
+#include <QMainWindow>
+#include <memory>
+
+#include "bridge/worker_commands.h"
+#include "bridge/worker_status.h"
+#include "document/document.h"
+#include "main_window/transport_bar.h"
+#include "params/parameter_panel.h"
+#include "widgets/notice_bar.h"
+
+namespace clothlab {
+
+class LabWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  /// Whether closing or opening another document asks about unsaved changes.
+  void setAsksToSave(bool asks) { asks_to_save_ = asks; }
+
+  /// Records into `folder` until the record action is switched off, or the recording ends by itself.
+  void startRecording(const QString& folder);
+  /// False, with a message in the window, if the file could not be written.
+  bool saveTo(const QString& path);
+
+  ParameterPanel& parameters() { return *parameters_; }
+  NoticeBar& notice() { return *notice_; }
+
+ protected:
+  /// What is different in words.
+  struct Wording {
+    QString document;            ///< "scene"
+    QString open_title, filter;  ///< of the dialogs for files
+    QString ending;              ///< of a file that is given none
+    QString title;               ///< of the window; %1 is the document's
+    QString unsaved;             ///< the question before changes of %1 are lost
+    QString play_tip, step_tip, record_tip;
+    QString widest_time, widest_rate;  ///< in the transport bar
+  };
+  /// What every worker can be told.
+  using RunCommand =
+      std::variant<command::Restart, command::Play, command::Pause, command::SingleStep, command::Speed,
+                   command::Brush, command::Pull, command::StartRecording, command::StopRecording>;
+
+  LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size, QWidget* parent);
+  Document& anyDocument() { return *any_document_; }
+  /// For a derived class's destructor: the widgets refer to its link.
+  void deleteWidgets();
+  /// The form of the document, and the place for messages.
+  void makeForm();
+
+  virtual void send(const RunCommand& command) = 0;
+  virtual void open(const QString& path) = 0;
+  /// Empty when done, else what went wrong.
+  virtual QString write(const QString& path) = 0;
+  virtual void play(bool on);
+  virtual void restart();
+
+  void closeEvent(QCloseEvent* event) override;
+
+  /// Of this window, with a shortcut that its tooltip tells.
+  QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
+                      const char* name);
+  /// In the middle of the window, from top to bottom.
+  void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched);
+  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
+  void addTransport();
+
+  /// With an entry to open a file; of the other menus all that both windows have.
+  QMenu* addFileMenu();
+  void addSaveEntries(QMenu& file);
+  QMenu* addEditMenu();
+  QMenu* addRunMenu(const QList<QAction*>& actions);
+  void addDockEntries(QMenu& view);
+
+  /// Shows a message, or withdraws the one of this cause if the text is empty.
+  void say(const QString& cause, NoticeBar::Level level, const QString& text);
+  /// The actions and messages of a run and of its recording.
+  void followRun(const RunStatus& now);
+  void followRecording(const RunStatus& before, const RunStatus& now);
+  void updateTitle();
+  bool mayLoseChanges();
+  bool save();
+  bool saveAs();
+  /// A path that a person chose to save under, with `ending` if it has none; empty: none was chosen.
+  QString askForPath(const QString& title, const QString& filter, const QString& ending,
+                     const QString& present = {});
+  void openWithDialog();
+
+  ParameterPanel* parameters_ = nullptr;
+  NoticeBar* notice_ = nullptr;
+  TransportBar* transport_ = nullptr;
+  QAction *play_, *step_, *reset_, *record_, *save_plots_;
+  QAction *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
+
+ private:
+  std::unique_ptr<Document> any_document_;
+  Wording wording_;
+  bool asks_to_save_ = true;
+};
+
+}  // namespace clothlab

@@ -172,10 +172,6 @@ void CompareWorker::handle(const command::SingleStep&) {
   under_way_ = lockstep_->index() + 1;
 }
 
-void CompareWorker::handle(const command::Speed& speed) {
-  set_speed(speed.factor, lockstep_ ? now() : 0);
-}
-
 void CompareWorker::handle(const command::Brush& brush) {
   if (!lockstep_) return;
   if (recorder_) log(cloth::comparison_log_lines(brush.gust, now()));
@@ -204,19 +200,6 @@ void CompareWorker::handle(const command::StartRecording& start) {
   if (!recorder_) return;
   note_record(recorder_->add_row(*lockstep_));
   ++status_.recorded_rows;
-}
-
-void CompareWorker::handle(const command::StopRecording&) {
-  end_recording();
-}
-
-/// s, the common time that all panes have reached.
-double CompareWorker::now() const {
-  return lockstep_->time_of(lockstep_->index());
-}
-
-void CompareWorker::log(const std::vector<std::string>& lines) {
-  if (recorder_) note_record(recorder_->log(lines));
 }
 
 /// To the next common time, if it is due, or as far as it goes until there is a command.

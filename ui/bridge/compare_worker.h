@@ -37,16 +37,19 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   void handle(const command::Play&);
   void handle(const command::Pause&);
   void handle(const command::SingleStep&);
-  void handle(const command::Speed& speed);
+  void handle(const command::Speed& speed) { set_speed(speed.factor, lockstep_ ? now() : 0); }
   void handle(const command::Brush& brush);
   void handle(const command::Pull& pull);
   void handle(const command::Colour& colour);
   void handle(const command::StartRecording& start);
-  void handle(const command::StopRecording&);
+  void handle(const command::StopRecording&) { end_recording(); }
 
   void start(const cloth::Comparison& comparison);
-  double now() const;
-  void log(const std::vector<std::string>& lines);
+  /// s, the common time that all panes have reached.
+  double now() const { return lockstep_->time_of(lockstep_->index()); }
+  void log(const std::vector<std::string>& lines) {
+    if (recorder_) note_record(recorder_->log(lines));
+  }
   void play_for_a_moment();
   void arrive();
   void take_sample(bool is_start);

@@ -178,18 +178,6 @@ void SimulationWorker::handle(const command::SingleStep&) {
   if (advance(1)) publish_frame();
 }
 
-void SimulationWorker::handle(const command::Speed& speed) {
-  set_speed(speed.factor, simulation_ ? simulation_->time() : 0);
-}
-
-void SimulationWorker::handle(const command::Brush& brush) {
-  perform(brush.gust);
-}
-
-void SimulationWorker::handle(const command::Pull& pull) {
-  perform(pull.pull);
-}
-
 void SimulationWorker::handle(const command::StartRecording& start) {
   if (!simulation_) return;
   end_recording();
@@ -201,10 +189,6 @@ void SimulationWorker::handle(const command::StartRecording& start) {
   const auto error = recording_.begin(start.folder, *simulation_);
   status_.recording_folder = start.folder;
   note_record(error);
-}
-
-void SimulationWorker::handle(const command::StopRecording&) {
-  end_recording();
 }
 
 void SimulationWorker::handle(const command::ShowContact& show) {

@@ -36,11 +36,11 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
   void handle(const command::Play&);
   void handle(const command::Pause&);
   void handle(const command::SingleStep&);
-  void handle(const command::Speed& speed);
-  void handle(const command::Brush& brush);
-  void handle(const command::Pull& pull);
+  void handle(const command::Speed& speed) { set_speed(speed.factor, simulation_ ? simulation_->time() : 0); }
+  void handle(const command::Brush& brush) { perform(brush.gust); }
+  void handle(const command::Pull& pull) { perform(pull.pull); }
   void handle(const command::StartRecording& start);
-  void handle(const command::StopRecording&);
+  void handle(const command::StopRecording&) { end_recording(); }
   void handle(const command::GoTo& go);
   void handle(const command::PlayAgain&);
   void handle(const command::SaveSession& save);

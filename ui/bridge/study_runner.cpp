@@ -96,10 +96,6 @@ std::shared_ptr<const cloth::StudyTable> StudyRunner::take() {
   return std::move(newest_);
 }
 
-void StudyRunner::wait() {
-  if (thread_.joinable()) thread_.join();
-}
-
 bool StudyRunner::note(const cloth::StudyProgress& progress) {
   const std::lock_guard lock(mutex_);
   status_.fraction = progress.fraction;

@@ -53,7 +53,9 @@ class StudyRunner {
   std::shared_ptr<const cloth::StudyTable> take();
 
   /// Until what runs has ended and its folder is written. For tests and orderly ends.
-  void wait();
+  void wait() {
+    if (thread_.joinable()) thread_.join();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -15,10 +15,6 @@ WorkerLink::WorkerLink(QObject* parent) : QObject(parent) {
   });
 }
 
-void WorkerLink::wake() {
-  if (!timer_.isActive()) timer_.start();
-}
-
 void SimulationLink::tellFrames(SimulationWorker& worker) {
   if (const auto frame = worker.take_frame()) Q_EMIT frameReady(frame);
 }

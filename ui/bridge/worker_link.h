@@ -17,7 +17,9 @@ class WorkerLink : public QObject {
   explicit WorkerLink(QObject* parent);
 
   /// Something was sent.
-  void wake();
+  void wake() {
+    if (!timer_.isActive()) timer_.start();
+  }
 
   /// Delivers what is new. False: nothing more will come until something is sent.
   virtual bool fetch() = 0;

@@ -66,8 +66,8 @@ class ChartArea : public QWidget {
   void update_read_out();
 
   QSize export_size_;
-  QTimer data_timer_;  ///< runs only while there is something new and somebody to see it
-  QTimer view_timer_;  ///< joins the mouse moves between two paints into one update
+  QTimer data_timer_{this};  ///< runs only while there is something new and somebody to see it
+  QTimer view_timer_{this};  ///< joins the mouse moves between two paints into one update
   bool stale_ = true;
   bool was_live_ = true;
   std::optional<double> cursor_x_;  ///< px in the plots' views

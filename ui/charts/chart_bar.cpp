@@ -7,6 +7,7 @@
 
 #include "charts/chart_buttons.h"
 #include "charts/plot_view.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
@@ -33,8 +34,7 @@ ChartBar::ChartBar(QWidget* parent) : QWidget(parent) {
   add_tools();
   more_ = add_button(QStringLiteral("⋯"), "chart_more", tr("More"));
   more_->setAccessibleName(tr("More"));
-  menu_ = new QMenu(more_);
-  menu_->setObjectName("chart_menu");
+  menu_ = named("chart_menu", new QMenu(more_));
   menu_->setToolTipsVisible(true);
   connect(menu_, &QMenu::aboutToShow, this, &ChartBar::fill_menu);
   connect(more_, &FlatButton::clicked, this,
@@ -42,8 +42,7 @@ ChartBar::ChartBar(QWidget* parent) : QWidget(parent) {
 }
 
 FlatButton* ChartBar::add_button(const QString& text, const char* name, const QString& tip) {
-  auto* button = new FlatButton(text, this);
-  button->setObjectName(QString::fromLatin1(name));
+  auto* button = named(QString::fromLatin1(name), new FlatButton(text, this));
   button->setToolTip(tip);
   return button;
 }
@@ -144,10 +143,6 @@ void ChartBar::lay_out() {
     place(button, x + gap);
     x += gap + button->sizeHint().width();
   }
-}
-
-void ChartBar::resizeEvent(QResizeEvent*) {
-  lay_out();
 }
 
 }  // namespace clothlab

@@ -34,7 +34,7 @@ class ChartBar : public QWidget {
   void save_wanted();
 
  protected:
-  void resizeEvent(QResizeEvent* event) override;
+  void resizeEvent(QResizeEvent*) override { lay_out(); }
 
  private:
   FlatButton* add_button(const QString& text, const char* name, const QString& tip);

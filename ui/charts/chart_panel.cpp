@@ -85,17 +85,9 @@ std::pair<double, double> ChartPanel::shownTimes() const {
   return {shown.low, shown.high};
 }
 
-std::vector<CsvColumn> ChartPanel::csv_columns() const {
-  return run_columns();
-}
-
 void ChartPanel::show_message() {
   stack_.charts()[1]->set_message(record_.empty() ? tr("Press play to see energy, strain and frame time")
                                                   : QString());
-}
-
-QSize ChartPanel::sizeHint() const {
-  return {460, 560};
 }
 
 QSize ChartPanel::minimumSizeHint() const {

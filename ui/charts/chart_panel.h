@@ -33,7 +33,7 @@ class ChartPanel : public ChartArea {
   bool isLogarithmic(Chart chart) const;
   std::pair<double, double> shownTimes() const;  ///< s
 
-  QSize sizeHint() const override;
+  QSize sizeHint() const override { return {460, 560}; }
   QSize minimumSizeHint() const override;
 
  protected:
@@ -42,7 +42,7 @@ class ChartPanel : public ChartArea {
 
  private:
   void make_bar();
-  std::vector<CsvColumn> csv_columns() const override;
+  std::vector<CsvColumn> csv_columns() const override { return run_columns(); }
   void show_message() override;
   int lay_out_head() override;
 

@@ -108,10 +108,6 @@ void LiveChart::zoom_y(double anchor, double factor) {
   set_y_range(Range{anchor + (now.low - anchor) * factor, anchor + (now.high - anchor) * factor});
 }
 
-void LiveChart::pan_y(double by) {
-  set_y_range(Range{frame_.y.low + by, frame_.y.high + by});
-}
-
 std::vector<bool> LiveChart::shown_curves() const {
   std::vector<bool> shown;
   for (const LegendEntry* entry : legend_) shown.push_back(entry->isChecked());
@@ -294,10 +290,6 @@ void LiveChart::lay_out() {
   }
   const int header = header_height(width());
   view_->setGeometry(0, header, width(), std::max(1, height() - header));
-}
-
-void LiveChart::resizeEvent(QResizeEvent*) {
-  lay_out();
 }
 
 }  // namespace clothlab

@@ -25,7 +25,7 @@ class LiveChart : public QWidget {
   /// Whether the user has chosen the y range.
   bool has_own_y_range() const { return own_y_.has_value(); }
   void zoom_y(double anchor, double factor);
-  void pan_y(double by);
+  void pan_y(double by) { set_y_range(Range{frame_.y.low + by, frame_.y.high + by}); }
   void set_y_range(std::optional<Range> axis_range);
 
   /// First half of an update: chooses the range and the ticks for these times. Returns the room its y labels
@@ -49,7 +49,7 @@ class LiveChart : public QWidget {
   void changed();  ///< a curve was hidden or shown, or the scale switched
 
  protected:
-  void resizeEvent(QResizeEvent* event) override;
+  void resizeEvent(QResizeEvent*) override { lay_out(); }
 
  private:
   std::vector<LegendEntry*> entries() const;

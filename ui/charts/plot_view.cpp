@@ -49,10 +49,6 @@ QString PlotView::help() {
       "Arrows, +, −, Home: pan, zoom, back to live</p>");
 }
 
-bool PlotView::over_y_axis(QPointF at) const {
-  return at.x() < scene_->map().plot.left();
-}
-
 void PlotView::wheelEvent(QWheelEvent* event) {
   const PlotMap& map = scene_->map();
   const QPointF at = event->position();

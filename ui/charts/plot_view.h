@@ -43,7 +43,7 @@ class PlotView : public QWidget {
 
  private:
   enum class Drag { none, pressed, pan, box };
-  bool over_y_axis(QPointF at) const;
+  bool over_y_axis(QPointF at) const { return at.x() < scene_->map().plot.left(); }
   void drag_to(QPointF at);
   void finish_box(QPointF at);
   void end_drag();

@@ -44,10 +44,6 @@ void TimeView::pan(Range recorded, double by_s) {
   hold(recorded, {now.low + by_s, now.high + by_s});
 }
 
-void TimeView::show(Range recorded, Range times) {
-  hold(recorded, times);
-}
-
 void TimeView::hold(Range recorded, Range times) {
   const double widest = std::max(1.0, 2 * recorded.span());
   const double span = std::clamp(times.span(), shortest_span_s, widest);

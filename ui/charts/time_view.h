@@ -23,7 +23,7 @@ class TimeView {
   /// move.
   void zoom(Range recorded, double anchor_s, double factor);
   void pan(Range recorded, double by_s);
-  void show(Range recorded, Range times);
+  void show(Range recorded, Range times) { hold(recorded, times); }
 
  private:
   void hold(Range recorded, Range times);

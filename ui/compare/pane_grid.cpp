@@ -162,8 +162,4 @@ void PaneGrid::setPreset(CameraPreset preset) {
   if (!panes_.empty()) panes_.front()->view().setPreset(preset);  // the others follow
 }
 
-void PaneGrid::frameAll() {
-  if (!panes_.empty()) panes_.front()->view().frameAll();
-}
-
 }  // namespace clothlab

@@ -35,7 +35,9 @@ class PaneGrid : public QWidget {
   void setMode(ViewMode mode);
   ViewMode mode() const { return mode_; }
   void setPreset(CameraPreset preset);
-  void frameAll();
+  void frameAll() {
+    if (!panes_.empty()) panes_.front()->view().frameAll();
+  }
 
  Q_SIGNALS:
   void methodChosen(std::size_t pane, const std::string& method);

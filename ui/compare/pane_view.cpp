@@ -16,6 +16,7 @@
 #include "params/number_text.h"
 #include "params/panel_parts.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 #include "widgets/reading.h"
 #include "widgets/stability_gauge.h"
 
@@ -47,7 +48,9 @@ QString difference_from_reference(const cloth::PaneResult& result, bool has_refe
 QString difference_text(const cloth::PaneResult& result, bool has_reference) {
   const QString text = difference_from_reference(result, has_reference);
   if (!result.energy.is_doubtful_so_far()) return text;
-  return PaneView::tr("%1; energy error %2 % of the exchanged").arg(text).arg(100 * result.energy.share(), 0, 'g', 2);
+  return PaneView::tr("%1; energy error %2 % of the exchanged")
+      .arg(text)
+      .arg(100 * result.energy.share(), 0, 'g', 2);
 }
 
 }  // namespace
@@ -64,9 +67,7 @@ PaneView::PaneView(QWidget* parent)
       cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
       stopped_(new QLabel(this)) {
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(frame_width, frame_width, frame_width, frame_width);
-  column->setSpacing(0);
+  auto* column = spaced(new QVBoxLayout(this), 0, {frame_width, frame_width, frame_width, frame_width});
   column->addWidget(header_);
   column->addWidget(view_, 1);
   view_->setMinimumSize(160, 100);
@@ -78,9 +79,8 @@ PaneView::PaneView(QWidget* parent)
 }
 
 void PaneView::makeHeader() {
-  auto* column = new QVBoxLayout(header_);
-  column->setContentsMargins(spacing, spacing / 2, spacing / 2, spacing / 2);
-  column->setSpacing(spacing / 4);
+  auto* column =
+      spaced(new QVBoxLayout(header_), spacing / 4, {spacing, spacing / 2, spacing / 2, spacing / 2});
 
   method_->setObjectName("method");
   method_->setAccessibleName(tr("Method"));
@@ -98,16 +98,14 @@ void PaneView::makeHeader() {
   more_->setToolTip(tr("Duplicate, remove, make it the reference"));
   more_->setPopupMode(QToolButton::InstantPopup);
   makeMenu(*more_);
-  first_row_ = new QHBoxLayout;
-  first_row_->setSpacing(spacing / 2);
+  first_row_ = spaced(new QHBoxLayout, spacing / 2);
   first_row_->addWidget(badge_);
   first_row_->addWidget(method_, 1);
   first_row_->addWidget(step_);
   first_row_->addWidget(more_);
   column->addLayout(first_row_);
 
-  second_row_ = new QHBoxLayout;
-  second_row_->setSpacing(spacing);
+  second_row_ = spaced(new QHBoxLayout, spacing);
   second_row_->addWidget(gauge_, 1);
   cost_->setObjectName("cost");
   cost_->setToolTip(tr("Seconds of stepping for each simulated second"));

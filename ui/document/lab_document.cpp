@@ -203,14 +203,6 @@ const Scene& LabDocument::sceneBefore(const std::string& path) const {
   return last->belongs_to(drag_, path) ? last->before() : scene_;
 }
 
-void LabDocument::beginDrag() {
-  drag_ = ++last_drag_;
-}
-
-void LabDocument::endDrag() {
-  drag_ = 0;
-}
-
 bool LabDocument::addBlock(const std::string& offer_path) {
   for (const cloth::BlockOffer& offer : offers_for(scene_)) {
     if (offer.path != offer_path) continue;

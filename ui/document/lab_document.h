@@ -44,8 +44,8 @@ class LabDocument : public Document {
   QString resetParameter(const std::string& path);
 
   /// Between the two, edits of one parameter are one undo step, and none at all if the value comes back.
-  void beginDrag();
-  void endDrag();
+  void beginDrag() { drag_ = ++last_drag_; }
+  void endDrag() { drag_ = 0; }
   int presentDrag() const { return drag_; }  ///< its number; 0: none
 
   /// By the path of a cloth::BlockOffer ("air", "sphere"); false if the scene is not offered it.

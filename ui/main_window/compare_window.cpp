@@ -14,6 +14,7 @@
 #include "params/wording.h"
 #include "scene/scene_parameters.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -57,13 +58,8 @@ CompareWindow::CompareWindow(QWidget* parent)
   grid_->setFocus();
 }
 
-CompareWindow::~CompareWindow() {
-  deleteWidgets();
-}
-
 void CompareWindow::makeScopeTabs() {
-  scopes_ = new QTabBar(this);
-  scopes_->setObjectName("scopes");
+  scopes_ = named("scopes", new QTabBar(this));
   scopes_->setAccessibleName(tr("Whose values the form shows"));
   scopes_->setExpanding(false);
   scopes_->setUsesScrollButtons(false);
@@ -81,9 +77,7 @@ void CompareWindow::makeScopeTabs() {
 void CompareWindow::makeLayout() {
   setMiddle({notice_, grid_}, grid_);
   auto* form = new QWidget(this);
-  auto* rows = new QVBoxLayout(form);
-  rows->setContentsMargins(0, 0, 0, 0);
-  rows->setSpacing(0);
+  auto* rows = spaced(new QVBoxLayout(form), 0);
   rows->addWidget(scopes_);
   rows->addWidget(scope_hint_);
   rows->addWidget(parameters_, 1);

@@ -20,7 +20,7 @@ class CompareWindow : public LabWindow {
 
  public:
   explicit CompareWindow(QWidget* parent = nullptr);
-  ~CompareWindow() override;
+  ~CompareWindow() override { deleteWidgets(); }
 
   /// A file or the name of a built-in comparison. What cannot be opened is said in the window, and the
   /// comparison before stays.

@@ -8,6 +8,7 @@
 #include "main_window/compare_window.h"
 #include "main_window/view_bar.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
@@ -88,8 +89,7 @@ void CompareWindow::makeViewBar() {
   auto* label = new QLabel(tr("Reference"), bar);
   label->setContentsMargins(0, 0, spacing, 0);
   bar->addWidget(label);
-  reference_ = new QComboBox(bar);
-  reference_->setObjectName("reference");
+  reference_ = named("reference", new QComboBox(bar));
   reference_->setAccessibleName(tr("Reference"));
   reference_->setMinimumContentsLength(12);
   connect(reference_, &QComboBox::activated, this, &CompareWindow::chooseReference);

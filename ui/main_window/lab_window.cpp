@@ -15,6 +15,7 @@
 
 #include "document/result_files.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -75,18 +76,9 @@ void LabWindow::play(bool on) {
     send(command::Pause{});
 }
 
-void LabWindow::restart() {
-  send(command::Restart{});
-}
-
-void LabWindow::startRecording(const QString& folder) {
-  send(command::StartRecording{folder.toStdString()});
-}
-
 QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const QString& tip,
                                const QKeySequence& key, const char* name) {
-  auto* action = new QAction(icon(icon_name), text, this);
-  action->setObjectName(name);
+  auto* action = named(name, new QAction(icon(icon_name), text, this));
   action->setShortcut(key);
   action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, key.toString(QKeySequence::NativeText)));
   addAction(action);
@@ -95,17 +87,14 @@ QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const
 
 void LabWindow::setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched) {
   auto* middle = new QWidget(this);
-  auto* column = new QVBoxLayout(middle);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
+  auto* column = spaced(new QVBoxLayout(middle), 0);
   for (QWidget* part : parts) column->addWidget(part, part == stretched ? 1 : 0);
   setCentralWidget(middle);
 }
 
 QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
                                 Qt::DockWidgetArea area) {
-  auto* dock = new QDockWidget(title, this);
-  dock->setObjectName(name);
+  auto* dock = named(name, new QDockWidget(title, this));
   dock->setTitleBarWidget(new QWidget(dock));  // the panels have heads of their own
   dock->setWidget(content);
   addDockWidget(area, dock);
@@ -117,8 +106,7 @@ void LabWindow::addTransport() {
       new TransportBar({play_, step_, reset_, record_}, wording_.widest_time, wording_.widest_rate, this);
   connect(transport_, &TransportBar::speedChosen, this,
           [this](double factor) { send(command::Speed{factor}); });
-  auto* bottom = new QToolBar(tr("Run"), this);
-  bottom->setObjectName("transportToolBar");
+  auto* bottom = named("transportToolBar", new QToolBar(tr("Run"), this));
   bottom->setMovable(false);
   bottom->addWidget(transport_);
   addToolBar(Qt::BottomToolBarArea, bottom);
@@ -225,10 +213,6 @@ QString LabWindow::askForPath(const QString& title, const QString& filter, const
                               const QString& present) {
   const QString path = QFileDialog::getSaveFileName(this, title, present, filter);
   return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
-}
-
-bool LabWindow::save() {
-  return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path());
 }
 
 bool LabWindow::saveAs() {

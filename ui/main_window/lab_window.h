@@ -22,7 +22,7 @@ class LabWindow : public QMainWindow {
   void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
   /// Records into `folder` until the record action is switched off, or the recording ends by itself.
-  void startRecording(const QString& folder);
+  void startRecording(const QString& folder) { send(command::StartRecording{folder.toStdString()}); }
   /// False, with a message in the window, if the file could not be written.
   bool saveTo(const QString& path);
 
@@ -57,7 +57,7 @@ class LabWindow : public QMainWindow {
   /// Empty when done, else what went wrong.
   virtual QString write(const QString& path) = 0;
   virtual void play(bool on);
-  virtual void restart();
+  virtual void restart() { send(command::Restart{}); }
 
   void closeEvent(QCloseEvent* event) override;
 
@@ -83,7 +83,7 @@ class LabWindow : public QMainWindow {
   void followRecording(const RunStatus& before, const RunStatus& now);
   void updateTitle();
   bool mayLoseChanges();
-  bool save();
+  bool save() { return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path()); }
   bool saveAs();
   /// A path that a person chose to save under, with `ending` if it has none; empty: none was chosen.
   QString askForPath(const QString& title, const QString& filter, const QString& ending,

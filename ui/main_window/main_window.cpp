@@ -14,6 +14,7 @@
 #include "simulation/time_step.h"
 #include "studies/studies_panel.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -55,10 +56,6 @@ MainWindow::MainWindow(QWidget* parent)
   connectSimulation();
 }
 
-MainWindow::~MainWindow() {
-  deleteWidgets();
-}
-
 void MainWindow::makeLayout() {
   addTransport();
   timeline_ = new Timeline(play_again_, this);
@@ -69,8 +66,7 @@ void MainWindow::makeLayout() {
   QDockWidget* left = addDock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
   QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
-  studies_dock_ = new QDockWidget(tr("Studies"), this);
-  studies_dock_->setObjectName("studiesDock");
+  studies_dock_ = named("studiesDock", new QDockWidget(tr("Studies"), this));
   studies_dock_->setWidget(studies_);
   addDockWidget(Qt::BottomDockWidgetArea, studies_dock_);
   studies_dock_->hide();
@@ -217,10 +213,6 @@ void MainWindow::readStability() {
                   [this] { takeStableStep(); });
   else
     notice_->withdraw("stability");
-}
-
-void MainWindow::takeStableStep() {
-  document_.setParameter("integrator.time_step", std::string("auto"));
 }
 
 void MainWindow::saveSession(const QString& path) {

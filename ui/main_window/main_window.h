@@ -20,7 +20,7 @@ class MainWindow : public LabWindow {
 
  public:
   explicit MainWindow(QWidget* parent = nullptr);
-  ~MainWindow() override;
+  ~MainWindow() override { deleteWidgets(); }
 
   /// A scene's or a session's file or the name of a built-in scene; a session is played. What cannot be
   /// opened is said in the window, and the scene before stays.
@@ -57,7 +57,7 @@ class MainWindow : public LabWindow {
   void followChange(const SceneChange& change);
   void startSimulation();
   void readStability();
-  void takeStableStep();
+  void takeStableStep() { document_.setParameter("integrator.time_step", std::string("auto")); }
   void brush(const cloth::BrushGust& gust);
   void startObstacleMove(int obstacle);
   void moveObstacle(int obstacle, const cloth::Vec3& by);

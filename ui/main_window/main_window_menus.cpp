@@ -17,6 +17,7 @@
 #include "main_window/view_bar.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -96,8 +97,7 @@ void MainWindow::makeMenus() {
   bar->setObjectName("mainToolBar");
   bar->setMovable(false);
   bar->setIconSize({20, 20});
-  auto* scenes = new QToolButton(bar);
-  scenes->setObjectName("scenesButton");
+  auto* scenes = named("scenesButton", new QToolButton(bar));
   scenes->setIcon(icon("cloth"));
   scenes->setText(tr("Scenes"));
   scenes->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);

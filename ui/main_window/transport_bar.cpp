@@ -9,6 +9,7 @@
 
 #include "theme/theme.h"
 #include "widgets/action_button.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -36,9 +37,7 @@ TransportBar::TransportBar(const TransportActions& actions, const QString& wides
       recording_(new Reading("000 000 rows", Reading::Look::plain, this)),
       gauge_(new StabilityGauge(this)) {
   setObjectName("transportBar");
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
-  row->setSpacing(spacing / 2);
+  auto* row = spaced(new QHBoxLayout(this), spacing / 2, {spacing, spacing / 2, spacing, spacing / 2});
   QToolButton* play = make_action_button(actions.play, this);
   play->setIconSize({24, 24});
   row->addWidget(play);

@@ -8,13 +8,13 @@
 
 #include "theme/theme.h"
 #include "widgets/action_button.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
 QAction* make_view_action(const char* icon_name, const QString& text, const QString& tip,
                           const QString& shortcut, const char* name, QObject* parent) {
-  auto* action = new QAction(icon(icon_name), text, parent);
-  action->setObjectName(name);
+  auto* action = named(name, new QAction(icon(icon_name), text, parent));
   action->setShortcut(shortcut);
   action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, shortcut));
   return action;
@@ -31,8 +31,7 @@ QToolButton* make_camera_button(QWidget* parent, const std::function<void(Camera
     QAction* action = menu->addAction(name, parent, [choose, which = preset] { choose(which); });
     action->setShortcut(QStringLiteral("F%1").arg(++key));
   }
-  auto* button = new QToolButton(parent);
-  button->setObjectName("cameraButton");
+  auto* button = named("cameraButton", new QToolButton(parent));
   button->setIcon(icon("camera-iso"));
   button->setIconSize({20, 20});
   button->setAutoRaise(true);
@@ -45,9 +44,7 @@ QToolButton* make_camera_button(QWidget* parent, const std::function<void(Camera
 
 ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent) : QFrame(parent), view_(view) {
   setObjectName("viewBar");
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(spacing, spacing / 2, spacing, spacing / 2);
-  row->setSpacing(spacing / 2);
+  auto* row = spaced(new QHBoxLayout(this), spacing / 2, {spacing, spacing / 2, spacing, spacing / 2});
   addTools();
   addModes();
   for (const QActionGroup* group : {tools_, modes_}) {
@@ -94,8 +91,7 @@ void ViewBar::addContact(QHBoxLayout& row) {
   contact_->setCheckable(true);
   row.addWidget(make_action_button(contact_, this));
 
-  box_level_ = new QSpinBox(this);
-  box_level_->setObjectName("boxLevel");
+  box_level_ = named("boxLevel", new QSpinBox(this));
   box_level_->setAccessibleName(tr("Boxes of the hierarchy"));
   box_level_->setToolTip(tr("Boxes that contact is looked for in, so many levels below the one around all"));
   box_level_->setMinimum(-1);

@@ -8,15 +8,14 @@
 #include "params/panel_parts.h"
 #include "params/wording.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
 ClothShapeRow::ClothShapeRow(LabDocument& document, QWidget* parent)
     : QWidget(parent), document_(document), button_(new MeshButton(document, this)), rule_(new QLabel(this)) {
   setObjectName("clothShape");
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(spacing / 4);
+  auto* column = spaced(new QVBoxLayout(this), spacing / 4);
   auto* row = new QHBoxLayout;
   row->setContentsMargins(0, 0, 24 + spacing / 2, 0);  // ends where the controls below end
   row->addWidget(new ElidedLabel(tr("Grid of particles"), this), 1);

@@ -185,12 +185,4 @@ void ExactField::paintEvent(QPaintEvent* event) {
   painter.drawText(inside, Qt::AlignVCenter | Qt::AlignLeft, prefix_);
 }
 
-QSize ExactField::sizeHint() const {
-  return {112, QLineEdit::sizeHint().height()};
-}
-
-QSize ExactField::minimumSizeHint() const {
-  return {56, QLineEdit::minimumSizeHint().height()};
-}
-
 }  // namespace clothlab

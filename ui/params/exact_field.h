@@ -25,8 +25,8 @@ class ExactField : public QLineEdit {
   void setInvalid(bool invalid);
   void abandonEdit();  ///< back to the value that was shown
 
-  QSize sizeHint() const override;
-  QSize minimumSizeHint() const override;
+  QSize sizeHint() const override { return {112, QLineEdit::sizeHint().height()}; }
+  QSize minimumSizeHint() const override { return {56, QLineEdit::minimumSizeHint().height()}; }
 
  Q_SIGNALS:
   void committed(const QString& text);  ///< Enter, or the focus leaves, after an edit

@@ -7,6 +7,7 @@
 
 #include "geometry/builtin_meshes.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
@@ -26,8 +27,7 @@ MeshButton::MeshButton(const LabDocument& document, QWidget* parent)
   setFocusPolicy(Qt::TabFocus);
   setToolTip(tr("Choose a mesh"));
   setAccessibleName(tr("Choose a mesh"));
-  auto* menu = new QMenu(this);
-  menu->setObjectName("meshMenu");
+  auto* menu = named("meshMenu", new QMenu(this));
   // Queued: until the menu is gone. A choice may take the button away, or open a dialog with a loop of its
   // own.
   grid_ = menu->addAction(tr("Grid"));

@@ -48,10 +48,6 @@ int QuietCombo::textRoom() const {
          2 * style_margin;
 }
 
-QString QuietCombo::shownText() const {
-  return fontMetrics().elidedText(currentText(), Qt::ElideRight, textRoom());
-}
-
 int QuietCombo::widthFor(const QString& text) const {
   return width() - textRoom() + fontMetrics().horizontalAdvance(text);
 }
@@ -93,14 +89,6 @@ SectionHeader::SectionHeader(const QString& title, QWidget* parent) : QAbstractB
 void SectionHeader::setUnit(const QString& unit) {
   unit_ = unit;
   update();
-}
-
-QSize SectionHeader::sizeHint() const {
-  return {fontMetrics().horizontalAdvance(text()) + 32, 32};
-}
-
-QSize SectionHeader::minimumSizeHint() const {
-  return {64, 32};
 }
 
 void SectionHeader::keyPressEvent(QKeyEvent* event) {

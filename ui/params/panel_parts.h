@@ -31,7 +31,7 @@ class QuietCombo : public QComboBox {
   explicit QuietCombo(QWidget* parent = nullptr);
 
   /// The present entry as it is painted, whole or elided.
-  QString shownText() const;
+  QString shownText() const { return fontMetrics().elidedText(currentText(), Qt::ElideRight, textRoom()); }
   /// The width at which this entry is whole.
   int widthFor(const QString& text) const;
 
@@ -51,8 +51,8 @@ class SectionHeader : public QAbstractButton {
  public:
   explicit SectionHeader(const QString& title, QWidget* parent = nullptr);
   void setUnit(const QString& unit);  ///< muted, at the right end
-  QSize sizeHint() const override;
-  QSize minimumSizeHint() const override;
+  QSize sizeHint() const override { return {fontMetrics().horizontalAdvance(text()) + 32, 32}; }
+  QSize minimumSizeHint() const override { return {64, 32}; }
 
  protected:
   void keyPressEvent(QKeyEvent* event) override;

@@ -14,13 +14,13 @@
 #include "params/vector_editor.h"
 #include "params/wording.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
 
 QLabel* message_label(QWidget* parent, const char* name) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
+  auto* label = named(name, new QLabel(parent));
   label->setWordWrap(true);
   label->setTextFormat(Qt::PlainText);
   label->hide();
@@ -38,15 +38,11 @@ ParameterEditor::ParameterEditor(LabDocument& document, cloth::Parameter paramet
     : QWidget(parent), document_(document), parameter_(std::move(parameter)) {
   setObjectName("param:" + QString::fromStdString(parameter_.path));
   setAccessibleName(QString::fromStdString(info().label));
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(spacing / 4);
+  auto* column = spaced(new QVBoxLayout(this), spacing / 4);
   makeTitle(*column);
-  control_row_ = new QHBoxLayout;
-  control_row_->setSpacing(spacing);
+  control_row_ = spaced(new QHBoxLayout, spacing);
   makeReset();
-  auto* control_and_reset = new QHBoxLayout;
-  control_and_reset->setSpacing(spacing / 2);
+  auto* control_and_reset = spaced(new QHBoxLayout, spacing / 2);
   control_and_reset->addLayout(control_row_, 1);
   control_and_reset->addWidget(reset_, 0, Qt::AlignVCenter);
   column->addLayout(control_and_reset);
@@ -55,14 +51,12 @@ ParameterEditor::ParameterEditor(LabDocument& document, cloth::Parameter paramet
 
 void ParameterEditor::makeTitle(QVBoxLayout& column) {
   title_ = new QWidget(this);
-  title_row_ = new QHBoxLayout(title_);
-  title_row_->setContentsMargins(0, 0, 24 + spacing / 2, 0);  // ends where the control ends
-  title_row_->setSpacing(spacing);
+  title_row_ =
+      spaced(new QHBoxLayout(title_), spacing, {0, 0, 24 + spacing / 2, 0});  // ends where the control ends
   label_ = new ElidedLabel(QString::fromStdString(info().label), title_);
   title_row_->addWidget(label_);
   if (info().cost == cloth::EditCost::restart) {
-    auto* mark = new QLabel(tr("restarts"), title_);
-    mark->setObjectName("restarts");
+    auto* mark = named("restarts", new QLabel(tr("restarts"), title_));
     mark->setProperty("muted", true);
     mark->setFont(smaller(mark->font()));
     mark->setToolTip(tr("An edit restarts the simulation"));
@@ -78,8 +72,7 @@ void ParameterEditor::makeTitle(QVBoxLayout& column) {
 }
 
 void ParameterEditor::makeReset() {
-  reset_ = new QToolButton(this);
-  reset_->setObjectName("reset");
+  reset_ = named("reset", new QToolButton(this));
   reset_->setIcon(icon("reset-value"));
   reset_->setIconSize({16, 16});
   reset_->setFixedSize(24, 24);
@@ -107,8 +100,7 @@ void ParameterEditor::makeMessages(QVBoxLayout& column) {
   note_button_->setFocusPolicy(Qt::TabFocus);
   note_button_->hide();
   connect(note_button_, &QToolButton::clicked, this, &ParameterEditor::noteButtonClicked);
-  auto* note_row = new QHBoxLayout;
-  note_row->setSpacing(spacing);
+  auto* note_row = spaced(new QHBoxLayout, spacing);
   note_row->addWidget(note_, 1);
   note_row->addWidget(note_button_);
   column.addWidget(rule_);
@@ -121,10 +113,6 @@ void ParameterEditor::name(QWidget& part, const QString& object_name, const QStr
   part.setAccessibleName(suffix.isEmpty() ? label : label + ' ' + suffix);
   part.setAccessibleDescription(QString::fromStdString(info().doc));
   named_ << &part;
-}
-
-void ParameterEditor::hideTitle() {
-  title_->hide();
 }
 
 void ParameterEditor::refresh() {

@@ -30,7 +30,7 @@ class ParameterEditor : public QWidget {
   void refreshDefault();
   void setNote(const QString& note, const QString& button = {});
   /// For a parameter alone in its section, whose head then says label and unit.
-  void hideTitle();
+  void hideTitle() { title_->hide(); }
 
   /// What the Tab key visits, in order.
   virtual QList<QWidget*> tabStops() const = 0;

@@ -15,6 +15,7 @@
 #include "params/number_editor.h"
 #include "params/parameter_section.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -45,9 +46,7 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
     : QWidget(parent), document_(document) {
   setObjectName("parameterPanel");
   setAccessibleName(tr("Parameters"));
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
+  auto* column = spaced(new QVBoxLayout(this), 0);
   column->addWidget(makeHead());
   makeScrollArea();
   column->addWidget(scroll_, 1);
@@ -65,8 +64,7 @@ QWidget* ParameterPanel::makeHead() {
   auto* title = new QLabel(tr("Parameters"), head);
   title->setProperty("heading", true);
   row->addWidget(title, 1);
-  add_ = new QToolButton(head);
-  add_->setObjectName("add");
+  add_ = named("add", new QToolButton(head));
   add_->setText(tr("Add"));
   add_->setIcon(icon("add"));
   add_->setIconSize({16, 16});
@@ -74,8 +72,7 @@ QWidget* ParameterPanel::makeHead() {
   add_->setPopupMode(QToolButton::InstantPopup);
   add_->setFocusPolicy(Qt::TabFocus);
   add_->setToolTip(tr("Bring physics or an obstacle into the scene"));
-  menu_ = new QMenu(add_);
-  menu_->setObjectName("addMenu");
+  menu_ = named("addMenu", new QMenu(add_));
   menu_->setToolTipsVisible(true);
   add_->setMenu(menu_);
   row->addWidget(add_);
@@ -83,16 +80,13 @@ QWidget* ParameterPanel::makeHead() {
 }
 
 void ParameterPanel::makeScrollArea() {
-  scroll_ = new QScrollArea(this);
-  scroll_->setObjectName("scroll");
+  scroll_ = named("scroll", new QScrollArea(this));
   scroll_->setWidgetResizable(true);
   scroll_->setFrameShape(QFrame::NoFrame);
   scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   scroll_->setFocusPolicy(Qt::NoFocus);
   content_ = new QWidget;
-  column_ = new QVBoxLayout(content_);
-  column_->setContentsMargins(0, 0, 0, 0);
-  column_->setSpacing(0);
+  column_ = spaced(new QVBoxLayout(content_), 0);
   column_->addStretch(1);
   scroll_->setWidget(content_);
 }
@@ -248,14 +242,6 @@ bool ParameterPanel::reveal(const std::string& path) {
 
 void ParameterPanel::paintEvent(QPaintEvent*) {
   QPainter(this).fillRect(rect(), theme().panel);
-}
-
-QSize ParameterPanel::sizeHint() const {
-  return {320, 640};
-}
-
-QSize ParameterPanel::minimumSizeHint() const {
-  return {280, 240};
 }
 
 }  // namespace clothlab

@@ -42,8 +42,8 @@ class ParameterPanel : public QWidget {
   /// it.
   bool reveal(const std::string& path);
 
-  QSize sizeHint() const override;
-  QSize minimumSizeHint() const override;
+  QSize sizeHint() const override { return {320, 640}; }
+  QSize minimumSizeHint() const override { return {280, 240}; }
 
  Q_SIGNALS:
   void noteButtonClicked(const std::string& path);

@@ -12,15 +12,14 @@
 #include "params/parameter_editor.h"
 #include "params/wording.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
 ParameterSection::ParameterSection(LabDocument& document, const cloth::Block& block, QWidget* parent)
     : QWidget(parent), path_(block.path), title_(block.title) {
   setObjectName("section:" + QString::fromStdString(path_));
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 1, 0, 0);
-  column->setSpacing(0);
+  auto* column = spaced(new QVBoxLayout(this), 0, {0, 1, 0, 0});
   makeHead(block, *column);
   makeBody(document, block, *column);
 }
@@ -28,11 +27,8 @@ ParameterSection::ParameterSection(LabDocument& document, const cloth::Block& bl
 void ParameterSection::makeHead(const cloth::Block& block, QVBoxLayout& column) {
   const QString title = QString::fromStdString(block.title);
   const QString doc = QString::fromStdString(block.doc);
-  auto* row = new QHBoxLayout;
-  row->setContentsMargins(0, spacing / 2, spacing, spacing / 2);
-  row->setSpacing(spacing / 2);
-  head_ = new SectionHeader(title, this);
-  head_->setObjectName("header");
+  auto* row = spaced(new QHBoxLayout, spacing / 2, {0, spacing / 2, spacing, spacing / 2});
+  head_ = named("header", new SectionHeader(title, this));
   head_->setToolTip(doc);
   head_->setAccessibleDescription(doc);
   row->addWidget(head_, 1);
@@ -41,8 +37,7 @@ void ParameterSection::makeHead(const cloth::Block& block, QVBoxLayout& column) 
     Q_EMIT collapsedChanged(!open);
   });
   if (block.removable) {
-    cross_ = new QToolButton(this);
-    cross_->setObjectName("remove");
+    cross_ = named("remove", new QToolButton(this));
     cross_->setIcon(icon("remove"));
     cross_->setIconSize({16, 16});
     cross_->setFixedSize(24, 24);
@@ -57,9 +52,7 @@ void ParameterSection::makeHead(const cloth::Block& block, QVBoxLayout& column) 
 
 void ParameterSection::makeBody(LabDocument& document, const cloth::Block& block, QVBoxLayout& column) {
   body_ = new QWidget(this);
-  auto* rows = new QVBoxLayout(body_);
-  rows->setContentsMargins(2 * spacing, 0, spacing, 2 * spacing);
-  rows->setSpacing(spacing);
+  auto* rows = spaced(new QVBoxLayout(body_), spacing, {2 * spacing, 0, spacing, 2 * spacing});
   if (block.path == "cloth" && !document.scene().cloth.is_mesh())
     rows->addWidget(shape_ = new ClothShapeRow(document, body_));
   for (const cloth::Parameter& parameter : block.parameters) {

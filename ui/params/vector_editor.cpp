@@ -9,6 +9,7 @@
 #include "params/value_slider.h"
 #include "params/wording.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -27,8 +28,7 @@ VectorEditor::VectorEditor(LabDocument& document, const cloth::Parameter& parame
     fields_[i]->setPrefix(axes[i]);
     sliders_[i] = new ValueSlider(this);
     name(*sliders_[i], QString("slider_%1").arg(axes[i]), axes[i]);
-    auto* column = new QVBoxLayout;
-    column->setSpacing(spacing / 2);
+    auto* column = spaced(new QVBoxLayout, spacing / 2);
     column->addWidget(fields_[i]);
     column->addWidget(sliders_[i]);
     controlRow().addLayout(column, 1);

@@ -13,6 +13,7 @@
 #include "scene/scene_parameters.h"
 #include "study/stability_map.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -44,26 +45,19 @@ cloth::StudyAxis offer_of(const cloth::Parameter& parameter) {
 }  // namespace
 
 AxisChoice::AxisChoice(QWidget* parent) : QWidget(parent) {
-  parameter_ = new QComboBox(this);
-  parameter_->setObjectName("parameter");
+  parameter_ = named("parameter", new QComboBox(this));
   parameter_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   parameter_->setMinimumContentsLength(12);
-  low_ = new QLineEdit(this);
-  low_->setObjectName("low");
+  low_ = named("low", new QLineEdit(this));
   low_->setToolTip(tr("The smallest value"));
-  high_ = new QLineEdit(this);
-  high_->setObjectName("high");
+  high_ = named("high", new QLineEdit(this));
   high_->setToolTip(tr("The largest value"));
-  count_ = new QSpinBox(this);
-  count_->setObjectName("count");
+  count_ = named("count", new QSpinBox(this));
   count_->setRange(2, 200);
   count_->setToolTip(tr("How many values"));
-  logarithmic_ = new QCheckBox(tr("log"), this);
-  logarithmic_->setObjectName("logarithmic");
+  logarithmic_ = named("logarithmic", new QCheckBox(tr("log"), this));
   logarithmic_->setToolTip(tr("In equal ratios"));
-  auto* grid = new QGridLayout(this);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(spacing / 2);
+  auto* grid = spaced(new QGridLayout(this), spacing / 2);
   grid->addWidget(parameter_, 0, 0, 1, 5);
   count_->setFixedWidth(count_width);
   grid->addWidget(low_, 1, 0);
@@ -95,10 +89,6 @@ void AxisChoice::setScene(const cloth::Scene& scene, const cloth::StudyAxis& axi
                               Qt::ToolTipRole);
     }
   show(axis);
-}
-
-void AxisChoice::chooseParameter(int index) {
-  show(offers_[static_cast<std::size_t>(index)]);
 }
 
 void AxisChoice::show(const cloth::StudyAxis& axis) {

@@ -27,7 +27,7 @@ class AxisChoice : public QWidget {
 
  private:
   void show(const cloth::StudyAxis& axis);
-  void chooseParameter(int index);
+  void chooseParameter(int index) { show(offers_[static_cast<std::size_t>(index)]); }
 
   QComboBox* parameter_;
   QLineEdit *low_, *high_;

@@ -21,6 +21,7 @@
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -76,9 +77,8 @@ StudiesPanel::StudiesPanel(LabDocument& document, QWidget* parent) : QWidget(par
 StudiesPanel::~StudiesPanel() = default;
 
 void StudiesPanel::makeLayout() {
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(spacing * 3 / 2, spacing, spacing * 3 / 2, spacing);
-  row->setSpacing(spacing * 2);
+  auto* row =
+      spaced(new QHBoxLayout(this), spacing * 2, {spacing * 3 / 2, spacing, spacing * 3 / 2, spacing});
   row->addWidget(makeLeft());
   row->addWidget(makeRight(), 1);
 }
@@ -91,15 +91,11 @@ QWidget* StudiesPanel::makeLeft() {
   scroll->setWidget(choices_);
   scroll->setWidgetResizable(true);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  start_ = new QPushButton(tr("Start the study"), left);
-  start_->setObjectName("startStudy");
+  start_ = named("startStudy", new QPushButton(tr("Start the study"), left));
   start_->setProperty("primary", true);
-  cancel_ = new QPushButton(tr("Cancel"), left);
-  cancel_->setObjectName("cancelStudy");
+  cancel_ = named("cancelStudy", new QPushButton(tr("Cancel"), left));
   cancel_->setToolTip(tr("Stop at the next step. What is finished is kept."));
-  auto* column = new QVBoxLayout(left);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(spacing);
+  auto* column = spaced(new QVBoxLayout(left), spacing);
   column->addWidget(scroll, 1);
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(start_, 1);
@@ -115,25 +111,20 @@ QWidget* StudiesPanel::makeLeft() {
 
 QWidget* StudiesPanel::makeRight() {
   auto* right = new QWidget(this);
-  title_ = new QLabel(right);
-  title_->setObjectName("studyTitle");
+  title_ = named("studyTitle", new QLabel(right));
   title_->setProperty("heading", true);
-  against_ = new QComboBox(right);
-  against_->setObjectName("against");
+  against_ = named("against", new QComboBox(right));
   against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
-  save_ = new QToolButton(right);
-  save_->setObjectName("saveStudy");
+  save_ = named("saveStudy", new QToolButton(right));
   save_->setIcon(icon("export-plot"));
   save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
-  open_ = new QToolButton(right);
-  open_->setObjectName("openStudy");
+  open_ = named("openStudy", new QToolButton(right));
   open_->setIcon(icon("open"));
   open_->setToolTip(tr("Open the folder of a study"));
   open_->setPopupMode(QToolButton::InstantPopup);
   recent_ = new QMenu(open_);
   open_->setMenu(recent_);
-  auto* head = new QHBoxLayout;
-  head->setSpacing(spacing);
+  auto* head = spaced(new QHBoxLayout, spacing);
   head->addWidget(title_, 1);
   head->addWidget(against_);
   head->addWidget(open_);
@@ -153,19 +144,15 @@ QWidget* StudiesPanel::makeRight() {
   stack_ = new QStackedWidget(right);
   stack_->addWidget(empty_);
   stack_->addWidget(plot_);
-  bar_ = new QProgressBar(right);
-  bar_->setObjectName("studyProgress");
+  bar_ = named("studyProgress", new QProgressBar(right));
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
   bar_->setFixedHeight(6);
-  line_ = new QLabel(right);
-  line_->setObjectName("studyLine");
+  line_ = named("studyLine", new QLabel(right));
   line_->setProperty("muted", true);
   line_->setMinimumWidth(100);
 
-  auto* column = new QVBoxLayout(right);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(spacing / 2);
+  auto* column = spaced(new QVBoxLayout(right), spacing / 2);
   column->addLayout(head);
   column->addWidget(stack_, 1);
   column->addWidget(bar_);

@@ -17,6 +17,7 @@
 #include "studies/study_library.h"
 #include "study/stability_report.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -43,9 +44,7 @@ QString purpose_of(StudyChoices::Kind kind) {
 }
 
 QFormLayout* form_on(QWidget* page) {
-  auto* form = new QFormLayout(page);
-  form->setContentsMargins(0, 0, 0, 0);
-  form->setSpacing(spacing / 2);
+  auto* form = spaced(new QFormLayout(page), spacing / 2);
   form->setRowWrapPolicy(QFormLayout::WrapLongRows);
   return form;
 }
@@ -53,14 +52,12 @@ QFormLayout* form_on(QWidget* page) {
 }  // namespace
 
 StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
-  kind_ = new QComboBox(this);
-  kind_->setObjectName("studyKind");
+  kind_ = named("studyKind", new QComboBox(this));
   kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
-  methods_ = new QListWidget(this);
-  methods_->setObjectName("studyMethods");
+  methods_ = named("studyMethods", new QListWidget(this));
   methods_->setWrapping(true);
   methods_->setFlow(QListView::TopToBottom);
   methods_->setResizeMode(QListView::Adjust);
@@ -75,14 +72,11 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
     item->setCheckState(Qt::Checked);
   }
   makeForms();
-  folder_ = new QLineEdit(this);
-  folder_->setObjectName("studyFolder");
+  folder_ = named("studyFolder", new QLineEdit(this));
   folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(shown_path(studies_folder())));
   folder_->setPlaceholderText(tr("a new one in %1").arg(shown_path(studies_folder())));
 
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(spacing / 2);
+  auto* column = spaced(new QVBoxLayout(this), spacing / 2);
   column->addWidget(kind_);
   column->addWidget(purpose_);
   column->addWidget(methods_);
@@ -99,11 +93,9 @@ void StudyChoices::makeForms() {
   forms_ = new QStackedWidget(this);
   auto* precision = new QWidget(forms_);
   QFormLayout* form = form_on(precision);
-  horizon_ = new QLineEdit(precision);
-  horizon_->setObjectName("horizon");
+  horizon_ = named("horizon", new QLineEdit(precision));
   form->addRow(tr("Horizon (s)"), horizon_);
-  repeats_ = new QSpinBox(precision);
-  repeats_->setObjectName("repeats");
+  repeats_ = named("repeats", new QSpinBox(precision));
   repeats_->setRange(5, 100);
   repeats_->setToolTip(tr("How often each run is timed"));
   form->addRow(tr("Repeats"), repeats_);
@@ -112,14 +104,11 @@ void StudyChoices::makeForms() {
   auto* map = new QWidget(forms_);
   form = form_on(map);
   form->setRowWrapPolicy(QFormLayout::DontWrapRows);
-  x_ = new AxisChoice(map);
-  x_->setObjectName("xAxis");
+  x_ = named("xAxis", new AxisChoice(map));
   form->addRow(tr("Across"), x_);
-  y_ = new AxisChoice(map);
-  y_->setObjectName("yAxis");
+  y_ = named("yAxis", new AxisChoice(map));
   form->addRow(tr("Up"), y_);
-  periods_ = new QSpinBox(map);
-  periods_->setObjectName("periods");
+  periods_ = named("periods", new QSpinBox(map));
   periods_->setRange(1, 100000);
   periods_->setValue(static_cast<int>(cloth::StabilityCriterion{}.periods));
   periods_->setToolTip(tr("How long a run lasts, in periods of the fastest motion"));
@@ -128,8 +117,7 @@ void StudyChoices::makeForms() {
 
   auto* extremes = new QWidget(forms_);
   form = form_on(extremes);
-  cases_ = new QComboBox(extremes);
-  cases_->setObjectName("cases");
+  cases_ = named("cases", new QComboBox(extremes));
   cases_->addItems({tr("This scene, pushed"), tr("The fixed list")});
   form->addRow(tr("Cases"), cases_);
   forms_->addWidget(extremes);

@@ -113,10 +113,6 @@ void StudyPlot::refresh() {
   touches_ = canvas.touches();
 }
 
-QRectF StudyPlot::onScreen(const QRectF& drawn) const {
-  return {drawn.topLeft() * scale_, drawn.size() * scale_};
-}
-
 QRectF StudyPlot::placeOf(int run) const {
   const_cast<StudyPlot*>(this)->refresh();
   for (const PlotTouch& touch : touches_)
@@ -182,10 +178,6 @@ void StudyPlot::resizeEvent(QResizeEvent*) {
 
 void StudyPlot::mouseMoveEvent(QMouseEvent* event) {
   hover(event->position());
-}
-
-void StudyPlot::leaveEvent(QEvent*) {
-  hover({-1e6, -1e6});
 }
 
 void StudyPlot::mouseDoubleClickEvent(QMouseEvent* event) {

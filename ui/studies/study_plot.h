@@ -43,12 +43,12 @@ class StudyPlot : public QWidget {
   void resizeEvent(QResizeEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
-  void leaveEvent(QEvent* event) override;
+  void leaveEvent(QEvent*) override { hover({-1e6, -1e6}); }
 
  private:
   void refresh();
   void hover(QPointF at);
-  QRectF onScreen(const QRectF& drawn) const;
+  QRectF onScreen(const QRectF& drawn) const { return {drawn.topLeft() * scale_, drawn.size() * scale_}; }
 
   Diagram diagram_;
   QPixmap picture_;

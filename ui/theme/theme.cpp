@@ -34,62 +34,30 @@ void colour_panes(Theme& t) {
   }
 }
 
-Theme make_light() {
-  Theme t;
-  t.dark = false;
-  t.window = "#eef0f4";
-  t.panel = "#ffffff";
-  t.field = "#ffffff";
-  t.text = "#1c2026";
-  t.muted_text = "#58606c";
-  t.disabled_text = "#878e99";
-  t.border = "#d6dae1";
-  t.grid_line = "#e7eaee";
-  t.accent = "#3457d5";
-  t.accent_text = "#ffffff";
-  t.warning = "#925500";
-  t.error = "#c12f2f";
-  t.good = "#1d7a3b";
-  t.view_top = "#d9e0ea";
-  t.view_bottom = "#f6f8fa";
-  t.kinetic = "#0e529c";
-  t.elastic = "#e26600";
-  t.gravity = "#008858";
-  t.total = "#3a3f47";
-  t.strain = "#a8457d";
-  t.limit = "#bd8040";
-  t.step_time = "#2596bd";
-  t.draw_time = "#57620f";
-  colour_panes(t);
-  return t;
-}
+struct ThemeColour {
+  QColor Theme::*role;
+  const char *light, *dark;
+};
 
-Theme make_dark() {
+constexpr ThemeColour theme_colours[] = {
+    {&Theme::window, "#eef0f4", "#181a1e"},      {&Theme::panel, "#ffffff", "#22252b"},
+    {&Theme::field, "#ffffff", "#1a1d21"},       {&Theme::text, "#1c2026", "#e5e8ec"},
+    {&Theme::muted_text, "#58606c", "#a5adb8"},  {&Theme::disabled_text, "#878e99", "#79818c"},
+    {&Theme::border, "#d6dae1", "#383d45"},      {&Theme::grid_line, "#e7eaee", "#31363d"},
+    {&Theme::accent, "#3457d5", "#8ea8ff"},      {&Theme::accent_text, "#ffffff", "#0e1630"},
+    {&Theme::warning, "#925500", "#f0b349"},     {&Theme::error, "#c12f2f", "#ff7f76"},
+    {&Theme::good, "#1d7a3b", "#5cc980"},        {&Theme::view_top, "#d9e0ea", "#2c323b"},
+    {&Theme::view_bottom, "#f6f8fa", "#141619"}, {&Theme::kinetic, "#0e529c", "#3d87ec"},
+    {&Theme::elastic, "#e26600", "#e17b3c"},     {&Theme::gravity, "#008858", "#2fc49a"},
+    {&Theme::total, "#3a3f47", "#d9dde3"},       {&Theme::strain, "#a8457d", "#f07fd2"},
+    {&Theme::limit, "#bd8040", "#d9ab18"},       {&Theme::step_time, "#2596bd", "#48ceff"},
+    {&Theme::draw_time, "#57620f", "#e4f06a"},
+};
+
+Theme make_theme(bool dark) {
   Theme t;
-  t.dark = true;
-  t.window = "#181a1e";
-  t.panel = "#22252b";
-  t.field = "#1a1d21";
-  t.text = "#e5e8ec";
-  t.muted_text = "#a5adb8";
-  t.disabled_text = "#79818c";
-  t.border = "#383d45";
-  t.grid_line = "#31363d";
-  t.accent = "#8ea8ff";
-  t.accent_text = "#0e1630";
-  t.warning = "#f0b349";
-  t.error = "#ff7f76";
-  t.good = "#5cc980";
-  t.view_top = "#2c323b";
-  t.view_bottom = "#141619";
-  t.kinetic = "#3d87ec";
-  t.elastic = "#e17b3c";
-  t.gravity = "#2fc49a";
-  t.total = "#d9dde3";
-  t.strain = "#f07fd2";
-  t.limit = "#d9ab18";
-  t.step_time = "#48ceff";
-  t.draw_time = "#e4f06a";
+  t.dark = dark;
+  for (const ThemeColour& colour : theme_colours) t.*colour.role = QColor(dark ? colour.dark : colour.light);
   colour_panes(t);
   return t;
 }
@@ -97,12 +65,12 @@ Theme make_dark() {
 }  // namespace
 
 const Theme& light_theme() {
-  static const Theme light = make_light();
+  static const Theme light = make_theme(false);
   return light;
 }
 
 const Theme& dark_theme() {
-  static const Theme dark = make_dark();
+  static const Theme dark = make_theme(true);
   return dark;
 }
 

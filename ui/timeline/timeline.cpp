@@ -5,6 +5,7 @@
 
 #include "theme/theme.h"
 #include "widgets/action_button.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 namespace {
@@ -15,8 +16,7 @@ QString size_text(std::size_t bytes) {
 }
 
 QLabel* muted_label(const QString& name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
+  auto* label = named(name, new QLabel(parent));
   label->setProperty("muted", true);
   return label;
 }
@@ -37,9 +37,8 @@ Timeline::Timeline(QAction* play_again, QWidget* parent)
   setObjectName("timeline");
   track_->setToolTip(tr("Drag or click to go back and forth in the run (Left, Right, Home, End)"));
   memory_->setToolTip(tr("States kept to go back to; the steps between them are computed again"));
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(spacing, spacing / 2, spacing + spacing / 2, spacing / 2);
-  row->setSpacing(spacing);
+  auto* row =
+      spaced(new QHBoxLayout(this), spacing, {spacing, spacing / 2, spacing + spacing / 2, spacing / 2});
   row->addWidget(make_action_button(play_again, this));
   row->addWidget(track_, 1);
   row->addWidget(later_);

@@ -65,10 +65,6 @@ QSize TimelineTrack::sizeHint() const {
   return {320, captionHeight() + static_cast<int>(2 * handle_radius) + 4};
 }
 
-QSize TimelineTrack::minimumSizeHint() const {
-  return {120, sizeHint().height()};
-}
-
 int TimelineTrack::captionHeight() const {
   return QFontMetrics(caption_font(font())).height();
 }

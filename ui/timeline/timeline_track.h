@@ -26,7 +26,7 @@ class TimelineTrack : public QWidget {
   double placeOf(double time) const;
 
   QSize sizeHint() const override;
-  QSize minimumSizeHint() const override;
+  QSize minimumSizeHint() const override { return {120, sizeHint().height()}; }
 
  Q_SIGNALS:
   void timeWanted(double time);  ///< s, by a person; again and again during a drag

@@ -115,10 +115,6 @@ Eigen::Vector3d Camera::up() const {
 Eigen::Vector3d Camera::forward() const {
   return -axes(pose_.yaw, pose_.pitch).col(2);
 }
-Eigen::Vector3d Camera::eye() const {
-  return pose_.target - pose_.distance * forward();
-}
-
 Eigen::Matrix4d Camera::view() const {
   const Eigen::Matrix3d to_eye = axes(pose_.yaw, pose_.pitch).transpose();
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();

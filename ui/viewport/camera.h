@@ -41,7 +41,7 @@ class Camera {
   /// The present target and distance, seen from a named side.
   CameraPose seen_from(CameraPreset preset) const;
 
-  Eigen::Vector3d eye() const;
+  Eigen::Vector3d eye() const { return pose_.target - pose_.distance * forward(); }
   Eigen::Vector3d right() const, up() const, forward() const;  ///< unit vectors
   Eigen::Matrix4d view() const;
   Eigen::Matrix4d projection() const;       ///< OpenGL's clip space

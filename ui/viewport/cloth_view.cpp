@@ -66,14 +66,6 @@ ClothView::~ClothView() {
   canvas_.reset();  // while the view it calls back is still whole
 }
 
-void ClothView::redraw() {
-  if (canvas_) canvas_->redraw();
-}
-
-void ClothView::repaintOver() {
-  if (canvas_) canvas_->repaintOver();
-}
-
 QSurfaceFormat ClothView::surface_format() {
   QSurfaceFormat format;
   format.setRenderableType(QSurfaceFormat::OpenGL);
@@ -156,10 +148,6 @@ void ClothView::setColourMaximum(std::optional<double> maximum) {
   if (mode_ == ViewMode::strain) redraw();
 }
 
-void ClothView::setSmoothAtRest(bool on) {
-  if (canvas_) canvas_->setSmoothAtRest(on);
-}
-
 // ---- camera
 // -------------------------------------------------------------------------------------------------------
 
@@ -201,10 +189,6 @@ bool ClothView::clothIsOutOfSight() const {
   const double seen = share_in_picture(*frame_, camera_, {width(), height()});
   constexpr double nearly_none = 0.1;
   return camera_moved_ ? seen == 0 : seen < nearly_none;
-}
-
-void ClothView::setPreset(CameraPreset preset) {
-  flyTo(camera_.seen_from(preset));
 }
 
 void ClothView::resetCamera() {

@@ -78,7 +78,7 @@ class ClothView : public QWidget {
   /// Whether all of the cloth has left the picture, or under a camera that was not moved nearly all. The view
   /// then says how to see it.
   bool clothIsOutOfSight() const;
-  void setPreset(CameraPreset preset);
+  void setPreset(CameraPreset preset) { flyTo(camera_.seen_from(preset)); }
   /// For a newly opened scene: the next frame is framed, and every new topology until the user moves the
   /// camera.
   void resetCamera();
@@ -92,7 +92,9 @@ class ClothView : public QWidget {
 
   /// Where the processor draws: whether the view is drawn once more, smoothly, a moment after the last
   /// movement.
-  void setSmoothAtRest(bool on);
+  void setSmoothAtRest(bool on) {
+    if (canvas_) canvas_->setSmoothAtRest(on);
+  }
 
   /// The view with its overlays, in device pixels.
   QImage grabPicture();
@@ -138,8 +140,12 @@ class ClothView : public QWidget {
   void initialiseGl();
   void resizeGl(int width, int height);
   void drawGl(bool quick);
-  void redraw();
-  void repaintOver();
+  void redraw() {
+    if (canvas_) canvas_->redraw();
+  }
+  void repaintOver() {
+    if (canvas_) canvas_->repaintOver();
+  }
   void fail(const QString& reason);
   void releaseRenderer();
   void learnExtent(bool new_topology);

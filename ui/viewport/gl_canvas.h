@@ -56,6 +56,7 @@ class GlCanvas {
   virtual QImage grab() = 0;
 };
 
+std::unique_ptr<GlCanvas> make_memory_canvas(QWidget* parent, GlCanvas::Callbacks callbacks);
 /// `parent` is the view.
 std::unique_ptr<GlCanvas> make_canvas(CanvasKind kind, QWidget* parent, GlCanvas::Callbacks callbacks);
 

@@ -1,15 +1,27 @@
-#include "viewport/memory_canvas.h"
-
+// The canvas for a processor that draws: a picture in memory, shown like any widget's. Drawing has a turn of
+// its own (see DrawingTurns), its pixels are waited for in later events, and painting the window only copies:
+// no number of views and no size of them holds the window's thread for more than one of these.
+#include <QElapsedTimer>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
+#include <QOpenGLFramebufferObject>
 #include <QPainter>
+#include <QTimer>
+#include <QWidget>
 #include <utility>
 
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
+#include "viewport/drawing_turns.h"
+#include "viewport/gl_canvas.h"
 
 namespace clothlab {
 namespace {
 
+constexpr int smooth_samples = 4;               // of the smooth picture
+constexpr int fence_interval_ms = 1;            // between two looks whether a picture is done
+constexpr int rest_time_ms = 150;               // without a change, until the picture is made smooth
 constexpr GLenum gl_bgra = 0x80E1;              // in OpenGL since 1.2; Qt's portable headers lack it
 constexpr GLenum gl_pack_invert_mesa = 0x8758;  // of GL_MESA_pack_invert
 
@@ -21,7 +33,63 @@ std::unique_ptr<QOpenGLFramebufferObject> make_target(QSize size, int samples) {
   return std::make_unique<QOpenGLFramebufferObject>(size, format);
 }
 
-}  // namespace
+class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Drawer {
+ public:
+  MemoryCanvas(QWidget* parent, Callbacks callbacks);
+  ~MemoryCanvas() override;
+
+  QWidget& widget() override { return *this; }
+  QOpenGLContext* context() const override { return initialised_ ? &shared_->context : nullptr; }
+  void makeCurrent() override { shared_->context.makeCurrent(&shared_->surface); }
+  void doneCurrent() override { shared_->context.doneCurrent(); }
+  void redraw() override;
+  void repaintOver() override { update(); }
+  void setSmoothAtRest(bool on) override;
+  QImage grab() override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+
+ private:
+  enum class Quality { quick, smooth };
+
+  /// One for all canvases: the driver translates each program once.
+  struct SharedContext {
+    QOffscreenSurface surface;
+    QOpenGLContext context;
+
+    static std::shared_ptr<SharedContext> of_the_application();
+    bool ensure();
+  };
+
+  bool initialise();
+  QSize pixels() const;
+  void askForTurn();
+  void takeTurn() override;
+  void submit(Quality quality);
+  void fetchPicture();
+  void dropFence();
+  void readPicture();
+
+  Callbacks callbacks_;
+  std::shared_ptr<SharedContext> shared_;
+  std::unique_ptr<QOpenGLFramebufferObject> plain_, multisampled_;  // the second only once something rested
+  bool initialised_ = false, failed_ = false;
+  bool top_row_first_ = false;  // the driver can read pictures that way round
+
+  GLsync fence_ = nullptr;  // of a picture that is being drawn
+  Quality drawing_ = Quality::quick;
+  QElapsedTimer drawing_time_;
+  QTimer fence_timer_;
+
+  QImage picture_;
+  bool stale_ = true;               // the scene has changed since the picture
+  bool waits_to_be_shown_ = false;  // the picture has not been put into the window yet: no other is drawn
+  bool rested_ = false;             // a smooth picture is wanted
+  QTimer rest_timer_;               // since the last change
+  bool smooth_at_rest_ = true;
+};
 
 std::shared_ptr<MemoryCanvas::SharedContext> MemoryCanvas::SharedContext::of_the_application() {
   static std::weak_ptr<SharedContext> known;
@@ -144,7 +212,7 @@ void MemoryCanvas::submit(Quality quality) {
     multisampled_.reset();
   }
   const bool smooth = quality == Quality::smooth;
-  if (smooth && !multisampled_) multisampled_ = make_target(pixels(), samples);
+  if (smooth && !multisampled_) multisampled_ = make_target(pixels(), smooth_samples);
   stale_ = false;  // before drawing, which may ask for the next picture
   (smooth ? multisampled_ : plain_)->bind();
   shared_->context.functions()->glViewport(0, 0, plain_->width(), plain_->height());
@@ -204,6 +272,12 @@ QImage MemoryCanvas::grab() {
   callbacks_.shown(1e-6 * static_cast<double>(timer.nsecsElapsed()));
   update();
   return picture;
+}
+
+}  // namespace
+
+std::unique_ptr<GlCanvas> make_memory_canvas(QWidget* parent, GlCanvas::Callbacks callbacks) {
+  return std::make_unique<MemoryCanvas>(parent, std::move(callbacks));
 }
 
 }  // namespace clothlab

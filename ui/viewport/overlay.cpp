@@ -31,6 +31,24 @@ void card(QPainter& painter, const QRectF& area, const Theme& theme) {
   painter.drawRoundedRect(area.adjusted(0.5, 0.5, -0.5, -0.5), 6, 6);
 }
 
+/// The font of notes, and how large a card with a text in it is.
+QFont note_font(const QPainter& painter) {
+  return font_of(painter, 0.9, QFont::Normal);
+}
+
+QSizeF card_size(const QPainter& painter, const QFont& font, const QString& text) {
+  const QFontMetricsF metrics(font, painter.device());
+  return {metrics.horizontalAdvance(text) + 20, metrics.height() + 8};
+}
+
+void text_card(QPainter& painter, const QRectF& area, const Theme& theme, const QFont& font,
+               const QColor& colour, const QString& text) {
+  card(painter, area, theme);
+  painter.setFont(font);
+  painter.setPen(colour);
+  painter.drawText(area, Qt::AlignCenter, text);
+}
+
 QString percent(double strain) {
   return QLocale::c().toString(100 * strain, 'g', 4);
 }
@@ -159,27 +177,18 @@ void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quant
                        : mode == ViewMode::wireframe      ? tr("Wireframe")
                        : quantity == Quantity::difference ? tr("Difference")
                                                           : tr("Strain");
-  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Medium), view.device());
-  const QRectF area(2 * spacing, 2 * spacing, metrics.horizontalAdvance(name) + 20, metrics.height() + 8);
-  mode_.lay(view, area, {static_cast<double>(mode), static_cast<double>(quantity)}, [&](QPainter& p) {
-    card(p, area, theme);
-    p.setFont(font_of(p, 0.9, QFont::Medium));
-    p.setPen(theme.muted_text);
-    p.drawText(area, Qt::AlignCenter, name);
-  });
+  const QFont font = font_of(view, 0.9, QFont::Medium);
+  const QRectF area(QPointF(2 * spacing, 2 * spacing), card_size(view, font, name));
+  mode_.lay(view, area, {static_cast<double>(mode), static_cast<double>(quantity)},
+            [&](QPainter& p) { text_card(p, area, theme, font, theme.muted_text, name); });
 }
 
 void Overlay::contact_note(QPainter& view, const Theme& theme, int touches) {
   const QString note = touches == 1 ? tr("1 touch") : tr("%1 touches").arg(touches);
-  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
-  const QRectF area(2 * spacing, 3 * spacing + metrics.height() + 8, metrics.horizontalAdvance(note) + 20,
-                    metrics.height() + 8);
-  contact_.lay(view, area, {static_cast<double>(touches)}, [&](QPainter& p) {
-    card(p, area, theme);
-    p.setFont(font_of(p, 0.9, QFont::Normal));
-    p.setPen(theme.text);
-    p.drawText(area, Qt::AlignCenter, note);
-  });
+  const QSizeF size = card_size(view, note_font(view), note);
+  const QRectF area(QPointF(2 * spacing, 3 * spacing + size.height()), size);
+  contact_.lay(view, area, {static_cast<double>(touches)},
+               [&](QPainter& p) { text_card(p, area, theme, note_font(view), theme.text, note); });
 }
 
 void Overlay::handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips,
@@ -219,13 +228,9 @@ void Overlay::motion(QPainter& view, QSizeF size, const Theme& theme, const QPol
     view.drawEllipse(key, 3.5, 3.5);
   }
   const QString note = tr("Moves the whole motion");
-  view.setFont(font_of(view, 0.9, QFont::Normal));
-  const QFontMetricsF metrics(view.font(), view.device());
-  const QRectF label =
-      place_beside_handle(at, {metrics.horizontalAdvance(note) + 20, metrics.height() + 6}, keys, size);
-  card(view, label, theme);
-  view.setPen(theme.text);
-  view.drawText(label, Qt::AlignCenter, note);
+  const QFont font = note_font(view);
+  const QRectF label = place_beside_handle(at, card_size(view, font, note), keys, size);
+  text_card(view, label, theme, font, theme.text, note);
   view.restore();
 }
 
@@ -233,9 +238,8 @@ void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
   const QLineF drag(brush.start, brush.cursor);
   const bool has_arrow = brush.blowing && drag.length() > 4;
   const QString speed = tr("%1 m/s").arg(brush.speed, 0, 'f', 1);
-  const QFontMetricsF metrics(font_of(view, 0.9, QFont::DemiBold), view.device());
-  const QRectF label(brush.cursor.x() + 14, brush.cursor.y() + 14, metrics.horizontalAdvance(speed) + 16,
-                     metrics.height() + 6);
+  const QFont font = font_of(view, 0.9, QFont::DemiBold);
+  const QRectF label(brush.cursor + QPointF(14, 14), card_size(view, font, speed));
   const double r = brush.radius + 3;
   QRectF area(brush.cursor - QPointF(r, r), QSizeF(2 * r, 2 * r));
   if (has_arrow) area |= QRectF(brush.start, brush.cursor).normalized().adjusted(-16, -16, 16, 16) | label;
@@ -258,10 +262,7 @@ void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
     p.setBrush(theme.accent);
     p.drawEllipse(brush.start, 3, 3);
     arrow(p, drag, theme.accent, halo_of(theme), 2);
-    card(p, label, theme);
-    p.setFont(font_of(p, 0.9, QFont::DemiBold));
-    p.setPen(theme.text);
-    p.drawText(label, Qt::AlignCenter, speed);
+    text_card(p, label, theme, font, theme.text, speed);
   });
 }
 
@@ -299,16 +300,14 @@ void Overlay::pull_line(QPainter& view, const Theme& theme, QPointF particle, QP
 }
 
 void Overlay::hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text) {
-  const QFontMetricsF metrics(font_of(view, 0.9, QFont::Normal), view.device());
-  const double width = std::min(metrics.horizontalAdvance(text) + 20, size.width() - 2 * spacing);
-  const QRectF area((size.width() - width) / 2, size.height() - metrics.height() - 8 - 2 * spacing, width,
-                    metrics.height() + 8);
+  const QFont font = note_font(view);
+  QSizeF room = card_size(view, font, text);
+  room.setWidth(std::min(room.width(), size.width() - 2 * spacing));
+  const QRectF area(QPointF((size.width() - room.width()) / 2, size.height() - room.height() - 2 * spacing),
+                    room);
   hint_.lay(view, area, {}, [&](QPainter& p) {
-    card(p, area, theme);
-    p.setFont(font_of(p, 0.9, QFont::Normal));
-    p.setPen(theme.text);
-    const double room = area.width() - 12;
-    p.drawText(area, Qt::AlignCenter, metrics.elidedText(text, Qt::ElideRight, room));
+    const QFontMetricsF metrics(font, view.device());
+    text_card(p, area, theme, font, theme.text, metrics.elidedText(text, Qt::ElideRight, area.width() - 12));
   });
 }
 

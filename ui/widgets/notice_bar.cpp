@@ -7,6 +7,7 @@
 #include <QToolButton>
 
 #include "theme/theme.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
@@ -27,9 +28,8 @@ NoticeBar::NoticeBar(QWidget* parent)
   close_->setToolTip(tr("Close this message"));
   close_->setAccessibleName(tr("Close this message"));
 
-  auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(spacing + spacing / 2, spacing / 2, spacing / 2, spacing / 2);
-  row->setSpacing(spacing);
+  auto* row =
+      spaced(new QHBoxLayout(this), spacing, {spacing + spacing / 2, spacing / 2, spacing / 2, spacing / 2});
   row->addWidget(symbol_);
   row->addWidget(label_, 1);
   row->addWidget(button_);
@@ -53,10 +53,6 @@ void NoticeBar::show(const QString& cause, Level level, const QString& text, con
   button_->setVisible(!button.isEmpty());
   dress();
   setVisible(true);
-}
-
-void NoticeBar::withdraw(const QString& cause) {
-  if (cause_ == cause) hide();
 }
 
 QString NoticeBar::text() const {

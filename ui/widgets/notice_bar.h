@@ -24,7 +24,9 @@ class NoticeBar : public QFrame {
             std::function<void()> action = {});
 
   /// Takes a message away once its cause is gone.
-  void withdraw(const QString& cause);
+  void withdraw(const QString& cause) {
+    if (cause_ == cause) hide();
+  }
 
   QString cause() const { return isHidden() ? QString() : cause_; }
   QString text() const;

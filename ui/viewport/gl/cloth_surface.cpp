@@ -1,13 +1,26 @@
 #include "viewport/gl/cloth_surface.h"
 
 #include "geometry/mesh_look.h"
-#include "viewport/gl/cloth_mesh.h"
 
 namespace clothlab {
 namespace {
 
 GLsizeiptr bytes(const auto& values) {
   return static_cast<GLsizeiptr>(values.size() * sizeof(values[0]));
+}
+
+/// Triangles (a, d, c) and (a, c, b) of each cell a = (r, c), b = (r, c+1), c = (r+1, c+1), d = (r+1, c): the
+/// face of a cloth laid out to the right and downwards looks at the viewer.
+std::vector<std::uint32_t> grid_triangles(int rows, int columns) {
+  std::vector<std::uint32_t> indices;
+  for (int r = 0; r + 1 < rows; ++r) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      const auto a = static_cast<std::uint32_t>(r * columns + column), b = a + 1;
+      const std::uint32_t d = a + static_cast<std::uint32_t>(columns), c = d + 1;
+      indices.insert(indices.end(), {a, d, c, a, c, b});
+    }
+  }
+  return indices;
 }
 
 }  // namespace
@@ -67,11 +80,11 @@ void ClothSurface::upload_topology(const ClothFrame& frame) {
   topology_ = frame.topology;
   const std::vector<float> pattern = pattern_of(frame);
   lay_out_attributes(pattern.size() / 2);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[cells]);
-  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(pattern), pattern.data(), GL_STATIC_DRAW);
   const std::vector<float> middle(frame.mesh ? pattern.size() : 0, 0.5F);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[middles]);
-  gl_.glBufferData(GL_ARRAY_BUFFER, bytes(middle), middle.data(), GL_STATIC_DRAW);
+  for (const auto& [buffer, values] : {std::pair{cells, &pattern}, std::pair{middles, &middle}}) {
+    gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[buffer]);
+    gl_.glBufferData(GL_ARRAY_BUFFER, bytes(*values), values->data(), GL_STATIC_DRAW);
+  }
 
   std::vector<std::uint32_t> indices, lines;
   if (frame.mesh) {
@@ -80,10 +93,8 @@ void ClothSurface::upload_topology(const ClothFrame& frame) {
     for (const auto& edge : frame.mesh->edges)
       for (const int end : edge) lines.push_back(static_cast<std::uint32_t>(end));
   } else {
-    cloth_triangles(rows_, columns_, indices);
+    indices = grid_triangles(rows_, columns_);
   }
-  index_count_ = static_cast<GLsizei>(indices.size());
-  edge_count_ = static_cast<GLsizei>(lines.size());
   upload_indices(triangles, indices);
   upload_indices(edges, lines);
 }
@@ -104,6 +115,7 @@ std::vector<float> ClothSurface::pattern_of(const ClothFrame& frame) const {
 }
 
 void ClothSurface::upload_indices(Buffer buffer, const std::vector<std::uint32_t>& indices) {
+  counts_[buffer] = static_cast<GLsizei>(indices.size());
   gl_.glBindVertexArray(vertex_array_);
   gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[buffer]);
   gl_.glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(indices), indices.data(), GL_STATIC_DRAW);
@@ -115,14 +127,13 @@ void ClothSurface::upload_pins(const ClothFrame& frame) {
   pinned_indices_.clear();
   for (std::size_t i = 0; i < frame.pinned.size(); ++i)
     if (frame.pinned[i]) pinned_indices_.push_back(static_cast<std::uint32_t>(i));
-  pinned_count_ = static_cast<GLsizei>(pinned_indices_.size());
   upload_indices(pinned, pinned_indices_);
 }
 
-void ClothSurface::draw_triangles() {
+void ClothSurface::draw(GLenum shape, Buffer buffer) {
   gl_.glBindVertexArray(vertex_array_);
-  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[triangles]);
-  gl_.glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[buffer]);
+  gl_.glDrawElements(shape, counts_[buffer], GL_UNSIGNED_INT, nullptr);
   gl_.glBindVertexArray(0);
 }
 
@@ -137,20 +148,6 @@ void ClothSurface::take_cells_from(Buffer buffer) {
   gl_.glBindVertexArray(vertex_array_);
   gl_.glBindBuffer(GL_ARRAY_BUFFER, buffers_[buffer]);
   gl_.glVertexAttribPointer(cell, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-  gl_.glBindVertexArray(0);
-}
-
-void ClothSurface::draw_edges() {
-  gl_.glBindVertexArray(vertex_array_);
-  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[edges]);
-  gl_.glDrawElements(GL_LINES, edge_count_, GL_UNSIGNED_INT, nullptr);
-  gl_.glBindVertexArray(0);
-}
-
-void ClothSurface::draw_pinned_points() {
-  gl_.glBindVertexArray(vertex_array_);
-  gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[pinned]);
-  gl_.glDrawElements(GL_POINTS, pinned_count_, GL_UNSIGNED_INT, nullptr);
   gl_.glBindVertexArray(0);
 }
 

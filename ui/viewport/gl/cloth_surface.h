@@ -19,17 +19,18 @@ class ClothSurface {
   /// Positions, normals and strain always, into one buffer; cells and indices only when the topology has
   /// changed, and pins when they have. Allocates only for those.
   void upload(const ClothFrame& frame);
-  void draw_triangles();
+  void draw_triangles() { draw(GL_TRIANGLES, triangles); }
   /// The same without a pattern: every particle in the middle of a cell.
   void draw_plain_triangles();
   /// The edges of a mesh, as lines; none of a grid.
-  void draw_edges();
-  void draw_pinned_points();
-  bool has_pinned_points() const { return pinned_count_ > 0; }
+  void draw_edges() { draw(GL_LINES, edges); }
+  void draw_pinned_points() { draw(GL_POINTS, pinned); }
+  bool has_pinned_points() const { return counts_[pinned] > 0; }
 
  private:
   enum Buffer { moving, cells, middles, triangles, edges, pinned, buffer_count };
 
+  void draw(GLenum shape, Buffer buffer);
   void upload_topology(const ClothFrame& frame);
   std::vector<float> pattern_of(const ClothFrame& frame) const;
   void upload_indices(Buffer buffer, const std::vector<std::uint32_t>& indices);
@@ -41,9 +42,9 @@ class ClothSurface {
   QOpenGLFunctions_3_3_Core& gl_;
   GLuint vertex_array_ = 0;
   GLuint buffers_[buffer_count] = {};
+  GLsizei counts_[buffer_count] = {};  ///< of indices
   int rows_ = 0, columns_ = 0;
   std::uint64_t topology_ = 0;
-  GLsizei index_count_ = 0, edge_count_ = 0, pinned_count_ = 0;
   std::vector<std::uint8_t> pinned_flags_;  // as uploaded
   std::vector<std::uint32_t> pinned_indices_;
 };

@@ -16,10 +16,6 @@ namespace {
 
 constexpr GLsizei floats_of_mark = 7, floats_of_box = 6;
 
-GLsizeiptr bytes(const std::vector<float>& values) {
-  return static_cast<GLsizeiptr>(values.size() * sizeof(float));
-}
-
 void* offset(std::size_t floats) {
   return reinterpret_cast<void*>(floats * sizeof(float));
 }
@@ -78,7 +74,8 @@ void ContactLayer::upload(const ClothFrame& frame) {
   const auto give = [this](GLuint buffer, const std::vector<float>& values) {
     if (values.empty()) return;
     gl_.glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    gl_.glBufferData(GL_ARRAY_BUFFER, bytes(values), values.data(), GL_STREAM_DRAW);
+    gl_.glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(float)), values.data(),
+                     GL_STREAM_DRAW);
     gl_.glBindBuffer(GL_ARRAY_BUFFER, 0);
   };
   give(marks_, picture.marks);

@@ -2,6 +2,7 @@
 
 #include "geometry/mesh_look.h"
 #include "scene/obstacle_shape.h"
+#include "viewport/gl/solids.h"
 
 namespace clothlab {
 
@@ -38,17 +39,8 @@ MeshBodies::Body MeshBodies::upload(std::shared_ptr<const cloth::TriangleMesh> m
   Body body{std::move(mesh), 0, 0, static_cast<GLsizei>(normals.size())};
   gl_.glGenVertexArrays(1, &body.vertex_array);
   gl_.glGenBuffers(1, &body.vertices);
-  gl_.glBindVertexArray(body.vertex_array);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, body.vertices);
-  gl_.glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(float)), values.data(),
-                   GL_STATIC_DRAW);
-  for (GLuint attribute = 0; attribute < 2; ++attribute) {
-    gl_.glEnableVertexAttribArray(attribute);
-    gl_.glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
-                              reinterpret_cast<const void*>(3 * attribute * sizeof(float)));
-  }
+  upload_corners(gl_, body.vertex_array, body.vertices, values);
   gl_.glBindVertexArray(0);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, 0);
   return body;
 }
 

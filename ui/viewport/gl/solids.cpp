@@ -56,6 +56,20 @@ void add_box(Mesh& mesh) {
 
 }  // namespace
 
+void upload_corners(QOpenGLFunctions_3_3_Core& gl, GLuint array, GLuint buffer,
+                    const std::vector<float>& values) {
+  gl.glBindVertexArray(array);
+  gl.glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  gl.glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(float)), values.data(),
+                  GL_STATIC_DRAW);
+  for (GLuint attribute = 0; attribute < 2; ++attribute) {
+    gl.glEnableVertexAttribArray(attribute);
+    gl.glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
+                             reinterpret_cast<const void*>(3 * attribute * sizeof(float)));
+  }
+  gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
 Solids::Solids(QOpenGLFunctions_3_3_Core& gl) : gl_(gl) {
   Mesh mesh;
   add_sphere(mesh);
@@ -67,21 +81,12 @@ Solids::Solids(QOpenGLFunctions_3_3_Core& gl) : gl_(gl) {
   gl_.glGenVertexArrays(1, &empty_array_);
   gl_.glGenBuffers(1, &vertices_);
   gl_.glGenBuffers(1, &indices_);
-  gl_.glBindVertexArray(solid_array_);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, vertices_);
-  gl_.glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(float)),
-                   mesh.vertices.data(), GL_STATIC_DRAW);
+  upload_corners(gl_, solid_array_, vertices_, mesh.vertices);
   gl_.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   gl_.glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                    static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(),
                    GL_STATIC_DRAW);
-  for (GLuint attribute = 0; attribute < 2; ++attribute) {
-    gl_.glEnableVertexAttribArray(attribute);
-    gl_.glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
-                              reinterpret_cast<const void*>(3 * attribute * sizeof(float)));
-  }
   gl_.glBindVertexArray(0);
-  gl_.glBindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
 Solids::~Solids() {
@@ -91,28 +96,16 @@ Solids::~Solids() {
   gl_.glDeleteBuffers(1, &indices_);
 }
 
-void Solids::draw_sphere() {
+void Solids::draw_solid(GLsizei first, GLsizei count) {
   gl_.glBindVertexArray(solid_array_);
-  gl_.glDrawElements(GL_TRIANGLES, sphere_count_, GL_UNSIGNED_INT, nullptr);
+  const auto offset = static_cast<std::uintptr_t>(first) * sizeof(std::uint32_t);
+  gl_.glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
   gl_.glBindVertexArray(0);
 }
 
-void Solids::draw_box() {
-  gl_.glBindVertexArray(solid_array_);
-  const auto offset = static_cast<std::uintptr_t>(sphere_count_) * sizeof(std::uint32_t);
-  gl_.glDrawElements(GL_TRIANGLES, box_count_, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
-  gl_.glBindVertexArray(0);
-}
-
-void Solids::draw_strip() {
+void Solids::draw_made_corners(GLenum shape, GLsizei count) {
   gl_.glBindVertexArray(empty_array_);
-  gl_.glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  gl_.glBindVertexArray(0);
-}
-
-void Solids::draw_screen() {
-  gl_.glBindVertexArray(empty_array_);
-  gl_.glDrawArrays(GL_TRIANGLES, 0, 3);
+  gl_.glDrawArrays(shape, 0, count);
   gl_.glBindVertexArray(0);
 }
 

@@ -85,10 +85,10 @@ void ChartTest::all_charts_share_one_time_range() {
   bench.fill(100);
   QCOMPARE(bench.frame("strain").time, bench.frame("energy").time);
   QCOMPARE(bench.frame("frame_time").time, bench.frame("energy").time);
-  QCOMPARE(bench.panel.shownTimes().second, 100.0);
-  QCOMPARE(bench.panel.shownTimes().first, 40.0);
+  QCOMPARE(bench.panel.shownTimes().high, 100.0);
+  QCOMPARE(bench.panel.shownTimes().low, 40.0);
   bench.panel.setTimeSpan(Panel::TimeSpan::whole_run);
-  QCOMPARE(bench.panel.shownTimes().first, 0.0);
+  QCOMPARE(bench.panel.shownTimes().low, 0.0);
 }
 
 void ChartTest::a_log_axis_never_sees_a_value_at_or_below_zero() {
@@ -101,7 +101,7 @@ void ChartTest::a_log_axis_never_sees_a_value_at_or_below_zero() {
     skipped += i % 50 < 10;
   }
   bench.panel.append(samples);
-  bench.panel.setLogarithmic(Panel::Chart::energy, true);
+  bench.chart("energy").set_logarithmic(true);
   bench.settle();
   const DrawnCurve& kinetic_curve = bench.chart("energy").scene().curves().curves().front();
   QVERIFY(kinetic_curve.pieces.size() >= 8);  // broken, not drawn along the axis
@@ -113,7 +113,7 @@ void ChartTest::a_log_axis_never_sees_a_value_at_or_below_zero() {
                   .contains(QPointF(bench.middle("energy").x(), point.y())));
     }
   QVERIFY(bench.chart("energy").scene().overlay().note().startsWith(QString("%1 points").arg(skipped)));
-  bench.panel.setLogarithmic(Panel::Chart::energy, false);
+  bench.chart("energy").set_logarithmic(false);
   bench.settle();
   QVERIFY(bench.chart("energy").scene().overlay().note().isEmpty());
 }
@@ -223,7 +223,7 @@ void ChartTest::zoom_then_log_then_linear_keeps_the_data() {
   auto* log = bench.panel.findChild<QAbstractButton*>("energy_log");
   QTest::mouseClick(log, Qt::LeftButton);
   bench.settle();
-  QVERIFY(bench.panel.isLogarithmic(Panel::Chart::energy));
+  QVERIFY(bench.chart("energy").is_logarithmic());
   QCOMPARE(bench.frame("energy").time, zoomed.time);
   QVERIFY(std::abs(bench.frame("energy").y.low - std::log10(zoomed.y.low)) < 1e-9);  // the zoom holds
   bench.wheel("energy", bench.middle("energy"), 1, Qt::ControlModifier);
@@ -329,8 +329,8 @@ void ChartTest::a_reset_clears_the_curves() {
   bench.panel.append(std::array{sample_at(0), sample_at(0.1)});
   bench.settle();
   QVERIFY(bench.panel.isLive());
-  QCOMPARE(bench.panel.shownTimes().first, 0.0);
-  QVERIFY(bench.panel.shownTimes().second <= 2);
+  QCOMPARE(bench.panel.shownTimes().low, 0.0);
+  QVERIFY(bench.panel.shownTimes().high <= 2);
   QCOMPARE(exported_rows(bench.panel), 2);
   bench.panel.clear();
   bench.settle();
@@ -344,7 +344,7 @@ void ChartTest::a_hidden_panel_draws_nothing_and_catches_up() {
   const Range before = bench.frame("energy").time;
   bench.panel.hide();
   bench.panel.append(std::array{sample_at(200)});
-  bench.panel.setLogarithmic(Panel::Chart::strain, true);
+  bench.chart("strain").set_logarithmic(true);
   QCOMPARE(running_timers(bench.panel), 0);
   QTest::qWait(100);
   QCOMPARE(bench.frame("energy").time, before);

@@ -47,14 +47,14 @@ class ViewHandTest : public ViewFixture {
   void the_brush_reports_cursor_radius_and_velocity() {
     view_->setTool(Tool::brush);
     view_->setBrushRadius(64);
-    view_->setBrushSpeedPerPixel(0.1);
     QSignalSpy blown(view_.get(), &ClothView::brushChanged), ended(view_.get(), &ClothView::brushEnded);
     drag(*view_, {200, 200}, {250, 170});
     QCOMPARE(blown.count(), 2);  // one per move
     const auto gust = blown.last().at(0).value<cloth::BrushGust>();
     QVERIFY((gust.cursor - Eigen::Vector2d(250, 170)).norm() < 1e-9);
     QCOMPARE(gust.radius, 64.0);
-    QVERIFY2((gust.velocity - Eigen::Vector3d(5, 3, 0)).norm() < 1e-9, "50 px right, 30 px up, 0.1 m/s each");
+    QVERIFY2((gust.velocity - Eigen::Vector3d(2.5, 1.5, 0)).norm() < 1e-9,
+             "50 px right, 30 px up, 0.05 m/s each");
     QCOMPARE(ended.count(), 1);
   }
 

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cassert>
 
 #include "bridge/worker_pace.h"
@@ -164,31 +163,24 @@ void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
 }
 
 void StudyRunner::carry_out(const StudyOrder& order, const std::stop_token& stop) {
-  const auto partial = [&](const auto& table) { offer(table, false); };
-  const auto progress = [this](const cloth::StudyProgress& now) { return note(now); };
-  const cloth::StopTest stop_test = [&stop] { return stop.stop_requested(); };
-  if (const auto* chosen = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
-    cloth::WorkPrecisionOptions options = *chosen;
-    options.progress = progress;
-    options.partial = partial;
-    options.stop = stop_test;
-    options.earlier = begin(cloth::plan_work_precision(order.scene, options), order);
-    offer(cloth::study_work_precision(order.scene, options), true);
+  const auto study = [&](auto options, const auto& plan, const auto& run) {
+    options.progress = [this](const cloth::StudyProgress& now) { return note(now); };
+    options.partial = [this](const auto& table) { offer(table, false); };
+    options.stop = [&stop] { return stop.stop_requested(); };
+    options.earlier = begin(plan(options), order);
+    offer(run(options), true);
+  };
+  if (const auto* precision = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
+    study(
+        *precision, [&](const auto& o) { return cloth::plan_work_precision(order.scene, o); },
+        [&](const auto& o) { return cloth::study_work_precision(order.scene, o); });
   } else if (const auto* map = std::get_if<cloth::StabilityOptions>(&order.options)) {
-    cloth::StabilityOptions options = *map;
-    options.progress = progress;
-    options.partial = partial;
-    options.stop = stop_test;
     note({0, "laying out the map"});
-    options.earlier = begin(cloth::plan_stability_map(order.scene, options), order);
-    offer(cloth::run_stability_map(order.scene, options), true);
+    study(
+        *map, [&](const auto& o) { return cloth::plan_stability_map(order.scene, o); },
+        [&](const auto& o) { return cloth::run_stability_map(order.scene, o); });
   } else {
-    cloth::ExtremesOptions options = std::get<cloth::ExtremesOptions>(order.options);
-    options.progress = progress;
-    options.partial = partial;
-    options.stop = stop_test;
-    options.earlier = begin(cloth::empty_table(options), order);
-    offer(cloth::run_extremes(options), true);
+    study(std::get<cloth::ExtremesOptions>(order.options), cloth::empty_table, cloth::run_extremes);
   }
 }
 

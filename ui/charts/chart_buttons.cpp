@@ -1,6 +1,5 @@
 #include "charts/chart_buttons.h"
 
-#include <QEnterEvent>
 #include <QFontMetrics>
 #include <QPainter>
 #include <algorithm>

@@ -31,7 +31,6 @@ class LegendEntry : public FlatButton {
  public:
   LegendEntry(const QString& name, const CurveStyle& style, QWidget* parent = nullptr);
   QSize sizeHint() const override;
-  const CurveStyle& style_of_curve() const { return style_; }
 
   /// The same picture and its width for an exported chart.
   static int width_of(const QString& name, const QFont& font);

@@ -11,7 +11,6 @@
 
 #include "charts/chart_record.h"
 
-class QPainter;
 class QWidget;
 
 namespace clothlab {

@@ -72,19 +72,6 @@ void ChartPanel::setTimeSpan(TimeSpan span) {
   goLive();
 }
 
-void ChartPanel::setLogarithmic(Chart chart, bool on) {
-  stack_.charts()[static_cast<std::size_t>(chart)]->set_logarithmic(on);
-}
-
-bool ChartPanel::isLogarithmic(Chart chart) const {
-  return stack_.charts()[static_cast<std::size_t>(chart)]->is_logarithmic();
-}
-
-std::pair<double, double> ChartPanel::shownTimes() const {
-  const Range shown = stack_.shown_times();
-  return {shown.low, shown.high};
-}
-
 void ChartPanel::show_message() {
   stack_.charts()[1]->set_message(record_.empty() ? tr("Press play to see energy, strain and frame time")
                                                   : QString());

@@ -2,8 +2,6 @@
 // stacked and aligned.
 #pragma once
 
-#include <utility>
-
 #include "charts/chart_area.h"
 
 namespace clothlab {
@@ -14,7 +12,6 @@ class ChartPanel : public ChartArea {
   Q_OBJECT
  public:
   using TimeSpan = TimeView::Span;
-  enum class Chart { energy, strain, frame_time };
 
   explicit ChartPanel(QWidget* parent = nullptr);
 
@@ -29,9 +26,7 @@ class ChartPanel : public ChartArea {
 
   void setTimeSpan(TimeSpan span);  ///< and follows the run again
   TimeSpan timeSpan() const { return stack_.time().span(); }
-  void setLogarithmic(Chart chart, bool on);
-  bool isLogarithmic(Chart chart) const;
-  std::pair<double, double> shownTimes() const;  ///< s
+  Range shownTimes() const { return stack_.shown_times(); }  ///< s
 
   QSize sizeHint() const override { return {460, 560}; }
   QSize minimumSizeHint() const override;

@@ -1,7 +1,6 @@
 #include "compare/compare_document.h"
 
 #include <QFileInfo>
-#include <algorithm>
 #include <utility>
 
 #include "document/pin_edits.h"

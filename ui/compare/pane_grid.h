@@ -29,7 +29,6 @@ class PaneGrid : public QWidget {
 
   std::size_t paneCount() const { return panes_.size(); }
   PaneView& pane(std::size_t i) { return *panes_[i]; }
-  const ColourBar& colourBar() const { return *colour_bar_; }
 
   void setTool(Tool tool);
   void setMode(ViewMode mode);

@@ -4,7 +4,6 @@
 #include <QGuiApplication>
 #include <QHeaderView>
 #include <QKeyEvent>
-#include <algorithm>
 #include <limits>
 
 #include "compare/pane_style.h"

@@ -251,12 +251,6 @@ void LabDocument::moveObstacle(int number, const cloth::Obstacle& moved) {
        {Effect::live, path}, drag_);
 }
 
-void LabDocument::setPins(std::vector<cloth::Pin> pins) {
-  Scene after = scene_;
-  after.cloth.pins = std::move(pins);
-  push(tr("Change pins"), std::move(after), {Effect::live, "cloth.pins"});
-}
-
 void LabDocument::togglePin(int row, int column) {
   const bool pinned = is_pinned(scene_.cloth, row, column);
   Scene after = scene_;
@@ -286,7 +280,6 @@ void LabDocument::apply(const Scene& target, const SceneChange& change) {
   const Scene before = std::exchange(scene_, target);
   if (shape_of(blocks_of(before)) != shape_of(blocks_of(scene_))) Q_EMIT blocksChanged();
   for (const std::string& path : differing_parameters(before, scene_)) Q_EMIT parameterChanged(path);
-  if (before.cloth.pins != scene_.cloth.pins) Q_EMIT pinsChanged();
   if (before.title != scene_.title) Q_EMIT titleChanged();
   Q_EMIT sceneChanged(announced);
 }

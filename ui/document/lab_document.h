@@ -61,7 +61,6 @@ class LabDocument : public Document {
   /// undo step of. Of its block's parameters it must keep the rules.
   void moveObstacle(int number, const cloth::Obstacle& moved);
 
-  void setPins(std::vector<cloth::Pin> pins);
   /// Pins a free particle and frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);
 
@@ -74,7 +73,6 @@ class LabDocument : public Document {
   void parameterChanged(const std::string& path);
   void
   blocksChanged();  ///< blocks or parameters came or went; comes before parameterChanged of the same edit
-  void pinsChanged();
   void sceneChanged(const clothlab::SceneChange& change);  ///< once for each edit, undo and redo; last
 
  private:

@@ -7,7 +7,6 @@
 #include <QSignalBlocker>
 #include <QTabBar>
 #include <QVBoxLayout>
-#include <algorithm>
 
 #include "compare/comparison_files.h"
 #include "compare/pane_style.h"
@@ -126,15 +125,7 @@ void CompareWindow::connectPanes() {
     document_.setReference(document_.comparison().reference == name ? cloth::controlled_reference : name);
     followDocument();  // the menu's check mark, also where nothing changed
   });
-  connect(grid_, &PaneGrid::pullChanged, this,
-          [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
-  connect(grid_, &PaneGrid::pullEnded, this, [this] { link_.send(command::Pull{}); });
-  connect(grid_, &PaneGrid::brushChanged, this, &CompareWindow::brush);
-  connect(grid_, &PaneGrid::brushEnded, this, [this] { link_.send(command::Brush{}); });
-  connect(grid_, &PaneGrid::pinToggled, this, [this](int particle) {
-    const int columns = document_.comparison().scene.cloth.columns;
-    document_.togglePin(particle / columns, particle % columns);
-  });
+  connectHand(grid_);
 }
 
 void CompareWindow::connectSimulation() {
@@ -234,14 +225,8 @@ void CompareWindow::setColouring(ViewMode mode, Colouring colouring) {
   grid_->setMode(mode);
 }
 
-void CompareWindow::brush(const cloth::BrushGust& gust) {
-  const auto& air = document_.comparison().scene.air;
-  if (air && air->drag > 0) {
-    link_.send(command::Brush{gust});
-    return;
-  }
-  notice_->show("brush", NoticeBar::Level::info,
-                tr("The wind brush needs air, and this scene has none. Add it to what the panes share."));
+void CompareWindow::offerAir(const QString& text) {
+  say("brush", NoticeBar::Level::info, text + ' ' + tr("Add it to what the panes share."));
 }
 
 void CompareWindow::followStatus(const CompareStatus& status) {

@@ -39,6 +39,9 @@ class CompareWindow : public LabWindow {
   void send(const RunCommand& command) override;
   void open(const QString& path) override { openComparison(path); }
   QString write(const QString& path) override;
+  const cloth::Scene& scene() override { return document_.comparison().scene; }
+  void togglePin(int row, int column) override { document_.togglePin(row, column); }
+  void offerAir(const QString& text) override;
   void makeLayout();
   void makeScopeTabs();
   void connectDocument();
@@ -51,7 +54,6 @@ class CompareWindow : public LabWindow {
   void showReferences();
   void chooseReference(int index);
   void setColouring(ViewMode mode, Colouring colouring);
-  void brush(const cloth::BrushGust& gust);
 
   // compare_window_menus.cpp
   void makeMenus();

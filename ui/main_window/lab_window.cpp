@@ -76,6 +76,13 @@ void LabWindow::play(bool on) {
     send(command::Pause{});
 }
 
+void LabWindow::brush(const cloth::BrushGust& gust) {
+  if (hasAir())
+    send(command::Brush{gust});
+  else
+    offerAir(tr("The wind brush needs air, and this scene has none."));
+}
+
 QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const QString& tip,
                                const QKeySequence& key, const char* name) {
   auto* action = named(name, new QAction(icon(icon_name), text, this));

@@ -46,6 +46,8 @@ class LabWindow : public QMainWindow {
                    command::Brush, command::Pull, command::StartRecording, command::StopRecording>;
 
   LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size, QWidget* parent);
+  bool hasAir() { return scene().air && scene().air->drag > 0; }
+  void brush(const cloth::BrushGust& gust);
   Document& anyDocument() { return *any_document_; }
   /// For a derived class's destructor: the widgets refer to its link.
   void deleteWidgets();
@@ -56,6 +58,11 @@ class LabWindow : public QMainWindow {
   virtual void open(const QString& path) = 0;
   /// Empty when done, else what went wrong.
   virtual QString write(const QString& path) = 0;
+  /// That of all panes.
+  virtual const cloth::Scene& scene() = 0;
+  virtual void togglePin(int row, int column) = 0;
+  /// Says that the wind brush needs air.
+  virtual void offerAir(const QString& text) = 0;
   virtual void play(bool on);
   virtual void restart() { send(command::Restart{}); }
 
@@ -64,6 +71,20 @@ class LabWindow : public QMainWindow {
   /// Of this window, with a shortcut that its tooltip tells.
   QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
                       const char* name);
+  /// What the hand does in a view, or in the panes, goes to the worker. The brush is told how to get air.
+  template <class View>
+  void connectHand(View* view) {
+    connect(view, &View::pullChanged, this, [this](const cloth::Pull& pull) { send(command::Pull{pull}); });
+    connect(view, &View::pullEnded, this, [this] { send(command::Pull{}); });
+    connect(view, &View::brushChanged, this, &LabWindow::brush);
+    connect(view, &View::brushEnded, this, [this] {
+      if (hasAir()) send(command::Brush{});
+    });
+    connect(view, &View::pinToggled, this, [this](int particle) {
+      const int columns = scene().cloth.columns;
+      togglePin(particle / columns, particle % columns);
+    });
+  }
   /// In the middle of the window, from top to bottom.
   void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched);
   QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);

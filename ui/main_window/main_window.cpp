@@ -98,17 +98,7 @@ void MainWindow::connectDocument() {
 }
 
 void MainWindow::connectView() {
-  connect(view_, &ClothView::pullChanged, this,
-          [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
-  connect(view_, &ClothView::pullEnded, this, [this] { link_.send(command::Pull{}); });
-  connect(view_, &ClothView::brushChanged, this, &MainWindow::brush);
-  connect(view_, &ClothView::brushEnded, this, [this] {
-    if (hasAir()) link_.send(command::Brush{});
-  });
-  connect(view_, &ClothView::pinToggled, this, [this](int particle) {
-    const int columns = document_.scene().cloth.columns;
-    document_.togglePin(particle / columns, particle % columns);
-  });
+  connectHand(view_);
   view_->setObstaclesMovable(true);
   connect(view_, &ClothView::obstacleMoveStarted, this, &MainWindow::startObstacleMove);
   connect(view_, &ClothView::obstacleMoved, this, &MainWindow::moveObstacle);
@@ -220,18 +210,8 @@ void MainWindow::saveSession(const QString& path) {
   link_.send(command::SaveSession{path.toStdString()});
 }
 
-bool MainWindow::hasAir() const {
-  const auto& air = document_.scene().air;
-  return air && air->drag > 0;
-}
-
-void MainWindow::brush(const cloth::BrushGust& gust) {
-  if (!hasAir()) {
-    notice_->show("brush", NoticeBar::Level::info, tr("The wind brush needs air, and this scene has none."),
-                  tr("Add still air"), [this] { addStillAir(); });
-    return;
-  }
-  link_.send(command::Brush{gust});
+void MainWindow::offerAir(const QString& text) {
+  notice_->show("brush", NoticeBar::Level::info, text, tr("Add still air"), [this] { addStillAir(); });
 }
 
 void MainWindow::startObstacleMove(int obstacle) {

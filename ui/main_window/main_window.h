@@ -47,6 +47,9 @@ class MainWindow : public LabWindow {
   void send(const RunCommand& command) override;
   void open(const QString& path) override { openScene(path); }
   QString write(const QString& path) override;
+  const cloth::Scene& scene() override { return document_.scene(); }
+  void togglePin(int row, int column) override { document_.togglePin(row, column); }
+  void offerAir(const QString& text) override;
   void play(bool on) override;
   void restart() override;
   void makeLayout();
@@ -58,13 +61,11 @@ class MainWindow : public LabWindow {
   void startSimulation();
   void readStability();
   void takeStableStep() { document_.setParameter("integrator.time_step", std::string("auto")); }
-  void brush(const cloth::BrushGust& gust);
   void startObstacleMove(int obstacle);
   void moveObstacle(int obstacle, const cloth::Vec3& by);
   void endObstacleMove(int obstacle, bool kept);
   void noteKeyframes();
   void addStillAir();
-  bool hasAir() const;
   bool mayStopStudy();
   void openRun(const cloth::Scene& scene, const QString& note);
 

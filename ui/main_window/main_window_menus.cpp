@@ -1,6 +1,5 @@
 // The window's actions and menus, and the dialogs behind them.
 #include <QAction>
-#include <QApplication>
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QMenuBar>

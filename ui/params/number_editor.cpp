@@ -37,27 +37,10 @@ NumberEditor::NumberEditor(LabDocument& document, const cloth::Parameter& parame
   controlRow().addWidget(field_, 4);
   if (info().auto_allowed) makeAutoToggle();
 
-  LabDocument* doc = &document;
-  connect(slider_, &ValueSlider::dragBegan, doc, &LabDocument::beginDrag);
-  connect(slider_, &ValueSlider::moved, this,
-          [this](double position) { commitNumber(scale_.value_at(position)); });
-  connect(slider_, &ValueSlider::stepped, this, &NumberEditor::step);
-  connect(slider_, &ValueSlider::dragEnded, this, [this] {
-    this->document().endDrag();
-    refresh();
-  });
+  connectParts(
+      slider_, field_, [this](double position) { commitNumber(scale_.value_at(position)); },
+      [this](int steps) { step(steps); });
   connect(field_, &ExactField::committed, this, &NumberEditor::commitText);
-  connect(field_, &ExactField::stepped, this, [this](int steps) {
-    if (!stepping_) this->document().beginDrag();
-    stepping_ = true;
-    step(steps);
-  });
-  connect(field_, &ExactField::stepsEnded, this, [this] {
-    if (stepping_) this->document().endDrag();
-    stepping_ = false;
-  });
-  connect(field_, &ExactField::textEdited, this, [this] { showRule({}); });
-  connect(field_, &ExactField::abandoned, this, &NumberEditor::refresh);
   refresh();
 }
 
@@ -132,8 +115,7 @@ void NumberEditor::commitText(const QString& text) {
   const auto number = number_from(text, unit_text(info().unit));
   if (number) return commitNumber(*number);
   if (info().auto_allowed && text.trimmed().isEmpty()) return refresh();
-  showRule(text.contains(',') ? tr("must be a number with a decimal point, like 1.5")
-                              : tr("must be a number"));
+  refuseNumber(text);
 }
 
 void NumberEditor::commitNumber(double number) {

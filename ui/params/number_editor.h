@@ -44,7 +44,6 @@ class NumberEditor : public ParameterEditor {
   ExactField* field_;
   QCheckBox* auto_ = nullptr;
   std::optional<double> auto_value_, last_number_;
-  bool stepping_ = false;
 };
 
 }  // namespace clothlab

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "params/choice_editor.h"
+#include "params/exact_field.h"
 #include "params/mesh_editor.h"
 #include "params/number_editor.h"
 #include "params/panel_parts.h"
 #include "params/text_editor.h"
+#include "params/value_slider.h"
 #include "params/vector_editor.h"
 #include "params/wording.h"
 #include "theme/theme.h"
@@ -161,6 +163,33 @@ void ParameterEditor::setNote(const QString& note, const QString& button) {
   note_button_->setText(button);
   note_button_->setAccessibleName(QStringLiteral("%1: %2").arg(QString::fromStdString(info().label), button));
   note_button_->setVisible(!button.isEmpty());
+}
+
+void ParameterEditor::connectParts(ValueSlider* slider, ExactField* field, std::function<void(double)> move,
+                                   std::function<void(int)> step) {
+  connect(slider, &ValueSlider::dragBegan, &document_, &LabDocument::beginDrag);
+  connect(slider, &ValueSlider::moved, this, std::move(move));
+  connect(slider, &ValueSlider::stepped, this, step);
+  connect(slider, &ValueSlider::dragEnded, this, [this] {
+    document_.endDrag();
+    refresh();
+  });
+  connect(field, &ExactField::stepped, this, [this, step](int steps) {
+    if (!stepping_) document_.beginDrag();
+    stepping_ = true;
+    step(steps);
+  });
+  connect(field, &ExactField::stepsEnded, this, [this] {
+    if (stepping_) document_.endDrag();
+    stepping_ = false;
+  });
+  connect(field, &ExactField::textEdited, this, [this] { showRule({}); });
+  connect(field, &ExactField::abandoned, this, &ParameterEditor::refresh);
+}
+
+void ParameterEditor::refuseNumber(const QString& text) {
+  showRule(text.contains(',') ? tr("must be a number with a decimal point, like 1.5")
+                              : tr("must be a number"));
 }
 
 ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent) {

@@ -4,6 +4,7 @@
 
 #include <QList>
 #include <QWidget>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,8 @@ class QVBoxLayout;
 namespace clothlab {
 
 class ElidedLabel;
+class ExactField;
+class ValueSlider;
 
 class ParameterEditor : public QWidget {
   Q_OBJECT
@@ -58,6 +61,11 @@ class ParameterEditor : public QWidget {
   QHBoxLayout& titleRow() { return *title_row_; }
   QHBoxLayout& controlRow() { return *control_row_; }
   QToolButton& resetButton() const { return *reset_; }
+  /// A drag of the slider, and a run of steps by key in the field, are one undo step each.
+  void connectParts(ValueSlider* slider, ExactField* field, std::function<void(double position)> move,
+                    std::function<void(int steps)> step);
+  /// Says why what was typed is no number.
+  void refuseNumber(const QString& text);
   /// Sets the names by which screen readers and tests know a part; its tooltip follows with the default.
   void name(QWidget& part, const QString& object_name, const QString& suffix = {});
 
@@ -78,6 +86,7 @@ class ParameterEditor : public QWidget {
   QLabel* rule_ = nullptr;
   QLabel* note_ = nullptr;
   QToolButton* note_button_ = nullptr;
+  bool stepping_ = false;
 };
 
 /// The editor for the parameter's kind.

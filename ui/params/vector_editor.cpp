@@ -32,41 +32,14 @@ VectorEditor::VectorEditor(LabDocument& document, const cloth::Parameter& parame
     column->addWidget(fields_[i]);
     column->addWidget(sliders_[i]);
     controlRow().addLayout(column, 1);
-    connectField(axis);
-    connectSlider(axis);
+    connectParts(
+        sliders_[i], fields_[i],
+        [this, axis](double position) { commitComponent(axis, scale_.value_at(position)); },
+        [this, axis](int steps) { step(axis, steps); });
+    connect(fields_[i], &ExactField::committed, this, [this, axis] { commitTexts(axis); });
+    connect(fields_[i], &ExactField::textEdited, this, [this, i] { edited_[i] = true; });
   }
   refresh();
-}
-
-void VectorEditor::connectField(int axis) {
-  const auto i = static_cast<std::size_t>(axis);
-  connect(fields_[i], &ExactField::committed, this, [this, axis] { commitTexts(axis); });
-  connect(fields_[i], &ExactField::abandoned, this, &VectorEditor::refresh);
-  connect(fields_[i], &ExactField::textEdited, this, [this, i] {
-    edited_[i] = true;
-    showRule({});
-  });
-  connect(fields_[i], &ExactField::stepped, this, [this, axis](int steps) {
-    if (!stepping_) document().beginDrag();
-    stepping_ = true;
-    step(axis, steps);
-  });
-  connect(fields_[i], &ExactField::stepsEnded, this, [this] {
-    if (stepping_) document().endDrag();
-    stepping_ = false;
-  });
-}
-
-void VectorEditor::connectSlider(int axis) {
-  ValueSlider* slider = sliders_[static_cast<std::size_t>(axis)];
-  connect(slider, &ValueSlider::dragBegan, &document(), &LabDocument::beginDrag);
-  connect(slider, &ValueSlider::moved, this,
-          [this, axis](double position) { commitComponent(axis, scale_.value_at(position)); });
-  connect(slider, &ValueSlider::stepped, this, [this, axis](int steps) { step(axis, steps); });
-  connect(slider, &ValueSlider::dragEnded, this, [this] {
-    document().endDrag();
-    refresh();
-  });
 }
 
 void VectorEditor::commitComponent(int axis, double number) {
@@ -120,9 +93,7 @@ void VectorEditor::commitTexts(int edited_axis) {
     if (!edited_[i]) continue;
     const QString text = fields_[i]->text();
     const auto number = number_from(text, unit_text(info().unit));
-    if (!number)
-      return showRule(text.contains(',') ? tr("must be a number with a decimal point, like 1.5")
-                                         : tr("must be a number"));
+    if (!number) return refuseNumber(text);
     vector[axis] = *number;
   }
   commit(vector);

@@ -27,8 +27,6 @@ class VectorEditor : public ParameterEditor {
   void markInvalid(bool invalid) override;
 
  private:
-  void connectField(int axis);
-  void connectSlider(int axis);
   void commitComponent(int axis, double number);
   void commitTexts(int edited_axis);
   void step(int axis, int steps);
@@ -37,7 +35,6 @@ class VectorEditor : public ParameterEditor {
   std::array<ExactField*, 3> fields_;
   std::array<ValueSlider*, 3> sliders_;
   std::array<bool, 3> edited_{};  ///< typed and not accepted yet
-  bool stepping_ = false;
 };
 
 }  // namespace clothlab

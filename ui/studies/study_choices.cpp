@@ -139,7 +139,6 @@ void StudyChoices::follow() {
         QSizePolicy::Preferred, k == forms_->currentIndex() ? QSizePolicy::Preferred : QSizePolicy::Ignored);
   forms_->adjustSize();
   checkMethods(kind() == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
-  Q_EMIT kindChanged();
 }
 
 void StudyChoices::checkMethods(const std::vector<std::string>& names) {

@@ -33,9 +33,6 @@ class StudyChoices : public QWidget {
   /// The order, or a sentence that says which choice breaks a rule.
   std::variant<StudyOrder, QString> order() const;
 
- Q_SIGNALS:
-  void kindChanged();
-
  private:
   void makeForms();
   void follow();  ///< the kind

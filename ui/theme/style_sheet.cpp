@@ -3,7 +3,6 @@
 #include <QFile>
 #include <QHash>
 #include <QRegularExpression>
-#include <QtGlobal>
 
 #include "theme/theme.h"
 

@@ -311,7 +311,7 @@ void ClothView::paintHand(QPainter& painter) {
   } else if (brushShown()) {
     const bool blowing = gesture_ == Gesture::brush;
     const QPointF start = blowing ? gesture_start_ : cursor_;
-    const double speed = brush_speed_per_pixel_ * QLineF(start, cursor_).length();
+    const double speed = brush_speed_per_pixel * QLineF(start, cursor_).length();
     overlay_.brush(painter, look, {cursor_, start, brush_radius_, speed, blowing});
   } else if (hovered_ && handle_part_ == ObstacleHandle::Part::none &&
              (gesture_ == Gesture::none || gesture_ == Gesture::pin)) {

@@ -35,8 +35,6 @@ struct Theme;
 
 class ClothView : public QWidget {
   Q_OBJECT
-  Q_PROPERTY(double brushRadius READ brushRadius WRITE setBrushRadius NOTIFY brushRadiusChanged)
-  Q_PROPERTY(double brushSpeedPerPixel READ brushSpeedPerPixel WRITE setBrushSpeedPerPixel)
 
  public:
   explicit ClothView(QWidget* parent = nullptr);
@@ -67,7 +65,6 @@ class ClothView : public QWidget {
   /// What is shown of contact; frames have it once contactChosen() has reached whoever makes them.
   const ContactChoice& contact() const { return contact_; }
   void setContact(const ContactChoice& choice);
-  int hierarchyDepth() const { return hierarchy_depth_; }
   /// Whether obstacles show a handle to drag them by.
   void setObstaclesMovable(bool movable);
 
@@ -87,8 +84,7 @@ class ClothView : public QWidget {
 
   double brushRadius() const { return brush_radius_; }  ///< px
   void setBrushRadius(double pixels);
-  double brushSpeedPerPixel() const { return brush_speed_per_pixel_; }  ///< m/s per px of displacement
-  void setBrushSpeedPerPixel(double speed) { brush_speed_per_pixel_ = speed; }
+  static constexpr double brush_speed_per_pixel = 0.05;  ///< m/s per px of displacement
 
   /// Where the processor draws: whether the view is drawn once more, smoothly, a moment after the last
   /// movement.
@@ -111,7 +107,6 @@ class ClothView : public QWidget {
   void pullEnded();
   void brushChanged(cloth::BrushGust gust);
   void brushEnded();
-  void brushRadiusChanged(double pixels);
   void pinToggled(int particle);
   void toolChanged(clothlab::Tool tool);
   void modeChanged(clothlab::ViewMode mode);
@@ -212,9 +207,8 @@ class ClothView : public QWidget {
   bool obstacles_movable_ = false, obstacle_move_kept_ = true;
   std::optional<ObstacleHandle> handle_;  // shown; its place as when the move began
   ObstacleHandle::Part handle_part_ = ObstacleHandle::Part::none;
-  Eigen::Vector2d handle_start_{0, 0};   // px
-  double brush_radius_ = 80;             // px
-  double brush_speed_per_pixel_ = 0.05;  // m/s
+  Eigen::Vector2d handle_start_{0, 0};  // px
+  double brush_radius_ = 80;            // px
 };
 
 }  // namespace clothlab

@@ -30,7 +30,6 @@ void ClothView::setBrushRadius(double pixels) {
   if (radius == brush_radius_) return;
   brush_radius_ = radius;
   repaintOver();
-  Q_EMIT brushRadiusChanged(radius);
 }
 
 std::optional<int> ClothView::pick(QPointF at) const {
@@ -189,7 +188,7 @@ void ClothView::sendPull() {
 void ClothView::sendBrush() {
   const QPointF drag = cursor_ - gesture_start_;
   cloth::BrushGust gust;
-  gust.velocity = brush_speed_per_pixel_ * (drag.x() * camera_.right() - drag.y() * camera_.up());
+  gust.velocity = brush_speed_per_pixel * (drag.x() * camera_.right() - drag.y() * camera_.up());
   gust.world_to_screen = camera_.world_to_screen();
   gust.cursor = as_vector(cursor_);
   gust.radius = brush_radius_;

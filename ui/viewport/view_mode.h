@@ -1,8 +1,6 @@
 // What the view shows and what the left mouse button does in it.
 #pragma once
 
-#include <QtGlobal>
-
 namespace clothlab {
 
 enum class ViewMode { textured, wireframe, strain };

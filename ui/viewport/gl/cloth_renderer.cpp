@@ -1,15 +1,13 @@
 #include "viewport/gl/cloth_renderer.h"
 
-#include <QOpenGLContext>
 #include <QVector2D>
 #include <QVector3D>
 #include <QVector4D>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "geometry/round_numbers.h"
 #include "geometry/mesh_look.h"
+#include "geometry/round_numbers.h"
 #include "scene/obstacle_shape.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"

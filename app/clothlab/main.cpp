@@ -5,10 +5,10 @@
 #include <QSurfaceFormat>
 #include <clocale>
 
-#include "main_window/compare_window.h"
-#include "compare/comparison_files.h"
-#include "io/process.h"
 #include "io/machine.h"
+#include "io/process.h"
+#include "main_window/compare_window.h"
+#include "main_window/lab_files.h"
 #include "main_window/main_window.h"
 #include "main_window/stop_signals.h"
 #include "scene/builtin_scenes.h"
@@ -17,8 +17,8 @@
 
 namespace {
 
-/// What goes wrong in an event, for want of memory as a rule, is said, and the window stays: there may be work
-/// in it that is not saved.
+/// What goes wrong in an event, for want of memory as a rule, is said, and the window stays: there may be
+/// work in it that is not saved.
 class Application : public QApplication {
  public:
   using QApplication::QApplication;

@@ -1,4 +1,3 @@
-#include "bridge/fill_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -19,9 +19,9 @@
 #include <cmath>
 #include <memory>
 
-#include "params/number_text.h"
 #include "params/parameter_panel.h"
 #include "params/slider_scale.h"
+#include "params/wording.h"
 
 namespace clothlab::test {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "listed_test.h"
-#include "params/number_text.h"
+#include "params/wording.h"
 #include "scene/scene_parameters.h"
 
 namespace clothlab::test::slider_scale_test {

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "listed_test.h"
-#include "theme/style_sheet.h"
 
 namespace clothlab::test::theme_test {
 namespace {

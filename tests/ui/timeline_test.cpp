@@ -11,7 +11,7 @@
 
 #include "io/obj_reader.h"
 #include "listed_test.h"
-#include "main_window/cloth_file.h"
+#include "main_window/lab_files.h"
 #include "simulation/session_json.h"
 #include "window_bench.h"
 

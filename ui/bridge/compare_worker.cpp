@@ -34,11 +34,6 @@ bool is_overtaken_by(const CompareCommand& command, const CompareCommand& next) 
 CompareWorker::CompareWorker(int threads)
     : threads_(threads_for(threads)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-CompareWorker::~CompareWorker() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-}
-
 void CompareWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {

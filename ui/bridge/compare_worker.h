@@ -18,8 +18,6 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
  public:
   /// Panes run on `threads`; 0: on all cores but one, which is the window's.
   explicit CompareWorker(int threads = 0);
-  /// Stops within one step; a recording is ended properly.
-  ~CompareWorker();
 
   /// The pane's newest frame that was not fetched yet, or nullptr.
   std::shared_ptr<const ClothFrame> take_frame(std::size_t pane) { return frames_[pane].take(); }
@@ -71,7 +69,8 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   cloth::Vec3Field normals_;  ///< scratch of frames
   Clock::time_point last_flush_{};
 
-  std::jthread thread_;  ///< last: starts when all else is there, stops first
+  std::jthread
+      thread_;  ///< last: starts when all else is there; ends first, within one step and with the recording
 };
 
 }  // namespace clothlab

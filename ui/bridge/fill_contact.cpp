@@ -1,6 +1,6 @@
-#include "bridge/fill_contact.h"
-
 #include <algorithm>
+
+#include "bridge/fill_frame.h"
 
 namespace clothlab {
 namespace {

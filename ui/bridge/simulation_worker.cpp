@@ -32,11 +32,6 @@ bool is_overtaken_by(const SceneCommand& command, const SceneCommand& next) {
 SimulationWorker::SimulationWorker(std::size_t most_history)
     : history_(most_history), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-SimulationWorker::~SimulationWorker() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-}
-
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   while (!stop.stop_requested()) {

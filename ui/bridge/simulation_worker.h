@@ -6,7 +6,7 @@
 
 #include "bridge/chart_sample.h"
 #include "bridge/energy_watch.h"
-#include "bridge/fill_contact.h"
+#include "bridge/fill_frame.h"
 #include "bridge/frame_exchange.h"
 #include "bridge/live_recording.h"
 #include "bridge/worker.h"
@@ -19,8 +19,6 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
  public:
   /// `most_history` bytes of states are kept to go back to.
   explicit SimulationWorker(std::size_t most_history = cloth::History::default_most_bytes);
-  /// Stops within one step; a recording is ended properly.
-  ~SimulationWorker();
 
   /// The newest frame that was not fetched yet, or nullptr.
   std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }
@@ -83,7 +81,8 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
   double wall_since_row_ = 0;                ///< s
   std::int64_t steps_since_row_ = 0;
 
-  std::jthread thread_;  ///< last: starts when all else is there, stops first
+  std::jthread
+      thread_;  ///< last: starts when all else is there; ends first, within one step and with the recording
 };
 
 }  // namespace clothlab

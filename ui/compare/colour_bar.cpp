@@ -1,8 +1,7 @@
-#include "compare/colour_bar.h"
-
 #include <QPainter>
 #include <algorithm>
 
+#include "compare/pane_grid.h"
 #include "theme/theme.h"
 #include "viewport/strain_scale.h"
 

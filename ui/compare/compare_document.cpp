@@ -3,7 +3,7 @@
 #include <QFileInfo>
 #include <utility>
 
-#include "document/pin_edits.h"
+#include "document/cloth_edits.h"
 #include "scene/scene_parameters.h"
 
 namespace clothlab {

@@ -1,6 +1,7 @@
 #include "compare/pane_style.h"
 
 #include <QPainter>
+#include <algorithm>
 
 namespace clothlab {
 namespace {
@@ -10,16 +11,11 @@ constexpr int marker_radius = 5, icon_size = 16;  // px
 }  // namespace
 
 CurveStyle pane_curve(int style) {
-  switch (style) {
-    case 0:
-      return {&Theme::pane_a, Marker::circle, 1.8};
-    case 1:
-      return {&Theme::pane_b, Marker::square, 1.8};
-    case 2:
-      return {&Theme::pane_c, Marker::triangle, 1.8};
-    default:
-      return {&Theme::pane_d, Marker::diamond, 1.8};
-  }
+  static const CurveStyle styles[] = {{&Theme::pane_a, Marker::circle, 1.8},
+                                      {&Theme::pane_b, Marker::square, 1.8},
+                                      {&Theme::pane_c, Marker::triangle, 1.8},
+                                      {&Theme::pane_d, Marker::diamond, 1.8}};
+  return styles[std::clamp(style, 0, 3)];
 }
 
 QColor pane_colour(int style) {

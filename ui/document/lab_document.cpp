@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "document/cloth_edits.h"
-#include "document/pin_edits.h"
 #include "scene/scene_edits.h"
 
 namespace clothlab {

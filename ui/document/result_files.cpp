@@ -3,6 +3,7 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileInfo>
+#include <QSettings>
 #include <QStandardPaths>
 
 #include "io/user_file.h"
@@ -30,6 +31,20 @@ QString new_folder(const QString& parent, const QStringList& words) {
   QString folder = base;
   for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);
   return folder;
+}
+
+QStringList RecentPaths::list() const {
+  QStringList paths = QSettings().value(key).toStringList();
+  paths.removeIf([this](const QString& path) { return !holds(path); });
+  return paths;
+}
+
+void RecentPaths::remember(const QString& path) const {
+  const QString absolute = QFileInfo(path).absoluteFilePath();
+  QStringList paths = list();
+  paths.removeAll(absolute);
+  paths.prepend(absolute);
+  QSettings().setValue(key, QStringList(paths.mid(0, most)));
 }
 
 QString write_file(const QString& path, const QByteArray& bytes) {

@@ -8,8 +8,8 @@
 #include <QTabBar>
 #include <QVBoxLayout>
 
-#include "compare/comparison_files.h"
 #include "compare/pane_style.h"
+#include "main_window/lab_files.h"
 #include "params/wording.h"
 #include "scene/scene_parameters.h"
 #include "theme/theme.h"

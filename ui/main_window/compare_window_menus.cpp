@@ -4,7 +4,6 @@
 #include <QMenuBar>
 #include <QToolBar>
 
-#include "compare/builtin_comparisons.h"
 #include "main_window/compare_window.h"
 #include "main_window/view_bar.h"
 #include "theme/theme.h"
@@ -14,12 +13,7 @@ namespace clothlab {
 
 void CompareWindow::makeMenus() {
   QMenu* file = addFileMenu();
-  QMenu* builtin = file->addMenu(tr("Built-in comparisons"));
-  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
-    const QString name = QString::fromStdString(comparison.name);
-    builtin->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
-                       [this, name] { openComparison(name); });
-  }
+  addComparisons(*file, [this](const QString& name) { openComparison(name); });
   addSaveEntries(*file);
   file->addSeparator();
   file->addAction(save_plots_);

@@ -13,6 +13,7 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include "compare/builtin_comparisons.h"
 #include "document/result_files.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
@@ -131,6 +132,15 @@ void LabWindow::addSaveEntries(QMenu& file) {
   save_ = file.addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   save_->setToolTip(tr("Save the %1 (Ctrl+S)").arg(wording_.document));
   file.addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
+}
+
+void LabWindow::addComparisons(QMenu& menu, const std::function<void(const QString& name)>& open_one) {
+  QMenu* builtin = menu.addMenu(tr("Built-in comparisons"));
+  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
+    const QString name = QString::fromStdString(comparison.name);
+    builtin->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
+                       [open_one, name] { open_one(name); });
+  }
 }
 
 QMenu* LabWindow::addEditMenu() {

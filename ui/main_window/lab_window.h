@@ -93,6 +93,7 @@ class LabWindow : public QMainWindow {
   /// With an entry to open a file; of the other menus all that both windows have.
   QMenu* addFileMenu();
   void addSaveEntries(QMenu& file);
+  void addComparisons(QMenu& menu, const std::function<void(const QString& name)>& open_one);
   QMenu* addEditMenu();
   QMenu* addRunMenu(const QList<QAction*>& actions);
   void addDockEntries(QMenu& view);

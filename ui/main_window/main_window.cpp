@@ -9,7 +9,7 @@
 #include <QUrl>
 #include <utility>
 
-#include "main_window/scene_library.h"
+#include "main_window/lab_files.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
 #include "studies/studies_panel.h"
@@ -141,7 +141,7 @@ void MainWindow::takeScene(const OpenedScene& opened) {
     return;
   }
   notice_->withdraw("open");
-  if (!opened.path.isEmpty()) remember_scene(opened.path);
+  if (!opened.path.isEmpty()) recent_scenes.remember(opened.path);
   session_ = opened.session;
   transport_->suitDuration(opened.scene->duration);
   document_.load(*opened.scene, opened.session ? QString() : opened.path);

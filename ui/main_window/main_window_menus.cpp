@@ -7,12 +7,10 @@
 #include <QToolBar>
 #include <QToolButton>
 
-#include "compare/builtin_comparisons.h"
 #include "io/machine.h"
-#include "main_window/cloth_file.h"
 #include "main_window/compare_window.h"
+#include "main_window/lab_files.h"
 #include "main_window/main_window.h"
-#include "main_window/scene_library.h"
 #include "main_window/view_bar.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
@@ -77,12 +75,7 @@ void MainWindow::makeMenus() {
   methods->setObjectName("compareMethods");
   methods->setToolTip(tr("This scene by its method and by two others, side by side"));
   compare->addAction(tr("Open comparison…"), this, &MainWindow::openComparison);
-  QMenu* comparisons = compare->addMenu(tr("Built-in comparisons"));
-  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
-    const QString name = QString::fromStdString(comparison.name);
-    comparisons->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
-                           [name] { new_compare_window()->openComparison(name); });
-  }
+  addComparisons(*compare, [](const QString& name) { new_compare_window()->openComparison(name); });
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);
@@ -113,14 +106,14 @@ void MainWindow::makeMenus() {
 
 void MainWindow::fillRecentMenu() {
   recent_menu_->clear();
-  const QStringList recent = recent_scenes();
+  const QStringList recent = recent_scenes.list();
   for (const QString& path : recent) recent_menu_->addAction(path, this, [this, path] { openScene(path); });
   if (recent.isEmpty()) recent_menu_->addAction(tr("No scene was opened yet"))->setEnabled(false);
 }
 
 QString MainWindow::write(const QString& path) {
   const QString problem = save_scene_file(document_.scene(), path);
-  if (problem.isEmpty()) remember_scene(path);
+  if (problem.isEmpty()) recent_scenes.remember(path);
   return problem;
 }
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "theme/theme.h"
-#include "widgets/action_button.h"
 #include "widgets/building.h"
 
 namespace clothlab {
@@ -28,7 +27,7 @@ QString grouped(double value) {
 
 }  // namespace
 
-TransportBar::TransportBar(const TransportActions& actions, const QString& widest_time,
+TransportBar::TransportBar(const QList<QAction*>& actions, const QString& widest_time,
                            const QString& widest_rate, QWidget* parent)
     : QFrame(parent),
       speed_(new QComboBox(this)),
@@ -38,11 +37,11 @@ TransportBar::TransportBar(const TransportActions& actions, const QString& wides
       gauge_(new StabilityGauge(this)) {
   setObjectName("transportBar");
   auto* row = spaced(new QHBoxLayout(this), spacing / 2, {spacing, spacing / 2, spacing, spacing / 2});
-  QToolButton* play = make_action_button(actions.play, this);
-  play->setIconSize({24, 24});
-  row->addWidget(play);
-  for (QAction* action : {actions.step, actions.reset, actions.record})
-    row->addWidget(make_action_button(action, this));
+  for (QAction* action : actions) {
+    QToolButton* button = make_action_button(action, this);
+    if (action == actions.constFirst()) button->setIconSize({24, 24});
+    row->addWidget(button);
+  }
   row->addSpacing(spacing);
   row->addWidget(speed_);
   row->addSpacing(spacing);

@@ -13,20 +13,13 @@ class QComboBox;
 
 namespace clothlab {
 
-/// The actions that the bar shows as buttons; the window's menus have them too.
-struct TransportActions {
-  QAction* play;
-  QAction* step;
-  QAction* reset;
-  QAction* record;
-};
-
 class TransportBar : public QFrame {
   Q_OBJECT
 
  public:
-  /// With room for the widest texts of time and rate.
-  TransportBar(const TransportActions& actions, const QString& widest_time, const QString& widest_rate,
+  /// The actions as buttons, the first one, to play, the largest; and room for the widest texts of time and
+  /// rate.
+  TransportBar(const QList<QAction*>& actions, const QString& widest_time, const QString& widest_rate,
                QWidget* parent);
 
   void showStatus(const WorkerStatus& status);

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "theme/theme.h"
-#include "widgets/action_button.h"
 #include "widgets/building.h"
 
 namespace clothlab {

@@ -1,10 +1,9 @@
-#include "params/choice_editor.h"
-
 #include <QAbstractItemView>
 #include <QHBoxLayout>
 #include <QToolButton>
 #include <algorithm>
 
+#include "params/editors.h"
 #include "params/panel_parts.h"
 #include "params/wording.h"
 

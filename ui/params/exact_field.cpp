@@ -5,8 +5,8 @@
 #include <QStyle>
 #include <QStyleOptionFrame>
 
-#include "params/number_text.h"
 #include "params/panel_parts.h"
+#include "params/wording.h"
 #include "theme/theme.h"
 
 namespace clothlab {

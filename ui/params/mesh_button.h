@@ -2,11 +2,13 @@
 #pragma once
 
 #include <QToolButton>
+#include <QWidget>
 #include <string>
 
 #include "document/lab_document.h"
 
 class QAction;
+class QLabel;
 
 namespace clothlab {
 
@@ -33,5 +35,23 @@ class MeshButton : public QToolButton {
 
 /// How a scene names a file: from its own folder where the file is in there, else by the whole path.
 std::string file_as_seen_from(const cloth::SceneFolder& folder, const QString& file);
+
+class MeshButton;
+
+/// What a grid cloth is made of, and the way to make it a mesh instead; a mesh has an editor of its own.
+class ClothShapeRow : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ClothShapeRow(LabDocument& document, QWidget* parent = nullptr);
+  QWidget* tabStop() const;
+
+ private:
+  void choose(const std::string& file);
+
+  LabDocument& document_;
+  MeshButton* button_;
+  QLabel* rule_;
+};
 
 }  // namespace clothlab

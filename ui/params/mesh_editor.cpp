@@ -1,10 +1,9 @@
-#include "params/mesh_editor.h"
-
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QVBoxLayout>
 
+#include "params/editors.h"
 #include "params/mesh_button.h"
 #include "theme/theme.h"
 

@@ -1,12 +1,10 @@
-#include "params/number_editor.h"
-
 #include <QCheckBox>
 #include <QHBoxLayout>
 #include <QToolButton>
 #include <cmath>
 
+#include "params/editors.h"
 #include "params/exact_field.h"
-#include "params/number_text.h"
 #include "params/value_slider.h"
 #include "params/wording.h"
 

@@ -6,14 +6,10 @@
 #include <QVBoxLayout>
 #include <utility>
 
-#include "params/choice_editor.h"
+#include "params/editors.h"
 #include "params/exact_field.h"
-#include "params/mesh_editor.h"
-#include "params/number_editor.h"
 #include "params/panel_parts.h"
-#include "params/text_editor.h"
 #include "params/value_slider.h"
-#include "params/vector_editor.h"
 #include "params/wording.h"
 #include "theme/theme.h"
 #include "widgets/building.h"

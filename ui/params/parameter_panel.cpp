@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "params/number_editor.h"
+#include "params/editors.h"
 #include "params/parameter_section.h"
 #include "theme/theme.h"
 #include "widgets/building.h"

@@ -6,8 +6,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "params/cloth_shape_row.h"
-#include "params/mesh_editor.h"
+#include "params/editors.h"
+#include "params/mesh_button.h"
 #include "params/panel_parts.h"
 #include "params/parameter_editor.h"
 #include "params/wording.h"

@@ -1,10 +1,9 @@
-#include "params/text_editor.h"
-
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QToolButton>
 
+#include "params/editors.h"
 #include "params/panel_parts.h"
 
 namespace clothlab {

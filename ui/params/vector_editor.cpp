@@ -1,11 +1,9 @@
-#include "params/vector_editor.h"
-
 #include <QHBoxLayout>
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "params/editors.h"
 #include "params/exact_field.h"
-#include "params/number_text.h"
 #include "params/value_slider.h"
 #include "params/wording.h"
 #include "theme/theme.h"

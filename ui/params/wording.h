@@ -28,4 +28,14 @@ QString value_in_words(const cloth::ParameterInfo& info, const cloth::ParameterV
 /// Meaning, formula, range, default, unit, cost and path of a parameter, as rich text.
 QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth::ParameterValue>& fallback);
 
+/// Six significant digits, shortest form: 0.1, 1e-5, 123457.
+QString short_text(double value);
+
+/// The shortest form that reads back to the same number.
+QString exact_text(double value);
+
+/// The number that a person typed: a decimal point, an exponent ("1e-4"), a unit after it if it is this one.
+/// Nothing else is a number; neither is a part of the text, nor infinity.
+std::optional<double> number_from(const QString& text, const QString& unit = {});
+
 }  // namespace clothlab

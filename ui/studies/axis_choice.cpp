@@ -1,5 +1,3 @@
-#include "studies/axis_choice.h"
-
 #include <QCheckBox>
 #include <QComboBox>
 #include <QGridLayout>
@@ -11,6 +9,7 @@
 
 #include "report/svg.h"
 #include "scene/scene_parameters.h"
+#include "studies/study_choices.h"
 #include "study/stability_map.h"
 #include "theme/theme.h"
 #include "widgets/building.h"

@@ -203,7 +203,7 @@ void StudiesPanel::poll() {
   if (status.running || !was_running_) return;
   was_running_ = false;
   timer_.stop();
-  if (status.problem.empty() && table_) remember_study(folder_);
+  if (status.problem.empty() && table_) recent_studies.remember(folder_);
   Q_EMIT finished();
 }
 
@@ -264,7 +264,7 @@ void StudiesPanel::openFolder(const QString& folder) {
     return;
   }
   folder_ = folder;
-  remember_study(folder);
+  recent_studies.remember(folder);
   show(std::make_shared<const cloth::StudyTable>(std::move(reading.study->table)));
   showStatus({});
 }
@@ -277,7 +277,7 @@ void StudiesPanel::fillRecentMenu() {
     if (!folder.isEmpty()) openFolder(folder);
   });
   recent_->addSeparator();
-  const QStringList recent = recent_studies();
+  const QStringList recent = recent_studies.list();
   for (const QString& folder : recent)
     recent_->addAction(QDir(folder).dirName(), this, [this, folder] { openFolder(folder); })
         ->setToolTip(folder);

@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "integrators/registry.h"
-#include "studies/axis_choice.h"
 #include "studies/study_library.h"
 #include "study/stability_report.h"
 #include "theme/theme.h"

@@ -1,8 +1,7 @@
 // Where studies' folders are, and those that were made or opened lately.
 #pragma once
 
-#include <QString>
-#include <QStringList>
+#include "document/result_files.h"
 
 namespace clothlab {
 
@@ -16,8 +15,6 @@ QString new_study_folder(const QString& kind, const QString& title);
 QString shown_path(const QString& path);
 QString path_from(const QString& shown);
 
-/// Newest first, those that still hold a study.
-QStringList recent_studies();
-void remember_study(const QString& folder);
+extern const RecentPaths recent_studies;  ///< their folders
 
 }  // namespace clothlab

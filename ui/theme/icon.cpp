@@ -7,7 +7,6 @@
 #include <QPixmapCache>
 #include <QSvgRenderer>
 
-#include "theme/style_sheet.h"
 #include "theme/theme.h"
 
 namespace clothlab {

@@ -1,4 +1,3 @@
-#include "theme/style_sheet.h"
 
 #include <QFile>
 #include <QHash>

@@ -6,7 +6,6 @@
 
 #include "report/palette.h"
 #include "theme/follow_desktop.h"
-#include "theme/style_sheet.h"
 
 namespace clothlab {
 namespace {

@@ -4,7 +4,6 @@
 #include <QLabel>
 
 #include "theme/theme.h"
-#include "widgets/action_button.h"
 #include "widgets/building.h"
 
 namespace clothlab {
@@ -15,25 +14,20 @@ QString size_text(std::size_t bytes) {
   return Timeline::tr("%1 MB").arg(megabytes, 0, 'f', megabytes < 9.95 ? 1 : 0);
 }
 
-QLabel* muted_label(const QString& name, QWidget* parent) {
-  auto* label = named(name, new QLabel(parent));
-  label->setProperty("muted", true);
-  return label;
-}
-
-}  // namespace
-
+/// "12 MB of 256 MB, 96 states".
 QString memory_text(const HistoryStatus& history) {
   return Timeline::tr("%1 of %2, %n state(s)", nullptr, static_cast<int>(history.states))
       .arg(size_text(history.bytes), Timeline::tr("%1 MB").arg(history.most_bytes >> 20))
       .replace("(s)", history.states == 1 ? "" : "s");
 }
 
+}  // namespace
+
 Timeline::Timeline(QAction* play_again, QWidget* parent)
     : QFrame(parent),
       track_(new TimelineTrack(this)),
-      later_(muted_label("timelineLater", this)),
-      memory_(muted_label("timelineMemory", this)) {
+      later_(muted(named("timelineLater", new QLabel(this)))),
+      memory_(muted(named("timelineMemory", new QLabel(this)))) {
   setObjectName("timeline");
   track_->setToolTip(tr("Drag or click to go back and forth in the run (Left, Right, Home, End)"));
   memory_->setToolTip(tr("States kept to go back to; the steps between them are computed again"));

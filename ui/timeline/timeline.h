@@ -3,14 +3,62 @@
 #pragma once
 
 #include <QFrame>
+#include <QWidget>
+#include <optional>
 
 #include "bridge/worker_status.h"
-#include "timeline/timeline_track.h"
 
 class QAction;
 class QLabel;
 
 namespace clothlab {
+
+/// The line of the timeline: the run so far from left to right, and a handle at the present time that mouse
+/// and keys move.
+class TimelineTrack : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit TimelineTrack(QWidget* parent = nullptr);
+
+  /// Times in s. `last` 0: nothing was played yet, and there is nowhere to go.
+  void setTimes(double present, double last);
+  /// What an arrow key goes, in s; Page Up and Page Down and Shift with an arrow go ten times as far.
+  void setStep(double seconds) { step_ = seconds; }
+  /// The worker is where it was sent: the handle follows the run again, unless the mouse holds it.
+  void arrive();
+
+  /// Where the handle is, in s: where it was dragged to, or else the present.
+  double time() const { return wanted_.value_or(present_); }
+  double timeAt(double x) const;  ///< s, for a place in px
+  double placeOf(double time) const;
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override { return {120, sizeHint().height()}; }
+
+ Q_SIGNALS:
+  void timeWanted(double time);  ///< s, by a person; again and again during a drag
+
+ protected:
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  void want(double time);
+  void describe();
+  int captionHeight() const;
+  void paintCaption(QPainter& painter, double time, double x) const;
+
+  double present_ = 0, last_ = 0;  ///< s
+  double step_ = 0.01;             ///< s
+  bool dragging_ = false;
+  std::optional<double> wanted_;  ///< s: sent for and not reached yet
+  std::optional<double> cursor_;  ///< px, of the mouse over the track
+};
 
 class Timeline : public QFrame {
   Q_OBJECT
@@ -29,8 +77,5 @@ class Timeline : public QFrame {
   QLabel* later_;
   QLabel* memory_;
 };
-
-/// "12 MB of 256 MB, 96 states".
-QString memory_text(const HistoryStatus& history);
 
 }  // namespace clothlab

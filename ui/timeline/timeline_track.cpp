@@ -1,13 +1,11 @@
-#include "timeline/timeline_track.h"
-
 #include <QFontMetrics>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <algorithm>
 
-#include "theme/style_sheet.h"
 #include "theme/theme.h"
+#include "timeline/timeline.h"
 
 namespace clothlab {
 namespace {

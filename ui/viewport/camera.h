@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <QPointF>
 
 namespace clothlab {
 
@@ -57,6 +58,15 @@ class Camera {
   CameraPose pose_;
   double width_ = 1, height_ = 1;  ///< px
 };
+
+/// Places in the view, in px: Qt's points and the camera's vectors.
+inline Eigen::Vector2d as_vector(QPointF p) {
+  return {p.x(), p.y()};
+}
+
+inline QPointF as_point(const Eigen::Vector2d& p) {
+  return {p.x(), p.y()};
+}
 
 /// A short, eased way from one pose to another.
 class CameraFlight {

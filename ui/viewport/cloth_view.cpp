@@ -100,7 +100,6 @@ void ClothView::fail(const QString& reason) {
 }
 
 // ---- what is shown
-// ------------------------------------------------------------------------------------------------
 
 void ClothView::showFrame(std::shared_ptr<const ClothFrame> frame) {
   if (!frame || !sizes_agree(*frame)) return;
@@ -149,7 +148,6 @@ void ClothView::setColourMaximum(std::optional<double> maximum) {
 }
 
 // ---- camera
-// -------------------------------------------------------------------------------------------------------
 
 void ClothView::fitUnmovedCamera() {
   if (camera_moved_ || extent_.isEmpty()) return;
@@ -199,7 +197,6 @@ void ClothView::resetCamera() {
 }
 
 // ---- drawing
-// ------------------------------------------------------------------------------------------------------
 
 void ClothView::initialiseGl() {
   if (!hasOpenGl()) return;  // it has been tried

@@ -7,7 +7,6 @@
 
 #include "viewport/cloth_view.h"
 #include "viewport/picking.h"
-#include "viewport/screen_points.h"
 
 namespace clothlab {
 namespace {
@@ -77,7 +76,6 @@ void ClothView::updateCursor() {
 }
 
 // ---- gestures
-// -----------------------------------------------------------------------------------------------------
 
 void ClothView::mousePressEvent(QMouseEvent* event) {
   if (!hasOpenGl()) return event->ignore();
@@ -218,7 +216,6 @@ void ClothView::wheelEvent(QWheelEvent* event) {
 }
 
 // ---- coming and going
-// ---------------------------------------------------------------------------------------------
 
 void ClothView::followShift(bool held) {
   if (shift_held_ == held) return;

@@ -3,7 +3,6 @@
 
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
-#include "viewport/screen_points.h"
 
 namespace clothlab {
 

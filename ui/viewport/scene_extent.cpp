@@ -5,14 +5,10 @@
 #include <limits>
 
 #include "scene/obstacle_shape.h"
+#include "viewport/picking.h"
 
 namespace clothlab {
 namespace {
-
-Eigen::Vector3d particle(const ClothFrame& frame, std::size_t i) {
-  const float* p = frame.positions.data() + 3 * i;
-  return {p[0], p[1], p[2]};
-}
 
 void extend_by(const cloth::Obstacle& o, const cloth::Pose& pose, Eigen::AlignedBox3d& box) {
   box.extend(shape_of(o).bounds_at(o, pose));
@@ -23,7 +19,7 @@ void extend_by(const cloth::Obstacle& o, const cloth::Pose& pose, Eigen::Aligned
 Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame) {
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; 3 * i < frame.positions.size(); ++i) {
-    const Eigen::Vector3d p = particle(frame, i);
+    const Eigen::Vector3d p = particle_position(frame, static_cast<int>(i));
     if (p.allFinite()) box.extend(p);  // a run that has diverged must not take the camera with it
   }
   return box;
@@ -48,7 +44,7 @@ Eigen::AlignedBox3d reach_of_cloth(const ClothFrame& frame) {
   Eigen::AlignedBox3d box = bounds_of_cloth(frame);
   std::vector<Eigen::Vector3d> pins;
   for (std::size_t i = 0; i < frame.pinned.size(); ++i)
-    if (frame.pinned[i]) pins.push_back(particle(frame, i));
+    if (frame.pinned[i]) pins.push_back(particle_position(frame, static_cast<int>(i)));
   if (pins.empty() || box.isEmpty()) return box;
 
   // A bound is enough: at most some 64 x 64 particles and 64 pins are looked at.
@@ -57,7 +53,7 @@ Eigen::AlignedBox3d reach_of_cloth(const ClothFrame& frame) {
   const std::size_t pin_stride = std::max<std::size_t>(pins.size() / 64, 1);
   double lowest = box.min().y();
   for (std::size_t i = 0; i < count; i += stride) {
-    const Eigen::Vector3d p = particle(frame, i);
+    const Eigen::Vector3d p = particle_position(frame, static_cast<int>(i));
     double nearest = std::numeric_limits<double>::infinity(), from = p.y();
     for (std::size_t k = 0; k < pins.size(); k += pin_stride) {
       const double distance = (pins[k] - p).norm();

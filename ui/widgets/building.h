@@ -1,8 +1,9 @@
 // Short ways to build bars and forms.
 #pragma once
 
+#include <QAction>
 #include <QLayout>
-#include <QWidget>
+#include <QToolButton>
 
 namespace clothlab {
 
@@ -26,6 +27,16 @@ Layout* spaced(Layout* layout, int gap, QMargins around = {}) {
   layout->setContentsMargins(around);
   layout->setSpacing(gap);
   return layout;
+}
+
+/// How a bar shows an action.
+inline QToolButton* make_action_button(QAction* action, QWidget* parent) {
+  auto* button = named(action->objectName() + "Button", new QToolButton(parent));
+  button->setDefaultAction(action);
+  button->setAutoRaise(true);
+  button->setIconSize({20, 20});
+  button->setAccessibleName(action->text());
+  return button;
 }
 
 }  // namespace clothlab

@@ -11,7 +11,6 @@
 #include "scene/obstacle_shape.h"
 #include "theme/theme.h"
 #include "viewport/gl/shader_program.h"
-#include "viewport/gl/uniforms.h"
 #include "viewport/picking.h"
 #include "viewport/strain_scale.h"
 

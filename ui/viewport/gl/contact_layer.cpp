@@ -9,7 +9,6 @@
 #include "theme/theme.h"
 #include "viewport/gl/renderer_kit.h"
 #include "viewport/gl/shader_program.h"
-#include "viewport/gl/uniforms.h"
 
 namespace clothlab {
 namespace {

@@ -137,34 +137,6 @@ class CellRun {
 
 }  // namespace
 
-const char* name_of(ExtremeStatus status) {
-  switch (status) {
-    case ExtremeStatus::stable:
-      return "stable";
-    case ExtremeStatus::not_converged:
-      return "not-converged";
-    case ExtremeStatus::energy_growth:
-      return "energy-growth";
-    case ExtremeStatus::diverged:
-      return "diverged";
-    case ExtremeStatus::unreachable:
-      return "unreachable";
-    case ExtremeStatus::refused:
-      return "refused";
-    case ExtremeStatus::solver_failed:
-      return "solver-failed";
-  }
-  return "";
-}
-
-const std::vector<ExtremeStatus>& extreme_statuses() {
-  static const std::vector<ExtremeStatus> all{ExtremeStatus::stable,        ExtremeStatus::not_converged,
-                                              ExtremeStatus::energy_growth, ExtremeStatus::diverged,
-                                              ExtremeStatus::unreachable,   ExtremeStatus::refused,
-                                              ExtremeStatus::solver_failed};
-  return all;
-}
-
 ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop) {
   ExtremeCell cell{.case_name = extreme.name, .method = method, .detail = {}};
   Scene scene = extreme.scene;

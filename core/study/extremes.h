@@ -26,9 +26,12 @@ enum class ExtremeStatus {
   solver_failed
 };
 
-/// As files have it: "energy-growth".
-const char* name_of(ExtremeStatus status);
-const std::vector<ExtremeStatus>& extreme_statuses();
+/// As files have it.
+inline constexpr const char* extreme_status_names[] = {
+    "stable", "not-converged", "energy-growth", "diverged", "unreachable", "refused", "solver-failed"};
+inline const char* name_of(ExtremeStatus status) {
+  return extreme_status_names[static_cast<std::size_t>(status)];
+}
 
 struct ExtremeCase {
   std::string name;     ///< "stiffness-1e3"

@@ -6,40 +6,6 @@
 namespace cloth {
 namespace {
 
-const char* meaning_of(ExtremeStatus status) {
-  switch (status) {
-    case ExtremeStatus::stable:
-      return "Finite to the end, and no energy appeared from nowhere. It does not say accurate: a method "
-             "that damps "
-             "everything is stable.";
-    case ExtremeStatus::not_converged:
-      return "Finite, and no energy appeared from nowhere, but the last iteration of some step still changed "
-             "more "
-             "than a tenth of the largest speed: the step's equations were not solved, and the motion is "
-             "another "
-             "one, as a rule a slower one. The residual is told.";
-    case ExtremeStatus::energy_growth:
-      return "Finite to the end, but in the second half kinetic, elastic and gravity energy were in the mean "
-             "above "
-             "those of the start and all works, by more than 5 % of the energy scale: the method made "
-             "energy, "
-             "in one violent moment or steadily.";
-    case ExtremeStatus::diverged:
-      return "Stopped: a position or velocity was not finite, or the energy that the ledger leaves "
-             "unexplained was ten times all "
-             "that the scene can give. The stop names step, particle and cause.";
-    case ExtremeStatus::unreachable:
-      return "The pins make the deformation rate unreachable, which their distance shows before the first "
-             "step. The run is finite, with the excess that is left.";
-    case ExtremeStatus::refused:
-      return "No step is stable for this method and scene, so none was taken.";
-    case ExtremeStatus::solver_failed:
-      return "Stopped: the equations of an implicit step could not be solved. The stop names step, particle "
-             "and cause.";
-  }
-  return "";
-}
-
 HtmlTable matrix_html(const ExtremesTable& table) {
   HtmlTable matrix;
   matrix.caption =
@@ -52,7 +18,7 @@ HtmlTable matrix_html(const ExtremesTable& table) {
     row.cells.emplace_back(HtmlText(table.cases[c].name), Verdict::none, table.cases[c].what);
     for (std::size_t m = 0; m < table.methods.size(); ++m) {
       const ExtremeCell* cell = table.cell(c, m);
-      row.cells.emplace_back(HtmlText(word_of(cell)), cell ? verdict_of(cell->status) : Verdict::none,
+      row.cells.emplace_back(HtmlText(word_of(cell)), cell ? words_of(cell->status).verdict : Verdict::none,
                              cell ? cell->detail : "not run");
     }
     matrix.rows.push_back(std::move(row));
@@ -91,7 +57,7 @@ HtmlTable case_html(const ExtremesTable& table, std::size_t extreme) {
     const bool ran = cell->status != ExtremeStatus::refused;
     const auto number = [&](double value) { return ran ? html_number(value) : HtmlText(""); };
     rows.rows.push_back({{HtmlText(cell->method),
-                          {HtmlText(name_of(cell->status)), verdict_of(cell->status)},
+                          {HtmlText(name_of(cell->status)), words_of(cell->status).verdict},
                           number(cell->time_step),
                           HtmlText(std::to_string(cell->steps)),
                           number(cell->max_strain),
@@ -151,8 +117,10 @@ std::string extremes_html(const ExtremesTable& table, const std::string& command
   page.heading("The words");
   HtmlTable words;
   words.columns = {{"status"}, {"meaning"}};
-  for (const ExtremeStatus status : extreme_statuses())
-    words.rows.push_back({{{HtmlText(name_of(status)), verdict_of(status)}, HtmlText(meaning_of(status))}});
+  for (std::size_t k = 0; k < std::size(extreme_status_names); ++k) {
+    const ExtremeWords& status = words_of(static_cast<ExtremeStatus>(k));
+    words.rows.push_back({{{extreme_status_names[k], status.verdict}, status.meaning}});
+  }
   page.table(words);
   page.paragraph(
       "The energy scale is the kinetic energy that the scene can give: its fall, its wind, and what the "

@@ -3,31 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <nlohmann/json.hpp>
 
-#include "io/csv.h"
 #include "report/svg.h"
+#include "report/text_table.h"
 
 namespace cloth {
 namespace {
-
-/// A status in a narrow column.
-std::string status_word(const ExtremeCell* cell) {
-  if (!cell) return "-";
-  switch (cell->status) {
-    case ExtremeStatus::not_converged:
-      return "open";
-    case ExtremeStatus::energy_growth:
-      return "growth";
-    case ExtremeStatus::solver_failed:
-      return "failed";
-    case ExtremeStatus::unreachable:
-      return "unreach.";
-    default:
-      return name_of(cell->status);
-  }
-}
 
 /// "semi-", "implicit-", "euler"
 std::vector<std::string> parts_of(const std::string& name) {
@@ -112,21 +95,39 @@ This page is the output of `clothlab-cli extremes --markdown`. An asterisk: the 
 
 }  // namespace
 
-std::string word_of(const ExtremeCell* cell) {
-  return status_word(cell) + (cell && cell->ended_early ? "*" : "");
+const ExtremeWords& words_of(ExtremeStatus status) {
+  using enum RunClass;
+  static const std::array<ExtremeWords, std::size(extreme_status_names)> words{{
+      {"stable", Verdict::good, accurate,
+       "Finite to the end, and no energy appeared from nowhere. It does not say accurate: a method that "
+       "damps "
+       "everything is stable."},
+      {"open", Verdict::warn, stable_but_inaccurate,
+       "Finite, and no energy appeared from nowhere, but the last iteration of some step still changed more "
+       "than a tenth of the largest speed: the step's equations were not solved, and the motion is another "
+       "one, as a rule a slower one. The residual is told."},
+      {"growth", Verdict::bad, energy_growth,
+       "Finite to the end, but in the second half kinetic, elastic and gravity energy were in the mean above "
+       "those of the start and all works, by more than 5 % of the energy scale: the method made energy, in "
+       "one violent moment or steadily."},
+      {"diverged", Verdict::bad, diverged,
+       "Stopped: a position or velocity was not finite, or the energy that the ledger leaves unexplained was "
+       "ten times all that the scene can give. The stop names step, particle and cause."},
+      {"unreach.", Verdict::warn, stable_but_inaccurate,
+       "The pins make the deformation rate unreachable, which their distance shows before the first step. "
+       "The "
+       "run is finite, with the excess that is left."},
+      {"refused", Verdict::warn, stable_but_inaccurate,
+       "No step is stable for this method and scene, so none was taken."},
+      {"failed", Verdict::bad, solver_failed,
+       "Stopped: the equations of an implicit step could not be solved. The stop names step, particle and "
+       "cause."},
+  }};
+  return words[static_cast<std::size_t>(status)];
 }
 
-Verdict verdict_of(ExtremeStatus status) {
-  switch (status) {
-    case ExtremeStatus::stable:
-      return Verdict::good;
-    case ExtremeStatus::not_converged:
-    case ExtremeStatus::unreachable:
-    case ExtremeStatus::refused:
-      return Verdict::warn;
-    default:
-      return Verdict::bad;
-  }
+std::string word_of(const ExtremeCell* cell) {
+  return cell ? words_of(cell->status).brief + (cell->ended_early ? "*" : "") : "-";
 }
 
 std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme) {
@@ -144,7 +145,8 @@ std::string reason_of(const ExtremeCell& cell) {
 
 std::string count_of_statuses(const ExtremesTable& table) {
   std::string text;
-  for (const ExtremeStatus status : extreme_statuses()) {
+  for (std::size_t k = 0; k < std::size(extreme_status_names); ++k) {
+    const auto status = static_cast<ExtremeStatus>(k);
     const auto count = std::count_if(table.cells.begin(), table.cells.end(),
                                      [&](const ExtremeCell& cell) { return cell.status == status; });
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name_of(status), count);
@@ -152,44 +154,31 @@ std::string count_of_statuses(const ExtremesTable& table) {
   return text;
 }
 
-std::vector<std::string> extremes_columns() {
-  return {"case",       "method",       "status", "detail",      "steps",
-          "max_strain", "energy_ratio", "wall_s", "time_step_s", "ended_early"};
-}
-
-std::vector<std::string> extremes_row(const ExtremeCell& cell) {
-  return {cell.case_name,
-          cell.method,
-          name_of(cell.status),
-          cell.detail,
-          std::to_string(cell.steps),
-          csv_number(cell.max_strain),
-          csv_number(cell.energy_ratio),
-          csv_number(cell.wall),
-          csv_number(cell.time_step),
-          cell.ended_early ? "1" : "0"};
+void visit_fields(CsvFields& fields, ExtremeCell& cell) {
+  fields.text("case", cell.case_name);
+  fields.text("method", cell.method);
+  fields.status(cell.status, extreme_status_names);
+  fields.text("detail", cell.detail);
+  fields.whole("steps", cell.steps);
+  fields.number("max_strain", cell.max_strain);
+  fields.number("energy_ratio", cell.energy_ratio);
+  fields.number("wall_s", cell.wall);
+  fields.number("time_step_s", cell.time_step);
+  fields.whole("ended_early", cell.ended_early);
 }
 
 CategoryMap extremes_map(const ExtremesTable& table) {
-  static const std::vector<ClassStyle> classes = [] {
-    const auto& runs = run_classes();
-    const auto look = [&](RunClass run_class) { return runs[static_cast<std::size_t>(run_class)]; };
-    std::vector<ClassStyle> styles;
-    for (const ExtremeStatus status : extreme_statuses()) {
-      ClassStyle style = look(status == ExtremeStatus::stable          ? RunClass::accurate
-                              : status == ExtremeStatus::energy_growth ? RunClass::energy_growth
-                              : status == ExtremeStatus::diverged      ? RunClass::diverged
-                              : status == ExtremeStatus::solver_failed ? RunClass::solver_failed
-                                                                       : RunClass::stable_but_inaccurate);
-      style.name = name_of(status);
-      if (status == ExtremeStatus::refused) style.colour = page_colours().band, style.mark = CellMark::slash;
-      styles.push_back(std::move(style));
-    }
-    return styles;
-  }();
+  std::vector<ClassStyle> classes;
+  for (std::size_t k = 0; k < std::size(extreme_status_names); ++k) {
+    const auto status = static_cast<ExtremeStatus>(k);
+    ClassStyle& style =
+        classes.emplace_back(run_classes()[static_cast<std::size_t>(words_of(status).run_class)]);
+    style.name = name_of(status);
+    if (status == ExtremeStatus::refused) style.colour = page_colours().band, style.mark = CellMark::slash;
+  }
   CategoryMap map{.title = "Stiff and extreme cases"};
   map.subtitle = table.scene ? table.scene->title : "the fixed list, 9 x 9 particles";
-  map.classes = classes;
+  map.classes = std::move(classes);
   for (const ExtremeCase& extreme : table.cases) map.columns.push_back(extreme.name);
   for (const std::string& method : table.methods) map.rows.push_back(method);
   map.cells.resize(map.rows.size() * map.columns.size());
@@ -206,8 +195,8 @@ CategoryMap extremes_map(const ExtremesTable& table) {
 }
 
 CsvTable extremes_table(const ExtremesTable& table) {
-  CsvTable rows{extremes_columns(), {}};
-  for (const ExtremeCell& cell : table.cells) rows.rows.push_back(extremes_row(cell));
+  CsvTable rows{written(ExtremeCell{}).names, {}};
+  for (const ExtremeCell& cell : table.cells) rows.rows.push_back(written(cell).texts);
   return rows;
 }
 
@@ -251,19 +240,18 @@ std::string extremes_json(const ExtremesTable& table) {
 }
 
 std::string extremes_markdown(const ExtremesTable& table) {
-  std::string text = std::string(markdown_head) + "| case |";
-  for (const std::string& method : table.methods) text += " " + method + " |";
-  text += "\n|---|";
-  for (std::size_t m = 0; m < table.methods.size(); ++m) text += "---|";
+  TextTable matrix{{{"case"}}, {}};
+  for (const std::string& method : table.methods) matrix.columns.push_back({method});
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    text += fmt::format("\n| {} |", table.cases[c].name);
+    std::vector<std::string>& row = matrix.rows.emplace_back(1, table.cases[c].name);
     for (std::size_t m = 0; m < table.methods.size(); ++m) {
       const ExtremeCell* cell = table.cell(c, m);
-      const bool red = cell && verdict_of(cell->status) == Verdict::bad;
-      text += red ? fmt::format(" **{}** |", word_of(cell)) : fmt::format(" {} |", word_of(cell));
+      const bool red = cell && words_of(cell->status).verdict == Verdict::bad;
+      row.push_back(red ? "**" + word_of(cell) + "**" : word_of(cell));
     }
   }
-  text += fmt::format("\n\n{} cells: {}.\n", table.cells.size(), count_of_statuses(table));
+  std::string text = markdown_head + to_markdown(matrix);
+  text += fmt::format("\n{} cells: {}.\n", table.cells.size(), count_of_statuses(table));
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     if (not_stable(table, c).empty()) continue;
     const ExtremeCase& extreme = table.cases[c];

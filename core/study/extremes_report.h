@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "io/csv.h"
 #include "report/category_map.h"
 #include "report/html_page.h"
 #include "study/extremes.h"
+#include "study/study_table.h"
 
 namespace cloth {
 
@@ -17,7 +17,15 @@ std::string count_of_statuses(const ExtremesTable& table);
 /// The status in a narrow column, with an asterisk where the cell ended early; "-" for a cell that was not
 /// run.
 std::string word_of(const ExtremeCell* cell);
-Verdict verdict_of(ExtremeStatus status);
+
+/// What is said of a status.
+struct ExtremeWords {
+  std::string brief;  ///< in a narrow column
+  Verdict verdict;
+  RunClass run_class;  ///< whose look it has on a map
+  const char* meaning;
+};
+const ExtremeWords& words_of(ExtremeStatus status);
 
 /// The cells of one case that are not stable, and why: a stop says itself that it is one.
 std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size_t extreme);
@@ -25,8 +33,7 @@ std::string reason_of(const ExtremeCell& cell);
 
 /// case, method, status, detail, steps, max_strain, energy_ratio, wall_s, time_step_s, ended_early
 CsvTable extremes_table(const ExtremesTable& table);
-std::vector<std::string> extremes_columns();
-std::vector<std::string> extremes_row(const ExtremeCell& cell);
+void visit_fields(CsvFields& fields, ExtremeCell& cell);
 
 /// Methods over cases, a cell for each that was run.
 CategoryMap extremes_map(const ExtremesTable& table);

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "integrators/registry.h"
-#include "io/csv.h"
 #include "report/svg.h"
 #include "scene/scene_json.h"
 
@@ -16,8 +15,14 @@ namespace {
 
 constexpr int points_of_a_curve = 4;  // between two rows of cells
 
-std::string csv_limit(double limit) {
-  return std::isinf(limit) ? "infinity" : csv_number(limit);
+/// Those of a run in the order of RunClass, then those of a cell without one.
+constexpr const char* cell_statuses[] = {"accurate",      "stable-inaccurate", "energy-growth", "diverged",
+                                         "solver-failed", "refused",           "not-run"};
+constexpr std::size_t refused_status = 5;
+
+std::size_t status_index(const StabilityCell& cell) {
+  if (cell.status == CellStatus::run) return static_cast<std::size_t>(cell.run_class);
+  return refused_status + (cell.status == CellStatus::refused ? 0 : 1);
 }
 
 std::size_t cell_count(const StabilityMap& map) {
@@ -152,62 +157,36 @@ std::string axis_text(const StudyAxis& axis) {
 }
 
 std::string status_of(const StabilityCell& cell) {
-  if (cell.status == CellStatus::not_run) return "not-run";
-  if (cell.status == CellStatus::refused) return "refused";
-  switch (cell.run_class) {
-    case RunClass::accurate:
-      return "accurate";
-    case RunClass::stable_but_inaccurate:
-      return "stable-inaccurate";
-    case RunClass::energy_growth:
-      return "energy-growth";
-    case RunClass::diverged:
-      return "diverged";
-    case RunClass::solver_failed:
-      return "solver-failed";
-  }
-  return "";
+  return cell_statuses[status_index(cell)];
 }
 
-std::vector<std::string> stability_columns() {
-  return {"method",
-          "x",
-          "y",
-          "status",
-          "energy_ratio",
-          "predicted_limit_s",
-          "guaranteed_limit_s",
-          "provot_s",
-          "spectrum_limit_s",
-          "time_step_s",
-          "growth_rate_per_s",
-          "steps",
-          "detail",
-          "wanted_steps"};
-}
-
-std::vector<std::string> stability_row(const std::string& method, const StabilityCell& cell) {
+void visit_fields(CsvFields& fields, StabilityCell& cell, const std::string& method) {
   const bool run = cell.status == CellStatus::run;
-  return {method,
-          csv_number(cell.x),
-          csv_number(cell.y),
-          status_of(cell),
-          run ? csv_limit(cell.energy_ratio) : "",
-          csv_limit(cell.limits.predicted),
-          csv_limit(cell.limits.guaranteed),
-          csv_limit(cell.limits.provot),
-          csv_limit(cell.limits.spectrum),
-          csv_number(cell.time_step),
-          run ? csv_number(cell.growth_rate) : "",
-          std::to_string(cell.steps),
-          cell.detail,
-          std::to_string(cell.wanted_steps)};
+  std::size_t status = status_index(cell);
+  fields.derived("method", method);
+  fields.number("x", cell.x);
+  fields.number("y", cell.y);
+  fields.choice("status", status, cell_statuses);
+  fields.number("energy_ratio", cell.energy_ratio, run, 0.0);
+  fields.number("predicted_limit_s", cell.limits.predicted);
+  fields.number("guaranteed_limit_s", cell.limits.guaranteed);
+  fields.number("provot_s", cell.limits.provot);
+  fields.number("spectrum_limit_s", cell.limits.spectrum);
+  fields.number("time_step_s", cell.time_step);
+  fields.number("growth_rate_per_s", cell.growth_rate, run, 0.0);
+  fields.whole("steps", cell.steps);
+  fields.text("detail", cell.detail);
+  fields.whole("wanted_steps", cell.wanted_steps);
+  cell.status = status < refused_status    ? CellStatus::run
+                : status == refused_status ? CellStatus::refused
+                                           : CellStatus::not_run;
+  if (status < refused_status) cell.run_class = static_cast<RunClass>(status);
 }
 
 CsvTable stability_table(const StabilityMap& map) {
-  CsvTable table{stability_columns(), {}};
+  CsvTable table{written(StabilityCell{}, std::string()).names, {}};
   for (const MethodMap& method : map.methods)
-    for (const StabilityCell& cell : method.cells) table.rows.push_back(stability_row(method.method, cell));
+    for (const StabilityCell& cell : method.cells) table.rows.push_back(written(cell, method.method).texts);
   return table;
 }
 

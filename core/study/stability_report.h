@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "io/csv.h"
 #include "report/heat_map.h"
 #include "study/stability_map.h"
+#include "study/study_table.h"
 
 namespace cloth {
 
@@ -24,8 +24,7 @@ std::string status_of(const StabilityCell& cell);
 /// growth_rate_per_s,steps,detail,wanted_steps; a row for each cell, method after method, from the lowest y.
 CsvTable stability_table(const StabilityMap& map);
 std::string stability_csv(const StabilityMap& map);
-std::vector<std::string> stability_columns();
-std::vector<std::string> stability_row(const std::string& method, const StabilityCell& cell);
+void visit_fields(CsvFields& fields, StabilityCell& cell, const std::string& method);
 
 std::size_t count_of(const MethodMap& method, RunClass run_class);
 

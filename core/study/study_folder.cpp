@@ -1,9 +1,6 @@
 #include "study/study_folder.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "io/csv.h"
 #include "io/machine.h"
@@ -13,6 +10,7 @@
 #include "study/extremes_report.h"
 #include "study/reference_states.h"
 #include "study/stability_report.h"
+#include "study/study_index.h"
 #include "study/study_recorder.h"
 #include "study/work_precision_tables.h"
 
@@ -26,69 +24,24 @@ json number(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-json axis_json(const StudyAxis& axis) {
-  return {{"path", axis.path},
-          {"low", axis.low},
-          {"high", axis.high},
-          {"count", axis.count},
-          {"logarithmic", axis.scale == AxisScale::logarithmic}};
-}
-
-json difference_json(const StateDifference& difference) {
-  return {{"rms_position_m", difference.rms_position},
-          {"largest_position_m", difference.largest_position},
-          {"rms_velocity_m_s", difference.rms_velocity}};
-}
-
 json contents(const WorkPrecision& study) {
-  json methods = json::array();
-  for (const MethodStudy& method : study.methods) methods.push_back(method.ladder.facts.name);
-  const ReferenceSolution& reference = study.reference;
-  return {{"options",
-           {{"methods", methods},
-            {"horizon_s", study.horizon},
-            {"repeats", study.repeats},
-            {"runs_per_method", study.steps_per_method},
-            {"budget_s", study.budget}}},
-          {"estimated_s", study.estimated},
-          {"reference",
-           {{"smooth", reference.smooth},
-            {"first", reference.first},
-            {"second", reference.second},
-            {"failure", reference.failure},
-            {"floor", difference_json(reference.floor)},
-            {"excited_frequency_per_s", reference.excited_frequency},
-            {"largest_kinetic_J", reference.largest_kinetic},
-            {"evaluations", reference.evaluations}}}};
+  json options{{"methods", json::array()}}, reference;
+  for (const MethodStudy& method : study.methods) options["methods"].push_back(method.ladder.facts.name);
+  visit_options(JsonFields(options), study);
+  visit_reference(JsonFields(reference), study.reference);
+  return {{"options", options}, {"estimated_s", study.estimated}, {"reference", reference}};
 }
 
 json contents(const StabilityMap& map) {
-  const StabilityOptions& options = map.options;
-  const StabilityCriterion& criterion = options.criterion;
-  json limits = json::object();
+  json options{{"methods", map.options.methods}}, limits = json::object();
+  visit_stability(JsonFields(options), map.options);
   for (const MethodMap& method : map.methods)
     for (const MeasuredLimit& limit : method.measured)
       limits[method.method].push_back({{"at", limit.other},
                                        {"longest_stable_s", limit.longest_stable},
                                        {"shortest_unstable_s", number(limit.shortest_unstable)},
                                        {"stable_beyond", limit.stable_beyond}});
-  return {{"options",
-           {{"methods", options.methods},
-            {"x", axis_json(options.x)},
-            {"y", axis_json(options.y)},
-            {"full_size", options.full_size},
-            {"criterion",
-             {{"periods", criterion.periods},
-              {"least_steps", criterion.least_steps},
-              {"most_steps", criterion.most_steps},
-              {"perturbation", criterion.perturbation},
-              {"perturbation_seed", criterion.perturbation_seed},
-              {"growth", criterion.growth},
-              {"growth_factor", criterion.growth_factor},
-              {"accuracy", criterion.accuracy}}}}},
-          {"rows", map.rows},
-          {"columns", map.columns},
-          {"limits", limits}};
+  return {{"options", options}, {"rows", map.rows}, {"columns", map.columns}, {"limits", limits}};
 }
 
 json contents(const ExtremesTable& table) {

@@ -1,99 +1,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "cloth/mesh_cloth.h"
 #include "contact/start_check.h"
 #include "integrators/registry.h"
-#include "io/csv.h"
-#include "io/json_entry.h"
 #include "io/json_locator.h"
 #include "io/json_syntax.h"
 #include "io/text_file.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
+#include "study/extremes_report.h"
 #include "study/stability_report.h"
-#include "study/study_folder.h"
+#include "study/study_index.h"
+#include "study/work_precision_tables.h"
 
 namespace cloth {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-/// What is wrong with a folder, on its way to the reader's caller; never leaves this file.
-struct BadFolder {
-  std::string problem;
-  bool is_lost = false;  ///< see StudyReading
-};
-
-/// A CSV file of the folder, by row and column name.
-class Rows {
- public:
-  /// Of a study that is being made, or was killed, a table may not be there yet, and a loss of power may have
-  /// cut its last line.
-  Rows(const std::filesystem::path& folder, const char* name, const JsonEntry& root) : name_(name) {
-    std::string text;
-    const bool grows = !root.has("files") && !root.at("complete").flag();
-    if (grows && !std::filesystem::exists(folder / name)) return;
-    if (const auto error = read_text_file(folder / name, text))
-      throw BadFolder{fmt::format("{}: {}", name, error->message), true};
-    if (grows) text.resize(text.rfind('\n') + 1);  // npos + 1 is 0
-    table_ = parse_csv(text);
-    for (std::size_t k = 0; k < table_.header.size(); ++k) columns_[table_.header[k]] = k;
-  }
-
-  std::size_t size() const { return table_.rows.size(); }
-  bool has(const char* column) const { return columns_.contains(column); }
-  std::string text(std::size_t row, const char* column) const {
-    const auto at = columns_.find(column);
-    if (at == columns_.end()) throw BadFolder{fmt::format("{}: has no column \"{}\"", name_, column)};
-    const auto& fields = table_.rows[row];
-    if (at->second >= fields.size()) throw bad(row, column, "", "is missing");
-    return fields[at->second];
-  }
-  /// `empty`: the value of an empty field; none: it may not be empty.
-  double number(std::size_t row, const char* column, std::optional<double> empty = {}) const {
-    const std::string field = text(row, column);
-    if (field.empty() && empty) return *empty;
-    double value = 0;
-    const char* end = field.data() + field.size();
-    const auto [last, error] = std::from_chars(field.data(), end, value);
-    if (error != std::errc() || last != end || field.empty())
-      throw bad(row, column, field, "must be a number");
-    return value;
-  }
-  std::int64_t count(std::size_t row, const char* column) const {
-    const double value = number(row, column, 0.0);
-    if (!(std::abs(value) < 1e18)) throw bad(row, column, text(row, column), "must be a whole number");
-    return static_cast<std::int64_t>(value);
-  }
-  int small(std::size_t row, const char* column, int least, int most) const {
-    const std::int64_t value = count(row, column);
-    if (value < least || value > most)
-      throw bad(row, column, text(row, column), fmt::format("must be from {} to {}", least, most));
-    return static_cast<int>(value);
-  }
-  BadFolder bad(std::size_t row, const char* column, const std::string& value,
-                const std::string& rule) const {
-    return {fmt::format("{}, line {}, {}: \"{}\" {}", name_, row + 2, column, value, rule)};
-  }
-
- private:
-  std::string name_;
-  CsvTable table_;
-  std::map<std::string, std::size_t> columns_;
-};
-
 double number_or(const JsonEntry& value, double otherwise) {
   return value.is_null() ? otherwise : value.number();
 }
-
-constexpr double largest_count = 1e9;  // of what is kept in an int
 
 std::vector<std::string> methods_of(const JsonEntry& options) {
   const auto& known = integrator_names();
@@ -113,45 +44,6 @@ Scene read_scene_of(const JsonEntry& root, const std::filesystem::path& folder) 
   return std::move(*reading.scene);
 }
 
-template <class Status>
-Status status_named(const Rows& rows, std::size_t row, const std::vector<Status>& known) {
-  const std::string name = rows.text(row, "status");
-  for (const Status status : known)
-    if (name == name_of(status)) return status;
-  throw rows.bad(row, "status", name, "is not a status");
-}
-
-StateDifference difference_of(const JsonEntry& value) {
-  return {value.at("rms_position_m").number(), value.at("largest_position_m").number(),
-          value.at("rms_velocity_m_s").number()};
-}
-
-WorkPrecisionRun read_run(const Rows& rows, std::size_t row) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  WorkPrecisionRun run;
-  run.rung = rows.small(row, "rung", -1, 60);
-  run.tolerance = rows.number(row, "tolerance", 0);
-  run.time_step = rows.number(row, "time_step", nan);
-  run.steps = rows.count(row, "steps");
-  run.count.force_evaluations = rows.count(row, "force_evaluations");
-  run.count.factorisations = rows.count(row, "factorisations");
-  run.count.iterations = rows.count(row, "iterations");
-  run.count.linear_iterations = rows.count(row, "linear_iterations");
-  run.count.velocity_iterations = rows.count(row, "velocity_iterations");
-  run.count.limiter_sweeps = rows.count(row, "limiter_sweeps");
-  run.count.rejected_steps = rows.count(row, "rejected_steps");
-  run.limiter_iterations = rows.count(row, "limiter_iterations");
-  run.error = {rows.number(row, "rms_error_m", nan), rows.number(row, "largest_error_m", nan),
-               rows.number(row, "rms_velocity_error_m_s", nan)};
-  run.energy_error = rows.number(row, "energy_error_J", nan);
-  run.status = status_named<RunStatus>(rows, row,
-                                       {RunStatus::stable, RunStatus::energy_growth, RunStatus::diverged,
-                                        RunStatus::solver_failed, RunStatus::refused});
-  run.detail = rows.text(row, "detail");
-  if (rows.has("estimated_s")) run.estimated = rows.number(row, "estimated_s", 0);
-  return run;
-}
-
 /// What names a run in both tables.
 std::string key_of(const Rows& rows, std::size_t row) {
   return rows.text(row, "method") + "|" + rows.text(row, "time_step") + "|" + rows.text(row, "steps") + "|" +
@@ -163,29 +55,16 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const Jso
   study.scene = read_scene_of(root, folder);
   study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
   study.diagonal = diagonal_of(study.scene.cloth);
+  study.steps_per_method = WorkPrecisionOptions{}.steps_per_method;  // that old versions took
   const JsonEntry& options = root.at("options");
-  const double horizon = options.at("horizon_s").number();
+  visit_options(JsonFields(options), study);
   const auto methods = methods_of(options);
-  if (const auto rule = broken_horizon_rule(study.scene, methods, horizon))
+  if (const auto rule = broken_horizon_rule(study.scene, methods, study.horizon))
     throw options.at("horizon_s").bad(*rule);
-  study.repeats = options.at("repeats").whole<int>(0, largest_count);
-  study.steps_per_method = options.has("runs_per_method")
-                               ? options.at("runs_per_method").whole<int>(0, largest_count)
-                               : WorkPrecisionOptions{}.steps_per_method;
-  study.budget = options.at("budget_s").number();
   study.estimated = root.at("estimated_s").number();
   study.stopped = !root.at("complete").flag();
-  const JsonEntry& reference = root.at("reference");
-  study.reference = {.states = {},
-                     .floor = difference_of(reference.at("floor")),
-                     .excited_frequency = reference.at("excited_frequency_per_s").number(),
-                     .largest_kinetic = reference.at("largest_kinetic_J").number(),
-                     .smooth = reference.at("smooth").flag(),
-                     .first = reference.at("first").text(),
-                     .second = reference.at("second").text(),
-                     .evaluations = reference.at("evaluations").whole<std::int64_t>(0, largest_whole),
-                     .failure = reference.at("failure").text()};
-  Ladders ladders = make_ladders(study.scene, methods, horizon);
+  visit_reference(JsonFields(root.at("reference")), study.reference);
+  Ladders ladders = make_ladders(study.scene, methods, study.horizon);
   study.horizon = ladders.horizon;
   study.samples = ladders.samples;
   for (StepLadder& ladder : ladders.methods)
@@ -199,82 +78,40 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const Jso
                                  [&](const MethodStudy& known) { return known.ladder.facts.name == method; });
     if (at == study.methods.end()) throw rows.bad(row, "method", method, "is not in study.json");
     places[key_of(rows, row)] = {static_cast<std::size_t>(at - study.methods.begin()), at->runs.size()};
-    at->runs.push_back(read_run(rows, row));
+    read_row(rows, row, at->runs.emplace_back(), study, *at);
   }
   const Rows samples(folder, "work_precision_samples.csv", root);
   for (std::size_t row = 0; row < samples.size(); ++row) {
     const auto at = places.find(key_of(samples, row));
     if (at == places.end()) throw samples.bad(row, "method", samples.text(row, "method"), "has no such run");
-    study.methods[at->second.first].runs[at->second.second].samples.push_back(
-        {samples.small(row, "repeat", 0, 1'000'000), samples.small(row, "turn", 0, 1'000'000),
-         samples.number(row, "wall_s")});
+    MethodStudy& method = study.methods[at->second.first];
+    WorkPrecisionRun& run = method.runs[at->second.second];
+    read_row(samples, row, run.samples.emplace_back(), method, run);
   }
   conclude(study);
   return study;
 }
 
-StudyAxis axis_of(const JsonEntry& value) {
-  StudyAxis axis{.path = value.at("path").text(),
-                 .low = value.at("low").number(),
-                 .high = value.at("high").number(),
-                 .count = value.at("count").whole<int>(0, largest_count),
-                 .scale = value.at("logarithmic").flag() ? AxisScale::logarithmic : AxisScale::linear};
-  const auto checked =
-      parse_axis(axis_text(axis), "study.json, axis");  // the same rules as on the command line
+/// The same rules as on the command line.
+void check_axis(const StudyAxis& axis) {
+  const auto checked = parse_axis(axis_text(axis), "study.json, axis");
   if (const auto* problem = std::get_if<Problem>(&checked)) throw BadFolder{problem->text()};
-  return axis;
-}
-
-StabilityOptions options_of(const JsonEntry& value) {
-  StabilityOptions options{.methods = methods_of(value),
-                           .x = axis_of(value.at("x")),
-                           .y = axis_of(value.at("y")),
-                           .full_size = value.at("full_size").flag()};
-  const JsonEntry& criterion = value.at("criterion");
-  options.criterion = {
-      .periods = criterion.at("periods").number(),
-      .least_steps = criterion.at("least_steps").whole<int>(0, largest_count),
-      .most_steps = criterion.at("most_steps").whole<int>(0, largest_count),
-      .perturbation = criterion.at("perturbation").number(),
-      .perturbation_seed = criterion.at("perturbation_seed").whole<unsigned>(0, 4294967295.0),
-      .growth = criterion.at("growth").number(),
-      .growth_factor = criterion.at("growth_factor").number(),
-      .accuracy = criterion.at("accuracy").number()};
-  return options;
-}
-
-StabilityCell read_cell(const Rows& rows, std::size_t row) {
-  StabilityCell cell;
-  cell.x = rows.number(row, "x");
-  cell.y = rows.number(row, "y");
-  cell.energy_ratio = rows.number(row, "energy_ratio", 0);
-  cell.growth_rate = rows.number(row, "growth_rate_per_s", 0);
-  cell.time_step = rows.number(row, "time_step_s");
-  cell.steps = rows.count(row, "steps");
-  cell.wanted_steps = rows.count(row, "wanted_steps");
-  cell.detail = rows.text(row, "detail");
-  cell.limits = {rows.number(row, "predicted_limit_s"), rows.number(row, "guaranteed_limit_s"),
-                 rows.number(row, "provot_s"), rows.number(row, "spectrum_limit_s")};
-  const std::string status = rows.text(row, "status");
-  for (const CellStatus general : {CellStatus::not_run, CellStatus::refused, CellStatus::run})
-    for (int run_class = 0; run_class < static_cast<int>(run_classes().size()); ++run_class) {
-      cell.status = general;
-      cell.run_class = static_cast<RunClass>(general == CellStatus::run ? run_class : 0);
-      if (status_of(cell) == status) return cell;
-    }
-  throw rows.bad(row, "status", status, "is not a status");
 }
 
 StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry& root) {
   StabilityMap map;
   map.scene = read_scene_of(root, folder);
-  map.options = options_of(root.at("options"));
+  map.options.methods = methods_of(root.at("options"));
+  visit_stability(JsonFields(root.at("options")), map.options);
+  check_axis(map.options.x);
+  check_axis(map.options.y);
   const auto problems = find_problems(map.scene, map.options);
   if (!problems.empty()) throw BadFolder{"study.json: " + problems.front().text()};
   map.x_values = values_of(map.options.x);
   map.y_values = values_of(map.options.y);
-  map.rows = root.at("rows").whole<int>(0, largest_count);
-  map.columns = root.at("columns").whole<int>(0, largest_count);
+  JsonFields fields(root);
+  fields("rows", map.rows);
+  fields("columns", map.columns);
   map.complete = root.at("complete").flag();
   for (const std::string& method : map.options.methods) map.methods.push_back({method, {}, {}});
   const Rows rows(folder, "stability.csv", root);
@@ -285,7 +122,7 @@ StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry
                                  [&](const MethodMap& known) { return known.method == name; });
     if (at == map.methods.end() || at->cells.size() == most)
       throw rows.bad(row, "method", name, "is not in study.json, or has more cells than its axes");
-    at->cells.push_back(read_cell(rows, row));
+    read_row(rows, row, at->cells.emplace_back(), name);
   }
   const bool x_is_step = map.options.x.path == time_step_path;
   for (const std::string& name : root.at("limits").keys())
@@ -317,19 +154,11 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry
   const Rows rows(folder, "extremes.csv", root);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t extreme = row / table.methods.size();
-    ExtremeCell cell{.case_name = rows.text(row, "case"), .method = rows.text(row, "method"), .detail = {}};
-    if (extreme >= table.cases.size() || cell.case_name != table.cases[extreme].name ||
-        cell.method != table.methods[row % table.methods.size()])
-      throw rows.bad(row, "case", cell.case_name, "is not the case and method that study.json has here");
-    cell.status = status_named(rows, row, extreme_statuses());
-    cell.detail = rows.text(row, "detail");
-    cell.time_step = rows.number(row, "time_step_s");
-    cell.steps = rows.count(row, "steps");
-    cell.ended_early = rows.count(row, "ended_early") != 0;
-    cell.max_strain = rows.number(row, "max_strain");
-    cell.energy_ratio = rows.number(row, "energy_ratio");
-    cell.wall = rows.number(row, "wall_s");
-    table.cells.push_back(std::move(cell));
+    const std::string name = rows.text(row, "case");
+    if (extreme >= table.cases.size() || name != table.cases[extreme].name ||
+        rows.text(row, "method") != table.methods[row % table.methods.size()])
+      throw rows.bad(row, "case", name, "is not the case and method that study.json has here");
+    read_row(rows, row, table.cells.emplace_back());
   }
   return table;
 }

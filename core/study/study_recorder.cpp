@@ -153,12 +153,12 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   }
   CsvTable kept;
   if (const auto* map = std::get_if<StabilityMap>(&table)) {
-    kept.header = stability_columns();
+    kept.header = stability_table({}).header;
     rows_kept_.assign(map->options.methods.size(), 0);
     for (std::size_t m = 0; m < map->methods.size(); ++m) {
       for (const StabilityCell& cell : map->methods[m].cells) {
         if (!is_finished(cell)) break;
-        kept.rows.push_back(stability_row(map->methods[m].method, cell));
+        kept.rows.push_back(written(cell, map->methods[m].method).texts);
         ++rows_kept_[m];
       }
       limits_kept_ += map->methods[m].measured.size();
@@ -192,12 +192,12 @@ std::optional<IoError> StudyRecorder::keep(const WorkPrecision& so_far) {
   for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
     const MethodStudy& method = so_far.methods[m];
     for (std::size_t& k = rows_kept_[m]; k < method.runs.size(); ++k) {
-      if (auto error = rows_.add(run_row(so_far, method, method.runs[k]))) return error;
+      if (auto error = rows_.add(written(method.runs[k], so_far, method).texts)) return error;
       samples_kept_[m].push_back(0);
     }
     for (std::size_t r = 0; r < method.runs.size(); ++r)
       for (std::size_t& k = samples_kept_[m][r]; k < method.runs[r].samples.size(); ++k)
-        if (auto error = samples_.add(sample_row(method, method.runs[r], method.runs[r].samples[k])))
+        if (auto error = samples_.add(written(method.runs[r].samples[k], method, method.runs[r]).texts))
           return error;
   }
   if (auto error = rows_.flush()) return error;  // first: a sample names its run
@@ -209,7 +209,7 @@ std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
   for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
     const MethodMap& method = so_far.methods[m];
     for (std::size_t& k = rows_kept_[m]; k < method.cells.size() && is_finished(method.cells[k]); ++k)
-      if (auto error = rows_.add(stability_row(method.method, method.cells[k]))) return error;
+      if (auto error = rows_.add(written(method.cells[k], method.method).texts)) return error;
     limits += method.measured.size();
   }
   if (auto error = rows_.flush()) return error;
@@ -220,7 +220,7 @@ std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
 
 std::optional<IoError> StudyRecorder::keep(const ExtremesTable& so_far) {
   for (std::size_t& k = rows_kept_.front(); k < so_far.cells.size(); ++k)
-    if (auto error = rows_.add(extremes_row(so_far.cells[k]))) return error;
+    if (auto error = rows_.add(written(so_far.cells[k]).texts)) return error;
   return rows_.flush();
 }
 

@@ -269,22 +269,6 @@ ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecision
 
 }  // namespace
 
-const char* name_of(RunStatus status) {
-  switch (status) {
-    case RunStatus::stable:
-      return "stable";
-    case RunStatus::energy_growth:
-      return "energy-growth";
-    case RunStatus::diverged:
-      return "diverged";
-    case RunStatus::solver_failed:
-      return "solver-failed";
-    case RunStatus::refused:
-      return "refused";
-  }
-  return "";
-}
-
 double estimated_seconds(int particles, const StepCount& count, std::int64_t limiter_iterations) {
   const double n = particles;
   const double per_particle =

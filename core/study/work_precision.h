@@ -33,7 +33,12 @@ struct WorkPrecisionOptions {
 };
 
 enum class RunStatus { stable, energy_growth, diverged, solver_failed, refused };
-const char* name_of(RunStatus status);  ///< as files say it: "energy-growth"
+/// As files say it.
+inline constexpr const char* run_status_names[] = {"stable", "energy-growth", "diverged", "solver-failed",
+                                                   "refused"};
+inline const char* name_of(RunStatus status) {
+  return run_status_names[static_cast<std::size_t>(status)];
+}
 
 struct TimedSample {
   int repeat = 0, turn = 0;  ///< which repeat, and this run's place in its shuffled order

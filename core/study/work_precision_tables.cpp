@@ -78,99 +78,69 @@ json machine_json() {
 
 }  // namespace
 
-std::vector<std::string> run_row(const WorkPrecision& study, const MethodStudy& method,
-                                 const WorkPrecisionRun& run) {
+void visit_fields(CsvFields& fields, WorkPrecisionRun& run, const WorkPrecision& study,
+                  const MethodStudy& method) {
   const bool timed = !run.samples.empty();
   const bool ran = run.status != RunStatus::refused;
-  const auto count = [&](std::int64_t n) { return ran ? std::to_string(n) : ""; };
-  const auto time = [&](double seconds) { return number_or_empty(seconds, timed); };
+  const auto time = [&](const char* name, double seconds) {
+    fields.derived(name, number_or_empty(seconds, timed));
+  };
   const OrderEstimate& order = method.order;
-  return {method.ladder.facts.name,
-          number_or_empty(run.time_step),
-          ran || run.steps > 0 ? std::to_string(run.steps) : "",
-          count(run.count.force_evaluations),
-          time(run.time.least),
-          number_or_empty(run.error.rms_position),
-          number_or_empty(run.error.rms_position / study.diagonal),
-          name_of(run.status),
-          order.asymptotic ? csv_number(order.order.value) : "pre-asymptotic",
-          number_or_empty(order.order.standard_error, order.asymptotic),
-          number_or_empty(order.overall.value, order.overall.points > 1),
-          number_or_empty(run.error.largest_position),
-          number_or_empty(run.error.rms_velocity),
-          number_or_empty(run.energy_error),
-          count(run.count.factorisations),
-          count(run.count.iterations),
-          count(run.count.linear_iterations),
-          count(run.count.velocity_iterations),
-          count(run.count.limiter_sweeps),
-          count(run.limiter_iterations),
-          count(run.count.rejected_steps),
-          time(run.time.median),
-          time(run.time.lower_quartile),
-          time(run.time.upper_quartile),
-          std::to_string(run.samples.size()),
-          number_or_empty(run.tolerance, run.tolerance > 0),
-          number_or_empty(method.ladder.limit.value_or(NAN)),
-          run.detail,
-          std::to_string(run.rung),
-          number_or_empty(run.estimated, ran)};
+  fields.derived("method", method.ladder.facts.name);
+  fields.finite("time_step", run.time_step);
+  fields.whole("steps", run.steps, ran || run.steps > 0);
+  fields.whole("force_evaluations", run.count.force_evaluations, ran);
+  time("wall_s", run.time.least);
+  fields.finite("rms_error_m", run.error.rms_position);
+  fields.derived("relative_error", number_or_empty(run.error.rms_position / study.diagonal));
+  fields.status(run.status, run_status_names);
+  fields.derived("observed_order", order.asymptotic ? csv_number(order.order.value) : "pre-asymptotic");
+  fields.derived("order_standard_error", number_or_empty(order.order.standard_error, order.asymptotic));
+  fields.derived("overall_slope", number_or_empty(order.overall.value, order.overall.points > 1));
+  fields.finite("largest_error_m", run.error.largest_position);
+  fields.finite("rms_velocity_error_m_s", run.error.rms_velocity);
+  fields.finite("energy_error_J", run.energy_error);
+  fields.whole("factorisations", run.count.factorisations, ran);
+  fields.whole("iterations", run.count.iterations, ran);
+  fields.whole("linear_iterations", run.count.linear_iterations, ran);
+  fields.whole("velocity_iterations", run.count.velocity_iterations, ran);
+  fields.whole("limiter_sweeps", run.count.limiter_sweeps, ran);
+  fields.whole("limiter_iterations", run.limiter_iterations, ran);
+  fields.whole("rejected_steps", run.count.rejected_steps, ran);
+  time("wall_median_s", run.time.median);
+  time("wall_lower_quartile_s", run.time.lower_quartile);
+  time("wall_upper_quartile_s", run.time.upper_quartile);
+  fields.derived("repeats", std::to_string(run.samples.size()));
+  fields.number("tolerance", run.tolerance, run.tolerance > 0, 0.0);
+  fields.derived("stable_step_s", number_or_empty(method.ladder.limit.value_or(NAN)));
+  fields.text("detail", run.detail);
+  fields.whole("rung", run.rung, true, -1, 60);
+  if (fields.has("estimated_s")) fields.number("estimated_s", run.estimated, ran, 0.0);  // not in old ones
+}
+
+void visit_fields(CsvFields& fields, TimedSample& sample, const MethodStudy& method,
+                  const WorkPrecisionRun& run) {
+  fields.derived("method", method.ladder.facts.name);
+  fields.derived("time_step", csv_number(run.time_step));
+  fields.derived("steps", std::to_string(run.steps));
+  fields.derived("tolerance", number_or_empty(run.tolerance, run.tolerance > 0));
+  fields.whole("repeat", sample.repeat, true, 0, 1'000'000);
+  fields.whole("turn", sample.turn, true, 0, 1'000'000);
+  fields.number("wall_s", sample.seconds);
 }
 
 CsvTable run_table(const WorkPrecision& study) {
-  CsvTable table{{"method",
-                  "time_step",
-                  "steps",
-                  "force_evaluations",
-                  "wall_s",
-                  "rms_error_m",
-                  "relative_error",
-                  "status",
-                  "observed_order",
-                  "order_standard_error",
-                  "overall_slope",
-                  "largest_error_m",
-                  "rms_velocity_error_m_s",
-                  "energy_error_J",
-                  "factorisations",
-                  "iterations",
-                  "linear_iterations",
-                  "velocity_iterations",
-                  "limiter_sweeps",
-                  "limiter_iterations",
-                  "rejected_steps",
-                  "wall_median_s",
-                  "wall_lower_quartile_s",
-                  "wall_upper_quartile_s",
-                  "repeats",
-                  "tolerance",
-                  "stable_step_s",
-                  "detail",
-                  "rung",
-                  "estimated_s"},
-                 {}};
+  CsvTable table{written(WorkPrecisionRun{}, study, MethodStudy{}).names, {}};
   for (const MethodStudy& method : study.methods)
-    for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(run_row(study, method, run));
+    for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(written(run, study, method).texts);
   return table;
 }
 
-std::vector<std::string> sample_columns() {
-  return {"method", "time_step", "steps", "tolerance", "repeat", "turn", "wall_s"};
-}
-
-std::vector<std::string> sample_row(const MethodStudy& method, const WorkPrecisionRun& run,
-                                    const TimedSample& sample) {
-  return {method.ladder.facts.name,      csv_number(run.time_step),
-          std::to_string(run.steps),     number_or_empty(run.tolerance, run.tolerance > 0),
-          std::to_string(sample.repeat), std::to_string(sample.turn),
-          csv_number(sample.seconds)};
-}
-
 CsvTable sample_table(const WorkPrecision& study) {
-  CsvTable table{sample_columns(), {}};
+  CsvTable table{written(TimedSample{}, MethodStudy{}, WorkPrecisionRun{}).names, {}};
   for (const MethodStudy& method : study.methods)
     for (const WorkPrecisionRun& run : method.runs)
-      for (const TimedSample& sample : run.samples) table.rows.push_back(sample_row(method, run, sample));
+      for (const TimedSample& sample : run.samples) table.rows.push_back(written(sample, method, run).texts);
   return table;
 }
 

@@ -5,21 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "io/csv.h"
+#include "study/study_table.h"
 #include "study/work_precision.h"
 
 namespace cloth {
 
 /// work_precision.csv: a row for each run, failed and refused ones too.
 CsvTable run_table(const WorkPrecision& study);
-std::vector<std::string> run_row(const WorkPrecision& study, const MethodStudy& method,
-                                 const WorkPrecisionRun& run);
+void visit_fields(CsvFields& fields, WorkPrecisionRun& run, const WorkPrecision& study,
+                  const MethodStudy& method);
 
 /// work_precision_samples.csv: a row for each timed repeat.
 CsvTable sample_table(const WorkPrecision& study);
-std::vector<std::string> sample_columns();
-std::vector<std::string> sample_row(const MethodStudy& method, const WorkPrecisionRun& run,
-                                    const TimedSample& sample);
+void visit_fields(CsvFields& fields, TimedSample& sample, const MethodStudy& method,
+                  const WorkPrecisionRun& run);
 
 /// One object: what was studied and measured, the order of each method, the machine.
 std::string work_precision_json(const WorkPrecision& study);

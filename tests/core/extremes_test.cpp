@@ -64,8 +64,7 @@ TEST(EveryCell, IsAFiniteResultOrAStopThatNamesStepParticleAndCause) {
     EXPECT_GE(cell.energy_ratio, 0) << where;
     EXPECT_LE(cell.steps, extreme.most_steps) << where;
     EXPECT_FALSE(contains(cell.detail, "nan")) << where;
-    const auto& all = extreme_statuses();
-    EXPECT_NE(std::find(all.begin(), all.end(), cell.status), all.end()) << where;
+    EXPECT_LT(static_cast<std::size_t>(cell.status), std::size(extreme_status_names)) << where;
     if (cell.status == ExtremeStatus::diverged || cell.status == ExtremeStatus::solver_failed)
       EXPECT_TRUE(contains(cell.detail, " in step ") && contains(cell.detail, " at particle ")) << where;
     else if (cell.status == ExtremeStatus::refused)
@@ -76,8 +75,11 @@ TEST(EveryCell, IsAFiniteResultOrAStopThatNamesStepParticleAndCause) {
 }
 
 TEST(EveryStatus, IsAWordOfTheFiles) {
+  using enum ExtremeStatus;
   std::vector<std::string> words;
-  for (const ExtremeStatus status : extreme_statuses()) words.emplace_back(name_of(status));
+  for (const auto status :
+       {stable, not_converged, energy_growth, diverged, unreachable, refused, solver_failed})
+    words.emplace_back(name_of(status));
   EXPECT_EQ(words, (std::vector<std::string>{"stable", "not-converged", "energy-growth", "diverged",
                                              "unreachable", "refused", "solver-failed"}));
 }
@@ -88,7 +90,7 @@ TEST(ACell, IsTheSameAgain) {
       const ExtremeCase extreme = shortened(case_named(name), 10);
       ExtremeCell first = run_extreme(extreme, method), second = run_extreme(extreme, method);
       first.wall = second.wall = 0;
-      EXPECT_EQ(extremes_row(first), extremes_row(second));
+      EXPECT_EQ(written(first).texts, written(second).texts);
     }
   }
 }

@@ -70,9 +70,9 @@ int extremes(const ExtremesArguments& arguments) {
                  [](const cloth::ExtremesOptions& all) { return cloth::run_extremes(all); });
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const cloth::ExtremesTable& table = std::get<0>(made).table;
-  const int printed = print(arguments.json       ? cloth::extremes_json(table)
+  const int printed = print(arguments.json       ? cloth::study_json(table)
                             : arguments.markdown ? cloth::extremes_markdown(table)
-                                                 : cloth::extremes_text(table));
+                                                 : cloth::study_text(table));
   if (printed != done) return printed;
   return stop_is_requested() ? interrupted : done;
 }

@@ -47,24 +47,7 @@ std::string result_json(const cloth::Session& session, const cloth::ReplayResult
   return root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-int exit_code_of(const cloth::ReplayResult& result) {
-  switch (result.run.summary.status) {
-    case cloth::Status::diverged:
-      return diverged;
-    case cloth::Status::stopped:
-      return interrupted;
-    case cloth::Status::finished:
-      break;
-  }
-  if (!result.agrees.value_or(true)) return differs;
-  return result.run.summary.rate_breach ? rate_not_kept : done;
-}
-
-void say_what_went_wrong(const cloth::Session& session, const cloth::ReplayResult& result) {
-  const cloth::RunSummary& summary = result.run.summary;
-  if (!summary.notice.empty()) say(summary.notice);
-  if (!summary.step_changes.empty()) say(cloth::describe(summary.step_changes));
-  if (summary.divergence) say(cloth::describe(*summary.divergence));
+void say_difference(const cloth::Session& session, const cloth::ReplayResult& result) {
   if (result.agrees == false)
     say(fmt::format(
         "the final state is not the session's: its hash is {}, the session's is {}; the session was "
@@ -98,7 +81,8 @@ int replay(const ReplayArguments& arguments) {
     };
     result = cloth::replay(session, options);
   }
-  say_what_went_wrong(session, result);
+  say_what_went_wrong(result.run.summary);
+  say_difference(session, result);
   if (result.run.io_error) return report(*result.run.io_error);
   if (!result.problems.empty()) {
     cloth::place_in_session(text, arguments.session, result.commands, result.problems);
@@ -106,7 +90,8 @@ int replay(const ReplayArguments& arguments) {
   }
   const int printed =
       print(arguments.json ? result_json(session, result) : result_text(session, result, arguments.folder));
-  return printed == done ? exit_code_of(result) : printed;
+  if (printed != done) return printed;
+  return result.agrees.value_or(true) ? exit_code_of(result.run.summary) : differs;
 }
 
 }  // namespace

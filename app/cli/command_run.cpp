@@ -29,18 +29,6 @@ struct RunArguments {
   bool json = false;
 };
 
-int exit_code_of(const cloth::RunSummary& summary) {
-  switch (summary.status) {
-    case cloth::Status::finished:
-      return summary.rate_breach ? rate_not_kept : done;
-    case cloth::Status::diverged:
-      return diverged;
-    case cloth::Status::stopped:
-      return interrupted;
-  }
-  return done;
-}
-
 /// What would keep a run from its end, said before it begins: more steps or memory than there can be.
 int refusal(const cloth::Scene& scene, double time_step) {
   if (const auto rule = cloth::too_many_steps(scene.duration, time_step))
@@ -128,9 +116,7 @@ int run(const RunArguments& arguments) {
     result = cloth::run_scene(scene, options);
   }
   const cloth::RunSummary& summary = result.summary;
-  if (!summary.notice.empty()) say(summary.notice);
-  if (!summary.step_changes.empty()) say(cloth::describe(summary.step_changes));
-  if (summary.divergence) say(cloth::describe(*summary.divergence));
+  say_what_went_wrong(summary);
   if (result.io_error) return report(*result.io_error);
   if (const auto error = write_outputs(arguments, scene, result.final_state)) return report(*error);
   const int printed =

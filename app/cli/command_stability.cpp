@@ -79,10 +79,9 @@ int stability(const StabilityArguments& arguments) {
                  [&](const cloth::StabilityOptions& all) { return cloth::run_stability_map(scene, all); });
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const auto& [map, wall] = std::get<0>(made);
-  const int printed =
-      print(arguments.json ? cloth::stability_json(map)
-                           : cloth::stability_text(map) +
-                                 fmt::format("{:.3g} s; results in {}\n", wall, arguments.folder));
+  const int printed = print(arguments.json ? cloth::study_json(map)
+                                           : cloth::study_text(map) + fmt::format("{:.3g} s; results in {}\n",
+                                                                                  wall, arguments.folder));
   if (printed != done) return printed;
   return map.complete ? done : interrupted;
 }

@@ -19,7 +19,7 @@ int study(const StudyArguments& arguments) {
     return reading.is_lost ? io_failed : bad_input;
   }
   const cloth::StudyTable& table = reading.study->table;
-  if (arguments.json) return print(cloth::study_json_text(table));
+  if (arguments.json) return print(cloth::study_json(table));
   if (arguments.csv) return print(cloth::study_csv(table));
   const std::string head =
       fmt::format("{}: {}{}\n{}\n\n", cloth::kind_of(table), cloth::title_of(table),

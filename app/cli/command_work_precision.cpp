@@ -4,7 +4,7 @@
 #include "commands.h"
 #include "integrators/registry.h"
 #include "studies.h"
-#include "study/work_precision_tables.h"
+#include "study/work_precision_report.h"
 
 namespace clothlab::cli {
 namespace {
@@ -51,7 +51,7 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   const cloth::WorkPrecision& study = std::get<0>(made).table;
   const bool has_reference = study.reference.failure.empty();
   if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
-  std::string text = arguments.json ? cloth::work_precision_json(study) : cloth::work_precision_text(study);
+  std::string text = arguments.json ? cloth::study_json(study) : cloth::study_text(study);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
   if (const int printed = print(text); printed != done) return printed;
   if (study.stopped) return interrupted;

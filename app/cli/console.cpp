@@ -12,10 +12,8 @@
 #include "contact/start_check.h"
 #include "io/printable.h"
 #include "io/process.h"
-#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/memory_estimate.h"
-#include "simulation/run_summary.h"
 
 namespace clothlab::cli {
 
@@ -70,6 +68,18 @@ std::string summary_text(const cloth::RunSummary& s, const std::string& folder) 
       s.nanoseconds_per_particle_step(), 100 * s.max_strain, s.energy.error(), 100 * s.energy.share());
   if (!folder.empty()) text += fmt::format("results in {}\n", folder);
   return text;
+}
+
+void say_what_went_wrong(const cloth::RunSummary& summary) {
+  if (!summary.notice.empty()) say(summary.notice);
+  if (!summary.step_changes.empty()) say(cloth::describe(summary.step_changes));
+  if (summary.divergence) say(cloth::describe(*summary.divergence));
+}
+
+int exit_code_of(const cloth::RunSummary& summary) {
+  if (summary.status == cloth::Status::diverged) return diverged;
+  if (summary.status == cloth::Status::stopped) return interrupted;
+  return summary.rate_breach ? rate_not_kept : done;
 }
 
 std::optional<std::vector<cloth::Override>> parse_settings(const std::vector<std::string>& settings) {

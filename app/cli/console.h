@@ -65,6 +65,10 @@ int print(const std::string& text);
 /// A run in a few lines; `folder` is where its files are, or empty.
 std::string summary_text(const cloth::RunSummary& summary, const std::string& folder);
 
+/// What is not as asked for, and why a run ended early, on standard error.
+void say_what_went_wrong(const cloth::RunSummary& summary);
+int exit_code_of(const cloth::RunSummary& summary);
+
 /// Writes to standard error with the program's name before it, made printable. Never fails: where standard
 /// error is closed or full, the exit code is left to tell.
 void say(const std::string& message);

@@ -1,7 +1,6 @@
 #include "picture_option.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>

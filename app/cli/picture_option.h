@@ -1,7 +1,6 @@
 // `run --picture`: what a picture of the cloth shows, and how the options say it.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 

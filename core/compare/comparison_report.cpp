@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/comparison_json.h"
-#include "simulation/run_summary.h"
-#include "report/html_page.h"
 #include "io/machine.h"
+#include "report/html_page.h"
+#include "simulation/run_summary.h"
 
 namespace cloth {
 namespace {
@@ -167,13 +167,8 @@ void add_protocol(const ComparisonRun& run, HtmlPage& page) {
               {"Simulated", fmt::format("{:.6g} s", run.simulated)},
               {"Common times", fmt::format("every {:.6g} s", run.comparison.scene.record.interval)},
               {"Threads", fmt::format("{}", run.threads)}});
-  page.heading("Machine", 3);
-  std::vector<std::pair<std::string, HtmlText>> machine;
-  for (const auto& [name, value] : fact_rows(machine_facts())) machine.emplace_back(name, value);
-  page.facts(machine);
-  page.begin_details("The comparison as it was run");
-  page.preformatted(write_comparison(run.comparison));
-  page.end_details();
+  page.machine_facts();
+  page.folded("The comparison as it was run", write_comparison(run.comparison));
 }
 
 }  // namespace

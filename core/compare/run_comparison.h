@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "compare/ranking.h"
-#include "io/csv.h"
 #include "io/result_folder.h"
 
 namespace cloth {
@@ -39,10 +38,10 @@ struct ComparisonRun {
   std::string reference_failure;   ///< not empty: the reference stopped, and why
   std::string notice;  ///< what is not as asked for in all panes, or in the reference; empty: nothing
   bool reference_rate_kept = true;
-  double reference_wall = 0;       ///< s, of a controlled reference
-  std::optional<double> floor;     ///< m, RMS at the end: see LockStep::floor
-  double largest_floor = 0;        ///< m, of all common times
-  PaneSeries floor_series;         ///< its rms
+  double reference_wall = 0;    ///< s, of a controlled reference
+  std::optional<double> floor;  ///< m, RMS at the end: see LockStep::floor
+  double largest_floor = 0;     ///< m, of all common times
+  PaneSeries floor_series;      ///< its rms
   int particles = 0, columns = 0;
   double simulated = 0;  ///< s, the last common time
   int threads = 1;

@@ -2,38 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <iterator>
 
 namespace cloth {
 namespace {
 
-/// One character of a text. `length` bytes; `code` is negative where they are no UTF-8.
-struct Utf8Character {
-  std::int32_t code = -1;
-  std::size_t length = 1;
-};
-
 bool is_continuation(unsigned char byte) {
   return (byte & 0xC0) == 0x80;
-}
-
-/// The first character of `text`, which is not empty. Refuses what is longer than it need be, surrogates, and
-/// codes beyond U+10FFFF.
-Utf8Character first_character(std::string_view text) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return {lead, 1};
-  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return {};
-  std::int32_t code = lead & (0x7F >> length);
-  for (std::size_t k = 1; k < length; ++k) {
-    if (!is_continuation(byte(k))) return {};
-    code = (code << 6) | (byte(k) & 0x3F);
-  }
-  constexpr std::int32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-  if (code < least[length] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return {};
-  return {code, length};
 }
 
 bool is_control(std::int32_t code) {
@@ -65,6 +40,22 @@ std::string without_controls(std::string_view text, bool keeps_lines) {
 }
 
 }  // namespace
+
+Utf8Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || text.size() < length) return {};
+  std::int32_t code = lead & (0x7F >> length);
+  for (std::size_t k = 1; k < length; ++k) {
+    if (!is_continuation(byte(k))) return {};
+    code = (code << 6) | (byte(k) & 0x3F);
+  }
+  constexpr std::int32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  if (code < least[length] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) return {};
+  return {code, length};
+}
 
 std::string printable(std::string_view text) {
   return without_controls(text, false);

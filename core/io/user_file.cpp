@@ -7,8 +7,6 @@
 #include <cerrno>
 #include <variant>
 
-#include "io/text_file.h"
-
 namespace cloth {
 namespace {
 

@@ -1,7 +1,6 @@
 // A finished picture: rows of pixels, and the PNG file made of them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

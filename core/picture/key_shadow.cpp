@@ -1,7 +1,6 @@
 #include "picture/key_shadow.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -297,15 +297,8 @@ std::vector<PictureArrow> wind_arrows(const Scene& scene, const Vec3Field& posit
 }
 
 Rgb spring_colour(SpringFamily family) {
-  switch (family) {
-    case SpringFamily::structural:
-      return {0x2f, 0x42, 0x57};
-    case SpringFamily::shear:
-      return {0xd9, 0x73, 0x0d};
-    case SpringFamily::flexion:
-      return {0x0a, 0x8f, 0x8f};
-  }
-  return {};
+  constexpr Rgb colours[] = {{0x2f, 0x42, 0x57}, {0xd9, 0x73, 0x0d}, {0x0a, 0x8f, 0x8f}};
+  return colours[static_cast<std::size_t>(family)];
 }
 
 Image cloth_image(const Scene& scene, const ClothSystem& system, const Vec3Field& position,

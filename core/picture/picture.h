@@ -8,7 +8,6 @@
 #include "picture/image.h"
 #include "picture/picture_camera.h"
 #include "picture/picture_theme.h"
-#include "picture/strain_colours.h"
 
 namespace cloth {
 

@@ -58,14 +58,6 @@ Vec3 EyeFrame::ray(double x, double y) const {
   return forward + (x - middle_x) / focal_length * right + (middle_y - y) / focal_length * up;
 }
 
-std::optional<Eigen::Vector2d> pixel_of(const PictureCamera& camera, int width, int height,
-                                        const Vec3& point) {
-  const EyeFrame frame(camera, width, height);
-  const Vec3 in_eye = frame.to_eye(point);
-  if (!(in_eye.z() >= frame.near) || !in_eye.allFinite()) return std::nullopt;
-  return frame.to_pixel(in_eye);
-}
-
 PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, const Vec3& direction,
                              double aspect, std::span<const PictureArrow> arrows, double time) {
   PictureCamera camera;

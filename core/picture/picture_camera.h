@@ -2,7 +2,6 @@
 // middle of the first pixel is (0.5, 0.5).
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "cloth/cloth_system.h"
@@ -46,9 +45,5 @@ struct EyeFrame {
   Eigen::Vector2d to_pixel(const Vec3& in_eye) const;  ///< needs depth > 0
   Vec3 ray(double x, double y) const;                  ///< through a pixel, with a depth of 1
 };
-
-/// Where `point` (m) is seen in a picture of width x height pixels; none behind the eye.
-std::optional<Eigen::Vector2d> pixel_of(const PictureCamera& camera, int width, int height,
-                                        const Vec3& point);
 
 }  // namespace cloth

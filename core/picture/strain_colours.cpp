@@ -1,7 +1,5 @@
 #include "picture/strain_colours.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -80,10 +78,6 @@ Rgb strain_colour(double strain, double scale) {
   const double fraction = strain / scale;
   const double x = std::isnan(fraction) ? 1.0 : std::clamp(fraction, 0.0, 1.0);
   return strain_colours()[static_cast<std::size_t>(std::lround(x * (strain_colour_count - 1)))];
-}
-
-std::string colour_text(Rgb colour) {
-  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 }  // namespace cloth

@@ -3,7 +3,7 @@
 // colour vision and in print.
 #pragma once
 
-#include <string>
+#include <array>
 
 #include "picture/image.h"
 
@@ -16,8 +16,5 @@ const std::array<Rgb, strain_colour_count>& strain_colours();
 /// The colour of `strain` on a scale from 0 to `scale` (pure numbers); clamped at both ends, the last colour
 /// where it is not a number.
 Rgb strain_colour(double strain, double scale);
-
-/// "#rrggbb", for a legend.
-std::string colour_text(Rgb colour);
 
 }  // namespace cloth

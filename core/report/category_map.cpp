@@ -93,10 +93,4 @@ void draw(PlotCanvas& canvas, const CategoryMap& map) {
   canvas.end_group();
 }
 
-std::string to_svg(const CategoryMap& map) {
-  SvgWriter svg(map.width, height_of(map), map.title.empty() ? "Map" : map.title);
-  draw(svg, map);
-  return svg.finish();
-}
-
 }  // namespace cloth

@@ -27,7 +27,4 @@ struct CategoryMap {
 double height_of(const CategoryMap& map);
 void draw(PlotCanvas& canvas, const CategoryMap& map);
 
-/// A complete SVG document that needs nothing else. The same text for the same map.
-std::string to_svg(const CategoryMap& map);
-
 }  // namespace cloth

@@ -280,11 +280,4 @@ void draw(PlotCanvas& canvas, const HeatMap& map) {
   Drawing(map).draw(canvas);
 }
 
-std::string to_svg(const HeatMap& map) {
-  Drawing drawing(map);
-  SvgWriter svg(map.width, drawing.height(), map.title.empty() ? "Map" : map.title);
-  drawing.draw(svg);
-  return svg.finish();
-}
-
 }  // namespace cloth

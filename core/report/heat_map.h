@@ -52,7 +52,4 @@ void draw_cell_mark(PlotCanvas& canvas, const ClassStyle& style, SvgPoint centre
 double height_of(const HeatMap& map);
 void draw(PlotCanvas& canvas, const HeatMap& map);
 
-/// A complete SVG document that needs nothing else. The same text for the same map.
-std::string to_svg(const HeatMap& map);
-
 }  // namespace cloth

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/machine.h"
 #include "report/html_style.h"
 #include "report/svg.h"
 
@@ -13,17 +14,8 @@ namespace cloth {
 namespace {
 
 std::string verdict_class(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::none:
-      return "";
-    case Verdict::good:
-      return "good";
-    case Verdict::warn:
-      return "warn";
-    case Verdict::bad:
-      return "bad";
-  }
-  return "";
+  constexpr const char* names[] = {"", "good", "warn", "bad"};
+  return names[static_cast<std::size_t>(verdict)];
 }
 
 std::string align_class(Align align) {
@@ -150,6 +142,18 @@ void HtmlPage::facts(const std::vector<std::pair<std::string, HtmlText>>& rows) 
   for (const auto& [name, value] : rows)
     body_ += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", xml_escaped(name), value.html());
   body_ += "</tbody></table></div>\n";
+}
+
+void HtmlPage::machine_facts() {
+  heading("Machine", 3);
+  const auto rows = fact_rows(cloth::machine_facts());
+  facts({rows.begin(), rows.end()});
+}
+
+void HtmlPage::folded(const std::string& summary, const std::string& text) {
+  begin_details(summary);
+  preformatted(text);
+  end_details();
 }
 
 void HtmlPage::add_figure(const std::string& content, const HtmlText& caption, const std::string& command) {

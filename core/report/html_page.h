@@ -76,6 +76,11 @@ class HtmlPage {
   /// Two columns, name and value: how it was measured.
   void facts(const std::vector<std::pair<std::string, HtmlText>>& rows);
 
+  /// What the measurements were made on, under a heading of its own.
+  void machine_facts();
+  /// A text that can be unfolded.
+  void folded(const std::string& summary, const std::string& text);
+
   /// Numbered. `svg` is what to_svg made; `command` makes the figure, empty: none.
   void figure(const std::string& svg, const HtmlText& caption, const std::string& command = {});
   /// `text` tells what the picture shows to who cannot see it.

@@ -247,10 +247,4 @@ void draw(PlotCanvas& svg, const LinePlot& plot) {
                plot.width);
 }
 
-std::string to_svg(const LinePlot& plot) {
-  SvgWriter svg(plot.width, height_of(plot), plot.title.empty() ? "Plot" : plot.title);
-  draw(svg, plot);
-  return svg.finish();
-}
-
 }  // namespace cloth

@@ -7,18 +7,19 @@
 #include <vector>
 
 #include "report/axis.h"
-#include "report/palette.h"
 #include "report/svg.h"
 
 namespace cloth {
+
+using PlotRange = std::optional<std::pair<double, double>>;
 
 /// What an axis cannot show (not finite; zero or negative where logarithmic) is left out, and the caption
 /// says so.
 struct PlotPoint {
   double x = 0, y = 0;
-  std::optional<std::pair<double, double>> x_range{}, y_range{};  // error bars from .first to .second
-  std::string note{};                                             // lines of the tooltip after name, x and y
-  int tag = -1;                                                   // of its SvgTip
+  PlotRange x_range{}, y_range{};  // error bars from .first to .second
+  std::string note{};              // lines of the tooltip after name, x and y
+  int tag = -1;                    // of its SvgTip
 };
 
 /// A run without a result: drawn in the row of failures above the plot, at x if that can be shown, else at
@@ -74,8 +75,5 @@ struct LinePlot {
 /// The height of the whole picture [px]: titles, legend and caption take what they need.
 double height_of(const LinePlot& plot);
 void draw(PlotCanvas& canvas, const LinePlot& plot);
-
-/// A complete SVG document that needs nothing else. The same text for the same plot.
-std::string to_svg(const LinePlot& plot);
 
 }  // namespace cloth

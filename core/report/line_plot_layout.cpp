@@ -14,31 +14,30 @@ bool can_show(const LinePlot& plot, const PlotPoint& point) {
   return can_show(plot.x.scale, point.x) && can_show(plot.y.scale, point.y);
 }
 
-std::vector<double> x_values(const LinePlot& plot) {
-  std::vector<double> values;
-  for (const PlotSeries& series : plot.series) {
-    for (const PlotPoint& p : series.points) {
-      if (!can_show(plot, p)) continue;
-      values.push_back(p.x);
-      if (p.x_range) values.insert(values.end(), {p.x_range->first, p.x_range->second});
-    }
-    for (const FailedPoint& f : series.failed) values.push_back(f.x);
-  }
-  for (const ReferenceLine& line : plot.lines)
-    if (line.direction == ReferenceLine::Direction::vertical) values.push_back(line.at);
-  return values;
-}
-
-std::vector<double> y_values(const LinePlot& plot) {
+/// Of all points that can be shown, with their error bars, and of the lines across.
+std::vector<double> values_of(const LinePlot& plot, double PlotPoint::*place, PlotRange PlotPoint::*range,
+                              ReferenceLine::Direction across) {
   std::vector<double> values;
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& p : series.points) {
       if (!can_show(plot, p)) continue;
-      values.push_back(p.y);
-      if (p.y_range) values.insert(values.end(), {p.y_range->first, p.y_range->second});
+      values.push_back(p.*place);
+      if (p.*range) values.insert(values.end(), {(p.*range)->first, (p.*range)->second});
     }
   for (const ReferenceLine& line : plot.lines)
-    if (line.direction == ReferenceLine::Direction::horizontal) values.push_back(line.at);
+    if (line.direction == across) values.push_back(line.at);
+  return values;
+}
+
+std::vector<double> x_values(const LinePlot& plot) {
+  auto values = values_of(plot, &PlotPoint::x, &PlotPoint::x_range, ReferenceLine::Direction::vertical);
+  for (const PlotSeries& series : plot.series)
+    for (const FailedPoint& failed : series.failed) values.push_back(failed.x);
+  return values;
+}
+
+std::vector<double> y_values(const LinePlot& plot) {
+  auto values = values_of(plot, &PlotPoint::y, &PlotPoint::y_range, ReferenceLine::Direction::horizontal);
   if (plot.floor) values.push_back(plot.floor->y);
   return values;
 }

@@ -1,7 +1,6 @@
 // Where everything in a line plot goes, before the first line is drawn.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

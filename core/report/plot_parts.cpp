@@ -5,7 +5,7 @@
 namespace cloth {
 namespace {
 
-constexpr double title_size = 18, subtitle_size = 13, caption_size = 12, caption_line = 16.5;
+constexpr double title_size = 18, subtitle_size = 13, caption_size = 12, caption_line = 16.5, caption_gap = 8;
 constexpr double tick_length = 5, minor_length = 3;
 
 const SvgStyle axis_style() {
@@ -30,6 +30,46 @@ std::pair<double, double> inside(SvgPoint a, SvgPoint b, const Box& box) {
   cut(a.x, b.x, box.left, box.right);
   cut(a.y, b.y, box.top, box.bottom);
   return {enter, leave};
+}
+
+/// Draws them unless `svg` is null; returns where they end.
+double lay_titles(PlotCanvas* svg, const std::string& title, const std::string& subtitle, double width) {
+  double y = plot_margin;
+  for (const std::string& line : wrapped(title, title_size * 1.08, inner(width))) {
+    if (svg) svg->text({plot_margin, y + 16}, {.text = line, .size = title_size, .bold = true});
+    y += 23;
+  }
+  const PageColour& muted = page_colours().muted;
+  for (const std::string& line : wrapped(subtitle, subtitle_size, inner(width))) {
+    if (svg) svg->text({plot_margin, y + 13}, {.text = line, .size = subtitle_size, .colour = muted});
+    y += 18;
+  }
+  return y + (title.empty() && subtitle.empty() ? 0 : 10);
+}
+
+/// Likewise.
+double lay_caption(PlotCanvas* svg, const std::vector<std::string>& paragraphs, double top, double width) {
+  const PageColour& muted = page_colours().muted;
+  double y = top + caption_gap;
+  for (const std::string& paragraph : paragraphs) {
+    const std::vector<std::string> lines = wrapped(paragraph, caption_size, inner(width));
+    for (const std::string& line : lines) {
+      if (svg)
+        svg->text({plot_margin, y + caption_size}, {.text = line, .size = caption_size, .colour = muted});
+      y += caption_line;
+    }
+    if (!lines.empty()) y += 4;
+  }
+  return y;
+}
+
+/// With its power of ten, beside the axis.
+void draw_tick_text(PlotCanvas& svg, SvgPoint at, const Tick& tick, Anchor anchor) {
+  svg.text(at, {.text = tick.text,
+                .size = tick_size,
+                .anchor = anchor,
+                .colour = page_colours().muted,
+                .superscript = tick.superscript});
 }
 
 }  // namespace
@@ -57,53 +97,27 @@ std::string clipped_path(const std::vector<SvgPoint>& points, const Box& box) {
 }
 
 double titles_height(const std::string& title, const std::string& subtitle, double width) {
-  double height = plot_margin;
-  height += 23 * double(wrapped(title, title_size * 1.08, inner(width)).size());
-  height += 18 * double(wrapped(subtitle, subtitle_size, inner(width)).size());
-  return height + (title.empty() && subtitle.empty() ? 0 : 10);
+  return lay_titles(nullptr, title, subtitle, width);
 }
 
 void draw_titles(PlotCanvas& svg, const std::string& title, const std::string& subtitle, double width) {
-  double y = plot_margin;
-  for (const std::string& line : wrapped(title, title_size * 1.08, inner(width))) {
-    svg.text({plot_margin, y + 16}, {.text = line, .size = title_size, .bold = true});
-    y += 23;
-  }
-  for (const std::string& line : wrapped(subtitle, subtitle_size, inner(width))) {
-    svg.text({plot_margin, y + 13}, {.text = line, .size = subtitle_size, .colour = page_colours().muted});
-    y += 18;
-  }
+  lay_titles(&svg, title, subtitle, width);
 }
 
 double caption_height(const std::vector<std::string>& paragraphs, double width) {
-  double height = 0;
-  for (const std::string& paragraph : paragraphs) {
-    const std::size_t lines = wrapped(paragraph, caption_size, inner(width)).size();
-    if (lines > 0) height += caption_line * double(lines) + 4;
-  }
-  return height > 0 ? height + 8 : 0;
+  const double height = lay_caption(nullptr, paragraphs, 0, width);
+  return height > caption_gap ? height : 0;
 }
 
 void draw_caption(PlotCanvas& svg, const std::vector<std::string>& paragraphs, double top, double width) {
-  double y = top + 8;
-  for (const std::string& paragraph : paragraphs) {
-    const std::vector<std::string> lines = wrapped(paragraph, caption_size, inner(width));
-    for (const std::string& line : lines) {
-      svg.text({plot_margin, y + caption_size},
-               {.text = line, .size = caption_size, .colour = page_colours().muted});
-      y += caption_line;
-    }
-    if (!lines.empty()) y += 4;
-  }
-}
-
-double tick_width(const Tick& tick) {
-  return text_width(tick.text, tick_size) + text_width(tick.superscript, 0.75 * tick_size);
+  lay_caption(&svg, paragraphs, top, width);
 }
 
 double widest_tick(const std::vector<Tick>& ticks) {
   double widest = 0;
-  for (const Tick& tick : ticks) widest = std::max(widest, tick_width(tick));
+  for (const Tick& tick : ticks)
+    widest =
+        std::max(widest, text_width(tick.text, tick_size) + text_width(tick.superscript, 0.75 * tick_size));
   return widest;
 }
 
@@ -116,12 +130,7 @@ void draw_x_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, 
     const double x = map.place(tick.value);
     if (grid && tick.major) svg.line({x, frame.top}, {x, frame.bottom}, {.stroke = page_colours().grid});
     svg.line({x, frame.bottom}, {x, frame.bottom + (tick.major ? tick_length : minor_length)}, axis_style());
-    if (tick.major)
-      svg.text({x, frame.bottom + tick_length + 14}, {.text = tick.text,
-                                                      .size = tick_size,
-                                                      .anchor = Anchor::middle,
-                                                      .colour = page_colours().muted,
-                                                      .superscript = tick.superscript});
+    if (tick.major) draw_tick_text(svg, {x, frame.bottom + tick_length + 14}, tick, Anchor::middle);
   }
   if (!title.empty())
     svg.text({(frame.left + frame.right) / 2, frame.bottom + 39},
@@ -136,12 +145,7 @@ void draw_y_axis(PlotCanvas& svg, const AxisMap& map, const std::string& title, 
     const double y = map.place(tick.value);
     if (grid && tick.major) svg.line({frame.left, y}, {frame.right, y}, {.stroke = page_colours().grid});
     svg.line({frame.left - (tick.major ? tick_length : minor_length), y}, {frame.left, y}, axis_style());
-    if (tick.major)
-      svg.text({frame.left - tick_length - 4, y + 4}, {.text = tick.text,
-                                                       .size = tick_size,
-                                                       .anchor = Anchor::end,
-                                                       .colour = page_colours().muted,
-                                                       .superscript = tick.superscript});
+    if (tick.major) draw_tick_text(svg, {frame.left - tick_length - 4, y + 4}, tick, Anchor::end);
   }
   if (!title.empty())
     svg.text({frame.left - tick_length - widest_tick(ticks) - 18, (frame.top + frame.bottom) / 2},

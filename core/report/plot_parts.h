@@ -35,7 +35,6 @@ void draw_titles(PlotCanvas& svg, const std::string& title, const std::string& s
 double caption_height(const std::vector<std::string>& paragraphs, double width);
 void draw_caption(PlotCanvas& svg, const std::vector<std::string>& paragraphs, double top, double width);
 
-double tick_width(const Tick& tick);
 double widest_tick(const std::vector<Tick>& ticks);
 
 /// Grid lines, ticks and labels below the frame; the title too unless it is empty.

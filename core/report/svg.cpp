@@ -4,7 +4,10 @@
 
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <numbers>
+
+#include "io/printable.h"
 
 namespace cloth {
 namespace {
@@ -15,19 +18,9 @@ constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
 /// Bytes of the UTF-8 character at the beginning, 0 if there is none that XML allows.
 std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return byte(0) >= 0x20 || text[0] == '\n' || text[0] == '\t' ? 1 : 0;
-  const std::size_t length = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : 2;
-  if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < length) return 0;
-  unsigned code = byte(0) & (0xFFu >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3Fu);
-  }
-  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  const bool forbidden =
-      (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF || code == 0xFFFE || code == 0xFFFF;
-  return too_long || forbidden ? 0 : length;
+  const Utf8Character character = first_character(text);
+  const bool is_control = character.code < 0x20 && character.code != '\n' && character.code != '\t';
+  return is_control || character.code == 0xFFFE || character.code == 0xFFFF ? 0 : character.length;
 }
 
 /// Of an em, after the groups of equal width in Helvetica's metrics.
@@ -42,18 +35,11 @@ double character_width(char c) {
 }
 
 std::string dash_array(Dash dash, double width) {
-  const double w = std::max(width, 1.0);
-  switch (dash) {
-    case Dash::solid:
-      return "";
-    case Dash::dashed:
-      return svg_number(4 * w) + " " + svg_number(2.5 * w);
-    case Dash::dotted:
-      return svg_number(w) + " " + svg_number(2 * w);
-    case Dash::dash_dotted:
-      return svg_number(5 * w) + " " + svg_number(2 * w) + " " + svg_number(w) + " " + svg_number(2 * w);
-  }
-  return "";
+  static const std::vector<double> lengths[] = {{}, {4, 2.5}, {1, 2}, {5, 2, 1, 2}};  // in widths
+  std::string text;
+  for (const double length : lengths[static_cast<std::size_t>(dash)])
+    text += (text.empty() ? "" : " ") + svg_number(length * std::max(width, 1.0));
+  return text;
 }
 
 std::string attribute(std::string_view name, std::string_view value) {
@@ -79,6 +65,17 @@ std::string attributes_of(const SvgStyle& style) {
   if (style.opacity != 1) text += number_attribute("opacity", style.opacity);
   return (names.empty() ? "" : attribute("class", names)) + text;
 }
+
+/// Markers with corners, lengths in radii of the marker.
+struct Polygon {
+  Marker marker;
+  int count;
+  double first, radius, below = 0, inner = 0;  ///< see corners(); `below` the marker's place
+};
+constexpr Polygon polygons[] = {{Marker::square, 4, 45, 1.25},      {Marker::triangle_up, 3, -90, 1.4, 0.2},
+                                {Marker::diamond, 4, 0, 1.35},      {Marker::triangle_down, 3, 90, 1.4, -0.2},
+                                {Marker::pentagon, 5, -90, 1.2},    {Marker::hexagon, 6, 0, 1.15},
+                                {Marker::star, 5, -90, 1.5, 0, 0.6}};
 
 /// A polygon's corners, from `first` degrees (0: right, -90: up) on; with `inner` a star.
 std::vector<SvgPoint> corners(SvgPoint centre, int count, double first, double radius, double inner = 0) {
@@ -106,24 +103,16 @@ std::string short_number(double value, int digits) {
 }
 
 std::string xml_escaped(std::string_view text) {
+  static const std::map<char, const char*> entities{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string out;
   while (!text.empty()) {
     const std::size_t length = character_length(text);
-    if (length == 0) {
+    const auto entity = entities.find(text[0]);
+    if (length == 0)
       out += replacement;
-    } else if (text[0] == '&') {
-      out += "&amp;";
-    } else if (text[0] == '<') {
-      out += "&lt;";
-    } else if (text[0] == '>') {
-      out += "&gt;";
-    } else if (text[0] == '"') {
-      out += "&quot;";
-    } else if (text[0] == '\'') {
-      out += "&#39;";
-    } else {
-      out += text.substr(0, length);
-    }
+    else
+      out += entity == entities.end() ? text.substr(0, length) : entity->second;
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out;
@@ -173,30 +162,15 @@ std::string marker_path(Marker marker, SvgPoint c, double r) {
     return path_through({{c.x - dx, c.y - dy}, {c.x + dx, c.y + dy}}) +
            path_through({{c.x - dy, c.y + dx}, {c.x + dy, c.y - dx}});
   };
-  switch (marker) {
-    case Marker::circle:
-      return fmt::format("M{0} {1}a{2} {2} 0 1 0 {3} 0a{2} {2} 0 1 0 -{3} 0Z", svg_number(c.x - r),
-                         svg_number(c.y), svg_number(r), svg_number(2 * r));
-    case Marker::square:
-      return path_through(corners(c, 4, 45, 1.25 * r), true);
-    case Marker::triangle_up:
-      return path_through(corners({c.x, c.y + 0.2 * r}, 3, -90, 1.4 * r), true);
-    case Marker::triangle_down:
-      return path_through(corners({c.x, c.y - 0.2 * r}, 3, 90, 1.4 * r), true);
-    case Marker::diamond:
-      return path_through(corners(c, 4, 0, 1.35 * r), true);
-    case Marker::pentagon:
-      return path_through(corners(c, 5, -90, 1.2 * r), true);
-    case Marker::hexagon:
-      return path_through(corners(c, 6, 0, 1.15 * r), true);
-    case Marker::star:
-      return path_through(corners(c, 5, -90, 1.5 * r, 0.6 * r), true);
-    case Marker::plus:
-      return strokes(1.2 * r, 0);
-    case Marker::cross:
-      return strokes(0.95 * r, 0.95 * r);
-  }
-  return "";
+  if (marker == Marker::circle)
+    return fmt::format("M{0} {1}a{2} {2} 0 1 0 {3} 0a{2} {2} 0 1 0 -{3} 0Z", svg_number(c.x - r),
+                       svg_number(c.y), svg_number(r), svg_number(2 * r));
+  for (const Polygon& polygon : polygons)
+    if (polygon.marker == marker)
+      return path_through(corners({c.x, c.y + polygon.below * r}, polygon.count, polygon.first,
+                                  polygon.radius * r, polygon.inner * r),
+                          true);
+  return marker == Marker::plus ? strokes(1.2 * r, 0) : strokes(0.95 * r, 0.95 * r);
 }
 
 SvgWriter::SvgWriter(double width, double height, const std::string& description) {

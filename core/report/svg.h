@@ -112,4 +112,13 @@ class SvgWriter : public PlotCanvas {
   int depth_ = 0;
 };
 
+/// A complete SVG document that needs nothing else: of a LinePlot, a HeatMap or a CategoryMap. The same text
+/// for the same plot.
+template <class Plot>
+std::string to_svg(const Plot& plot) {
+  SvgWriter svg(plot.width, height_of(plot), plot.title.empty() ? "Plot" : plot.title);
+  draw(svg, plot);
+  return svg.finish();
+}
+
 }  // namespace cloth

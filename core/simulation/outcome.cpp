@@ -7,15 +7,8 @@
 namespace cloth {
 
 const char* name_of(Status status) {
-  switch (status) {
-    case Status::finished:
-      return "finished";
-    case Status::stopped:
-      return "stopped";
-    case Status::diverged:
-      return "diverged";
-  }
-  return "";
+  constexpr const char* names[] = {"finished", "stopped", "diverged"};
+  return names[static_cast<std::size_t>(status)];
 }
 
 StepCount StepCount::since(const StepCount& earlier) const {

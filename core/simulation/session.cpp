@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "contact/start_check.h"
 #include "io/fnv_hash.h"
 #include "scene/scene_parameters.h"

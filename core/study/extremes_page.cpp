@@ -101,7 +101,7 @@ std::vector<std::pair<std::string, HtmlText>> conditions(const std::string& comm
 
 }  // namespace
 
-std::string extremes_html(const ExtremesTable& table, const std::string& command) {
+std::string study_page(const ExtremesTable& table, const std::string& command, double) {
   HtmlPage page(
       "Stiff and extreme cases",
       fmt::format("{} methods on {} cases that break simulations. Every cell is a finite result or a "

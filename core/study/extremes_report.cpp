@@ -167,7 +167,7 @@ void visit_fields(CsvFields& fields, ExtremeCell& cell) {
   fields.whole("ended_early", cell.ended_early);
 }
 
-CategoryMap extremes_map(const ExtremesTable& table) {
+CategoryMap study_plot(const ExtremesTable& table) {
   std::vector<ClassStyle> classes;
   for (std::size_t k = 0; k < std::size(extreme_status_names); ++k) {
     const auto status = static_cast<ExtremeStatus>(k);
@@ -194,13 +194,13 @@ CategoryMap extremes_map(const ExtremesTable& table) {
   return map;
 }
 
-CsvTable extremes_table(const ExtremesTable& table) {
+CsvTable table_of(const ExtremesTable& table) {
   CsvTable rows{written(ExtremeCell{}).names, {}};
   for (const ExtremeCell& cell : table.cells) rows.rows.push_back(written(cell).texts);
   return rows;
 }
 
-std::string extremes_text(const ExtremesTable& table) {
+std::string study_text(const ExtremesTable& table) {
   std::string text = matrix_text(table) + "\n";
   bool any = false;
   for (const ExtremeCell& cell : table.cells) {
@@ -217,7 +217,7 @@ std::string extremes_text(const ExtremesTable& table) {
                             count_of_statuses(table), extreme_seed);
 }
 
-std::string extremes_json(const ExtremesTable& table) {
+std::string study_json(const ExtremesTable& table) {
   using json = nlohmann::ordered_json;
   json root{{"complete", table.is_complete()},
             {"seed", extreme_seed},

@@ -32,18 +32,18 @@ std::vector<const ExtremeCell*> not_stable(const ExtremesTable& table, std::size
 std::string reason_of(const ExtremeCell& cell);
 
 /// case, method, status, detail, steps, max_strain, energy_ratio, wall_s, time_step_s, ended_early
-CsvTable extremes_table(const ExtremesTable& table);
+CsvTable table_of(const ExtremesTable& table);
 void visit_fields(CsvFields& fields, ExtremeCell& cell);
 
 /// Methods over cases, a cell for each that was run.
-CategoryMap extremes_map(const ExtremesTable& table);
+CategoryMap study_plot(const ExtremesTable& table);
 
 /// A row of words for each case, then every cell that is not stable with its reason.
-std::string extremes_text(const ExtremesTable& table);
-std::string extremes_json(const ExtremesTable& table);
+std::string study_text(const ExtremesTable& table);
+std::string study_json(const ExtremesTable& table);
 std::string extremes_markdown(const ExtremesTable& table);
 
-/// report.html. `command` made it.
-std::string extremes_html(const ExtremesTable& table, const std::string& command);
+/// report.html. `command` made it in `wall` s.
+std::string study_page(const ExtremesTable& table, const std::string& command, double wall = 0);
 
 }  // namespace cloth

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/line_file.h"
+#include "io/text_file.h"
 
 namespace cloth {
 

@@ -83,6 +83,7 @@ struct StabilityMap {
   int rows = 0, columns = 0;  ///< of the grid that was run
   bool complete = true;       ///< false: stopped before the end
   std::vector<MethodMap> methods{};
+  bool is_complete() const { return complete; }
 };
 
 /// What the axes and methods of `options` would make of the scene that breaks a rule. Empty: the map can be

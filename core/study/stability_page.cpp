@@ -92,15 +92,14 @@ void add_agreement(HtmlPage& page, const StabilityMap& map) {
 
 }  // namespace
 
-std::string stability_page(const StabilityMap& map, const std::string& svg, const std::string& command,
-                           double wall) {
+std::string study_page(const StabilityMap& map, const std::string& command, double wall) {
   HtmlPage page(
       "Stability: " + map.scene.title,
       "Which steps each method can take, measured by running the scene and judged by its energy, with "
       "the predicted limits over it.");
   if (!map.complete)
     page.notice("The study was interrupted. Cells that were not run are empty.", Verdict::warn);
-  page.figure(svg,
+  page.figure(to_svg(study_plot(map)),
               "Colours and marks are explained in the legend, thresholds below it. A cell's tooltip has its "
               "energy error, its steps and why it ended.",
               command);
@@ -119,11 +118,9 @@ std::string stability_page(const StabilityMap& map, const std::string& svg, cons
                                                       {"x axis", html_code(axis_text(map.options.x))},
                                                       {"y axis", html_code(axis_text(map.options.y))},
                                                       {"time taken", fmt::format("{:.3g} s", wall)}};
-  for (const auto& [name, value] : fact_rows(machine_facts())) facts.emplace_back(name, value);
+  for (const auto& row : fact_rows(machine_facts())) facts.emplace_back(row);
   page.facts(facts);
-  page.begin_details("The scene as given");
-  page.preformatted(write_scene(map.scene));
-  page.end_details();
+  page.folded("The scene as given", write_scene(map.scene));
   return page.to_html();
 }
 

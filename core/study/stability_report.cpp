@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "integrators/registry.h"
@@ -183,15 +182,11 @@ void visit_fields(CsvFields& fields, StabilityCell& cell, const std::string& met
   if (status < refused_status) cell.run_class = static_cast<RunClass>(status);
 }
 
-CsvTable stability_table(const StabilityMap& map) {
+CsvTable table_of(const StabilityMap& map) {
   CsvTable table{written(StabilityCell{}, std::string()).names, {}};
   for (const MethodMap& method : map.methods)
     for (const StabilityCell& cell : method.cells) table.rows.push_back(written(cell, method.method).texts);
   return table;
-}
-
-std::string stability_csv(const StabilityMap& map) {
-  return csv_text(stability_table(map), "\r\n");
 }
 
 std::vector<std::string> criterion_text(const StabilityMap& map) {
@@ -233,7 +228,7 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   return text;
 }
 
-HeatMap stability_heat_map(const StabilityMap& map) {
+HeatMap study_plot(const StabilityMap& map) {
   HeatMap heat;
   heat.title = "Stability: " + map.scene.title;
   heat.subtitle = fmt::format("{} x {} particles, {:g} periods of the fastest motion", map.rows, map.columns,
@@ -270,7 +265,7 @@ double largest_deviation(const MethodMap& method) {
   return worst ? worst->middle() / worst->limits.predicted : 0;
 }
 
-std::string stability_text(const StabilityMap& map) {
+std::string study_text(const StabilityMap& map) {
   std::string text = fmt::format("{:<22} {:>9} {:>11} {:>9} {:>9} {:>7}   {}\n", "method", "accurate",
                                  "inaccurate", "growth", "diverged", "failed", "measured / predicted limit");
   for (const MethodMap& method : map.methods) {
@@ -284,7 +279,7 @@ std::string stability_text(const StabilityMap& map) {
   return text;
 }
 
-std::string stability_json(const StabilityMap& map) {
+std::string study_json(const StabilityMap& map) {
   using json = nlohmann::ordered_json;
   const auto limit_json = [](double limit) { return std::isinf(limit) ? json("infinity") : json(limit); };
   json root{{"scene_hash", scene_hash(map.scene)},

@@ -22,8 +22,7 @@ std::string status_of(const StabilityCell& cell);
 
 /// method,x,y,status,energy_ratio,predicted_limit_s,guaranteed_limit_s,provot_s,spectrum_limit_s,time_step_s,
 /// growth_rate_per_s,steps,detail,wanted_steps; a row for each cell, method after method, from the lowest y.
-CsvTable stability_table(const StabilityMap& map);
-std::string stability_csv(const StabilityMap& map);
+CsvTable table_of(const StabilityMap& map);
 void visit_fields(CsvFields& fields, StabilityCell& cell, const std::string& method);
 
 std::size_t count_of(const MethodMap& method, RunClass run_class);
@@ -34,17 +33,16 @@ std::string axis_text(const StudyAxis& axis);
 /// The criterion in sentences, with its thresholds and what was done to the scene.
 std::vector<std::string> criterion_text(const StabilityMap& map);
 
-HeatMap stability_heat_map(const StabilityMap& map);
+HeatMap study_plot(const StabilityMap& map);
 
 /// measured / predicted of the bracketed limit that is farthest from its prediction; 0 where there is none.
 double largest_deviation(const MethodMap& method);
 
-/// report.html. `svg` is that of the heat map, `command` what made it, `wall` in s.
-std::string stability_page(const StabilityMap& map, const std::string& svg, const std::string& command,
-                           double wall);
+/// report.html. `command` is what made it in `wall` s.
+std::string study_page(const StabilityMap& map, const std::string& command, double wall);
 
 /// For a terminal: a line for each method.
-std::string stability_text(const StabilityMap& map);
-std::string stability_json(const StabilityMap& map);
+std::string study_text(const StabilityMap& map);
+std::string study_json(const StabilityMap& map);
 
 }  // namespace cloth

@@ -8,11 +8,11 @@
 #include "scene/scene_json.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
-#include "study/reference_states.h"
+#include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
 #include "study/study_recorder.h"
-#include "study/work_precision_tables.h"
+#include "study/work_precision_report.h"
 
 namespace cloth {
 namespace {
@@ -72,16 +72,12 @@ const char* kind_of(const StudyTable& table) {
 }
 
 std::string title_of(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return study->scene.title;
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return map->scene.title;
-  const auto& extremes = std::get<ExtremesTable>(table);
-  return extremes.scene ? extremes.scene->title : "The fixed list of cases";
+  const Scene* scene = scene_of(table);
+  return scene ? scene->title : "The fixed list of cases";
 }
 
 bool is_complete(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return !study->stopped;
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return map->complete;
-  return std::get<ExtremesTable>(table).is_complete();
+  return std::visit([](const auto& of) { return of.is_complete(); }, table);
 }
 
 const char* csv_name(const StudyTable& table) {
@@ -90,21 +86,15 @@ const char* csv_name(const StudyTable& table) {
 }
 
 std::string study_csv(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return csv_text(run_table(*study), "\r\n");
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_csv(*map);
-  return csv_text(extremes_table(std::get<ExtremesTable>(table)), "\r\n");
+  return csv_text(std::visit([](const auto& of) { return table_of(of); }, table), "\r\n");
 }
 
 std::string study_text(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return work_precision_text(*study);
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_text(*map);
-  return extremes_text(std::get<ExtremesTable>(table));
+  return std::visit([](const auto& of) { return study_text(of); }, table);
 }
 
-std::string study_json_text(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return work_precision_json(*study);
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_json(*map);
-  return extremes_json(std::get<ExtremesTable>(table));
+std::string study_json(const StudyTable& table) {
+  return std::visit([](const auto& of) { return study_json(of); }, table);
 }
 
 std::string study_index(const std::filesystem::path& folder, const StudyTable& table,

@@ -10,7 +10,8 @@
 #include <string>
 #include <variant>
 
-#include "io/line_file.h"
+#include "io/file_digest.h"
+#include "io/text_file.h"
 #include "study/extremes.h"
 #include "study/stability_map.h"
 #include "study/work_precision.h"
@@ -59,7 +60,7 @@ StudyReading read_study(const std::filesystem::path& folder);
 
 /// For a terminal, as the study's own command prints it.
 std::string study_text(const StudyTable& table);
-std::string study_json_text(const StudyTable& table);  ///< as with --json
+std::string study_json(const StudyTable& table);  ///< as with --json
 
 /// The table that a folder of this kind keeps its rows in: "work_precision.csv".
 const char* csv_name(const StudyTable& table);

@@ -15,7 +15,7 @@
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
-#include "study/work_precision_tables.h"
+#include "study/work_precision_report.h"
 
 namespace cloth {
 namespace {

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "io/text_file.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
-#include "study/reference_states.h"
+#include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
-#include "study/work_precision_tables.h"
 
 namespace cloth {
 namespace {
@@ -43,20 +41,6 @@ std::optional<IoError> begin_table(ResultFolder& folder, const char* name, const
   if (auto error = folder.add(name)) return error;
   if (auto error = write_text_file(folder / name, csv_text(kept, "\n"))) return error;
   return file.open_at_end(folder / name);
-}
-
-std::string svg_of(const StudyTable& table) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table))
-    return to_svg(error_plot(*study, PlotAgainst::run_time));
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return to_svg(stability_heat_map(*map));
-  return to_svg(extremes_map(std::get<ExtremesTable>(table)));
-}
-
-std::string page_of(const StudyTable& table, const std::string& svg, const std::string& command,
-                    double wall) {
-  if (const auto* study = std::get_if<WorkPrecision>(&table)) return work_precision_page(*study, command);
-  if (const auto* map = std::get_if<StabilityMap>(&table)) return stability_page(*map, svg, command, wall);
-  return extremes_html(std::get<ExtremesTable>(table), command);
 }
 
 bool is_finished(const StabilityCell& cell) {
@@ -148,12 +132,12 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
       samples_kept_.emplace_back();
       for (const WorkPrecisionRun& run : method.runs) samples_kept_.back().push_back(run.samples.size());
     }
-    if (auto error = begin_table(folder_, csv_name(table), run_table(*study), rows_)) return error;
+    if (auto error = begin_table(folder_, csv_name(table), table_of(*study), rows_)) return error;
     return begin_table(folder_, samples_name, sample_table(*study), samples_);
   }
   CsvTable kept;
   if (const auto* map = std::get_if<StabilityMap>(&table)) {
-    kept.header = stability_table({}).header;
+    kept.header = table_of(StabilityMap{}).header;
     rows_kept_.assign(map->options.methods.size(), 0);
     for (std::size_t m = 0; m < map->methods.size(); ++m) {
       for (const StabilityCell& cell : map->methods[m].cells) {
@@ -165,7 +149,7 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
     }
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
-    kept = extremes_table(extremes);
+    kept = table_of(extremes);
     rows_kept_ = {extremes.cells.size()};
   }
   return begin_table(folder_, csv_name(table), kept, rows_);
@@ -239,10 +223,11 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
       folder_.note(*states_);  // an earlier part of the study may have written it
     }
   }
-  const std::string svg = svg_of(table);
+  const std::string svg = std::visit([](const auto& of) { return to_svg(study_plot(of)); }, table);
+  const std::string page = std::visit([&](const auto& of) { return study_page(of, command_, wall); }, table);
   const std::string svg_name = std::filesystem::path(csv_name(table)).replace_extension("svg").string();
   if (auto error = folder_.write(svg_name, svg)) return error;
-  if (auto error = folder_.write("report.html", page_of(table, svg, command_, wall))) return error;
+  if (auto error = folder_.write("report.html", page)) return error;
   return folder_.finish("study.json",
                         study_index(folder_.path(), table, command_, wall, folder_.digests(), states_));
 }

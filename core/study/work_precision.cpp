@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "cloth/mesh_cloth.h"
 #include "geometry/split_mix.h"

@@ -84,6 +84,7 @@ struct WorkPrecision {
   ReferenceSolution reference;
   std::vector<MethodStudy> methods;
   bool stopped = false;
+  bool is_complete() const { return !stopped; }
 };
 
 /// What the counted work should take on a machine of today, in s: decides what fits the budget, the same way

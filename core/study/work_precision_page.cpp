@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "io/machine.h"
 #include "report/html_page.h"
 #include "scene/scene_json.h"
 #include "study/work_precision_report.h"
-#include "study/work_precision_tables.h"
 
 namespace cloth {
 namespace {
@@ -251,18 +248,13 @@ void add_protocol(const WorkPrecision& study, HtmlPage& page) {
        {"Solvers",
         "Newton's method to a relative change of 1e-8; projective and XPBD with the scene's number "
         "of iterations"}});
-  page.heading("Machine", 3);
-  std::vector<std::pair<std::string, HtmlText>> machine;
-  for (const auto& [name, value] : fact_rows(machine_facts())) machine.emplace_back(name, value);
-  page.facts(machine);
-  page.begin_details("The scene");
-  page.preformatted(write_scene(study.scene));
-  page.end_details();
+  page.machine_facts();
+  page.folded("The scene", write_scene(study.scene));
 }
 
 }  // namespace
 
-std::string work_precision_page(const WorkPrecision& study, const std::string& command) {
+std::string study_page(const WorkPrecision& study, const std::string& command, double) {
   HtmlPage page(
       "Error against run time: " + study.scene.title,
       "What an error costs with each method: every method with a series of steps, its errors against a "
@@ -270,17 +262,17 @@ std::string work_precision_page(const WorkPrecision& study, const std::string& c
   add_notices(study, page);
   page.heading("Error against run time");
   page.figure(
-      to_svg(error_plot(study, PlotAgainst::run_time)),
+      to_svg(study_plot(study)),
       "Down and left is better. A line of slope -p belongs to order p. Marks in the row on top are runs "
       "that failed or were refused; rest the pointer on a mark for its numbers.",
       command);
   add_cheapest(study, page);
   add_conclusions(study, page);
   add_orders(study, page);
-  page.figure(to_svg(error_plot(study, PlotAgainst::step)),
+  page.figure(to_svg(study_plot(study, PlotAgainst::step)),
               "The same errors against the step: here the slope is the order itself.", command);
   page.figure(
-      to_svg(error_plot(study, PlotAgainst::force_evaluations)),
+      to_svg(study_plot(study, PlotAgainst::force_evaluations)),
       "The same errors against force evaluations, which do not depend on the machine. Implicit methods "
       "also solve equations, which this axis does not count.",
       command);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "study/work_precision_report.h"
@@ -10,34 +9,15 @@ namespace cloth {
 namespace {
 
 double abscissa(const WorkPrecisionRun& run, PlotAgainst against) {
-  switch (against) {
-    case PlotAgainst::run_time:
-      return run.time.least;
-    case PlotAgainst::step:
-      return run.time_step;
-    case PlotAgainst::force_evaluations:
-      return static_cast<double>(run.count.force_evaluations);
-  }
-  return 0;
+  if (against == PlotAgainst::step) return run.time_step;
+  return against == PlotAgainst::run_time ? run.time.least : static_cast<double>(run.count.force_evaluations);
 }
 
 Axis axis_of(PlotAgainst against) {
-  Axis axis;
-  axis.scale = AxisScale::logarithmic;
-  switch (against) {
-    case PlotAgainst::run_time:
-      axis.label = "run time";
-      axis.unit = "s";
-      break;
-    case PlotAgainst::step:
-      axis.label = "time step";
-      axis.unit = "s";
-      break;
-    case PlotAgainst::force_evaluations:
-      axis.label = "force evaluations";
-      break;
-  }
-  return axis;
+  static const Axis axes[] = {{.label = "run time", .unit = "s", .scale = AxisScale::logarithmic},
+                              {.label = "time step", .unit = "s", .scale = AxisScale::logarithmic},
+                              {.label = "force evaluations", .scale = AxisScale::logarithmic}};
+  return axes[static_cast<std::size_t>(against)];
 }
 
 std::string note_of(const WorkPrecisionRun& run) {
@@ -117,7 +97,7 @@ std::vector<std::string> caption_of(const WorkPrecision& study, PlotAgainst agai
 
 }  // namespace
 
-LinePlot error_plot(const WorkPrecision& study, PlotAgainst against) {
+LinePlot study_plot(const WorkPrecision& study, PlotAgainst against) {
   LinePlot plot;
   plot.title = "Error against " + axis_of(against).label;
   plot.subtitle = study.scene.title;

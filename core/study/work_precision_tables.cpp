@@ -1,5 +1,3 @@
-#include "study/work_precision_tables.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "io/machine.h"
 #include "scene/scene_json.h"
+#include "study/work_precision_report.h"
 
 namespace cloth {
 namespace {
@@ -129,7 +128,7 @@ void visit_fields(CsvFields& fields, TimedSample& sample, const MethodStudy& met
   fields.number("wall_s", sample.seconds);
 }
 
-CsvTable run_table(const WorkPrecision& study) {
+CsvTable table_of(const WorkPrecision& study) {
   CsvTable table{written(WorkPrecisionRun{}, study, MethodStudy{}).names, {}};
   for (const MethodStudy& method : study.methods)
     for (const WorkPrecisionRun& run : method.runs) table.rows.push_back(written(run, study, method).texts);
@@ -144,7 +143,7 @@ CsvTable sample_table(const WorkPrecision& study) {
   return table;
 }
 
-std::string work_precision_json(const WorkPrecision& study) {
+std::string study_json(const WorkPrecision& study) {
   const ReferenceSolution& reference = study.reference;
   json root{{"title", study.scene.title},
             {"scene_hash", scene_hash(study.scene)},
@@ -204,7 +203,7 @@ std::optional<std::size_t> cheapest(const WorkPrecision& study, double error) {
   return best;
 }
 
-std::string work_precision_text(const WorkPrecision& study) {
+std::string study_text(const WorkPrecision& study) {
   std::string text =
       fmt::format("{}\n{:.6g} s simulated, {} sample times; reference trusted to {:.2g} m (RMS)\n\n",
                   study.scene.title, study.horizon, study.samples, study.reference.floor.rms_position);

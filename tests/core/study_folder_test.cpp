@@ -10,7 +10,6 @@
 #include "study/study_recorder.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
-#include "study/work_precision_tables.h"
 #include "support/files.h"
 #include "support/small_studies.h"
 
@@ -57,7 +56,7 @@ TEST(StudyFolder, WorkPrecisionComesBackAsItWasWritten) {
   EXPECT_EQ(study_csv(back), study_csv(study));
   EXPECT_EQ(sample_table(back).rows, sample_table(study).rows);
   for (const PlotAgainst against : {PlotAgainst::run_time, PlotAgainst::step, PlotAgainst::force_evaluations})
-    EXPECT_EQ(to_svg(error_plot(back, against)), to_svg(error_plot(study, against)));
+    EXPECT_EQ(to_svg(study_plot(back, against)), to_svg(study_plot(study, against)));
 }
 
 TEST(StudyFolder, AStabilityMapComesBackAsItWasWritten) {
@@ -65,9 +64,9 @@ TEST(StudyFolder, AStabilityMapComesBackAsItWasWritten) {
   const StabilityMap map = run_stability_map(scene, small_map(scene));
   const TemporaryFolder folder;
   const auto back = std::get<StabilityMap>(read_back(folder, map).table);
-  EXPECT_EQ(stability_csv(back), stability_csv(map));
-  EXPECT_EQ(stability_json(back), stability_json(map));
-  EXPECT_EQ(to_svg(stability_heat_map(back)), to_svg(stability_heat_map(map)));
+  EXPECT_EQ(study_csv(back), study_csv(map));
+  EXPECT_EQ(study_json(back), study_json(map));
+  EXPECT_EQ(to_svg(study_plot(back)), to_svg(study_plot(map)));
 }
 
 TEST(StudyFolder, ExtremesComeBackAsTheyWereWritten) {
@@ -75,8 +74,8 @@ TEST(StudyFolder, ExtremesComeBackAsTheyWereWritten) {
   const TemporaryFolder folder;
   const auto back = std::get<ExtremesTable>(read_back(folder, table).table);
   EXPECT_EQ(study_csv(back), study_csv(table));
-  EXPECT_EQ(extremes_text(back), extremes_text(table));
-  EXPECT_EQ(to_svg(extremes_map(back)), to_svg(extremes_map(table)));
+  EXPECT_EQ(study_text(back), study_text(table));
+  EXPECT_EQ(to_svg(study_plot(back)), to_svg(study_plot(table)));
 }
 
 TEST(StudyFolder, SaysWhatIsWrongWithIt) {
@@ -119,10 +118,10 @@ TEST(StudyFolder, TheLastPartialMapIsTheFinalOne) {
   int calls = 0;
   options.partial = [&](const StabilityMap& so_far) {
     ++calls;
-    last = stability_csv(so_far) + stability_json(so_far);
+    last = study_csv(so_far) + study_json(so_far);
   };
   const StabilityMap map = run_stability_map(scene, options);
-  EXPECT_EQ(last, stability_csv(map) + stability_json(map));
+  EXPECT_EQ(last, study_csv(map) + study_json(map));
   EXPECT_GE(calls, 2 * 4 * 3);
 }
 

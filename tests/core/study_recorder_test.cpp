@@ -8,11 +8,10 @@
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
-#include "study/reference_states.h"
+#include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
-#include "study/work_precision_tables.h"
 #include "support/files.h"
 #include "support/small_studies.h"
 
@@ -66,12 +65,12 @@ TEST(StudyRecorder, OfAMapThatIsKilledAgainAndAgainEndsWithTheSameMap) {
   };
   const StabilityMap map = run_stability_map(scene, options);
   EXPECT_LE(run, 4);
-  EXPECT_EQ(stability_csv(map), stability_csv(whole));
-  EXPECT_EQ(stability_json(map), stability_json(whole));
+  EXPECT_EQ(study_csv(map), study_csv(whole));
+  EXPECT_EQ(study_json(map), study_json(whole));
   ASSERT_FALSE(recorder.end(map, 1));
   const StudyReading reading = read_study(folder.path());
   ASSERT_TRUE(reading.study) << reading.problem;
-  EXPECT_EQ(stability_json(std::get<StabilityMap>(reading.study->table)), stability_json(whole));
+  EXPECT_EQ(study_json(std::get<StabilityMap>(reading.study->table)), study_json(whole));
   EXPECT_FALSE(std::filesystem::exists(folder / ".clothlab"));
 }
 
@@ -127,7 +126,7 @@ TEST(StudyRecorder, OfExtremesGoesOnAfterTheLastCell) {
   };
   const ExtremesTable table = run_extremes(options);
   EXPECT_EQ(calls, 1);
-  EXPECT_EQ(extremes_text(table), extremes_text(whole));
+  EXPECT_EQ(study_text(table), study_text(whole));
   ASSERT_FALSE(recorder.end(table, 0));
   EXPECT_EQ(study_csv(read_study(folder.path()).study->table), study_csv(table));
 }
@@ -143,7 +142,7 @@ WorkPrecisionOptions precision_options() {
 
 /// All columns but those of measured times.
 std::vector<std::vector<std::string>> without_times(const WorkPrecision& study) {
-  CsvTable table = run_table(study);
+  CsvTable table = table_of(study);
   for (const char* time : {"wall_s", "wall_median_s", "wall_lower_quartile_s", "wall_upper_quartile_s"})
     table = without_column(table, time);
   return table.rows;

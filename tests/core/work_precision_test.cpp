@@ -8,7 +8,6 @@
 #include "study/order_estimate.h"
 #include "study/reference_solution.h"
 #include "study/work_precision_report.h"
-#include "study/work_precision_tables.h"
 #include "support/scenes.h"
 
 namespace cloth::test::work_precision_test {
@@ -265,15 +264,15 @@ TEST(AStudy, KeepsRunsThatFailedAndThoseItRefused) {
   EXPECT_EQ(refused.status, RunStatus::refused);
   EXPECT_NE(refused.detail.find("budget"), std::string::npos) << refused.detail;
   EXPECT_TRUE(refused.samples.empty());
-  EXPECT_EQ(run_table(study).rows.size(), verlet.runs.size());
-  const LinePlot plot = error_plot(study, PlotAgainst::run_time);
+  EXPECT_EQ(table_of(study).rows.size(), verlet.runs.size());
+  const LinePlot plot = study_plot(study, PlotAgainst::run_time);
   EXPECT_EQ(plot.series.front().failed.size() + plot.series.front().points.size(), verlet.runs.size());
   EXPECT_GE(plot.series.front().failed.size(), 2u);
 }
 
 TEST(AStudy, ChoosesTheSameRunsAndErrorsEveryTime) {
-  const auto first = run_table(quick_study(smooth_scene(5, 5)));
-  const auto second = run_table(quick_study(smooth_scene(5, 5)));
+  const auto first = table_of(quick_study(smooth_scene(5, 5)));
+  const auto second = table_of(quick_study(smooth_scene(5, 5)));
   for (const char* column : {"steps", "force_evaluations", "rms_error_m", "status", "repeats", "detail"}) {
     const auto at = static_cast<std::size_t>(std::find(first.header.begin(), first.header.end(), column) -
                                              first.header.begin());
@@ -291,8 +290,8 @@ TEST(AStudy, CanBeStoppedAtAnyMomentAndKeepsWhatIsFinished) {
                              .budget = 0.4,
                              .progress = [&](const StudyProgress& p) { return p.fraction < at; }});
     EXPECT_TRUE(study.stopped) << at;
-    const LinePlot plot = error_plot(study, PlotAgainst::run_time);
-    EXPECT_NE(work_precision_page(study, "made by a test").find("was stopped"), std::string::npos);
+    const LinePlot plot = study_plot(study, PlotAgainst::run_time);
+    EXPECT_NE(study_page(study, "made by a test").find("was stopped"), std::string::npos);
     EXPECT_NE(to_svg(plot).find("</svg>"), std::string::npos);
   }
 }
@@ -302,8 +301,8 @@ TEST(AStudyOfALimitedScene, SaysThatItIsOfFirstOrder) {
   scene.deformation = Deformation{.rate = 0.02};
   const WorkPrecision study = quick_study(scene, {"verlet", "rk4"});
   EXPECT_FALSE(study.reference.smooth);
-  EXPECT_NE(work_precision_page(study, "").find("first order"), std::string::npos);
-  const LinePlot plot = error_plot(study, PlotAgainst::step);
+  EXPECT_NE(study_page(study, "").find("first order"), std::string::npos);
+  const LinePlot plot = study_plot(study, PlotAgainst::step);
   ASSERT_EQ(plot.triangles.size(), 1u);
   EXPECT_EQ(plot.triangles.front().slope, 1);
   for (const MethodStudy& method : study.methods) EXPECT_LT(method.order.overall.value, 1.6);
@@ -354,7 +353,7 @@ TEST(TheCheapestMethod, IsThatOfTheLeastTime) {
 }
 
 TEST(TheTable, BeginsWithTheColumnsOfItsContract) {
-  const CsvTable table = run_table(quick_study(smooth_scene(4, 4), {"verlet"}));
+  const CsvTable table = table_of(quick_study(smooth_scene(4, 4), {"verlet"}));
   const std::vector<std::string> first{"method",        "time_step",   "steps",          "force_evaluations",
                                        "wall_s",        "rms_error_m", "relative_error", "status",
                                        "observed_order"};

@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!reading.study) return 0;
   const cloth::StudyTable& table = reading.study->table;
   cloth::study_text(table);
-  cloth::study_json_text(table);
+  cloth::study_json(table);
   cloth::study_csv(table);
   return 0;
 }

@@ -135,8 +135,8 @@ TEST(StabilityMap, IsTheSameTwiceAndHasItsColumns) {
   const Scene scene = builtin_scene("corners-free");
   StabilityOptions options = small_map();
   options.methods = {"verlet"};
-  const std::string text = stability_csv(run_stability_map(scene, options));
-  EXPECT_EQ(text, stability_csv(run_stability_map(scene, options)));
+  const std::string text = study_csv(run_stability_map(scene, options));
+  EXPECT_EQ(text, study_csv(run_stability_map(scene, options)));
   const CsvTable table = parse_csv(text);
   const std::vector<std::string> columns{"method",
                                          "x",
@@ -181,7 +181,7 @@ TEST(StabilityMap, DrawsAPredictedCurveWhereNoAxisIsTheTimeStep) {
                            .y = {"cloth.mass", 0.1, 0.4, 2, AxisScale::linear}};
   const StabilityMap map = run_stability_map(scene, options);
   EXPECT_TRUE(map.methods[0].measured.empty());
-  const HeatMap heat = stability_heat_map(map);
+  const HeatMap heat = study_plot(map);
   ASSERT_FALSE(heat.panels[0].curves.empty());
   for (const auto& [stiffness, mass] : heat.panels[0].curves[0].points) {
     EXPECT_GE(stiffness, 10);
@@ -196,8 +196,8 @@ TEST(StabilityMap, ThatIsStoppedKeepsWhatItHas) {
   EXPECT_FALSE(map.complete);
   EXPECT_EQ(map.methods[0].cells[0].status, CellStatus::run);
   EXPECT_EQ(map.methods[1].cells.back().status, CellStatus::not_run);
-  EXPECT_EQ(parse_csv(stability_csv(map)).rows.back()[3], "not-run");
-  EXPECT_FALSE(to_svg(stability_heat_map(map)).empty());
+  EXPECT_EQ(parse_csv(study_csv(map)).rows.back()[3], "not-run");
+  EXPECT_FALSE(to_svg(study_plot(map)).empty());
 }
 
 TEST(StabilityMap, KeepsTheLargestFrequencyOnItsSmallerGrid) {

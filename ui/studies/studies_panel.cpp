@@ -46,10 +46,10 @@ Diagram diagram_of(const cloth::StudyTable& table, cloth::PlotAgainst against) {
   if (const auto* study = std::get_if<cloth::WorkPrecision>(&table)) {
     // Before the first timing there is nothing to show against the time.
     const bool timed = against != cloth::PlotAgainst::run_time || is_timed(*study);
-    return cloth::error_plot(*study, timed ? against : cloth::PlotAgainst::force_evaluations);
+    return cloth::study_plot(*study, timed ? against : cloth::PlotAgainst::force_evaluations);
   }
-  if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::stability_heat_map(*map);
-  return cloth::extremes_map(std::get<cloth::ExtremesTable>(table));
+  if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::study_plot(*map);
+  return cloth::study_plot(std::get<cloth::ExtremesTable>(table));
 }
 
 QString kind_title(const cloth::StudyTable& table) {

@@ -1,8 +1,6 @@
 // Figures 1 to 3: the springs, the deformation rate, the wind.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "cloth/grid.h"
 #include "measure/strain.h"
 #include "scene/builtin_scenes.h"

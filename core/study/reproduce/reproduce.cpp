@@ -1,7 +1,5 @@
 #include "study/reproduce.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 

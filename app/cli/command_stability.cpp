@@ -14,11 +14,8 @@ namespace {
 struct StabilityArguments {
   std::string scene;
   std::vector<std::string> settings;
-  std::string x, y;                  ///< PATH=LOW:HIGH:COUNT[:log]; empty: time step over stiffness
-  std::vector<std::string> methods;  ///< empty: those with a limit
-  double periods = 200;
-  int most_steps = 20000;
-  bool full_size = false;
+  std::string x, y;                 ///< PATH=LOW:HIGH:COUNT[:log]; empty: time step over stiffness
+  cloth::StabilityOptions options;  ///< without axes; no methods: those with a limit
   std::string folder;
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
@@ -27,13 +24,11 @@ struct StabilityArguments {
 /// Fills in axes and methods, or says what is wrong with them.
 std::vector<cloth::Problem> read_options(const StabilityArguments& arguments, const cloth::Scene& scene,
                                          cloth::StabilityOptions& options) {
-  for (const std::string& method :
-       arguments.methods.empty() ? cloth::methods_with_a_limit() : arguments.methods)
+  const std::vector<std::string>& asked = arguments.options.methods;
+  options.methods.clear();
+  for (const std::string& method : asked.empty() ? cloth::methods_with_a_limit() : asked)
     if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end())
       options.methods.push_back(method);
-  options.criterion.periods = arguments.periods;
-  options.criterion.most_steps = arguments.most_steps;
-  options.full_size = arguments.full_size;
   std::vector<cloth::Problem> problems;
   const auto read_axis = [&](const std::string& text, const char* option, cloth::StudyAxis& axis) {
     const auto parsed = cloth::parse_axis(text, option);
@@ -53,19 +48,20 @@ std::string command_text(const StabilityArguments& arguments) {
   std::string text = "clothlab-cli stability " + arguments.scene + settings_text(arguments.settings);
   if (!arguments.x.empty()) text += " --x '" + arguments.x + "'";
   if (!arguments.y.empty()) text += " --y '" + arguments.y + "'";
-  if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
-  if (arguments.periods != StabilityArguments{}.periods)
-    text += fmt::format(" --periods {}", arguments.periods);
-  if (arguments.most_steps != StabilityArguments{}.most_steps)
-    text += fmt::format(" --most-steps {}", arguments.most_steps);
-  if (arguments.full_size) text += " --full-size";
+  if (!arguments.options.methods.empty())
+    text += fmt::format(" --methods {}", fmt::join(arguments.options.methods, ","));
+  if (arguments.options.criterion.periods != cloth::StabilityCriterion{}.periods)
+    text += fmt::format(" --periods {}", arguments.options.criterion.periods);
+  if (arguments.options.criterion.most_steps != cloth::StabilityCriterion{}.most_steps)
+    text += fmt::format(" --most-steps {}", arguments.options.criterion.most_steps);
+  if (arguments.options.full_size) text += " --full-size";
   return text + " --out DIR";
 }
 
 int stability(const StabilityArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
-  cloth::StabilityOptions options;
+  cloth::StabilityOptions options = arguments.options;
   const auto problems = read_options(arguments, *loaded.scene, options);
   if (!problems.empty()) return report(problems);
   if (options.full_size)
@@ -100,17 +96,19 @@ void add_stability(Program& program) {
   command.add_option("--y", arguments.y,
                      "Likewise; without it springs.*, all stiffnesses together, a tenth to ten times the "
                      "scene's. springs.* is the structural stiffness, shear and flexion in proportion");
-  add_names(command, "--methods", arguments.methods,
+  add_names(command, "--methods", arguments.options.methods,
             "Methods, separated by commas; without it all that have a limit", cloth::integrator_names());
-  command.add_option("--periods", arguments.periods, "Length of a run in periods of the fastest motion")
+  command
+      .add_option("--periods", arguments.options.criterion.periods,
+                  "Length of a run in periods of the fastest motion")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   command
-      .add_option("--most-steps", arguments.most_steps,
+      .add_option("--most-steps", arguments.options.criterion.most_steps,
                   "After so many steps a run ends, however long it should last")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
-  command.add_flag("--full-size", arguments.full_size,
+  command.add_flag("--full-size", arguments.options.full_size,
                    "Run the whole grid; without it larger ones are run with 16 x 16 of the same particles");
   add_path(command, "--out", arguments.folder,
            "Folder for stability.csv, stability.svg, study.json and report.html; made if missing")

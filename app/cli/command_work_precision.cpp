@@ -12,9 +12,7 @@ namespace {
 struct WorkPrecisionArguments {
   std::string scene;
   std::vector<std::string> settings;
-  std::vector<std::string> methods;  ///< empty: all
-  std::optional<double> horizon;     ///< s
-  int repeats = 5;
+  cloth::WorkPrecisionOptions options;
   std::string folder;
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
@@ -22,10 +20,11 @@ struct WorkPrecisionArguments {
 
 std::string command_of(const WorkPrecisionArguments& arguments) {
   std::string text = "clothlab-cli work-precision " + arguments.scene + settings_text(arguments.settings);
-  if (!arguments.methods.empty()) text += fmt::format(" --methods {}", fmt::join(arguments.methods, ","));
-  if (arguments.horizon) text += fmt::format(" --horizon {}", *arguments.horizon);
-  if (arguments.repeats != WorkPrecisionArguments{}.repeats)
-    text += fmt::format(" --repeats {}", arguments.repeats);
+  if (!arguments.options.methods.empty())
+    text += fmt::format(" --methods {}", fmt::join(arguments.options.methods, ","));
+  if (arguments.options.horizon) text += fmt::format(" --horizon {}", *arguments.options.horizon);
+  if (arguments.options.repeats != cloth::WorkPrecisionOptions{}.repeats)
+    text += fmt::format(" --repeats {}", arguments.options.repeats);
   return text + " --out DIR";
 }
 
@@ -33,16 +32,14 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   const cloth::Scene& scene = *loaded.scene;
-  const auto& methods = arguments.methods.empty() ? cloth::integrator_names() : arguments.methods;
-  if (arguments.horizon)
-    if (const auto rule = cloth::broken_horizon_rule(scene, methods, *arguments.horizon))
-      return report({{"", "", *rule, fmt::format("--horizon {}", *arguments.horizon), 0, 0}});
+  const auto& methods =
+      arguments.options.methods.empty() ? cloth::integrator_names() : arguments.options.methods;
+  if (arguments.options.horizon)
+    if (const auto rule = cloth::broken_horizon_rule(scene, methods, *arguments.options.horizon))
+      return report({{"", "", *rule, fmt::format("--horizon {}", *arguments.options.horizon), 0, 0}});
   if (const int refused = refused_for_memory(scene, methods); refused != done) return refused;
 
-  cloth::WorkPrecisionOptions options;
-  options.methods = arguments.methods;
-  options.horizon = arguments.horizon;
-  options.repeats = arguments.repeats;
+  const cloth::WorkPrecisionOptions& options = arguments.options;
   const auto made = make_study(
       cloth::plan_work_precision(scene, options), options,
       {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite},
@@ -65,12 +62,13 @@ void add_work_precision(Program& program) {
       program, "work-precision", "Error against run time of every method on a scene", work_precision);
   add_scene(command, arguments.scene)->required();
   add_settings(command, arguments.settings);
-  add_names(command, "--methods", arguments.methods, "Only these methods, e.g. verlet,rk4",
+  add_names(command, "--methods", arguments.options.methods, "Only these methods, e.g. verlet,rk4",
             cloth::integrator_names());
   command
-      .add_option("--horizon", arguments.horizon, "Simulated time in s; chosen from the scene if not given")
+      .add_option("--horizon", arguments.options.horizon,
+                  "Simulated time in s; chosen from the scene if not given")
       ->check(CLI::PositiveNumber);
-  command.add_option("--repeats", arguments.repeats, "Timed repeats of each run")
+  command.add_option("--repeats", arguments.options.repeats, "Timed repeats of each run")
       ->check(CLI::Range(5, 1000))
       ->capture_default_str();
   add_path(command, "--out", arguments.folder,

@@ -18,6 +18,40 @@ bool has_difference(const LockStep& lockstep, std::size_t pane) {
   return reference && *reference != pane;
 }
 
+/// The columns of compare.csv and what they hold now.
+struct CompareFields {
+  std::vector<std::string> names, texts;
+  void add(const std::string& name, bool present, double value) {
+    names.push_back(name);
+    texts.push_back(present ? csv_number(value) : "");
+  }
+};
+
+CompareFields fields_of(const LockStep& lockstep) {
+  CompareFields fields;
+  fields.add("time_s", true, lockstep.time_of(lockstep.index()));
+  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
+    const Lane& lane = lockstep.lane(i);
+    const Measurement& now = lane.measurement;
+    const Quantities& quantities = lane.simulation->quantities();
+    const bool going = lane.going();
+    const auto add = [&](const char* name, double value) { fields.add(lane.name + name, going, value); };
+    add("_total_J", now.energy.total());
+    add("_energy_error_J", now.energy_error());
+    add("_max_strain", now.strain.maximum());
+    if (quantities.limiter) add("_limiter_excess", now.limiter_excess);
+    if (quantities.contact) add("_contacts", now.contacts);
+    add("_step_time_us", 1e6 * lane.step_time);
+    if (!has_difference(lockstep, i)) continue;
+    const Difference* difference = lockstep.difference(i);
+    fields.add(lane.name + "_rms_difference_m", difference, difference ? difference->rms : 0);
+    fields.add(lane.name + "_largest_difference_m", difference, difference ? difference->largest : 0);
+  }
+  if (lockstep.comparison().reference == controlled_reference)
+    fields.add("reference_floor_m", lockstep.floor(), lockstep.floor() ? lockstep.floor()->rms : 0);
+  return fields;
+}
+
 std::vector<Quantities> quantities_of(const LockStep& lockstep) {
   std::vector<Quantities> all;
   for (std::size_t i = 0; i < lockstep.pane_count(); ++i)
@@ -44,47 +78,11 @@ std::string recording_summary(const ResultFolder& folder) {
 }  // namespace
 
 std::vector<std::string> comparison_columns(const LockStep& lockstep) {
-  std::vector<std::string> names{"time_s"};
-  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
-    const Lane& lane = lockstep.lane(i);
-    const auto add = [&](const char* name) { names.push_back(lane.name + "_" + name); };
-    const Quantities& quantities = lane.simulation->quantities();
-    add("total_J");
-    add("energy_error_J");
-    add("max_strain");
-    if (quantities.limiter) add("limiter_excess");
-    if (quantities.contact) add("contacts");
-    add("step_time_us");
-    if (!has_difference(lockstep, i)) continue;
-    add("rms_difference_m");
-    add("largest_difference_m");
-  }
-  if (lockstep.comparison().reference == controlled_reference) names.emplace_back("reference_floor_m");
-  return names;
+  return fields_of(lockstep).names;
 }
 
 std::vector<std::string> comparison_row(const LockStep& lockstep) {
-  std::vector<std::string> row{csv_number(lockstep.time_of(lockstep.index()))};
-  for (std::size_t i = 0; i < lockstep.pane_count(); ++i) {
-    const Lane& lane = lockstep.lane(i);
-    const auto add = [&](bool there, const auto& text) { row.push_back(there ? text() : std::string()); };
-    const Measurement& m = lane.measurement;
-    const Quantities& quantities = lane.simulation->quantities();
-    const bool going = lane.going();
-    add(going, [&] { return csv_number(m.energy.total()); });
-    add(going, [&] { return csv_number(m.energy_error()); });
-    add(going, [&] { return csv_number(m.strain.maximum()); });
-    if (quantities.limiter) add(going, [&] { return csv_number(m.limiter_excess); });
-    if (quantities.contact) add(going, [&] { return std::to_string(m.contacts); });
-    add(going, [&] { return csv_number(1e6 * lane.step_time); });
-    if (!has_difference(lockstep, i)) continue;
-    const Difference* difference = lockstep.difference(i);
-    add(difference != nullptr, [&] { return csv_number(difference->rms); });
-    add(difference != nullptr, [&] { return csv_number(difference->largest); });
-  }
-  if (lockstep.comparison().reference == controlled_reference)
-    row.push_back(lockstep.floor() ? csv_number(lockstep.floor()->rms) : "");
-  return row;
+  return fields_of(lockstep).texts;
 }
 
 FolderUse comparison_use(const Comparison& comparison) {

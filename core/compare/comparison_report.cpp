@@ -123,6 +123,15 @@ LinePlot plot_over_time(const ComparisonRun& run, const std::string& title) {
   return plot;
 }
 
+LinePlot pane_plot(const ComparisonRun& run, const std::string& title, const Axis& y,
+                   std::vector<double> PaneSeries::*value) {
+  LinePlot plot = plot_over_time(run, title);
+  plot.y = y;
+  for (std::size_t i = 0; i < run.panes.size(); ++i)
+    plot.series.push_back(series_of(run.panes[i], run.series[i].time, run.series[i].*value));
+  return plot;
+}
+
 void add_table(const ComparisonRun& run, HtmlPage& page) {
   HtmlTable table{"Panes by error, then by cost",
                   {{"Pane"},
@@ -258,19 +267,11 @@ LinePlot difference_plot(const ComparisonRun& run) {
 }
 
 LinePlot energy_error_plot(const ComparisonRun& run) {
-  LinePlot plot = plot_over_time(run, "Energy error");
-  plot.y = {.label = "energy error", .unit = "J"};
-  for (std::size_t i = 0; i < run.panes.size(); ++i)
-    plot.series.push_back(series_of(run.panes[i], run.series[i].time, run.series[i].energy_error));
-  return plot;
+  return pane_plot(run, "Energy error", {.label = "energy error", .unit = "J"}, &PaneSeries::energy_error);
 }
 
 LinePlot strain_plot(const ComparisonRun& run) {
-  LinePlot plot = plot_over_time(run, "Largest strain");
-  plot.y = {.label = "largest strain", .unit = ""};
-  for (std::size_t i = 0; i < run.panes.size(); ++i)
-    plot.series.push_back(series_of(run.panes[i], run.series[i].time, run.series[i].max_strain));
-  return plot;
+  return pane_plot(run, "Largest strain", {.label = "largest strain"}, &PaneSeries::max_strain);
 }
 
 LinePlot main_plot(const ComparisonRun& run) {

@@ -1,11 +1,8 @@
 #include "io/file_digest.h"
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
 #include "io/csv.h"
 #include "io/fnv_hash.h"
+#include "io/json_entry.h"
 
 namespace cloth {
 
@@ -28,28 +25,15 @@ nlohmann::ordered_json digests_json(const std::vector<FileDigest>& files) {
   return object;
 }
 
-namespace {
-
-/// Numbers that the type cannot hold are of no file; converting them would have no defined result.
-template <class Integer>
-Integer whole_number(const nlohmann::ordered_json& value) {
-  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::uint64_t{1} << 53)
-    throw nlohmann::ordered_json::other_error::create(501, "must be a whole number, >= 0 and <= 2^53",
-                                                      &value);
-  return value.get<Integer>();
-}
-
-}  // namespace
-
-std::vector<FileDigest> digests_of(const nlohmann::ordered_json& files) {
+std::vector<FileDigest> digests_of(const JsonEntry& files) {
   std::vector<FileDigest> digests;
-  for (const auto& [name, entry] : files.items()) {
-    FileDigest digest{.name = name,
-                      .bytes = whole_number<std::uint64_t>(entry.at("bytes")),
-                      .rows = {},
-                      .hash = entry.at("fnv1a_64").get<std::string>()};
-    if (entry.contains("rows")) digest.rows = whole_number<std::int64_t>(entry.at("rows"));
-    digests.push_back(std::move(digest));
+  for (const std::string& name : files.keys()) {
+    const JsonEntry file = files.at(name);
+    FileDigest& digest = digests.emplace_back();
+    digest.name = name;
+    digest.bytes = file.at("bytes").whole<std::uint64_t>(0, largest_whole);
+    if (file.has("rows")) digest.rows = file.at("rows").whole<std::int64_t>(0, largest_whole);
+    digest.hash = file.at("fnv1a_64").text();
   }
   return digests;
 }

@@ -10,6 +10,8 @@
 
 namespace cloth {
 
+class JsonEntry;
+
 struct FileDigest {
   std::string name;  ///< in its folder
   std::uint64_t bytes = 0;
@@ -24,8 +26,8 @@ FileDigest digest_of(const std::string& name, const std::string& text, bool is_t
 /// {"record.csv": {"rows": 201, "bytes": 40000, "fnv1a_64": "..."}, ...}
 nlohmann::ordered_json digests_json(const std::vector<FileDigest>& files);
 
-/// The same back; throws nlohmann::json::exception where it is something else.
-std::vector<FileDigest> digests_of(const nlohmann::ordered_json& files);
+/// The same back; throws BadJsonEntry where it is something else.
+std::vector<FileDigest> digests_of(const JsonEntry& files);
 
 /// A sentence where `found` is not what `expected` says; empty where it is.
 std::string disagreement(const FileDigest& expected, const FileDigest& found);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "report/line_plot_layout.h"
-#include "report/slope_triangles.h"
 
 namespace cloth {
 namespace {

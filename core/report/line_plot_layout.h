@@ -66,4 +66,16 @@ struct LineLayout {
   void place_failures();
 };
 
+/// Where a slope triangle goes: off the data where there is room.
+struct PlacedTriangle {
+  SvgPoint corner;     // the right angle
+  SvgPoint along, up;  // the ends of its horizontal and vertical leg
+  SvgPoint label;      // baseline of the label, left aligned
+  std::string text;
+};
+
+/// `occupied`: boxes to keep off. A triangle with no free place goes where it covers least.
+std::vector<PlacedTriangle> place_triangles(const std::vector<SlopeTriangle>& triangles, const AxisMap& x,
+                                            const AxisMap& y, const Box& frame, std::vector<Box> occupied);
+
 }  // namespace cloth

@@ -1,8 +1,8 @@
-#include "report/slope_triangles.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "report/line_plot_layout.h"
 
 namespace cloth {
 namespace {

@@ -163,22 +163,12 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry
   return table;
 }
 
-std::vector<FileDigest> digests_in(const JsonEntry& files) {
-  for (const std::string& name : files.keys()) {
-    const JsonEntry file = files.at(name);
-    file.at("bytes").whole<std::uint64_t>(0, largest_whole);
-    if (file.has("rows")) file.at("rows").whole<std::int64_t>(0, largest_whole);
-    file.at("fnv1a_64").text();
-  }
-  return digests_of(files.value());
-}
-
 /// The tables that are not those that study.json describes, a clause each. One that is not there at all is
 /// said by who reads it.
 std::string find_disagreements(const std::filesystem::path& folder, const JsonEntry& root) {
   std::string found, text;
   if (!root.has("files")) return found;  // it is being made, or an old version made it
-  for (const FileDigest& expected : digests_in(root.at("files"))) {
+  for (const FileDigest& expected : digests_of(root.at("files"))) {
     if (!expected.rows || expected.name.find('/') != std::string::npos) continue;
     if (read_text_file(folder / expected.name, text)) continue;
     const std::string what = disagreement(expected, digest_of(expected.name, text, true));

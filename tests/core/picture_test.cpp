@@ -9,6 +9,7 @@
 
 #include "cloth/grid.h"
 #include "picture/shapes.h"
+#include "picture/strain_colours.h"
 #include "scene/obstacle_shape.h"
 #include "support/random.h"
 #include "support/scenes.h"

@@ -9,8 +9,8 @@
 #include "report/axis.h"
 #include "report/heat_map.h"
 #include "report/line_plot.h"
+#include "report/line_plot_layout.h"
 #include "report/plot_parts.h"
-#include "report/slope_triangles.h"
 #include "support/random.h"
 #include "support/xml.h"
 

@@ -12,6 +12,7 @@
 
 #include "io/csv.h"
 #include "io/file_digest.h"
+#include "io/json_entry.h"
 #include "io/text_file.h"
 #include "study/reproduce/errata.h"
 #include "support/files.h"
@@ -184,7 +185,7 @@ TEST(StoppedReproduction, GoesOnAfterItsLastWholePartToTheSamePage) {
   EXPECT_EQ(without_date(content_of(stopped / "report.html")),
             without_date(content_of(whole / "report.html")));
   const auto index = nlohmann::ordered_json::parse(content_of(stopped / "reproduce.json"));
-  const std::vector<FileDigest> digests = digests_of(index.at("files"));
+  const std::vector<FileDigest> digests = digests_of(JsonEntry(index.at("files")));
   EXPECT_EQ(digests.size(), result.files.size());
   for (const FileDigest& file : digests)
     EXPECT_EQ(

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "integrators/registry.h"
+#include "simulation/step_batches.h"
 #include "study/reproduce/study_page.h"
 
 namespace cloth {
@@ -35,17 +35,9 @@ std::optional<Outcome> run_steps(Scene scene, const std::string& method, int ste
   scene.integrator.method = method;
   scene.integrator.time_step = scene.duration / steps;
   Simulation simulation(scene);
-  double seconds = 0;
-  constexpr int burst = 100;
-  for (int step = 0; step < steps;) {
-    if (!study.go_on(fraction)) return std::nullopt;
-    const auto start = std::chrono::steady_clock::now();
-    const int next = std::min(steps, step + burst);
-    if (simulation.advance(next - step)) return std::nullopt;
-    step = next;
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  }
-  return Outcome{simulation.state().position, seconds};
+  StepBatches batches(simulation, [&] { return !study.go_on(fraction); });
+  if (!batches.run_to(steps)) return std::nullopt;
+  return Outcome{simulation.state().position, batches.seconds()};
 }
 
 struct TimeFor {

@@ -10,14 +10,81 @@
 #include "cloth/grid.h"
 #include "contact/obstacle_contact.h"
 #include "forces/force_model.h"
+#include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "scene/obstacle_shape.h"
 #include "simulation/simulation.h"
-#include "study/reproduce/printed_methods.h"
 #include "study/reproduce/study_page.h"
 
 namespace cloth {
 namespace {
+
+// The methods as the source report prints them. Not in the registry: they are wrong, and here to show it.
+
+/// Eq. (8) with its 3 k3: y' = y + h/6 (k1 + 2 k2 + 3 k3 + k4). The weights sum to 7/6: order 0.
+class PrintedRk4 : public Integrator {
+ public:
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work&) override {
+    constexpr std::array<double, 4> nodes{0, 0.5, 0.5, 1};
+    constexpr std::array<double, 4> weights{1.0 / 6, 2.0 / 6, 3.0 / 6, 1.0 / 6};  // as printed
+    const double h = times.step;
+    if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
+    stage_position_ = next_position_ = state.position;
+    stage_velocity_ = next_velocity_ = state.velocity;
+    for (std::size_t s = 0; s < nodes.size(); ++s) {
+      forces.update(stage_position_, times.begin + nodes[s] * h);
+      forces.force(stage_position_, stage_velocity_, force_);
+      add_scaled(h * weights[s], stage_velocity_, next_position_);
+      add_acceleration(system, h * weights[s], force_, next_velocity_);
+      if (s + 1 == nodes.size()) break;
+      const double ahead = h * nodes[s + 1];
+      stage_position_ = state.position;
+      add_scaled(ahead, stage_velocity_, stage_position_);
+      stage_velocity_ = state.velocity;
+      add_acceleration(system, ahead, force_, stage_velocity_);
+    }
+    std::swap(state.position, next_position_);
+    std::swap(state.velocity, next_velocity_);
+    return {.force_evaluations = 4};
+  }
+
+ private:
+  Vec3Field force_, stage_position_, stage_velocity_, next_position_, next_velocity_;
+};
+
+/// Eq. (14), x(t+h) = 2 x(t) - x(t-h) + h^2 a(t), with the only velocity that it has, (x(t) - x(t-h))/h, in
+/// a: that lags by half a step, and the order falls to 1 where a force depends on the velocity.
+class PrintedVerlet : public Integrator {
+ public:
+  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
+                        ClothState& state, Work&) override {
+    const double h = times.step;
+    if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
+    forces.update(state.position, times.begin);
+    forces.force(state.position, state.velocity, force_);
+    if (!previous_) {  // the start by Taylor's formula: x(t-h) = x - h v + h^2/2 a
+      previous_ = state.position;
+      add_scaled(-h, state.velocity, *previous_);
+      add_acceleration(system, 0.5 * h * h, force_, *previous_);
+    }
+    next_ = state.position;
+    add_scaled(1, state.position, next_);
+    add_scaled(-1, *previous_, next_);
+    add_acceleration(system, h * h, force_, next_);
+    state.velocity.fill(0);
+    add_scaled(1 / h, next_, state.velocity);
+    add_scaled(-1 / h, state.position, state.velocity);
+    *previous_ = std::exchange(state.position, next_);
+    return {.force_evaluations = 1};
+  }
+
+  void forget(Change) override { previous_.reset(); }
+
+ private:
+  std::optional<Vec3Field> previous_;  ///< x(t-h), m
+  Vec3Field force_, next_;
+};
 
 /// One step of y' = A y.
 Eigen::Vector2d weighted_step(const Eigen::Matrix2d& a, const Eigen::Vector2d& y, double h, double third) {

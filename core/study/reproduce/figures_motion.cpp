@@ -50,60 +50,64 @@ LinePlot speed_plot(const std::string& title, std::vector<PlotSeries> series) {
           .plot_height = 300};
 }
 
+/// Runs whose pictures stand side by side, and their speeds.
+struct MotionFigure {
+  std::vector<Image> panels{};
+  std::vector<PlotSeries> speeds{};
+  std::string commands{};
+
+  /// `from`: the part of the whole at which the run begins; it is a fifth. False: stopped.
+  bool add(const SceneRun& run, const std::string& name, const std::string& output, double from,
+           StudyPage& study) {
+    commands += (commands.empty() ? "" : " && ") + run.command + output;
+    Simulation simulation(run.scene);
+    if (!run_with_speed(simulation, study, from, from + 0.2, speeds.emplace_back(PlotSeries{.name = name})))
+      return false;
+    panels.push_back(panel(simulation, usual_direction));
+    return true;
+  }
+};
+
 bool show_obstacles(StudyPage& study) {
   constexpr std::array<const char*, 3> scenes{"ball", "cube", "rectangle"};
-  std::vector<Image> panels;
-  std::vector<PlotSeries> speeds;
-  std::string commands;
+  MotionFigure figure;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
-    const SceneRun run = scene_run(scenes[k]);
-    commands += (k > 0 ? " && " : "") + run.command;
-    Simulation simulation(run.scene);
-    PlotSeries speed{.name = scenes[k]};
-    const double part = 0.2 * static_cast<double>(k);
-    if (!run_with_speed(simulation, study, part, part + 0.2, speed)) return false;
-    study.number(fmt::format("{}: speed at the end", scenes[k]), rms_speed(simulation), "m/s");
-    speeds.push_back(std::move(speed));
-    panels.push_back(panel(simulation, usual_direction));
+    if (!figure.add(scene_run(scenes[k]), scenes[k], "", 0.2 * static_cast<double>(k), study)) return false;
+    study.number(fmt::format("{}: speed at the end", scenes[k]), figure.speeds.back().points.back().y, "m/s");
   }
   study.picture(
-      "fig5-obstacles", beside(panels), "The cloth on a ball, on a cube, and on a rectangular box",
+      "fig5-obstacles", beside(figure.panels), "The cloth on a ball, on a cube, and on a rectangular box",
       "a) a ball, b) a cube, c) a rectangle placed at the cloth's edge, where the fabric slips past: "
       "3 s after the cloth was let go.",
-      commands);
-  study.plot("fig5-rest", speed_plot("The cloth comes to rest", std::move(speeds)),
+      figure.commands);
+  study.plot("fig5-rest", speed_plot("The cloth comes to rest", std::move(figure.speeds)),
              "The particles' root mean square speed: the fall, the impact, and coming to rest.");
   return true;
 }
 
 bool show_friction(StudyPage& study) {
   constexpr std::array<const char*, 2> frictions{"0.1", "0.8"};
-  std::vector<Image> panels;
-  std::vector<PlotSeries> speeds;
+  MotionFigure figure;
   std::array<double, 2> mean{};
-  std::string commands;
   for (std::size_t k = 0; k < frictions.size(); ++k) {
     const SceneRun run = scene_run("ball", {"cloth.origin=[-0.32, 0.75, -0.5]", "duration=0.9",
                                             fmt::format("obstacles.0.friction={}", frictions[k])});
-    commands += (k > 0 ? " && " : "") + run.command + "-friction-" + frictions[k];
-    Simulation simulation(run.scene);
-    PlotSeries speed{.name = fmt::format("friction {}", frictions[k])};
-    const double part = 0.6 + 0.2 * static_cast<double>(k);
-    if (!run_with_speed(simulation, study, part, part + 0.2, speed)) return false;
+    if (!figure.add(run, fmt::format("friction {}", frictions[k]), std::string("-friction-") + frictions[k],
+                    0.6 + 0.2 * static_cast<double>(k), study))
+      return false;
+    const std::vector<PlotPoint>& points = figure.speeds.back().points;
     double sum = 0;
-    for (const PlotPoint& point : speed.points) sum += point.y;
-    mean[k] = sum / static_cast<double>(speed.points.size());
+    for (const PlotPoint& point : points) sum += point.y;
+    mean[k] = sum / static_cast<double>(points.size());
     study.number(fmt::format("friction {}: mean speed over 0.9 s", frictions[k]), mean[k], "m/s");
-    speeds.push_back(std::move(speed));
-    panels.push_back(panel(simulation, usual_direction));
   }
-  study.picture("fig5-friction", beside(panels),
+  study.picture("fig5-friction", beside(figure.panels),
                 "The cloth on a ball under its edge, little and much friction",
                 "The ball away from the cloth's middle, after 0.9 s: with a friction of 0.1 the cloth has "
                 "slipped off (left), with 0.8 it still hangs (right).",
-                commands);
+                figure.commands);
   study.plot(
-      "fig5-friction", speed_plot("More friction, slower cloth", std::move(speeds)),
+      "fig5-friction", speed_plot("More friction, slower cloth", std::move(figure.speeds)),
       fmt::format("The same two: over the whole time the mean speed is {:.3f} m/s with friction 0.1 and "
                   "{:.3f} m/s with 0.8.",
                   mean[0], mean[1]));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/json_entry.h"
 #include "io/machine.h"
 #include "io/text_file.h"
 #include "kernels/instruction_set.h"
@@ -80,7 +81,7 @@ std::optional<IoError> ReproductionIndex::look_at_earlier(const ReproduceOptions
     state_ = root.at("state");
     auto numbers = numbers_from(state_.at("numbers"));
     auto files = state_.at("files").get<std::vector<std::string>>();
-    const auto digests = digests_of(state_.at("digests"));
+    const auto digests = digests_of(JsonEntry(state_.at("digests")));
     if (!agree(digests)) return std::nullopt;
     auto parts = root.at("finished").get<std::vector<std::string>>();
     if (!page.restore(state_.at("page").get<std::string>())) return std::nullopt;
@@ -88,7 +89,7 @@ std::optional<IoError> ReproductionIndex::look_at_earlier(const ReproduceOptions
     result.files = std::move(files);
     parts_ = std::move(parts);
     for (const FileDigest& digest : digests) folder_.note(digest);
-  } catch (const std::exception&) {  // it was changed since: nothing of it can be used
+  } catch (...) {  // it was changed since: nothing of it can be used
     result = {};
     parts_.clear();
   }

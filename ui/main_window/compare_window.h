@@ -35,7 +35,6 @@ class CompareWindow : public LabWindow {
   RankingTable& ranking() { return *ranking_; }
 
  private:
-  // compare_window.cpp
   void send(const RunCommand& command) override;
   void open(const QString& path) override { openComparison(path); }
   QString write(const QString& path) override;
@@ -54,8 +53,6 @@ class CompareWindow : public LabWindow {
   void showReferences();
   void chooseReference(int index);
   void setColouring(ViewMode mode, Colouring colouring);
-
-  // compare_window_menus.cpp
   void makeMenus();
   void makeViewBar();
 

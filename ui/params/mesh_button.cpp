@@ -84,10 +84,6 @@ ClothShapeRow::ClothShapeRow(LabDocument& document, QWidget* parent)
   connect(button_, &MeshButton::meshChosen, this, &ClothShapeRow::choose);
 }
 
-QWidget* ClothShapeRow::tabStop() const {
-  return button_;
-}
-
 void ClothShapeRow::choose(const std::string& file) {
   QString rule = document_.setClothMesh(file);
   rule_->setVisible(!rule.isEmpty());

@@ -1,8 +1,8 @@
-// A button with the meshes that a scene can name: those of our own making, and any OBJ file.
+// A button with the meshes that a scene can name, those of our own making and any OBJ file; and the row of a
+// grid cloth with it.
 #pragma once
 
 #include <QToolButton>
-#include <QWidget>
 #include <string>
 
 #include "document/lab_document.h"
@@ -36,15 +36,13 @@ class MeshButton : public QToolButton {
 /// How a scene names a file: from its own folder where the file is in there, else by the whole path.
 std::string file_as_seen_from(const cloth::SceneFolder& folder, const QString& file);
 
-class MeshButton;
-
 /// What a grid cloth is made of, and the way to make it a mesh instead; a mesh has an editor of its own.
 class ClothShapeRow : public QWidget {
   Q_OBJECT
 
  public:
   explicit ClothShapeRow(LabDocument& document, QWidget* parent = nullptr);
-  QWidget* tabStop() const;
+  QWidget* tabStop() const { return button_; }
 
  private:
   void choose(const std::string& file);

@@ -1,4 +1,5 @@
-// The declarations' ASCII in the words and signs of a window.
+// The declarations' ASCII in the words and signs of a window; and numbers as text and back, the same under
+// every locale: the decimal sign is a point, thousands have no sign.
 #pragma once
 
 #include <QString>

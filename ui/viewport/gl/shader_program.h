@@ -1,4 +1,4 @@
-// Shaders from the resources, compiled into a program.
+// Shaders from the resources, compiled into a program, and what their uniforms are given.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,6 +26,7 @@ bool build_program(QOpenGLShaderProgram& program, const char* vertex, const char
 QVector3D linear_light(const QColor& colour);
 QVector3D as_srgb(const QColor& colour);
 
+/// Eigen's vectors and matrices as shaders take them.
 inline QVector3D uniform_vector(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }

@@ -97,6 +97,7 @@ TEST(LayersAtRest, LieAThicknessApartWithAnyMethodAndStep) {
             Way{"projective", 1.0 / 60}, Way{"bdf2", 0.005}}) {
         const bool is_verlet = std::string(method) == "verlet";  // thousands of steps: once is enough
         if (is_verlet && !(count == 2 && thickness == 0.003)) continue;
+        if (count == 3 && thickness != 0.003) continue;
         Scene scene = layers(count, thickness);
         scene.integrator.method = method;
         scene.integrator.time_step = step;

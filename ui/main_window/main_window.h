@@ -80,6 +80,7 @@ class MainWindow : public LabWindow {
   // main_window_menus.cpp
   void makeActions();
   void makeMenus();
+  void makeToolBar(QMenu* builtin);
   void fillRecentMenu();
   void saveSessionAs();
   void compareMethods();

@@ -84,7 +84,10 @@ void MainWindow::makeMenus() {
 
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("About Clothlab"), this, &MainWindow::showAbout);
+  makeToolBar(builtin);
+}
 
+void MainWindow::makeToolBar(QMenu* builtin) {
   QToolBar* bar = addToolBar(tr("File and edit"));
   bar->setObjectName("mainToolBar");
   bar->setMovable(false);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/obstacle_substeps.h"
+#include "contact/obstacle_body.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 

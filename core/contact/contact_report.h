@@ -1,13 +1,17 @@
-// The outcome of contact in a step.
+// The outcome of contact in a step, its contact points for display, and what it carries over to the next
+// step.
 #pragma once
 
+#include <cstdint>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "geometry/vec3_field.h"
 
 namespace cloth {
 
-/// An obstacle could not move on without passing through cloth that cannot move out of its way.
+/// An obstacle was stopped, because it would otherwise pass through cloth that cannot move out of its path.
 struct Pinch {
   int obstacle = 0;
   int particle = 0;
@@ -28,6 +32,32 @@ struct ContactReport {
   std::optional<Pinch> pinch;
   bool exhausted = false;    ///< the bound on the work of a step was reached; treated like a pinch
   bool interrupted = false;  ///< the stop test ended it: the positions are not usable
+};
+
+struct ContactMark {
+  Vec3 point{0, 0, 0};        ///< m, of the cloth
+  Vec3 normal{0, 1, 0};       ///< unit vector, from the obstacle to the cloth
+  double normal_impulse = 0;  ///< kg m, of the last step; 0 where it is not known
+};
+
+struct ContactMemory {
+  /// Of each particle: whether contact acted on it at the end of the step without restitution. In the next
+  /// step its approach is then load, not an impact.
+  std::vector<std::uint8_t> held;
+  /// J, of each particle: kinetic energy that the impulse at the end of the step has taken and the impulse at
+  /// the beginning of the next step returns. Only for Verlet's method.
+  std::vector<double> deferred;
+
+  void resize(std::size_t particles) {
+    held.resize(particles, 0);
+    deferred.resize(particles, 0.0);
+  }
+  /// Resets; returns the sum of the deferred energy, in J.
+  double clear() {
+    const double sum = std::accumulate(deferred.begin(), deferred.end(), 0.0);
+    held.clear(), deferred.clear();
+    return sum;
+  }
 };
 
 }  // namespace cloth

@@ -1,15 +1,14 @@
 #include "contact/contact_solver.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace cloth {
 namespace {
 
 void add_impulse(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
                  const Vec3& impulse, Vec3Field& value) {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-    const auto i = static_cast<std::size_t>(contact.particle[k]);
+  for (std::size_t k = 0; k < at(contact.count); ++k) {
+    const auto i = at(contact.particle[k]);
     value.add(i, contact.weight[k] * inverse_mass[i] * impulse);
   }
 }
@@ -20,15 +19,14 @@ double relax(ContactConstraint& contact, const std::vector<double>& inverse_mass
   const double missing = contact.bound - contact.normal.dot(point);
   const double change =
       std::max(contact.normal_impulse + missing / contact.mobility, 0.0) - contact.normal_impulse;
-  if (change == 0 && contact.normal_impulse == 0 && contact.normal_load == 0) return 0;
+  if (change == 0 && contact.normal_impulse == 0) return 0;
   contact.normal_impulse += change;
   Vec3 total = change * contact.normal;
   if (contact.friction > 0) {
     const Vec3 slip = point - contact.rest;
     const Vec3 across = slip - contact.normal.dot(slip) * contact.normal;
     Vec3 friction_impulse = contact.friction_impulse - across / contact.mobility;
-    const double most = contact.friction * std::max(contact.normal_impulse, contact.normal_load),
-                 wanted = friction_impulse.norm();
+    const double most = contact.friction * contact.normal_impulse, wanted = friction_impulse.norm();
     if (wanted > most) friction_impulse *= most / wanted;
     total += friction_impulse - contact.friction_impulse;
     contact.friction_impulse = friction_impulse;
@@ -41,9 +39,8 @@ double relax(ContactConstraint& contact, const std::vector<double>& inverse_mass
 
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass) {
   double mobility = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k)
-    mobility +=
-        contact.weight[k] * contact.weight[k] * inverse_mass[static_cast<std::size_t>(contact.particle[k])];
+  for (std::size_t k = 0; k < at(contact.count); ++k)
+    mobility += contact.weight[k] * contact.weight[k] * inverse_mass[at(contact.particle[k])];
   return mobility;
 }
 

@@ -1,17 +1,18 @@
 // Contact constraints with Coulomb friction, solved by projected Gauss-Seidel (Erleben 2005); friction on
 // positions as in position-based dynamics (Müller et al. 2007).
 //
-// A constraint on the point sum w x of its particles:
+// The contact point is the weighted sum of its particles' values, sum w x, with the constraint
 //     normal . (sum w x) >= bound
-// Friction opposes the tangential displacement of that point from `rest`; its impulse is at most the friction
-// coefficient times the normal impulse. Values are positions (m, impulses in kg m) or velocities (m/s,
-// impulses in N s).
+// The values x are either positions (m, impulses in kg m) or velocities (m/s, impulses in N s). Friction
+// opposes the tangential change of the contact point from `rest`; the friction impulse is at most the
+// friction coefficient times the normal impulse.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
+#include "geometry/at.h"
 #include "geometry/vec3_field.h"
 
 namespace cloth {
@@ -20,21 +21,36 @@ struct ContactConstraint {
   int count = 0;
   std::array<int, 4> particle{};
   std::array<double, 4> weight{};  ///< negative for particles on the far side of a self-contact
-  Vec3 normal{0, 1, 0};
-  double bound = 0;
-  Vec3 rest{0, 0, 0};
-  double friction = 0;
+  Vec3 normal{0, 1, 0};            ///< of length one
+  double bound = 0;                ///< m or m/s
+  Vec3 rest{0, 0, 0};              ///< m or m/s: value of the contact point at which friction is 0
+  double friction = 0;             ///< coefficient
   double mobility = 0;             ///< sum of w^2 / m, 1/kg
   double normal_impulse = 0;       ///< accumulated, >= 0
-  double normal_load = 0;          ///< least normal impulse that bounds friction
   Vec3 friction_impulse{0, 0, 0};  ///< accumulated, tangential
 
   Vec3 point(const Vec3Field& value) const {
     Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < count; ++k)
-      sum += weight[static_cast<std::size_t>(k)] *
-             value[static_cast<std::size_t>(particle[static_cast<std::size_t>(k)])];
+    for (int k = 0; k < count; ++k) sum += weight[at(k)] * value[at(particle[at(k)])];
     return sum;
+  }
+  /// Calls visit(i) for every particle i whose weight is not 0.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int k = 0; k < count; ++k)
+      if (weight[at(k)] != 0) visit(at(particle[at(k)]));
+  }
+  template <class Test>
+  bool any_of(const Test& test) const {
+    bool found = false;
+    for_each([&](std::size_t i) { found = found || test(i); });
+    return found;
+  }
+  /// The first particle that the contact can move, or -1.
+  int first_free(const std::vector<double>& inverse_mass) const {
+    for (int k = 0; k < count; ++k)
+      if (weight[at(k)] != 0 && inverse_mass[at(particle[at(k)])] > 0) return particle[at(k)];
+    return -1;
   }
 };
 

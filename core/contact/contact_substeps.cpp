@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/at.h"
 #include "contact/continuous_contact.h"
-#include "contact/obstacle_substeps.h"
+#include "contact/obstacle_body.h"
 
 namespace cloth {
 namespace {
@@ -29,7 +28,7 @@ bool all_finite(const Vec3Field& field) {
 
 }  // namespace
 
-void ContinuousContact::begin(const ContactTimes& times) {
+void ContinuousContact::begin(const StepTimes& times) {
   set_thickness(times.end);
   starts_before_ = starts_;
   paths_.clear();
@@ -40,7 +39,7 @@ void ContinuousContact::begin(const ContactTimes& times) {
     const Obstacle& obstacle = obstacles_[k];
     const Vec3 spun = obstacle.keyframes.empty() ? Vec3(times.step * obstacle.spin) : Vec3(Vec3::Zero());
     paths_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k], spun);
-    all_rest = all_rest && paths_[k].rests();
+    all_rest = all_rest && paths_[k].is_still();
   }
   starts_ = end_poses_;
   part_ = all_rest ? 1 : 0;
@@ -80,47 +79,47 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
     end_poses_[k] =
         whole_paths_[k].at(substep + 1 == substeps_ ? 1 : share * static_cast<double>(substep + 1));
     paths_[k] = PoseInterpolation(bodies_[k].pivot, poses_[k], end_poses_[k]);
-    all_rest = all_rest && paths_[k].rests();
+    all_rest = all_rest && paths_[k].is_still();
   }
   part_ = all_rest ? 1 : 0;
   find_pairs();
 }
 
-/// States that are not finite are ignored: the run stops at them.
-bool ContinuousContact::is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state) {
+/// Whether anything is near enough in this step for contact to have work. A state that is not finite is left
+/// as it is: the run stops there.
+bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state) {
   if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
   free_position_ = target_position_ = state.position;
-  position_ = from;
-  begin(times);
+  position_ = step.position_before;
+  begin(step.times);
   return substeps_ == 1 ? find_pairs() : may_come_near();
 }
 
-ContactReport ContinuousContact::apply(const ClothSystem& system, const Vec3Field& from,
-                                       const ContactTimes& times, ClothState& state,
-                                       const VelocityCoupling& coupling) {
+ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& state) {
+  if (!is_near(step, state)) return {};
   ContactReport report;
+  const double duration = step.times.step;
   RoundsEnd end = RoundsEnd::arrived;
-  if (substeps_ == 1) end = go_rounds(system, from, times.step, report);
-  const double substep_time = times.step / static_cast<double>(substeps_);
+  if (substeps_ == 1) end = go_rounds(step.system, step.position_before, duration, report);
   for (std::int64_t k = 0; substeps_ > 1 && k < substeps_ && end == RoundsEnd::arrived; ++k) {
-    begin_substep(k, from, state.position);
-    end = go_rounds(system, substep_from_, substep_time, report);
+    begin_substep(k, step.position_before, state.position);
+    end = go_rounds(step.system, substep_from_, duration / static_cast<double>(substeps_), report);
   }
   if (end == RoundsEnd::interrupted) {
     starts_ = starts_before_;
     report.interrupted = true;
     return report;
   }
-  if (end != RoundsEnd::arrived) report.pinch = pinch(system);
+  if (end != RoundsEnd::arrived) report.pinch = pinch(step.system);
   report.exhausted = end == RoundsEnd::exhausted;
-  if (substeps_ > 1) forget_overtaken_touches(from, times.step);
+  if (substeps_ > 1) forget_overtaken_touches(step.position_before, duration);
   if (!has_moved_ && touches_.empty()) return report;
   report.acted = true;
   report.pairs = pairs_.size();
   report.contacts = count_touched();
   integrated_position_ = state.position;
   state.position = position_;
-  solve_velocities(system, {from, times.step}, coupling, state, report);
+  solve_velocities(step, state, report);
   return report;
 }
 
@@ -165,18 +164,11 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
 /// the obstacle's velocity in that substep.
 void ContinuousContact::forget_overtaken_touches(const Vec3Field& from, double step) {
   std::vector<std::int64_t> last(position_.size(), -1);
-  const auto any_of = [](const ContactConstraint& contact, const auto& test) {
-    for (int k = 0; k < contact.count; ++k)
-      if (contact.weight[at(k)] != 0 && test(at(contact.particle[at(k)]))) return true;
-    return false;
-  };
   for (const Touch& touch : touches_)
-    any_of(touch.contact, [&](std::size_t i) {
-      if (touch.contact.normal_impulse > 0) last[i] = std::max(last[i], touch.substep);
-      return false;
-    });
+    if (touch.contact.normal_impulse > 0)
+      touch.contact.for_each([&](std::size_t i) { last[i] = std::max(last[i], touch.substep); });
   std::erase_if(touches_, [&](const Touch& touch) {
-    return !any_of(touch.contact, [&](std::size_t i) { return last[i] == touch.substep; });
+    return !touch.contact.any_of([&](std::size_t i) { return last[i] == touch.substep; });
   });
   for (Touch& touch : touches_) touch.contact.rest = touch.contact.point(from) + step * touch.velocity;
 }

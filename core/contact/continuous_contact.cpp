@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "cloth/mesh_cloth.h"
 #include "contact/stagger.h"
@@ -95,16 +94,18 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
   longest_path_ = scene.self_contact || has_mesh ? edges_of_a_search * mean_edge_ : infinity;
 }
 
-void ContinuousContact::set_poses(const std::vector<Pose>& poses) {
+void ContinuousContact::restore(const std::vector<Pose>& poses, const ObstacleTransitions& transitions,
+                                const ThicknessTransition& thickness) {
   assert(poses.size() == starts_.size());
-  starts_ = poses;
+  starts_ = poses, transitions_ = transitions, thickness_transition_ = thickness;
+  touches_.clear();
 }
 
 /// Cached pairs are dropped where it changes.
 void ContinuousContact::set_thickness(double time) {
-  const double left = thickness_transition_.is_active() ? thickness_transition_.left(time) : 0;
-  const double now = full_thickness_ - left * thickness_transition_.missing,
-               own_now = full_self_thickness_ - left * thickness_transition_.own_missing;
+  const double part = thickness_transition_.is_active() ? thickness_transition_.remaining(time) : 0;
+  const double now = full_thickness_ - part * thickness_transition_.missing,
+               own_now = full_self_thickness_ - part * thickness_transition_.own_missing;
   if (now == thickness_ && own_now == self_thickness_) return;
   thickness_ = now, self_thickness_ = own_now;
   close_pairs_.forget();
@@ -163,7 +164,7 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   if (pair.obstacle != FeaturePair::cloth_itself) {
     const PoseInterpolation& path = paths_[at(pair.obstacle)];
     const Plane at_end = moved_plane(pair.obstacle, {s.far_point, s.normal}, end_poses_);
-    const Vec3 local = poses_[at(pair.obstacle)].back(s.far_point);
+    const Vec3 local = poses_[at(pair.obstacle)].inverse(s.far_point);
     contact.normal = at_end.normal;
     contact.bound += contact.normal.dot(at_end.point);
     contact.rest += path.to().at(local) - path.from().at(local);
@@ -236,7 +237,7 @@ void ContinuousContact::keep_touches(double step) {
     touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
     touch.velocity.setZero();
     if (touch.obstacle == FeaturePair::cloth_itself) continue;
-    const Vec3 local = poses_[at(touch.obstacle)].back(separations_[constraint_pair_[c]].far_point);
+    const Vec3 local = poses_[at(touch.obstacle)].inverse(separations_[constraint_pair_[c]].far_point);
     const PoseInterpolation& path = paths_[at(touch.obstacle)];
     touch.velocity = (path.to().at(local) - path.from().at(local)) / step;
   }
@@ -245,9 +246,7 @@ void ContinuousContact::keep_touches(double step) {
 int ContinuousContact::count_touched() const {
   std::vector<std::uint8_t> touched(position_.size(), 0);
   for (const Touch& touch : touches_)
-    for (int k = 0; k < touch.contact.count; ++k)
-      if (touch.contact.normal_impulse > 0 && touch.contact.weight[at(k)] != 0)
-        touched[at(touch.contact.particle[at(k)])] = 1;
+    if (touch.contact.normal_impulse > 0) touch.contact.for_each([&](std::size_t i) { touched[i] = 1; });
   return static_cast<int>(std::count(touched.begin(), touched.end(), 1));
 }
 

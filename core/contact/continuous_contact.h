@@ -1,7 +1,7 @@
 // Continuous contact: no vertex, edge or face passes another, at any speed and step (conservative
 // advancement). A plane separates the two features of each near pair, and a particle moves toward its target
 // only as far as it stays on its side of all its planes. Each side of a plane is convex, so that the features
-// cannot pass each other on the way. Moving obstacles move their planes with them. The remaining displacement
+// cannot pass each other in between. The planes of a moving obstacle move with it. The remaining displacement
 // follows in further rounds, with new planes. (Displacements are bounded by distance in Wu et al. 2020 and
 // Chen et al. 2025; planes instead of balls do not restrict motion along and away from an obstacle.)
 //
@@ -10,84 +10,41 @@
 // step. Velocities follow by impulses over the same pairs (velocity_response.cpp).
 #pragma once
 
-#include <functional>
-
-#include "cloth/cloth_system.h"
 #include "contact/close_pairs.h"
-#include "contact/contact_mark.h"
-#include "contact/contact_memory.h"
-#include "contact/contact_report.h"
 #include "contact/contact_solver.h"
-#include "contact/obstacle_transition.h"
+#include "contact/contact_stage.h"
 
 namespace cloth {
 
 /// Whether the scene uses continuous contact; otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
-/// m/s, highest speed of any point of an obstacle that can touch the cloth; 0 where all are at rest. For a
-/// plane that an edit has turned, the relevant distance from its pivot follows from the positions.
+/// m/s, upper bound of the speed of any point of an obstacle that can touch the cloth; 0 where all are at
+/// rest. `position` (m) bounds the distance from the pivot for planes that rotate in a transition.
 double highest_obstacle_speed(const Scene& scene, const ObstacleTransitions& transitions,
                               const Vec3Field& position);
 
-/// Beginning, end and length of a step, in s.
-struct ContactTimes {
-  double begin = 0, end = 0, step = 0;
-};
-
-/// What the velocity solve needs from the caller. The functions are empty for methods whose velocities do not
-/// follow from the corrected positions.
-struct VelocityCoupling {
-  const Vec3Field& velocity_before;                            ///< m/s, at the beginning of the step
-  ContactMemory& memory;                                       ///< in: of the last step; out: of this one
-  std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
-  /// Called once the corrected positions are in the state, before the velocity solve; `motion`, in m/s, is
-  /// the displacement over the step.
-  std::function<void(const Vec3Field& motion)> positions;
-  std::function<void(const Vec3Field& motion)>
-      velocities;  ///< called after the velocity solve, which is then repeated
-};
-
-class ContinuousContact {
+class ContinuousContact : public ContactStage {
  public:
-  /// Obstacles have their poses of `time`, in s.
+  /// The obstacles' poses are those at `time` (s).
   ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleTransitions transitions,
                     const ThicknessTransition& thickness, double time);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
-  /// Of the obstacles at the beginning of the next step.
-  const std::vector<Pose>& poses() const { return starts_; }
-  void set_poses(const std::vector<Pose>& poses);  ///< one of each obstacle
-
-  /// Whether anything is near enough in this step for `apply` to have work. Call it before `apply`.
-  bool is_near(const Vec3Field& from, const ContactTimes& times, const ClothState& state);
-
-  /// Replaces the integrator's positions in `state` by positions that can be reached from `from` without
-  /// crossings, and its velocities accordingly. Where a pinch is reported the positions are the last ones
-  /// without a crossing.
-  ContactReport apply(const ClothSystem& system, const Vec3Field& from, const ContactTimes& times,
-                      ClothState& state, const VelocityCoupling& coupling);
-
-  /// Null: one thread. Results do not depend on the team.
-  void set_team(WorkerTeam* team) { team_ = team, close_pairs_.set_team(team); }
-
-  /// Called in every round; when it returns true the step is abandoned.
-  void set_stop_test(std::function<bool()> test) { stop_test_ = std::move(test); }
-
-  /// From the next step on.
-  void set_transitions(ObstacleTransitions transitions, const ThicknessTransition& thickness) {
-    transitions_ = std::move(transitions), thickness_transition_ = thickness;
-  }
-
-  /// Appends the contacts of the last step; `position` is its result.
-  void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
-  /// The state is not the one that was computed last: there are no contacts to report.
-  void forget_touches() { touches_.clear(); }
-
-  /// See PairSearch.
-  int hierarchy_depth(int body) const { return close_pairs_.search().hierarchy_depth(body); }
-  void append_boxes(int body, int level, const Vec3Field& position, std::vector<Bounds>& boxes) {
+  /// Replaces the integrator's positions by positions that can be reached from the step's initial ones
+  /// without crossings, and its velocities accordingly. With a pinch the positions are the last ones without
+  /// a crossing.
+  ContactReport resolve(const ContactStep& step, ClothState& state) override;
+  void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override;
+  bool is_continuous() const override { return true; }
+  void set_team(WorkerTeam* team) override { team_ = team, close_pairs_.set_team(team); }
+  void set_stop_test(const std::function<bool()>& test) override { stop_test_ = test; }
+  const std::vector<Pose>& poses() const override { return starts_; }
+  void restore(const std::vector<Pose>& poses, const ObstacleTransitions& transitions,
+               const ThicknessTransition& thickness) override;
+  int hierarchy_depth(int body) const override { return close_pairs_.search().hierarchy_depth(body); }
+  void append_boxes(int body, int level, const Vec3Field& position, std::vector<Bounds>& boxes) override {
     close_pairs_.search().append_boxes(body, level, position, 0.5 * self_thickness_, boxes);
   }
 
@@ -106,10 +63,14 @@ class ContinuousContact {
     int obstacle = FeaturePair::cloth_itself;
     Vec3 velocity{0, 0, 0};    ///< m/s, of the obstacle at the contact
     std::int64_t substep = 0;  ///< in which its impulse was last above 0
+
+    bool acts() const { return contact.normal_impulse > 0 && contact.mobility > 0; }
+    ContactConstraint on_velocities() const;  ///< the same contact, without accumulated impulses
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
-  void begin(const ContactTimes& times);
+  bool is_near(const ContactStep& step, const ClothState& state);
+  void begin(const StepTimes& times);
   void set_thickness(double time);
   bool find_pairs();
   bool may_come_near() const;
@@ -137,25 +98,20 @@ class ContinuousContact {
   /// m: a remaining displacement below this counts as none.
   double arrived_length() const { return 1e-3 * thickness_; }
 
-  struct Begin {
-    const Vec3Field& position;  ///< m, as the step began
-    double step = 0;            ///< s
-  };
-  bool find_motion(const ClothSystem& system, const Begin& begin);
-  void take_touches(const Begin& begin, const VelocityCoupling& coupling);
-  double approach_of(const Touch& touch, const Begin& begin, const VelocityCoupling& coupling) const;
-  void solve_velocities(const ClothSystem& system, const Begin& begin, const VelocityCoupling& coupling,
-                        ClothState& state, ContactReport& report);
+  void solve_constraints(const ClothSystem& system, Vec3Field& velocity);
+  bool find_motion(const ContactStep& step);
+  void take_touches(const ContactStep& step);
+  double approach_of(const Touch& touch, const ContactStep& step) const;
+  void solve_velocities(const ContactStep& step, ClothState& state, ContactReport& report);
   Vec3 total_impulse(const ClothSystem& system) const;
-  void find_work(const ClothSystem& system, const VelocityCoupling& coupling, const ClothState& state);
-  double recovering_work(const Begin& begin, const VelocityCoupling& coupling) const;
-  Vec3 start_change_of(std::size_t particle, const Begin& begin) const;
-  void add_half_steps_work(const ClothSystem& system, const Begin& begin, const VelocityCoupling& coupling,
-                           const ClothState& state);
+  void find_work(const ContactStep& step, const ClothState& state);
+  double recovering_work(const ContactStep& step) const;
+  Vec3 start_change_of(std::size_t particle, const ContactStep& step) const;
+  void add_half_steps_work(const ContactStep& step, const ClothState& state);
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
-  void bounce(const ClothSystem& system, const Begin& begin, bool follows, ClothState& state);
+  void bounce(const ContactStep& step, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
-  int note_held_back(const ClothSystem& system, const Begin& begin, ClothState& state);
+  int note_held_back(const ContactStep& step, ClothState& state);
 
   Surface surface_;
   std::vector<ObstacleBody> bodies_;

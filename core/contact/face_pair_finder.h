@@ -1,5 +1,5 @@
-// Pairs of features (vertex-face, edge-edge) of two faces that can meet: those that are not separated by
-// their bounding boxes or by the normals of the two faces.
+// Pairs of features (vertex-face, edge-edge) of two faces that may collide: those that are separated neither
+// by their bounding boxes nor along the normals of the two faces.
 #pragma once
 
 #include <span>
@@ -26,7 +26,7 @@ class FacePairFinder {
         far_faces_(far_faces) {}
 
   /// Appends the pairs of `face` and `foreign`; fastest where consecutive calls have the same `face`.
-  void meet(int face, int foreign, std::vector<FeaturePair>& pairs) {
+  void find(int face, int foreign, std::vector<FeaturePair>& pairs) {
     if (face != face_) take(face);
     const Slab& far = far_faces_[at(foreign)];
     if (!overlap(slab_.box, far.box)) return;
@@ -36,8 +36,8 @@ class FacePairFinder {
     if (all_beyond(near_sides_)) return;
     for (std::size_t k = 0; k < 3; ++k) far_sides_[k] = slab_.side_of(along(slab_.normal, other_vertex(k)));
     if (all_beyond(far_sides_)) return;
-    meet_vertices(far, pairs);
-    meet_edges(far, pairs);
+    find_vertices(far, pairs);
+    find_edges(far, pairs);
   }
 
  private:
@@ -54,7 +54,7 @@ class FacePairFinder {
     for (std::size_t k = 0; k < 3; ++k) edge_boxes_[k] = bounds_of(boxes_[k], boxes_[(k + 1) % 3]);
   }
 
-  void meet_vertices(const Slab& far, std::vector<FeaturePair>& pairs) const {
+  void find_vertices(const Slab& far, std::vector<FeaturePair>& pairs) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (near_sides_[k] == 0 && near_.represents_vertex(face_, static_cast<int>(k)) &&
           !(is_own() && has(other_, own_[k])) && overlap(boxes_[k], far.box))
@@ -68,7 +68,7 @@ class FacePairFinder {
     }
   }
 
-  void meet_edges(const Slab& far, std::vector<FeaturePair>& pairs) const {
+  void find_edges(const Slab& far, std::vector<FeaturePair>& pairs) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (edge_beyond(near_sides_, k) || !near_.represents_edge(face_, static_cast<int>(k))) continue;
       if (!overlap(edge_boxes_[k], far.box)) continue;

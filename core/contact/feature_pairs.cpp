@@ -14,6 +14,15 @@ namespace {
 constexpr double slack_of_obstacle = 1e-3, slack_of_cloth = 0.1;
 constexpr double edge_weight = 1e-12;  ///< a weight up to this is one of a boundary
 
+template <std::size_t N>
+void append(PairParticles& pair, const std::array<int, N>& particles) {
+  for (const int particle : particles) pair.particle[at(pair.count++)] = particle;
+}
+
+bool is_own(const FeaturePair& pair) {
+  return pair.obstacle == FeaturePair::cloth_itself;
+}
+
 /// One side of a pair: where its closest feature lies.
 struct Side {
   int vertex = -1,
@@ -58,18 +67,14 @@ void set_normal(Separation& s, const Vec3& separation, double squared_distance) 
   s.normal = s.distance > 0 ? Vec3(separation / s.distance) : Vec3::Zero();
 }
 
-/// Puts the particles of a feature of the cloth on the near (sign 1) or far (-1) side.
+/// Adds the weights of a feature of the cloth on the near (sign 1) or the far side (-1).
 template <std::size_t N>
-void add_particles(Separation& s, const std::array<int, N>& particles, const std::array<double, N>& weights,
-                   double sign) {
-  for (std::size_t k = 0; k < N; ++k, ++s.count) {
-    s.particle[at(s.count)] = particles[k];
-    s.weight[at(s.count)] = sign * weights[k];
-  }
-  if (sign > 0) s.near_count = s.count;
+void add_weights(Separation& s, const std::array<double, N>& weights, double sign) {
+  const std::size_t first = sign > 0 ? 0 : at(s.near_count);
+  for (std::size_t k = 0; k < N; ++k) s.weight[first + k] = sign * weights[k];
 }
 
-/// The cloth where it is, an obstacle in its pose, seen alike: a surface and where its vertices are.
+/// Cloth and obstacle as two types with the same members: a surface and the positions of its vertices (m).
 struct ClothSide {
   const Surface& surface;
   const Vec3Field& field;
@@ -90,18 +95,18 @@ void set_near_level(Separation& s, const ClothSide& cloth) {
 }
 
 template <class Far>
-Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
-                       double slack, double within) {
+Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
+                       double within) {
   const auto& [a, b, c] = far.surface.triangles[at(pair.foreign)];
   const Vec3 p = cloth(pair.feature), pa = far(a), pb = far(b), pc = far(c);
   const PointTriangle closest = closest_on_triangle(p, pa, pb, pc);
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, closest.separation, closest.squared_distance);
-  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.weight[0] = 1;
   s.near_level = s.normal.dot(p);
   s.far_level = std::max({s.normal.dot(pa), s.normal.dot(pb), s.normal.dot(pc)});
   s.far_point = p - closest.separation;
-  if (own) add_particles<3>(s, {a, b, c}, closest.weights, -1);
+  if (is_own(pair)) add_weights(s, closest.weights, -1);
   if (s.distance >= within) return s;
 
   const Side side = side_of_triangle(far.surface, pair.foreign, closest.weights);
@@ -114,19 +119,19 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
 
 /// `far_bends_away(point, normal)` says it of the surface beside the far edge.
 template <class Far, class BendsAway>
-Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own, double within,
+Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double within,
                      const BendsAway& far_bends_away) {
   const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
   const auto& [c, d] = far.surface.edges[at(pair.foreign)];
   const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
   const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, closest.separation, closest.squared_distance);
-  add_particles<2>(s, {a, b}, {1 - closest.first, closest.first}, 1);
+  add_weights<2>(s, {1 - closest.first, closest.first}, 1);
   s.near_level = std::min(s.normal.dot(pa), s.normal.dot(pb));
   s.far_level = std::max(s.normal.dot(pc), s.normal.dot(pd));
   s.far_point = pc + closest.second * (pd - pc);
-  if (own) add_particles<2>(s, {c, d}, {1 - closest.second, closest.second}, -1);
+  if (is_own(pair)) add_weights<2>(s, {1 - closest.second, closest.second}, -1);
   if (s.distance >= within) return s;
 
   const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
@@ -139,9 +144,9 @@ Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far&
 
 /// With an edge of a mesh or of the cloth.
 template <class Far>
-Separation edge_surface_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, bool own,
-                             double slack, double within) {
-  return edge_edge(pair, cloth, far, own, within, [&](const Vec3& point, const Vec3& normal) {
+Separation edge_surface_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
+                             double within) {
+  return edge_edge(pair, cloth, far, within, [&](const Vec3& point, const Vec3& normal) {
     return bends_away(far.surface, {-1, pair.foreign}, point, normal, slack, far);
   });
 }
@@ -159,15 +164,15 @@ Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const 
     }
     return true;
   };
-  return edge_edge(pair, cloth, BodySide{body.surface, body.vertices, pose}, false, within, lies_between);
+  return edge_edge(pair, cloth, BodySide{body.surface, body.vertices, pose}, within, lies_between);
 }
 
 Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex, double within) {
   const Triangle& face = cloth.surface.triangles[at(pair.feature)];
   const PointTriangle closest = closest_on_triangle(vertex, cloth(face[0]), cloth(face[1]), cloth(face[2]));
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, -closest.separation, closest.squared_distance);
-  add_particles<3>(s, face, closest.weights, 1);
+  add_weights(s, closest.weights, 1);
   set_near_level(s, cloth);
   s.far_level = s.normal.dot(vertex);
   s.far_point = vertex;
@@ -184,9 +189,9 @@ Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Ve
 Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& plane,
                         const Pose& pose) {
   const Vec3 p = cloth(pair.feature);
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   s.normal = pose.turn * plane.normal;
-  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.weight[0] = 1;
   s.near_level = s.normal.dot(p);
   s.far_level = s.normal.dot(pose.at(plane.point));
   s.distance = s.near_level - s.far_level;
@@ -200,12 +205,12 @@ Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const Obs
   const Vec3 p = cloth(pair.feature);
   const Pose placed{pose.turn, pose.shift};
   const PointBox closest = closest_on_box(
-      placed.back(p),
+      placed.inverse(p),
       {body.box.center.cwiseProduct(pose.stretch), body.box.axes, body.box.half.cwiseProduct(pose.stretch)});
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   s.normal = pose.turn * closest.normal;
   s.distance = closest.distance;
-  add_particles<1>(s, {pair.feature}, {1.0}, 1);
+  s.weight[0] = 1;
   s.far_point = placed.at(closest.point);
   s.near_level = s.normal.dot(p);
   s.far_level = s.near_level - s.distance;  // the whole box lies behind the plane through its closest point
@@ -219,9 +224,9 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
   const Vec3 center = pose.at(body.center);
   const double radius = pose.stretch.x() * body.radius;
   const PointTriangle closest = closest_on_triangle(center, cloth(face[0]), cloth(face[1]), cloth(face[2]));
-  Separation s;
+  Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, -closest.separation, closest.squared_distance);
-  add_particles<3>(s, face, closest.weights, 1);
+  add_weights(s, closest.weights, 1);
   set_near_level(s, cloth);
   s.distance -= radius;
   s.far_level = s.normal.dot(center) + radius;
@@ -232,11 +237,6 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
               : side.edge >= 0 ? cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature
                                : true;
   return s;
-}
-
-template <std::size_t N>
-void append(PairParticles& pair, const std::array<int, N>& particles) {
-  for (const int particle : particles) pair.particle[at(pair.count++)] = particle;
 }
 
 }  // namespace
@@ -258,7 +258,7 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
       break;
   }
   all.near_count = all.count;
-  if (pair.obstacle != FeaturePair::cloth_itself) return all;
+  if (!is_own(pair)) return all;
   if (pair.kind == PairKind::edge_edge)
     append(all, cloth.edges[at(pair.foreign)]);
   else
@@ -269,10 +269,9 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
 Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within) {
   const ClothSide cloth{surface, position};
-  if (pair.obstacle == FeaturePair::cloth_itself)
-    return pair.kind == PairKind::vertex_face
-               ? vertex_face(pair, cloth, cloth, true, slack_of_cloth, within)
-               : edge_surface_edge(pair, cloth, cloth, true, slack_of_cloth, within);
+  if (is_own(pair))
+    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, slack_of_cloth, within)
+                                              : edge_surface_edge(pair, cloth, cloth, slack_of_cloth, within);
   const ObstacleBody& body = bodies[at(pair.obstacle)];
   const Pose& pose = poses[at(pair.obstacle)];
   const BodySide far{body.surface, body.vertices, pose};
@@ -284,11 +283,10 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
     case PairKind::face_sphere:
       return face_sphere(pair, cloth, body, pose);
     case PairKind::vertex_face:
-      return vertex_face(pair, cloth, far, false, slack_of_obstacle, within);
+      return vertex_face(pair, cloth, far, slack_of_obstacle, within);
     case PairKind::edge_edge:
-      return body.kind == BodyKind::box
-                 ? edge_box_edge(pair, cloth, body, pose, within)
-                 : edge_surface_edge(pair, cloth, far, false, slack_of_obstacle, within);
+      return body.kind == BodyKind::box ? edge_box_edge(pair, cloth, body, pose, within)
+                                        : edge_surface_edge(pair, cloth, far, slack_of_obstacle, within);
     case PairKind::face_vertex:
       return face_vertex(pair, cloth, far(pair.foreign), within);
   }

@@ -33,7 +33,7 @@ struct FeaturePair {
   auto operator<=>(const FeaturePair&) const = default;
 };
 
-/// Of the near feature, then of a far feature of the cloth itself.
+/// The particles of the near feature, then those of the far feature if it belongs to the cloth as well.
 struct PairParticles {
   int near_count = 0, count = 0;
   std::array<int, 4> particle{};
@@ -44,25 +44,21 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth);
 /// The relative position of two convex features. Along the normal every point of the near feature is at
 /// `near_level` or above and every point of the far one at `far_level` or below: where near_level > far_level
 /// any plane between separates them, even if the closest points are inexact.
-struct Separation {
-  int near_count = 0,
-      count = 0;  ///< particles: those of the near feature, then those of a far one of the cloth
-  std::array<int, 4> particle{};
-  std::array<double, 4>
-      weight{};             ///< of the closest points: sum 1 on the near side, -1 on the far side if cloth
-  Vec3 normal{0, 0, 0};     ///< from far to near, of length one; zero where the features meet
-  Vec3 far_point{0, 0, 0};  ///< m, the closest one of an obstacle
+struct Separation : PairParticles {
+  /// Of the closest points: sum 1 on the near side, and -1 on the far side if that is cloth.
+  std::array<double, 4> weight{};
+  Vec3 normal{0, 0, 0};     ///< unit vector from far to near; zero where the features have a common point
+  Vec3 far_point{0, 0, 0};  ///< m, the closest point of the far feature
   double distance = 0;      ///< m, between the closest points
   double near_level = 0, far_level = 0;  ///< m along the normal
-  /// No neighbouring feature is closer, as far as this side can tell: the pair becomes a contact constraint.
-  /// Others only bound the motion.
+  /// No neighbouring feature is closer: the pair becomes a contact constraint. Others only bound the motion.
   bool nearest = false;
 
   double gap() const { return near_level - far_level; }
 };
 
-/// Positions in m; `poses` of the bodies, in their order. `nearest` is only determined up to the distance
-/// `within`, in m.
+/// `position` in m; `poses`: one for each body. `nearest` is only determined for pairs closer than `within`,
+/// in m.
 Separation separate(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within);
 

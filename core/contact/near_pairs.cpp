@@ -14,20 +14,20 @@ namespace {
 /// Overlaps, and faces to be looked for in a hierarchy, that are worth a thread of their own.
 constexpr std::size_t least_share = 1000, least_queries = 200;
 
-/// How far an even turn bulges out of the chord between its ends, for a point `radius` metres from the axis.
+/// m, largest distance of an arc from its chord, for a point that rotates at `radius` metres from the axis.
 double bulge(const PoseInterpolation& path, double radius) {
   if (path.angle() >= 2 * std::numbers::pi) return 2 * radius;
   return radius * (1 - std::cos(0.5 * path.angle()));
 }
 
-/// The same for a point at rest, `radius` metres from the pivot at the start, as it is seen from the
-/// obstacle: what the pivot has shifted turns as well, by t (1 - t) times the angle against the chord.
+/// The same for a point at rest, `radius` metres from the pivot at the start, in the obstacle's coordinates:
+/// the displacement of the pivot rotates too, and deviates from the chord by t (1 - t) times the angle.
 double seen_bulge(const PoseInterpolation& path, double radius) {
   return bulge(path, radius) + 0.25 * path.angle() * (path.pivot(1) - path.pivot(0)).norm();
 }
 
-/// Holds the whole way of a point of an obstacle. A point that turns and moves from or to the pivot leaves
-/// the chord by at most an eighth of the second derivative, the turn's and that of both.
+/// A box around the path of a point of an obstacle, grown by `reach`. A point that rotates and whose distance
+/// from the pivot changes deviates from the chord by at most an eighth of the second derivative.
 Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& point, double reach) {
   const double radius = (point - pivot).norm();
   return bounds_of(path.from().at(point), path.to().at(point))
@@ -35,23 +35,23 @@ Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& p
              0.25 * path.angle() * path.growth() * radius);
 }
 
-/// A box as it is seen from an obstacle.
+/// A bounding box in the coordinates of an obstacle.
 Bounds seen_from(const Pose& pose, const Bounds& box) {
-  const Vec3 middle = pose.back(0.5 * (box.lower + box.upper));
+  const Vec3 middle = pose.inverse(0.5 * (box.lower + box.upper));
   const Vec3 half = pose.turn.cwiseAbs().transpose() * (0.5 * (box.upper - box.lower));
   return {middle - half.cwiseQuotient(pose.stretch), middle + half.cwiseQuotient(pose.stretch)};
 }
 
-/// Boxes of the cloth as a mesh meets them on its way, grown by `reach`.
+/// Boxes of the cloth in the coordinates of a mesh, for its whole path, grown by `reach`.
 void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, const std::vector<Bounds>& boxes,
                     double reach, std::vector<Bounds>& seen) {
   const Vec3 pivot = path.from().at(body.pivot);
-  const bool at_home = path.rests() && path.from() == Pose{};
+  const bool at_home = path.is_still() && path.from() == Pose{};
   seen.resize(boxes.size());
   for (std::size_t f = 0; f < boxes.size(); ++f) {
     const Bounds& box = boxes[f];
     seen[f] = at_home ? box : seen_from(path.from(), box);
-    if (!path.rests()) seen[f].add(seen_from(path.to(), box));
+    if (!path.is_still()) seen[f].add(seen_from(path.to(), box));
     const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
     seen[f] = seen[f].grown((reach + seen_bulge(path, radius)) / path.least_stretch());
   }
@@ -89,22 +89,22 @@ class PairSearch::Step {
     for (const Bounds& box : particles_) whole_.add(box);
   }
 
-  void meet(int obstacle, const PoseInterpolation& path) {
+  void find(int obstacle, const PoseInterpolation& path) {
     obstacle_ = obstacle;
     const ObstacleBody& body = search_.bodies_[at(obstacle)];
     switch (body.kind) {
       case BodyKind::half_space:
-        return meet_plane(body, path);
+        return find_plane(body, path);
       case BodyKind::ball:
-        return meet_sphere(body, path);
+        return find_sphere(body, path);
       case BodyKind::box:
-        return meet_box(body, path);
+        return find_box(body, path);
       case BodyKind::surface:
-        return meet_mesh(body, path);
+        return find_mesh(body, path);
     }
   }
 
-  void meet_itself() {
+  void find_own() {
     std::vector<Capsule>& near = search_.seen_capsules_;
     near.clear();
     for (const Capsule& capsule : swept_.particles) near.push_back(capsule.grown(0.5 * swept_.own_reach));
@@ -114,7 +114,7 @@ class PairSearch::Step {
       const auto& [a, b, c] = cloth_.triangles[f];
       faces[f] = slab_of(near[at(a)], near[at(b)], near[at(c)]);
     }
-    meet_faces<Capsule, Capsule>(search_.own_overlaps_,
+    find_faces<Capsule, Capsule>(search_.own_overlaps_,
                                  {FeaturePair::cloth_itself, cloth_, near, cloth_, near, faces});
   }
 
@@ -129,7 +129,7 @@ class PairSearch::Step {
   }
   void add(PairKind kind, int feature, int foreign) { pairs_.push_back({obstacle_, kind, feature, foreign}); }
 
-  void meet_plane(const ObstacleBody& body, const PoseInterpolation& path) {
+  void find_plane(const ObstacleBody& body, const PoseInterpolation& path) {
     const Vec3 pivot = path.from().at(body.pivot);
     for (std::size_t i = 0; i < particles_.size(); ++i) {
       const Vec3 middle = 0.5 * (particles_[i].lower + particles_[i].upper);
@@ -144,7 +144,7 @@ class PairSearch::Step {
     }
   }
 
-  void meet_sphere(const ObstacleBody& body, const PoseInterpolation& path) {
+  void find_sphere(const ObstacleBody& body, const PoseInterpolation& path) {
     const double radius = path.largest_stretch() * body.radius;
     const Bounds box_of_path = swept_box(path, body.pivot, body.center, reach_ + radius);
     if (!overlap(whole_, box_of_path)) return;
@@ -152,7 +152,7 @@ class PairSearch::Step {
       if (overlap(box_of_face(f), box_of_path)) add(PairKind::face_sphere, f, 0);
   }
 
-  void meet_box(const ObstacleBody& body, const PoseInterpolation& path) {
+  void find_box(const ObstacleBody& body, const PoseInterpolation& path) {
     Bounds box_of_path;
     std::array<Bounds, 8> corner;
     for (std::size_t k = 0; k < 8; ++k) {
@@ -177,32 +177,31 @@ class PairSearch::Step {
     }
   }
 
-  void meet_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
+  void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
     const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
     const std::vector<Slab>& faces = search_.mesh_faces_[at(obstacle_)];
-    if (path.rests()) {
+    if (path.is_still()) {
       std::vector<Capsule>& near = search_.seen_capsules_;
       near.clear();
       const Pose& pose = path.from();
       for (const Capsule& capsule : swept_.particles)
-        near.push_back({pose.back(capsule.from), pose.back(capsule.to),
+        near.push_back({pose.inverse(capsule.from), pose.inverse(capsule.to),
                         (capsule.radius + reach_) / path.least_stretch()});
-      meet_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
+      find_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     } else {
       std::vector<Bounds>& near = search_.seen_;
       seen_from_body(body, path, particles_, reach_, near);
-      meet_faces<Bounds, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
+      find_faces<Bounds, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
     }
   }
 
   template <class NearRegion, class FarRegion>
-  void meet_faces(const std::vector<BoxPair>& overlaps,
-                  const FacePairFinder<NearRegion, FarRegion>& meeting) {
+  void find_faces(const std::vector<BoxPair>& overlaps, const FacePairFinder<NearRegion, FarRegion>& finder) {
     search_.in_parts(overlaps.size(), least_share, search_.pair_parts_, pairs_,
                      [&](std::size_t begin, std::size_t end, std::vector<FeaturePair>& part) {
-                       auto own_meeting = meeting;
+                       auto own_finder = finder;
                        for (std::size_t k = begin; k < end; ++k)
-                         own_meeting.meet(overlaps[k].query, overlaps[k].index, part);
+                         own_finder.find(overlaps[k].query, overlaps[k].index, part);
                      });
   }
 
@@ -245,15 +244,25 @@ void PairSearch::set_team(WorkerTeam* team) {
   pair_parts_.resize(threads), overlap_parts_.resize(threads);
 }
 
-/// What the trees have found is kept while every particle stays in its grown box and no mesh moves. It may
-/// say too much; what is in the boxes of this step is told apart afterwards, so that the pairs do not depend
-/// on it.
-void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
+/// `particles`: regions or positions.
+template <class Regions>
+void PairSearch::bound_faces(const Regions& particles, double reach) {
+  faces_.resize(cloth_.triangles.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const auto& [a, b, c] = cloth_.triangles[f];
+    faces_[f] = bounds_of(particles[at(a)], particles[at(b)], particles[at(c)]).grown(reach);
+  }
+}
+
+/// The overlaps that the trees have found are reused while every particle stays in its grown box and no mesh
+/// moves. They may be too many; the later tests use the bounds of this step, so that the pairs do not depend
+/// on the cache.
+void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
   const auto stays = [&](std::size_t i) { return holds(cached_[i], particles_[i]); };
   bool kept = cached_.size() == particles_.size() && cached_reach_ == swept.reach;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    kept = kept &&
-           (bodies_[k].kind != BodyKind::surface || (paths[k].rests() && paths[k].to() == cached_poses_[k]));
+    kept = kept && (bodies_[k].kind != BodyKind::surface ||
+                    (paths[k].is_still() && paths[k].to() == cached_poses_[k]));
   for (std::size_t i = 0; kept && i < particles_.size(); ++i) kept = stays(i);
   if (kept) return;
 
@@ -263,7 +272,7 @@ void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseI
   cached_poses_.clear();
   for (const PoseInterpolation& path : paths) cached_poses_.push_back(path.to());
   if (with_itself_) {
-    find_faces(cached_, 0.5 * swept.own_reach);
+    bound_faces(cached_, 0.5 * swept.own_reach);
     refit_cloth();
     own_overlaps_.clear();
     in_parts(faces_.size(), least_queries, overlap_parts_, own_overlaps_,
@@ -271,7 +280,7 @@ void PairSearch::look_in_trees(const SweptBounds& swept, const std::vector<PoseI
                cloth_tree_.collect_own(begin, end, part);
              });
   }
-  find_faces(cached_, 0);
+  bound_faces(cached_, 0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].kind != BodyKind::surface) continue;
     seen_from_body(bodies_[k], paths[k], faces_, swept.reach, seen_);
@@ -290,23 +299,15 @@ void PairSearch::refit_cloth() {
     cloth_tree_.refit(faces_);
 }
 
-void PairSearch::find_faces(const std::vector<Bounds>& particles, double reach) {
-  faces_.resize(cloth_.triangles.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const auto& [a, b, c] = cloth_.triangles[f];
-    faces_[f] = bounds_of(particles[at(a)], particles[at(b)], particles[at(c)]).grown(reach);
-  }
-}
-
 void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
                       std::vector<FeaturePair>& pairs) {
   pairs.clear();
   particles_.clear();
   for (const Capsule& capsule : swept.particles) particles_.push_back(box_of(capsule));
-  if (needs_trees_) look_in_trees(swept, paths);
+  if (needs_trees_) find_overlaps(swept, paths);
   Step step(*this, swept, pairs);
-  if (with_itself_) step.meet_itself();
-  for (std::size_t k = 0; k < bodies_.size(); ++k) step.meet(static_cast<int>(k), paths[k]);
+  if (with_itself_) step.find_own();
+  for (std::size_t k = 0; k < bodies_.size(); ++k) step.find(static_cast<int>(k), paths[k]);
 }
 
 int PairSearch::hierarchy_depth(int body) const {
@@ -320,11 +321,7 @@ void PairSearch::append_boxes(int body, int level, const Vec3Field& position, do
                               std::vector<Bounds>& boxes) {
   if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].append_rounded_boxes(level, boxes);
   if (!with_itself_) return;
-  faces_.resize(cloth_.triangles.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const auto& [a, b, c] = cloth_.triangles[f];
-    faces_[f] = bounds_of(position[at(a)], position[at(b)], position[at(c)]).grown(reach);
-  }
+  bound_faces(position, reach);
   refit_cloth();
   cloth_tree_.append_rounded_boxes(level, boxes);
 }

@@ -1,6 +1,6 @@
-// Broad phase: the pairs of features that can meet within a round. Particles are bounded by capsules, which
-// they do not leave until the next search, and obstacles' features by boxes around their whole paths, so that
-// no pair is missed at any speed.
+// Broad phase: the pairs of features that may collide within a round. Particles are bounded by capsules,
+// which they do not leave until the next search, and obstacles' features by boxes around their whole paths,
+// so that no pair is missed at any speed.
 #pragma once
 
 #include "contact/feature_pairs.h"
@@ -49,9 +49,10 @@ class PairSearch {
   template <class Part, class Fill>
   void in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
                 std::vector<Part>& whole, const Fill& fill);
-  void look_in_trees(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
+  void find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
   void refit_cloth();
-  void find_faces(const std::vector<Bounds>& particles, double reach);
+  template <class Regions>
+  void bound_faces(const Regions& particles, double reach);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;

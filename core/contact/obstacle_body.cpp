@@ -1,9 +1,16 @@
 #include "contact/obstacle_body.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cloth {
 namespace {
+
+constexpr double most_rotation = 0.2;  ///< rad, of an obstacle in a substep
+/// Largest displacement of a point of a mesh in a substep, in mean edges of the cloth: with longer ones the
+/// pairs of features that may collide become too many.
+constexpr double most_displacement = 0.5;
+constexpr double most_substeps = 1e6;
 
 void add_box(const Obstacle& obstacle, ObstacleBody& body) {
   body.box.center = obstacle.center;
@@ -37,6 +44,31 @@ ObstacleBody body_of(const Obstacle& obstacle) {
   body.restitution = obstacle.restitution;
   body.reflects = obstacle.response == "reflect";
   return body;
+}
+
+double longest_path(const ObstacleBody& body, const PoseInterpolation& path) {
+  if (path.is_still()) return 0;
+  const double straight = (path.pivot(1) - path.pivot(0)).norm() + path.growth() * body.reach;
+  if (body.kind == BodyKind::ball || path.angle() == 0) return straight;
+  return body.kind == BodyKind::half_space ? Bounds::infinity
+                                           : straight + path.angle() * path.largest_stretch() * body.reach;
+}
+
+std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies,
+                          const std::vector<PoseInterpolation>& paths, double edge) {
+  double substeps = 1;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (bodies[k].kind != BodyKind::ball) substeps = std::max(substeps, paths[k].angle() / most_rotation);
+    if (bodies[k].kind == BodyKind::surface)
+      substeps = std::max(substeps, longest_path(bodies[k], paths[k]) / (most_displacement * edge));
+  }
+  return static_cast<std::int64_t>(std::ceil(std::min(substeps, most_substeps)));
+}
+
+bool comes_near(const ObstacleBody& body, const PoseInterpolation& path, const Bounds& cloth, double reach) {
+  if (body.kind == BodyKind::half_space) return true;
+  const Bounds pivots = bounds_of(path.pivot(0), path.pivot(1));
+  return overlap(pivots.grown(path.largest_stretch() * body.reach + reach), cloth);
 }
 
 }  // namespace cloth

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "contact/contact_work.h"
-#include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
@@ -22,6 +20,12 @@ double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds,
   contact.normal_impulse = normal_load + std::max(0.0, mass * change.dot(normal));
   contact.friction_impulse = mass * (change - change.dot(normal) * normal);
   return work_of(contact, speeds);
+}
+
+bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3Field& position) {
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (!system.pinned[i] && penetration(obstacle, position[i])) return true;
+  return false;
 }
 
 }  // namespace
@@ -74,15 +78,17 @@ std::string describe(const TunnellingRisk& risk) {
 ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity)
     : obstacles_(std::move(obstacles)), gravity_(gravity) {}
 
-/// m/s, what a bounce gives back: of a particle that nothing held its mean speed in this step, of one that
-/// was held the speed with which the step began. What the step adds to that is load. Slower than twice what
-/// gravity or the load adds in a step is no blow, or a cloth at rest would dance.
-double ObstacleContact::approach_of(std::size_t i, const Vec3& normal, const ContactBegin& begin,
-                                    const Integrated& integrated) const {
+/// m/s, the approach speed to which restitution applies. A particle without contact in the last step: its
+/// mean speed in this step. One with contact: its speed at the beginning of the step, because what the step
+/// adds is load. 0 below twice what gravity or the load adds in a step, or a cloth at rest would keep
+/// bouncing.
+double ObstacleContact::approach_of(const Particle& particle, const Vec3& normal,
+                                    const ContactBegin& begin) const {
+  const std::size_t i = particle.index;
   const Vec3 began = begin.velocity[i];
   const Vec3 speed =
-      begin.memory.held[i] ? began : Vec3((integrated.position - begin.position[i]) / begin.step);
-  const double load = normal.dot(began - integrated.velocity);
+      begin.memory.held[i] ? began : Vec3((particle.integrated_position - begin.position[i]) / begin.step);
+  const double load = normal.dot(began - particle.integrated_velocity);
   const double approach = -speed.dot(normal);
   return approach > 2 * std::max(gravity_ * begin.step, load) ? approach : 0;
 }
@@ -95,7 +101,7 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
   if (begin.constrained) held = begin.constrained->held;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (system.pinned[i]) continue;
-    Particle particle{i, {state.position[i], state.velocity[i]}, {}, begin.velocity[i]};
+    Particle particle{i, state.position[i], state.velocity[i], {}, begin.velocity[i]};
     while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
       particle.held = held.first(particle.held.size() + 1);
     held = held.subspan(particle.held.size());
@@ -107,18 +113,18 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
   return report;
 }
 
-/// To where the springs let it go, along the surfaces that hold it: against them it has the speed it came
-/// with.
+/// Moves a particle to its constrained position. Its velocity changes by the displacement along the surfaces
+/// that hold it; the normal velocity stays.
 void ObstacleContact::give_way(const Particle& particle, const ConstrainedStep& constrained,
                                ClothState& state) {
   const std::size_t i = particle.index;
-  Vec3 moved = constrained.position[i] - particle.integrated.position;
+  Vec3 moved = constrained.position[i] - particle.integrated_position;
   for (const HeldParticle& held : particle.held) moved -= held.normal.dot(moved) * held.normal;
   state.position.set(i, constrained.position[i]);
   state.velocity.add(i, moved / constrained.weight);
 }
 
-/// Where the particle belongs and what it is pressed there with, if it touches the obstacle.
+/// The surface point and the normal load of the particle, if it touches the obstacle.
 std::optional<ObstacleContact::Touched> ObstacleContact::touched(std::size_t obstacle,
                                                                  const Particle& particle,
                                                                  const Vec3& position,
@@ -143,13 +149,13 @@ bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const
     if (!place) continue;
     const auto& [surface, normal_load] = *place;
     const Vec3 speed = state.velocity[i];
-    const double approach = approach_of(i, surface.normal, begin, particle.integrated);
+    const double approach = approach_of(particle, surface.normal, begin);
     const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, normal_load / mass);
     Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
     const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
     const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, normal_load);
     const double square = 0.5 * mass * (answer - stopped).squaredNorm();
-    if (square > 0) {  // gives back no more than was taken
+    if (square > 0) {  // returns no more energy than contact has taken
       const double linear = mass * stopped.dot(answer - stopped);
       answer = stopped + part_within(square, linear, std::max(-work, 0.0)) * (answer - stopped);
     }
@@ -167,19 +173,13 @@ bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const
 
 bool ObstacleContact::is_inside(const ClothSystem& system, const Vec3Field& position) const {
   return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
-    const Obstacle within = grown(obstacle, -above_rounding);
-    for (std::size_t i = 0; i < position.size(); ++i)
-      if (!system.pinned[i] && penetration(within, position[i])) return true;
-    return false;
+    return any_inside(grown(obstacle, -above_rounding), system, position);
   });
 }
 
 bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state) const {
-  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
-    for (std::size_t i = 0; i < state.position.size(); ++i)
-      if (!system.pinned[i] && penetration(obstacle, state.position[i])) return true;
-    return false;
-  });
+  return std::any_of(obstacles_.begin(), obstacles_.end(),
+                     [&](const Obstacle& obstacle) { return any_inside(obstacle, system, state.position); });
 }
 
 void ObstacleContact::append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const {

@@ -1,6 +1,6 @@
-// Obstacles as tests of single particles: what is inside is put on the nearest point of the surface (sphere:
-// report, Eq. (16); box: only the coordinate of least penetration moves) and its velocity answers if it goes
-// inward.
+// Contact with obstacles particle by particle. A particle inside an obstacle is moved to the nearest point of
+// the surface (sphere: report, Eq. (16); box: along the axis of least penetration), and its velocity changes
+// by the contact law of the obstacle if it points inward.
 #pragma once
 
 #include <optional>
@@ -9,51 +9,49 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
-#include "contact/contact_mark.h"
-#include "contact/contact_memory.h"
 #include "contact/contact_report.h"
 #include "scene/obstacle_shape.h"
 
 namespace cloth {
 
-/// The velocity after contact, only changed if it goes inward. coulomb: v_n -> -restitution v_n, and the
-/// tangential part loses up to friction |change of v_n|. reflect (report, Eq. (17)): v -> friction (v - 2 v_n
-/// n).
+/// The velocity (m/s) after contact; unchanged if it does not point inward. With v_n its component along the
+/// outward normal n: response "coulomb" replaces v_n by -restitution v_n and reduces the tangential part by
+/// up to friction |change of v_n|; "reflect" gives friction (v - 2 v_n n) (report, Eq. (17)).
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
 
-/// The same, where contact was come to with `approach` in m/s: the rest of the inward speed is no blow but
-/// the load of a step, which restitution does not give back. With 0 nothing bounces. What else presses it
-/// against the surface, `press` in m/s, counts for friction.
+/// The same with the rebound restitution * `approach` (m/s): only this part of the inward speed is an impact;
+/// the rest comes from a load within the step, to which restitution does not apply. `normal_load` (m/s) is
+/// added to the normal change of velocity that bounds friction.
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
                       double normal_load = 0);
 
-/// The obstacle with its surface `length` m further out.
+/// The obstacle with its surface moved outward by `length` (m).
 Obstacle grown(Obstacle obstacle, double length);
 
 /// A particle on an obstacle's surface.
 struct HeldParticle {
   std::size_t particle = 0, obstacle = 0;
   Vec3 normal{0, 0, 0};    ///< outward
-  double normal_load = 0;  ///< N s, of the springs against the surface, beyond what the particle came with
+  double normal_load = 0;  ///< N s, impulse of the springs into the surface within the step
 };
 
-/// Where the particles of a step come to when their springs give way to contact (contact/stiff_contact.h).
+/// The positions at the end of a step that was solved with contact as a constraint (contact/stiff_contact.h).
 struct ConstrainedStep {
   Vec3Field position;              ///< m
-  double weight = 0;               ///< s; velocities change by displacements over it
+  double weight = 0;               ///< s; velocities change by displacement / weight
   std::vector<HeldParticle> held;  ///< in order of the particles
 };
 
-/// Of the step that contact follows.
+/// The beginning of the step whose result contact corrects.
 struct ContactBegin {
-  const Vec3Field& position;                     ///< m, as it began
+  const Vec3Field& position;                     ///< m
   const Vec3Field& velocity;                     ///< m/s
-  double step = 0;                               ///< s
-  ContactMemory& memory;                         ///< of the last step, and then of this one
-  const ConstrainedStep* constrained = nullptr;  ///< without it each particle goes to the nearest surface
+  double step = 0;                               ///< s, length of the step
+  ContactMemory& memory;                         ///< in: of the last step; out: of this one
+  const ConstrainedStep* constrained = nullptr;  ///< null: particles are moved to the nearest surface point
 };
 
-/// A particle that moves further in a step than an obstacle is thick: it can pass between two steps unseen.
+/// A particle that moves further in a step than an obstacle is thick: it may pass through undetected.
 struct TunnellingRisk {
   int particle = 0;
   std::size_t obstacle = 0;
@@ -61,8 +59,8 @@ struct TunnellingRisk {
   double thickness = 0;  ///< m: a ball's diameter, a box's smallest side
 };
 
-/// The particle that moves furthest, if that is further than the thinnest obstacle. Planes have no other
-/// side.
+/// The particle with the largest displacement, if that exceeds the thickness of the thinnest obstacle.
+/// Planes, which have no far side, are ignored.
 std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obstacles,
                                               const ClothSystem& system, const ClothState& state,
                                               double time_step);
@@ -77,28 +75,24 @@ class ObstacleContact {
 
   ContactReport apply(const ClothSystem& system, const ContactBegin& begin, ClothState& state) const;
 
-  /// Particles that `apply` would move.
+  /// Whether a free particle is inside an obstacle, so that `apply` would move it.
   bool touches(const ClothSystem& system, const ClothState& state) const;
 
-  /// Whether any of them is inside by more than rounding.
+  /// Whether a free particle is inside an obstacle by more than rounding.
   bool is_inside(const ClothSystem& system, const Vec3Field& position) const;
 
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
 
-  /// Appends the particles that lie on an obstacle's surface, to rounding.
+  /// Appends the particles that lie on an obstacle's surface, up to rounding.
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
 
  private:
-  /// Where and how fast the integrator let a particle go.
-  struct Integrated {
-    Vec3 position{0, 0, 0}, velocity{0, 0, 0};  ///< m, m/s
-  };
-  /// A free particle on its way through a step of contact.
+  /// A free particle while contact goes through the obstacles.
   struct Particle {
     std::size_t index = 0;
-    Integrated integrated;
-    std::span<const HeldParticle> held;  ///< of it
-    Vec3 before{0, 0, 0};                ///< m/s, as the step began, or what the obstacle before has answered
+    Vec3 integrated_position, integrated_velocity;  ///< m, m/s, by the integrator
+    std::span<const HeldParticle> held;             ///< the surfaces that it lies on
+    Vec3 before{0, 0, 0};  ///< m/s, at the beginning of the step, or after the last obstacle
   };
   struct Touched {
     SurfacePoint surface;
@@ -109,8 +103,7 @@ class ObstacleContact {
                                  bool constrained) const;
   bool touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin, ClothState& state,
              ContactReport& report) const;
-  double approach_of(std::size_t particle, const Vec3& normal, const ContactBegin& begin,
-                     const Integrated& integrated) const;
+  double approach_of(const Particle& particle, const Vec3& normal, const ContactBegin& begin) const;
 
   std::vector<Obstacle> obstacles_;
   double gravity_ = 0;  ///< m/s^2

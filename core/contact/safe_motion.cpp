@@ -125,7 +125,7 @@ ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plan
     const double growth = end.stretch.x() / from.stretch.x();
     return {end.at(body.center) + growth * (plane.point - from.at(body.center)), plane.normal};
   }
-  return {end.at(from.back(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
+  return {end.at(from.inverse(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
 }
 
 /// The part of the step in which the points of a rotating obstacle leave the chords of their paths by less
@@ -180,7 +180,7 @@ double ContinuousContact::shrink_to_planes() {
   double shrink = 1;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const FeaturePair& pair = pairs_[k];
-    if (pair.obstacle == FeaturePair::cloth_itself || paths_[at(pair.obstacle)].rests()) continue;
+    if (pair.obstacle == FeaturePair::cloth_itself || paths_[at(pair.obstacle)].is_still()) continue;
     const Separation& s = separations_[k];
     const Vec3 on_plane = s.far_point + (s.far_level - s.normal.dot(s.far_point)) * s.normal;
     const Plane moved = moved_plane(pair.obstacle, {on_plane, s.normal}, next_poses_);
@@ -224,7 +224,8 @@ std::optional<std::size_t> ContinuousContact::blocking_pair() const {
   if (blocking_pair_) return blocking_pair_;
   std::optional<std::size_t> nearest;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    if (pairs_[k].obstacle == FeaturePair::cloth_itself || paths_[at(pairs_[k].obstacle)].rests()) continue;
+    if (pairs_[k].obstacle == FeaturePair::cloth_itself || paths_[at(pairs_[k].obstacle)].is_still())
+      continue;
     if (!nearest || separations_[k].distance < separations_[*nearest].distance) nearest = k;
   }
   return nearest;

@@ -1,6 +1,6 @@
 // Bounds of triangles whose vertices may be anywhere in a region each: fast tests that two triangles cannot
-// meet. They use separating axes (Gottschalk et al. 1996): bounding boxes test the coordinate axes, slabs the
-// triangles' normals.
+// collide. They use separating axes (Gottschalk et al. 1996): bounding boxes test the coordinate axes, slabs
+// the triangles' normals.
 #pragma once
 
 #include <algorithm>

@@ -230,27 +230,6 @@ void BoxTree::collect_own(std::size_t begin, std::size_t end, std::vector<BoxPai
   }
 }
 
-std::vector<Bounds> BoxTree::boxes_at(int level) const {
-  std::vector<Bounds> below(nodes_.size());
-  std::vector<int> level_of(nodes_.size(), 0);
-  for (std::size_t number = 0; number < nodes_.size(); ++number)
-    for (int k = 0; k < std::popcount(nodes_[number].used); ++k)
-      if (const int child = nodes_[number].child[static_cast<std::size_t>(k)]; child >= 0)
-        level_of[static_cast<std::size_t>(child)] = level_of[number] + 1;
-  std::vector<Bounds> found;
-  for (std::size_t number = nodes_.size(); number-- > 0;) {
-    for (int k = 0; k < std::popcount(nodes_[number].used); ++k) {
-      const int child = nodes_[number].child[static_cast<std::size_t>(k)];
-      const Bounds& part =
-          child >= 0 ? below[static_cast<std::size_t>(child)] : boxes_[static_cast<std::size_t>(~child)];
-      below[number].add(part);
-      if (child < 0 && level_of[number] + 1 == level) found.push_back(part);
-    }
-    if (level_of[number] == level) found.push_back(below[number]);
-  }
-  return found;
-}
-
 void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const {
   struct Place {
     int node, level;

@@ -62,10 +62,8 @@ class BoxTree {
   int depth() const { return depth_; }
   static int depth_of(std::size_t boxes);
 
-  /// The boxes of the nodes `level` below the root, for drawing; those of level depth() are the given ones.
-  std::vector<Bounds> boxes_at(int level) const;
-  /// Appends the same boxes and the leaves of branches that end above `level`, so that every box is covered.
-  /// Rounded to single precision.
+  /// Appends the boxes of the nodes `level` below the root and of the leaves above that level, which together
+  /// contain every given box, for drawing; from level depth() on, the given boxes. In single precision.
   void append_rounded_boxes(int level, std::vector<Bounds>& boxes) const;
 
  private:

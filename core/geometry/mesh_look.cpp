@@ -5,12 +5,6 @@
 namespace cloth {
 namespace {
 
-/// Twice the area, along the normal.
-Vec3 area_of(const TriangleMesh& mesh, const Triangle& t) {
-  const auto at = [&](std::size_t k) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-  return (at(1) - at(0)).cross(at(2) - at(0));
-}
-
 Vec3 unit(const Vec3& v) {
   const double length = v.norm();
   return length > 0 ? Vec3(v / length) : Vec3(0, 0, 0);
@@ -22,7 +16,7 @@ Vec3 best_normal(const TriangleMesh& mesh) {
   double area = 0;
   Eigen::AlignedBox3d bounds;
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 part = area_of(mesh, t);
+    const Vec3 part = mesh.area_normal(t);
     sum += part, area += part.norm();
   }
   if (sum.norm() > 0.05 * area) return sum.normalized();
@@ -38,15 +32,15 @@ std::vector<Vec3> corner_normals(const TriangleMesh& mesh) {
   constexpr double most = 0.766;  // cos 40 degrees
   std::vector<Vec3> sum(mesh.vertices.size(), Vec3::Zero());
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 area = area_of(mesh, t);
-    for (const int corner : t) sum[static_cast<std::size_t>(corner)] += area;
+    const Vec3 area = mesh.area_normal(t);
+    for (const int corner : t) sum[at(corner)] += area;
   }
   std::vector<Vec3> normals;
   normals.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 own = unit(area_of(mesh, t));
+    const Vec3 own = unit(mesh.area_normal(t));
     for (const int corner : t) {
-      const Vec3 smooth = unit(sum[static_cast<std::size_t>(corner)]);
+      const Vec3 smooth = unit(sum[at(corner)]);
       normals.push_back(smooth.dot(own) >= most ? smooth : own);
     }
   }

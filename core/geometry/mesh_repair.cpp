@@ -13,17 +13,12 @@ namespace cloth {
 namespace {
 
 const Vec3& vertex(const TriangleMesh& mesh, int i) {
-  assert(i >= 0 && static_cast<std::size_t>(i) < mesh.vertices.size());
-  return mesh.vertices[static_cast<std::size_t>(i)];
+  assert(i >= 0 && at(i) < mesh.vertices.size());
+  return mesh.vertices[at(i)];
 }
 
 bool names_a_vertex_twice(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
-/// Twice the area along the normal.
-Vec3 area_normal(const TriangleMesh& mesh, const Triangle& t) {
-  return (vertex(mesh, t[1]) - vertex(mesh, t[0])).cross(vertex(mesh, t[2]) - vertex(mesh, t[0]));
 }
 
 /// Vertices that stayed, by the cell of a raster that they lie in: few in each, as they are a tolerance
@@ -42,7 +37,7 @@ class KeptVertices {
           const auto cell = cells_.find(cell_of(place) + Vec3(i, j, k));
           if (cell == cells_.end()) continue;
           for (const int candidate : cell->second) {
-            const double distance = (kept[static_cast<std::size_t>(candidate)] - place).stableNorm();
+            const double distance = (kept[at(candidate)] - place).stableNorm();
             if (distance <= tolerance_ && (first < 0 || candidate < first)) first = candidate;
           }
         }
@@ -69,27 +64,6 @@ class KeptVertices {
   double tolerance_;
   std::unordered_map<Vec3, std::vector<int>, Hash> cells_;
 };
-
-struct HalfEdge {
-  int from, to, opposite;
-  bool forward;
-};
-
-std::vector<HalfEdge> half_edges(const TriangleMesh& mesh) {
-  std::vector<HalfEdge> halves;
-  halves.reserve(3 * mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    if (names_a_vertex_twice(t)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = t[k], b = t[(k + 1) % 3];
-      halves.push_back({std::min(a, b), std::max(a, b), t[(k + 2) % 3], a < b});
-    }
-  }
-  std::stable_sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.from < b.from || (a.from == b.from && a.to < b.to);
-  });
-  return halves;
-}
 
 /// Counts one kind of fault and keeps its first place.
 class Tally {
@@ -131,7 +105,7 @@ bool degenerate(const TriangleMesh& mesh, const Triangle& t) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
     longest = std::max(longest, (vertex(mesh, t[(k + 1) % 3]) - vertex(mesh, t[k])).squaredNorm());
-  return names_a_vertex_twice(t) || !(0.5 * area_normal(mesh, t).norm() > 1e-12 * longest);
+  return names_a_vertex_twice(t) || !(0.5 * mesh.area_normal(t).norm() > 1e-12 * longest);
 }
 
 }  // namespace
@@ -153,7 +127,7 @@ Weld weld(const TriangleMesh& mesh, double tolerance) {
   result.merged_vertices = static_cast<int>(mesh.vertices.size() - result.mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
     Triangle welded;
-    for (std::size_t k = 0; k < 3; ++k) welded[k] = result.number[static_cast<std::size_t>(t[k])];
+    for (std::size_t k = 0; k < 3; ++k) welded[k] = result.number[at(t[k])];
     if (names_a_vertex_twice(welded))
       ++result.collapsed_triangles;
     else
@@ -162,27 +136,31 @@ Weld weld(const TriangleMesh& mesh, double tolerance) {
   return result;
 }
 
-std::vector<MeshEdge> unique_edges(const TriangleMesh& mesh) {
-  std::vector<MeshEdge> edges;
-  for (const HalfEdge& half : half_edges(mesh)) {
-    if (edges.empty() || edges.back().from != half.from || edges.back().to != half.to)
-      edges.push_back({.from = half.from, .to = half.to});
-    MeshEdge& edge = edges.back();
-    if (edge.triangles < 2) edge.opposite[static_cast<std::size_t>(edge.triangles)] = half.opposite;
-    ++edge.triangles;
-    if (half.forward) ++edge.forward;
-  }
-  return edges;
+std::vector<HalfEdge> half_edges(const std::vector<Triangle>& triangles) {
+  std::vector<HalfEdge> halves;
+  halves.reserve(3 * triangles.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(triangles[f][at(k)], triangles[f][at((k + 1) % 3)]);
+      halves.push_back({low, high, static_cast<int>(f), k});
+    }
+  std::sort(halves.begin(), halves.end());
+  return halves;
 }
 
-std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 area = area_normal(mesh, t);
-    for (const int i : t) normals[static_cast<std::size_t>(i)] += area;
+std::vector<MeshEdge> unique_edges(const TriangleMesh& mesh) {
+  std::vector<MeshEdge> edges;
+  for (const HalfEdge& half : half_edges(mesh.triangles)) {
+    const Triangle& t = mesh.triangles[at(half.triangle)];
+    if (names_a_vertex_twice(t)) continue;
+    if (edges.empty() || edges.back().from != half.low || edges.back().to != half.high)
+      edges.push_back({.from = half.low, .to = half.high});
+    MeshEdge& edge = edges.back();
+    if (edge.triangles < 2) edge.opposite[at(edge.triangles)] = t[at((half.corner + 2) % 3)];
+    ++edge.triangles;
+    if (t[at(half.corner)] == half.low) ++edge.forward;
   }
-  for (Vec3& normal : normals) normal.stableNormalize();
-  return normals;
+  return edges;
 }
 
 std::vector<MeshFinding> inspect(const TriangleMesh& mesh) {
@@ -197,7 +175,7 @@ std::vector<MeshFinding> inspect(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size(), false);
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
     const Triangle& t = mesh.triangles[k];
-    for (const int i : t) used[static_cast<std::size_t>(i)] = true;
+    for (const int i : t) used[at(i)] = true;
     if (!degenerate(mesh, t)) continue;
     flat.add(static_cast<int>(k), fmt::format("triangle {} of vertices {}, {} and {} near {}", k, t[0], t[1],
                                               t[2], place_text(vertex(mesh, t[0]))));

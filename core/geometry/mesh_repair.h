@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,15 @@ struct Weld {
 /// least 0) away.
 Weld weld(const TriangleMesh& mesh, double tolerance);
 
+/// The edge of a triangle from a corner (0 to 2) to the next one.
+struct HalfEdge {
+  int low, high;  ///< vertices
+  int triangle, corner;
+  auto operator<=>(const HalfEdge&) const = default;
+};
+/// All of them, sorted: those of one edge follow one another.
+std::vector<HalfEdge> half_edges(const std::vector<Triangle>& triangles);
+
 /// An edge and the triangles that share it, in their order.
 struct MeshEdge {
   int from = 0, to = 0;  ///< vertices, from < to
@@ -31,9 +41,6 @@ struct MeshEdge {
 
 /// Every edge once, sorted by its vertices. Triangles that repeat a vertex are ignored.
 std::vector<MeshEdge> unique_edges(const TriangleMesh& mesh);
-
-/// The normalised sum of the triangles' normals weighted by area; zero where that sum is zero.
-std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 
 enum class MeshFault {
   degenerate_triangle,   ///< repeats a vertex, or has an area of less than 1e-12 of its longest edge squared

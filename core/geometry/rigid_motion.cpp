@@ -4,6 +4,7 @@
 #include <numbers>
 
 namespace cloth {
+
 Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now, const Vec3& stretch) {
   return {turn, pivot_now - turn * pivot.cwiseProduct(stretch), stretch};
 }
@@ -16,8 +17,8 @@ Eigen::Matrix3d turn_by(const Vec3& rotation) {
 
 Vec3 rotation_of(const Eigen::Matrix3d& turn) {
   if (turn.isIdentity(0)) return Vec3::Zero();
-  const Eigen::AngleAxisd both(turn);
-  return both.angle() * both.axis();
+  const Eigen::AngleAxisd rotation(turn);
+  return rotation.angle() * rotation.axis();
 }
 
 PoseInterpolation::PoseInterpolation(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun)

@@ -1,5 +1,5 @@
-// Rigid motion: turns and shifts, and the way from one to another; what an edit has made larger or smaller is
-// stretched as well until it has its size (contact/obstacle_transition).
+// Poses of obstacles (rotation, translation and, after an edit of their size, stretch; see
+// contact/obstacle_transition.h) and the interpolation between two poses.
 #pragma once
 
 #include <algorithm>
@@ -8,40 +8,43 @@
 
 namespace cloth {
 
-/// x -> turn (stretch x) + shift, from where the scene describes an obstacle to where it is; `stretch` axis
-/// by axis, the same along all of them but for boxes.
+/// The map x -> turn (stretch x) + shift from the coordinates in which the scene describes an obstacle to the
+/// world.
 struct Pose {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  Vec3 shift{0, 0, 0};    ///< m
-  Vec3 stretch{1, 1, 1};  ///< > 0
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< rotation matrix
+  Vec3 shift{0, 0, 0};                                 ///< m, translation
+  Vec3 stretch{1, 1, 1};  ///< factor along each axis, > 0; only a box's may differ
 
   Vec3 at(const Vec3& point) const { return turn * point.cwiseProduct(stretch) + shift; }
-  Vec3 back(const Vec3& point) const { return (turn.transpose() * (point - shift)).cwiseQuotient(stretch); }
+  Vec3 inverse(const Vec3& point) const {
+    return (turn.transpose() * (point - shift)).cwiseQuotient(stretch);
+  }
   bool operator==(const Pose&) const = default;
 };
 
-/// What puts `pivot` at `pivot_now`.
+/// The pose with this rotation and stretch that maps `pivot` to `pivot_now` (m).
 Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now,
            const Vec3& stretch = Vec3::Ones());
 
-/// A turn by |rotation| about it, in rad; and the rotation of a turn, the short way.
+/// The rotation matrix of a rotation vector (rad along the axis), and the rotation vector, of at most pi, of
+/// a matrix.
 Eigen::Matrix3d turn_by(const Vec3& rotation);
 Vec3 rotation_of(const Eigen::Matrix3d& turn);
 
-/// From one pose to another: the pivot on a straight line, the turn evenly about one axis, the stretch
-/// evenly.
+/// Interpolates between two poses: the pivot moves along a straight line, the rotation angle about a fixed
+/// axis and the stretch change linearly.
 class PoseInterpolation {
  public:
   PoseInterpolation() = default;
-  /// The short way; but where the obstacle has turned by `spun`, in rad along the axis, on the way, by as
-  /// many whole turns more as come nearest to that.
+  /// Rotates by the smaller angle; if the obstacle spins by `spun` (rad along the axis) in between, by as
+  /// many whole turns more as come nearest to it.
   PoseInterpolation(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun = Vec3::Zero());
 
-  Pose at(double part) const;  ///< in [0, 1]; the ends are the given poses to the bit
-  bool rests() const { return from_ == to_ && angle_ == 0; }
+  Pose at(double part) const;  ///< `part` in [0, 1]; at 0 and 1 the given poses to the bit
+  bool is_still() const { return from_ == to_ && angle_ == 0; }
   double angle() const { return angle_; }  ///< rad, >= 0
   bool grows() const { return from_.stretch != to_.stretch; }
-  /// By how much of its distance from the pivot a point is moved away from it, or towards it, at most.
+  /// Upper bound of the change of a point's distance from the pivot by the stretch, divided by that distance.
   double growth() const { return (to_.stretch - from_.stretch).cwiseAbs().maxCoeff(); }
   double largest_stretch() const { return std::max(from_.stretch.maxCoeff(), to_.stretch.maxCoeff()); }
   double least_stretch() const { return std::min(from_.stretch.minCoeff(), to_.stretch.minCoeff()); }

@@ -40,8 +40,7 @@ DeformationLimiter::DeformationLimiter(const Deformation& deformation, const Clo
       batches_(
           batches_of(pieces_of(system, limited_runs(deformation, system), deformation.rate), system.columns)),
       unreachable_(unreachable) {
-  if (deformation.solver == "direct")
-    nearest_.emplace(system, limited_runs(deformation, system), deformation.rate);
+  if (deformation.solver == "direct") nearest_.emplace(deformation, system);
 }
 
 bool DeformationLimiter::is_needed(const Deformation& deformation, const ClothSystem& system) {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "kernels/instruction_set.h"
-#include "limiter/tension_steps.h"
 
 namespace cloth {
 namespace {

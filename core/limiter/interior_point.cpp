@@ -26,12 +26,12 @@ constexpr int none = -1;
 
 }  // namespace
 
-InteriorPoint::InteriorPoint(const ClothSystem& system, std::vector<LimitedSpring> springs,
+InteriorPoint::InteriorPoint(const ClothSystem& system, std::vector<TensionSpring> springs,
                              const Vec3Field& start)
     : springs_(std::move(springs)) {
   shortest_ = springs_.front().rest_length;
-  for (const LimitedSpring& spring : springs_) {
-    rest_.push_back(start[spring.j] - start[spring.i]);
+  for (const TensionSpring& spring : springs_) {
+    rest_.push_back(start[spring.second] - start[spring.first]);
     shortest_ = std::min(shortest_, spring.rest_length);
   }
   number_particles(system);
@@ -40,7 +40,7 @@ InteriorPoint::InteriorPoint(const ClothSystem& system, std::vector<LimitedSprin
 /// Numbers the particles of the working set in the elimination order of the whole cloth.
 void InteriorPoint::number_particles(const ClothSystem& system) {
   std::vector<std::uint8_t> needed(system.pinned.size(), 0);
-  for (const LimitedSpring& spring : springs_) needed[spring.i] = needed[spring.j] = 1;
+  for (const TensionSpring& spring : springs_) needed[spring.first] = needed[spring.second] = 1;
   std::vector<int> unknown(system.pinned.size(), none);
   const double mean_mass = system.total_mass() / system.size();
   for (const int i : elimination_order(system)) {
@@ -54,8 +54,8 @@ void InteriorPoint::number_particles(const ClothSystem& system) {
     weight_[static_cast<Eigen::Index>(k)] = system.mass[particle_[k]] / mean_mass;
 
   std::vector<Coupling> couplings;
-  for (const LimitedSpring& spring : springs_) {
-    const int i = unknown[spring.i], j = unknown[spring.j];
+  for (const TensionSpring& spring : springs_) {
+    const int i = unknown[spring.first], j = unknown[spring.second];
     first_.push_back(i);
     second_.push_back(j);
     if (i != none && j != none) couplings.emplace_back(i, j);

@@ -8,7 +8,7 @@ namespace cloth {
 
 class InteriorPoint {
  public:
-  InteriorPoint(const ClothSystem& system, std::vector<LimitedSpring> springs, const Vec3Field& start);
+  InteriorPoint(const ClothSystem& system, std::vector<TensionSpring> springs, const Vec3Field& start);
 
   /// Iterates to the minimum, at most NearestShape::most_iterations times. With `reachable` the penalty of an
   /// excess is so high that none is left; without, or where the multipliers exceed what a reachable rate can
@@ -34,7 +34,7 @@ class InteriorPoint {
   Vec3 difference(const Vector& of, std::size_t spring) const;
   void add_pair(Vector& to, std::size_t spring, const Vec3& amount) const;
 
-  std::vector<LimitedSpring> springs_;
+  std::vector<TensionSpring> springs_;
   std::vector<Vec3> rest_;             ///< x0_j - x0_i of each spring
   std::vector<int> first_, second_;    ///< unknown of each spring's ends, -1 where pinned
   std::vector<std::size_t> particle_;  ///< of each unknown

@@ -5,7 +5,6 @@
 
 #include "cloth/sums.h"
 #include "limiter/tension_rounds.h"
-#include "limiter/tension_steps.h"
 
 namespace cloth {
 namespace {
@@ -38,7 +37,7 @@ class LineRounds : public TensionRounds {
 
   bool make_active(std::size_t spring, Active& active) const;
   void link(const Active& before, Active& active) const;
-  void find_active();
+  void append_active(std::size_t line, std::vector<Active>& list) const;
   void sweep_line(std::size_t line);
   void move(const Active& active, double tension);
   void precondition(const std::vector<double>& residual, std::vector<double>& result) const;
@@ -99,25 +98,26 @@ void LineRounds::link(const Active& before, Active& active) const {
   active.linked = true;
 }
 
+/// Appends the active springs of a line.
+void LineRounds::append_active(std::size_t line, std::vector<Active>& list) const {
+  bool follows = false;  // the spring before it is active
+  for (std::size_t k = lines_.begin[line]; k < lines_.begin[line + 1]; ++k) {
+    Active active{};
+    const bool is_active = make_active(lines_.springs[k], active);
+    if (is_active && follows) link(list.back(), active);
+    if (is_active) list.push_back(active);
+    follows = is_active;
+  }
+}
+
 TensionResidual LineRounds::evaluate() {
   TensionResidual found;
   active_.clear();
-  for (std::size_t line = 0; line < lines_.count(); ++line) {
-    bool follows = false;  // the one before it in the line
-    for (std::size_t k = lines_.begin[line]; k < lines_.begin[line + 1]; ++k) {
-      const std::size_t s = lines_.springs[k];
-      Active active{};
-      if (!make_active(s, active)) {
-        follows = false;
-        continue;
-      }
-      const double relative = active.over / springs_[s].rest_length;
-      found.excess = std::max(found.excess, relative);
-      if (tension_[s] > 0) found.slack = std::max(found.slack, -relative);
-      if (follows) link(active_.back(), active);
-      active_.push_back(active);
-      follows = true;
-    }
+  for (std::size_t line = 0; line < lines_.count(); ++line) append_active(line, active_);
+  for (const Active& active : active_) {
+    const double relative = active.over / springs_[active.spring].rest_length;
+    found.excess = std::max(found.excess, relative);
+    if (tension_[active.spring] > 0) found.slack = std::max(found.slack, -relative);
   }
   return found;
 }
@@ -135,17 +135,7 @@ void LineRounds::sweep_lines(bool backwards) {
 
 void LineRounds::sweep_line(std::size_t line) {
   along_.clear();
-  bool follows = false;
-  for (std::size_t k = lines_.begin[line]; k < lines_.begin[line + 1]; ++k) {
-    Active active{};
-    if (!make_active(lines_.springs[k], active)) {
-      follows = false;
-      continue;
-    }
-    if (follows) link(along_.back(), active);
-    along_.push_back(active);
-    follows = true;
-  }
+  append_active(line, along_);
   const double per_square = 1 / square();
   step_.resize(along_.size());
   for (std::size_t k = 0; k < along_.size(); ++k) {

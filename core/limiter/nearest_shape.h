@@ -10,18 +10,11 @@
 // factorisation (sparse/block_cholesky.h) per iteration.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
-#include "cloth/cloth_system.h"
+#include "limiter/tension_springs.h"
 
 namespace cloth {
-
-struct LimitedSpring {
-  std::size_t i = 0, j = 0;
-  double limit = 0;        ///< m
-  double rest_length = 0;  ///< m
-};
 
 struct NearestShapeReport {
   int iterations = 0;      ///< one factorisation each
@@ -34,7 +27,7 @@ class NearestShape {
   static constexpr int most_iterations = 60;  ///< in each of at most `most_rounds` rounds
   static constexpr int most_rounds = 4;
 
-  NearestShape(const ClothSystem& system, const std::vector<SpringRun>& limited, double rate);
+  NearestShape(const Deformation& deformation, const ClothSystem& system);
 
   /// Moves `position` to the nearest shape, or without convergence to the best found, never with a larger
   /// excess than before. The result depends on the arguments only. `reachable` false skips the search for a
@@ -44,14 +37,11 @@ class NearestShape {
 
   /// Springs with an end that is free, and their multipliers in the last `find`, in m: every free particle
   /// has w (x - x0) = sum of multiplier * direction toward the spring's other end.
-  const std::vector<LimitedSpring>& springs() const { return springs_; }
+  const std::vector<TensionSpring>& springs() const { return springs_; }
   const std::vector<double>& multipliers() const { return multipliers_; }
 
  private:
-  double excess_of(const LimitedSpring& spring, const Vec3Field& position) const;
-  double largest_excess(const Vec3Field& position) const;
-
-  std::vector<LimitedSpring> springs_;
+  std::vector<TensionSpring> springs_;
   std::vector<double> multipliers_;
 };
 

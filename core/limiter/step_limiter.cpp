@@ -124,6 +124,14 @@ void StepLimiter::add_speed_of_move(ClothState& state) const {
   for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
 }
 
+/// The change of velocities by the last move.
+void StepLimiter::find_change(const ClothState& state) {
+  size_like(state.position, change_);
+  const auto change = change_.flat();
+  const std::span<const double> to = state.position.flat(), from = drifted_.flat();
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+}
+
 /// The work of the opening kick and of limiting is taken at the beginning of the step, that of the closing
 /// kick at its end: Verlet then keeps its energy balance up to a term of order h^2 that oscillates and does
 /// not grow. Where the drift uses the end velocity it is taken with the mean of the velocities at both ends,
@@ -167,9 +175,7 @@ bool StepLimiter::after_step(ClothState& state) {
     work_.reset();
     return true;
   }
-  size_like(state.position, change_);
-  const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+  find_change(state);
   work_ = 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
                  work_of_changes(*system_, change_, state.velocity, 0));
   return true;
@@ -179,10 +185,7 @@ bool StepLimiter::after_step(ClothState& state) {
 /// rebound with more energy than it had. The change c of velocities is scaled by s, as near to 1 as s^2 sum m
 /// c^2/2 + s sum m c . v + potential <= 0  allows, or where that is least.
 void StepLimiter::limit_energy_gain(double potential, ClothState& state) {
-  size_like(state.position, change_);
-  const auto change = change_.flat();
-  const std::span<const double> to = state.position.flat(), from = drifted_.flat();
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+  find_change(state);
   const Vec3Field none(change_.size());
   const double square = work_of_changes(*system_, change_, none, 0.5);
   const double linear = work_of_changes(*system_, change_, state.velocity, -1);
@@ -207,10 +210,10 @@ std::pair<int, int> StepLimiter::worst_spring(const Vec3Field& position) const {
   std::pair<int, int> worst{0, 0};
   double largest = -1;
   for (const TensionSpring& spring : tension_springs(deformation_, *system_)) {
-    const double over = (position[spring.second] - position[spring.first]).norm() - spring.limit;
     if (system_->pinned[spring.first] && system_->pinned[spring.second]) continue;
-    if (over / spring.rest_length <= largest) continue;
-    largest = over / spring.rest_length;
+    const double excess = spring.excess(position);
+    if (excess <= largest) continue;
+    largest = excess;
     worst = {static_cast<int>(spring.first), static_cast<int>(spring.second)};
   }
   return worst;

@@ -7,7 +7,6 @@
 // tension 0.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -68,6 +67,7 @@ class StepLimiter : public DriftConstraint {
   double target_residual(const ClothState& state) const;
   void add_report(const LimiterReport& found);
   void add_speed_of_move(ClothState& state) const;
+  void find_change(const ClothState& state);
   void pull(double duration, const std::vector<double>& tension, ClothState& state);
 
   Deformation deformation_;

@@ -42,24 +42,6 @@ TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& 
   rounds_ = make_tension_rounds(springs_, system);
 }
 
-TensionSolver::~TensionSolver() = default;
-TensionSolver::TensionSolver(TensionSolver&&) noexcept = default;
-TensionSolver& TensionSolver::operator=(TensionSolver&&) noexcept = default;
-
-bool TensionSolver::is_needed(const Deformation& deformation, const ClothSystem& system) {
-  return !tension_springs(deformation, system).empty();
-}
-
-double TensionSolver::excess(const Vec3Field& position) const {
-  double largest = 0;
-  for (const TensionSpring& spring : springs_) {
-    const double squared = (position[spring.second] - position[spring.first]).squaredNorm();
-    if (!(squared > spring.limit * spring.limit)) continue;
-    largest = std::max(largest, (std::sqrt(squared) - spring.limit) / spring.rest_length);
-  }
-  return largest;
-}
-
 void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Field& position,
                               Vec3Field& force) const {
   if (grid_) return add_grid_force(tension, position, force);
@@ -81,7 +63,7 @@ void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec
   std::vector<double> scratch(3 * static_cast<std::size_t>(grid_->columns));
   for (const GridFamily& family : grid_->families) {
     const int width = family.width();
-    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
+    const std::ptrdiff_t offset = family.down * grid_->columns + family.across;
     for (int row = 0; row < family.rows; ++row) {
       const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
       const double* t =
@@ -128,7 +110,7 @@ void TensionSolver::run_rounds(const TensionTask& task, const ClothSystem& syste
 void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSystem& system,
                                          std::vector<double>& tension, Vec3Field& position,
                                          TensionReport& report) {
-  if (!nearest_) nearest_.emplace(system, limited_runs(deformation_, system), deformation_.rate);
+  if (!nearest_) nearest_.emplace(deformation_, system);
   const double square = task.time_step * task.time_step;
   Vec3Field pull(position.size());
   add_force(tension, position, pull);
@@ -156,7 +138,7 @@ bool TensionSolver::is_inactive(const std::vector<double>& tension, Vec3Field& p
   if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
   const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights are not used
   for (const GridFamily& family : grid_->families) {
-    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(family.down) * grid_->columns + family.across;
+    const std::ptrdiff_t offset = family.down * grid_->columns + family.across;
     for (int row = 0; row < family.rows; ++row) {
       const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
       const double longest = kernels_->measure_row(nodes, i, offset, t, family.width(), false).longest;

@@ -42,13 +42,6 @@ class TensionSolver {
  public:
   /// `unreachable`: the pins make the rate unreachable, so that springs are soft.
   TensionSolver(const Deformation& deformation, const ClothSystem& system, bool unreachable = false);
-  ~TensionSolver();
-  TensionSolver(TensionSolver&&) noexcept;
-  TensionSolver& operator=(TensionSolver&&) noexcept;
-
-  /// True if this deformation limits any spring of this system.
-  static bool is_needed(const Deformation& deformation, const ClothSystem& system);
-
   /// In the order of the system's springs. So are tensions.
   const std::vector<TensionSpring>& springs() const { return springs_; }
 
@@ -61,7 +54,7 @@ class TensionSolver {
   double shortest() const { return shortest_; }  ///< m, rest length
 
   /// The largest (|d| - (1 + rate) L)/L of a limited spring, 0 if none is over.
-  double excess(const Vec3Field& position) const;
+  double excess(const Vec3Field& position) const { return largest_excess(springs_, position); }
 
   /// force += J^T tension, N: each tension pulls its ends together.
   void add_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;

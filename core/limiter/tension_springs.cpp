@@ -84,6 +84,12 @@ std::vector<TensionSpring> tension_springs(const Deformation& deformation, const
   return springs;
 }
 
+double largest_excess(const std::vector<TensionSpring>& springs, const Vec3Field& position) {
+  double largest = 0;
+  for (const TensionSpring& spring : springs) largest = std::max(largest, spring.excess(position));
+  return largest;
+}
+
 SpringLines spring_lines(const std::vector<TensionSpring>& springs, const ClothSystem& system) {
   const Followers followers = followers_of(springs, system);
   SpringLines lines;

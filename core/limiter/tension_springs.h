@@ -15,6 +15,11 @@ struct TensionSpring {
   std::size_t first = 0, second = 0;  ///< particles
   double rest_length = 0;             ///< m
   double limit = 0;                   ///< m, (1 + rate) times the rest length
+
+  /// Length above the limit, as a part of the rest length; negative below.
+  double excess(const Vec3Field& position) const {
+    return ((position[second] - position[first]).norm() - limit) / rest_length;
+  }
   bool operator==(const TensionSpring&) const = default;
 };
 
@@ -24,6 +29,9 @@ std::vector<SpringRun> limited_runs(const Deformation& deformation, const ClothS
 
 /// In the order of the system's springs; those between two pins are among them.
 std::vector<TensionSpring> tension_springs(const Deformation& deformation, const ClothSystem& system);
+
+/// The largest excess, 0 if no spring is over its limit.
+double largest_excess(const std::vector<TensionSpring>& springs, const Vec3Field& position);
 
 /// Every spring is in exactly one line, and no line contains a particle twice.
 struct SpringLines {

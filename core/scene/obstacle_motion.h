@@ -1,4 +1,4 @@
-// Where an obstacle is by its own motion, a function of time alone.
+// The motion that the scene gives to an obstacle: constant velocity and spin, or keyframes.
 #pragma once
 
 #include "geometry/rigid_motion.h"
@@ -6,16 +6,16 @@
 
 namespace cloth {
 
-/// The point about which an obstacle spins: centre of a sphere or box, point of a plane, origin of a placed
-/// mesh. In m, before any motion.
+/// m, the centre of an obstacle's rotation before any motion: centre of a sphere or box, point of a plane,
+/// origin of a mesh.
 Vec3 pivot_of(const Obstacle& obstacle);
 
 bool moves(const Obstacle& obstacle);
 
-/// `time` in s.
+/// The pose at `time` (s).
 Pose pose_of(const Obstacle& obstacle, double time);
 
-/// m/s, at most, of any point within `reach` metres of the pivot, at any time.
+/// m/s, upper bound over all times of the speed of any point within `reach` metres of the pivot.
 double highest_speed(const Obstacle& obstacle, double reach);
 
 }  // namespace cloth

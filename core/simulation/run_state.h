@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_memory.h"
 #include "contact/contact_report.h"
 #include "contact/obstacle_transition.h"
 #include "forces/hand.h"

@@ -32,9 +32,7 @@ class BlockCholesky {
   /// values <- A^-1 values. Up to four right-hand sides, one after the other, each block numbers per unknown.
   void solve(std::span<double> values, int columns);
 
-  int unknowns() const { return static_cast<int>(tree_.place.size()); }
-  std::size_t factor_entries() const { return factors_.size(); }  ///< numbers kept, zeros among them
-  double operations() const { return operations_; }               ///< multiplications of one factorisation
+  double operations() const { return operations_; }  ///< multiplications of one factorisation
 
  private:
   /// A block of the matrix and where it goes within its front's panel.

@@ -27,23 +27,16 @@ Scene limited_sheet(int rows, int columns, double rate, double tolerance = 1e-6)
   return scene;
 }
 
-std::vector<SpringRun> limited(const ClothSystem& system) {
-  std::vector<SpringRun> runs;
-  for (const SpringRun& run : system.springs)
-    if (run.family != SpringFamily::flexion) runs.push_back(run);
-  return runs;
-}
-
 /// The largest component of w (x - x0) + J^T multipliers over free particles, in m; the masses are equal.
 double largest_residual(const ClothSystem& system, const NearestShape& nearest, const Vec3Field& from,
                         const Vec3Field& to) {
   Vec3Field residual(to.size());
   for (std::size_t i = 0; i < to.size(); ++i) residual.set(i, to[i] - from[i]);
   for (std::size_t s = 0; s < nearest.springs().size(); ++s) {
-    const LimitedSpring& spring = nearest.springs()[s];
-    const Vec3 pull = nearest.multipliers()[s] * (to[spring.j] - to[spring.i]).normalized();
-    residual.add(spring.i, -pull);
-    residual.add(spring.j, pull);
+    const TensionSpring& spring = nearest.springs()[s];
+    const Vec3 pull = nearest.multipliers()[s] * (to[spring.second] - to[spring.first]).normalized();
+    residual.add(spring.first, -pull);
+    residual.add(spring.second, pull);
   }
   for (std::size_t i = 0; i < to.size(); ++i)
     if (system.pinned[i]) residual.set(i, Vec3::Zero());
@@ -57,7 +50,7 @@ TEST(NearestShape, FulfilsTheConditionsOfTheNearestPoint) {
     scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
     const ClothSystem system = make_grid(scene.cloth, *scene.springs);
     const Vec3Field from = crumpled_state(system, 0.02, 0, random).position;
-    NearestShape nearest(system, limited(system), rate);
+    NearestShape nearest(*scene.deformation, system);
     Vec3Field to = from;
     const NearestShapeReport report = nearest.find(system, 1e-9, to);
     ASSERT_TRUE(report.converged) << rate;
@@ -65,9 +58,9 @@ TEST(NearestShape, FulfilsTheConditionsOfTheNearestPoint) {
     EXPECT_LE(largest_residual(system, nearest, from, to), 1e-8);  // M (x - x0) = -J^T multipliers
     int taut = 0;
     for (std::size_t s = 0; s < nearest.springs().size(); ++s) {
-      const LimitedSpring& spring = nearest.springs()[s];
+      const TensionSpring& spring = nearest.springs()[s];
       EXPECT_GE(nearest.multipliers()[s], 0);
-      const double slack = spring.limit - (to[spring.j] - to[spring.i]).norm();
+      const double slack = spring.limit - (to[spring.second] - to[spring.first]).norm();
       EXPECT_LE(std::abs(nearest.multipliers()[s] * slack), 1e-10);  // m^2
       taut += nearest.multipliers()[s] > 1e-6;
     }
@@ -77,12 +70,12 @@ TEST(NearestShape, FulfilsTheConditionsOfTheNearestPoint) {
 }
 
 /// Dykstra's alternating projections: slow, simple, and convergent to the nearest point.
-Vec3Field nearest_by_dykstra(const ClothSystem& system, const std::vector<LimitedSpring>& springs,
+Vec3Field nearest_by_dykstra(const ClothSystem& system, const std::vector<TensionSpring>& springs,
                              Vec3Field x, int sweeps) {
   std::vector<Vec3> left(springs.size(), Vec3::Zero()), right = left;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (std::size_t s = 0; s < springs.size(); ++s) {
-      const auto& [i, j, limit, rest_length] = springs[s];
+      const auto& [i, j, rest_length, limit] = springs[s];
       const Vec3 a = x[i] + left[s], b = x[j] + right[s];
       const Vec3 d = b - a;
       const bool free_i = !system.pinned[i], free_j = !system.pinned[j];
@@ -101,7 +94,7 @@ TEST(NearestShape, IsThatOfDykstrasAlternatingProjections) {
   scene.cloth.pins = {NamedPin::top_left, PinnedParticle{1, 4}};
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
   const Vec3Field from = crumpled_state(system, 0.03, 0, random).position;
-  NearestShape nearest(system, limited(system), 0.1);
+  NearestShape nearest(*scene.deformation, system);
   Vec3Field found = from;
   ASSERT_TRUE(nearest.find(system, 1e-10, found).converged);
   const Vec3Field expected = nearest_by_dykstra(system, nearest.springs(), from, 20000);

@@ -115,13 +115,6 @@ TEST(UniqueEdges, HaveNothingAcrossWhereTheMeshEnds) {
   EXPECT_EQ(edges[1].forward, 0);
 }
 
-TEST(VertexNormals, PointOutwardByArea) {
-  const auto normals = vertex_normals(tetrahedron());
-  EXPECT_LE((normals[0] - Vec3(-1, -1, -1).normalized()).norm(), 1e-15);
-  EXPECT_LE((normals[1] - Vec3(1, 0, 0)).norm(), 1e-15);
-  EXPECT_EQ(vertex_normals({{{0, 0, 0}}, {}})[0], Vec3(0, 0, 0));
-}
-
 TEST(Inspect, FindsNothingWrongWithAClosedSurface) {
   EXPECT_TRUE(inspect(tetrahedron()).empty());
   EXPECT_TRUE(inspect({}).empty());

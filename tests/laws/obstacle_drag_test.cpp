@@ -149,7 +149,7 @@ TEST(ObstacleTransition, GoesOnFromACheckpointToTheBit) {
 TEST(ObstacleTransition, CountsForTheHighestSpeedOfAnObstacle) {
   const Scene scene = hung_cloth(&sphere_shape(), "verlet");
   EXPECT_EQ(highest_obstacle_speed(scene, {}, {}), 0);
-  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleTransition{.way = {0, 0, 0.1}}}, {}),
+  EXPECT_NEAR(highest_obstacle_speed(scene, {ObstacleTransition{.displacement = {0, 0, 0.1}}}, {}),
               0.1 / transition_time, 1e-12);
 }
 

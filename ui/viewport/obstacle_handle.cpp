@@ -47,7 +47,7 @@ double distance_to_mesh(const Ray& ray, const cloth::TriangleMesh& mesh) {
 double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, const Ray& ray) {
   const Eigen::Vector3d pivot = cloth::pivot_of(o);
   const cloth::Pose placed = cloth::about(pivot, pose.turn, pose.at(pivot));  // as large as it is to be
-  const Ray local{placed.back(ray.origin), placed.turn.transpose() * ray.direction};
+  const Ray local{placed.inverse(ray.origin), placed.turn.transpose() * ray.direction};
   switch (shape_of(o).body) {
     case cloth::BodyKind::ball:
       return distance_to_sphere(local, o.center, o.radius);
@@ -60,7 +60,7 @@ double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, c
       // Along the unscaled way, so that it is a length in the world whatever the scale of each axis.
       const Eigen::Vector3d along = (surface.turn.transpose() * local.direction).cwiseQuotient(surface.scale);
       const double length = along.norm();
-      return distance_to_mesh({put.back(local.origin), along / length}, *surface.mesh) / length;
+      return distance_to_mesh({put.inverse(local.origin), along / length}, *surface.mesh) / length;
     }
     case cloth::BodyKind::half_space:
       break;

@@ -61,7 +61,7 @@ Setting random_setting(Random& random) {
   Setting setting;
   setting.sheet = random_sheet(4, 4, random);
   for (const ObstacleShape* one : obstacle_shapes()) {
-    setting.bodies.push_back(random_body(one->shape, random));
+    setting.bodies.push_back(random_body(one, random));
     setting.poses.push_back(random_interpolation(setting.bodies.back(), random).at(random.uniform(0, 1)));
   }
   return setting;

@@ -113,7 +113,7 @@ Intersection random_meeting(Random& random) {
   meeting.sheet = random_sheet(random.integer(3, 6), random.integer(3, 6), random);
   for (const ObstacleShape* one : obstacle_shapes()) {
     if (random.coin()) continue;
-    meeting.bodies.push_back(random_body(one->shape, random));
+    meeting.bodies.push_back(random_body(one, random));
     meeting.paths.push_back(random_interpolation(meeting.bodies.back(), random));
   }
   return meeting;

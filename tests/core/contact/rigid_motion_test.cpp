@@ -33,7 +33,7 @@ TEST(AnObstacle, TurnsAboutItsCentre) {
   const Pose pose = pose_of(obstacle, 0.5);
   EXPECT_LE((pose.at({1, 2, 3}) - Vec3(1, 2, 3)).norm(), 1e-15);
   EXPECT_LE((pose.at({2, 2, 3}) - Vec3(1, 3, 3)).norm(), 1e-15);
-  EXPECT_LE((pose.back(pose.at({4, 5, 6})) - Vec3(4, 5, 6)).norm(), 1e-14);
+  EXPECT_LE((pose.inverse(pose.at({4, 5, 6})) - Vec3(4, 5, 6)).norm(), 1e-14);
 }
 
 TEST(Keyframes, HoldOutsideAndAreStraightBetween) {
@@ -54,7 +54,7 @@ TEST(APoseInterpolation, EndsAtItsPosesToTheBit) {
   const PoseInterpolation path(obstacle.center, from, to);
   EXPECT_EQ(path.at(0), from);
   EXPECT_EQ(path.at(1), to);
-  EXPECT_FALSE(path.rests());
+  EXPECT_FALSE(path.is_still());
   EXPECT_NEAR(path.angle(), 0.1 * std::sqrt(14.0), 1e-12);
   const Pose there = pose_of(obstacle, 0.15), between = path.at(0.5);
   EXPECT_LE((there.turn - between.turn).norm(), 1e-13);
@@ -69,7 +69,7 @@ TEST(APoseInterpolation, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
     const PoseInterpolation path(obstacle.center, pose_of(obstacle, begin), pose_of(obstacle, begin + step),
                                  step * spin);
     EXPECT_NEAR(path.angle(), step * spin.norm(), 1e-12);
-    EXPECT_FALSE(path.rests());
+    EXPECT_FALSE(path.is_still());
     for (const double part : {0.1, 0.25, 0.5, 0.9}) {
       const Pose there = pose_of(obstacle, begin + part * step), between = path.at(part);
       EXPECT_LE((there.turn - between.turn).norm(), 1e-12) << spin.transpose() << ", part " << part;

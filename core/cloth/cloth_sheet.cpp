@@ -6,34 +6,33 @@
 namespace cloth {
 namespace {
 
-constexpr std::array<const char*, named_pin_count> pin_names{"top-left",     "top-right", "bottom-left",
-                                                             "bottom-right", "top-edge",  "bottom-edge",
-                                                             "left-edge",    "right-edge"};
-
 struct ParticleRange {
   int row_begin, row_end, column_begin, column_end;
 };
 
+/// What a named pin holds of the rows, and of the columns.
+enum class Part { first, last, all };
+struct PinPlace {
+  const char* name;
+  Part rows, columns;
+};
+constexpr std::array<PinPlace, named_pin_count> pin_places{{
+    {"top-left", Part::first, Part::first},
+    {"top-right", Part::first, Part::last},
+    {"bottom-left", Part::last, Part::first},
+    {"bottom-right", Part::last, Part::last},
+    {"top-edge", Part::first, Part::all},
+    {"bottom-edge", Part::last, Part::all},
+    {"left-edge", Part::all, Part::first},
+    {"right-edge", Part::all, Part::last},
+}};
+
 ParticleRange range_of(NamedPin pin, int rows, int columns) {
-  switch (pin) {
-    case NamedPin::top_left:
-      return {0, 1, 0, 1};
-    case NamedPin::top_right:
-      return {0, 1, columns - 1, columns};
-    case NamedPin::bottom_left:
-      return {rows - 1, rows, 0, 1};
-    case NamedPin::bottom_right:
-      return {rows - 1, rows, columns - 1, columns};
-    case NamedPin::top_edge:
-      return {0, 1, 0, columns};
-    case NamedPin::bottom_edge:
-      return {rows - 1, rows, 0, columns};
-    case NamedPin::left_edge:
-      return {0, rows, 0, 1};
-    case NamedPin::right_edge:
-      return {0, rows, columns - 1, columns};
-  }
-  return {0, 0, 0, 0};
+  const PinPlace& place = pin_places[static_cast<std::size_t>(pin)];
+  const auto begin = [](Part part, int count) { return part == Part::last ? count - 1 : 0; };
+  const auto end = [](Part part, int count) { return part == Part::first ? 1 : count; };
+  return {begin(place.rows, rows), end(place.rows, rows), begin(place.columns, columns),
+          end(place.columns, columns)};
 }
 
 ParticleRange range_of(const PinnedParticle& pin, int rows, int columns) {
@@ -44,13 +43,14 @@ ParticleRange range_of(const PinnedParticle& pin, int rows, int columns) {
 }  // namespace
 
 const char* name_of(NamedPin pin) {
-  return pin_names[static_cast<std::size_t>(pin)];
+  return pin_places[static_cast<std::size_t>(pin)].name;
 }
 
 std::optional<NamedPin> pin_named(const std::string& name) {
-  const auto found = std::find(pin_names.begin(), pin_names.end(), name);
-  if (found == pin_names.end()) return std::nullopt;
-  return static_cast<NamedPin>(found - pin_names.begin());
+  const auto found =
+      std::find_if(pin_places.begin(), pin_places.end(), [&](const PinPlace& p) { return p.name == name; });
+  if (found == pin_places.end()) return std::nullopt;
+  return static_cast<NamedPin>(found - pin_places.begin());
 }
 
 std::vector<int> pinned_particles(const ClothSheet& cloth) {

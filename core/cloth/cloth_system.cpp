@@ -5,15 +5,7 @@
 namespace cloth {
 
 const char* name_of(SpringFamily family) {
-  switch (family) {
-    case SpringFamily::structural:
-      return "structural";
-    case SpringFamily::shear:
-      return "shear";
-    case SpringFamily::flexion:
-      return "flexion";
-  }
-  return "";
+  return std::array{"structural", "shear", "flexion"}.at(static_cast<std::size_t>(family));
 }
 
 std::int64_t ClothSystem::spring_count(SpringFamily family) const {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 namespace cloth {
+
 SpringBlock direction_block(const ClothSystem& grid, const SpringDirection& direction, double rest_length,
                             double stiffness) {
   const int rows = grid.rows - direction.rows;
@@ -34,28 +35,28 @@ const std::array<SpringDirection, 6>& spring_directions() {
 }
 
 double stiffness_of(const SpringMaterial& material, SpringFamily family) {
-  switch (family) {
-    case SpringFamily::structural:
-      return material.structural;
-    case SpringFamily::shear:
-      return material.shear;
-    case SpringFamily::flexion:
-      return material.flexion;
-  }
-  return 0;
+  return std::array{material.structural, material.shear, material.flexion}.at(
+      static_cast<std::size_t>(family));
 }
 
-ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
-  ClothSystem system;
-  system.rows = sheet.rows;
-  system.columns = sheet.columns;
+void give_particles(const ClothSheet& sheet, ClothSystem& system) {
   const auto size = static_cast<std::size_t>(system.size());
   const double mass = sheet.mass / static_cast<double>(size);
   system.mass.assign(size, mass);
   system.inverse_mass.assign(size, 1 / mass);
   system.pinned.assign(size, 0);
   system.start = Vec3Field(size);
+  for (const int particle : pinned_particles(sheet)) {
+    system.inverse_mass[static_cast<std::size_t>(particle)] = 0;
+    system.pinned[static_cast<std::size_t>(particle)] = 1;
+  }
+}
 
+ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
+  ClothSystem system;
+  system.rows = sheet.rows;
+  system.columns = sheet.columns;
+  give_particles(sheet, system);
   const Vec3 across = sheet.across.normalized(), down = sheet.down.normalized();
   for (int row = 0; row < sheet.rows; ++row)
     for (int column = 0; column < sheet.columns; ++column)
@@ -63,11 +64,6 @@ ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material) {
                        sheet.origin + across * (column * sheet.width / (sheet.columns - 1)) +
                            down * (row * sheet.height / (sheet.rows - 1)));
   system.diagonal = (across * sheet.width + down * sheet.height).norm();
-
-  for (const int particle : pinned_particles(sheet)) {
-    system.inverse_mass[static_cast<std::size_t>(particle)] = 0;
-    system.pinned[static_cast<std::size_t>(particle)] = 1;
-  }
 
   // The rest length is the distance at the start, taken from the cell rather than from rounded coordinates.
   const GridCell cell = cell_of(sheet);

@@ -27,6 +27,9 @@ SpringBlock direction_block(const ClothSystem& grid, const SpringDirection& dire
 
 double stiffness_of(const SpringMaterial& material, SpringFamily family);
 
+/// Gives a system of rows x columns particles equal masses, the sheet's pins, and room for their places.
+void give_particles(const ClothSheet& sheet, ClothSystem& system);
+
 ClothSystem make_grid(const ClothSheet& sheet, const SpringMaterial& material);
 
 /// At rest where the sheet starts.

@@ -25,17 +25,9 @@ ClothSystem make_mesh_cloth(const ClothSheet& sheet, const SpringMaterial& mater
   system.rows = 1;
   system.columns = static_cast<int>(particles);
   system.triangles = mesh.surface.triangles;
-  const double mass = sheet.mass / static_cast<double>(particles);
-  system.mass.assign(particles, mass);
-  system.inverse_mass.assign(particles, 1 / mass);
-  system.pinned.assign(particles, 0);
-  system.start = Vec3Field(particles);
+  give_particles(sheet, system);
   for (std::size_t i = 0; i < particles; ++i) system.start.set(i, sheet.origin + mesh.surface.vertices[i]);
   system.diagonal = mesh.bounds.diagonal().norm();
-  for (const int particle : pinned_particles(sheet)) {
-    system.inverse_mass[static_cast<std::size_t>(particle)] = 0;
-    system.pinned[static_cast<std::size_t>(particle)] = 1;
-  }
   append_springs(system, SpringFamily::structural, mesh.edges, material.structural);
   append_springs(system, SpringFamily::flexion, mesh.hinges, material.flexion);
   return system;

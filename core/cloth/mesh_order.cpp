@@ -22,23 +22,24 @@ struct Neighbours {
   }
 };
 
-template <class Visit>  // visit(i, j)
-void for_each_spring(const ClothSystem& system, Visit visit) {
-  for (const SpringRun& run : system.springs)
-    for (int s = 0; s < run.count; ++s) visit(run.first + s, run.first + s + run.offset);
+/// How many springs each particle has, from `counts` on.
+void count_springs(const ClothSystem& system, int* counts) {
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+    ++counts[i], ++counts[j];
+  });
 }
 
 Neighbours neighbours_of(const ClothSystem& system) {
   const std::size_t particles = system.mass.size();
   Neighbours n;
   n.begin.assign(particles + 1, 0);
-  for_each_spring(system, [&](int i, int j) { ++n.begin[at(i) + 1], ++n.begin[at(j) + 1]; });
+  count_springs(system, n.begin.data() + 1);
   std::partial_sum(n.begin.begin(), n.begin.end(), n.begin.begin());
   n.list.resize(at(n.begin.back()));
   std::vector<int> next(n.begin.begin(), n.begin.end() - 1);
-  for_each_spring(system, [&](int i, int j) {
-    n.list[at(next[at(i)]++)] = j;
-    n.list[at(next[at(j)]++)] = i;
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+    n.list[at(next[i]++)] = static_cast<int>(j);
+    n.list[at(next[j]++)] = static_cast<int>(i);
   });
   for (std::size_t i = 0; i < particles; ++i)
     std::sort(n.list.begin() + n.begin[i], n.list.begin() + n.begin[i + 1],
@@ -96,7 +97,7 @@ ParticleOrder small_bandwidth_order(const ClothSystem& system) {
 ParticleOrder order_for_sweeps(const ClothSystem& system) {
   constexpr std::size_t window = 64;
   std::vector<int> springs(system.mass.size());
-  for_each_spring(system, [&](int i, int j) { ++springs[at(i)], ++springs[at(j)]; });
+  count_springs(system, springs.data());
   ParticleOrder order = small_bandwidth_order(system);
   for (std::size_t begin = 0; begin < order.size(); begin += window)
     std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -139,14 +140,10 @@ ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order) {
   }
   const ParticleOrder number = inverse_of(order);
   std::vector<SpringRun> springs;
-  for (const SpringRun& run : system.springs)
-    for (int s = 0; s < run.count; ++s) {
-      const auto [low, high] =
-          std::minmax({number[at(run.first + s)], number[at(run.first + s + run.offset)]});
-      SpringRun spring = run;
-      spring.first = low, spring.offset = high - low, spring.count = 1;
-      springs.push_back(spring);
-    }
+  for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+    const auto [low, high] = std::minmax(number[i], number[j]);
+    springs.push_back({run.family, low, 1, high - low, run.rest_length, run.stiffness});
+  });
   std::stable_sort(springs.begin(), springs.end(), [](const SpringRun& a, const SpringRun& b) {
     return std::tuple(a.family, a.first, a.offset) < std::tuple(b.family, b.first, b.offset);
   });

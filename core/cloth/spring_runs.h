@@ -73,6 +73,11 @@ class SpringRuns {
   Iterator end() const { return {blocks_.data() + blocks_.size(), 0}; }
   bool empty() const { return blocks_.empty(); }
   std::size_t size() const { return static_cast<std::size_t>(std::distance(begin(), end())); }  ///< of runs
+  std::size_t spring_count() const {
+    std::size_t count = 0;
+    for (const SpringBlock& block : blocks_) count += static_cast<std::size_t>(block.rows * block.run.count);
+    return count;
+  }
 
   void push_back(const SpringRun& run) { blocks_.push_back({run}); }
   std::vector<SpringBlock>& blocks() { return blocks_; }
@@ -83,5 +88,15 @@ class SpringRuns {
  private:
   std::vector<SpringBlock> blocks_;
 };
+
+/// visit(run, spring, i, j) for every spring in order: its run, its number from 0, and the particles i and j
+/// that it joins.
+template <class Visit>
+void for_each_spring(const SpringRuns& springs, Visit visit) {
+  std::size_t spring = 0;
+  for (const SpringRun& run : springs)
+    for (int i = run.first; i < run.first + run.count; ++i, ++spring)
+      visit(run, spring, static_cast<std::size_t>(i), static_cast<std::size_t>(i + run.offset));
+}
 
 }  // namespace cloth

@@ -25,49 +25,9 @@ double brush_falloff(const BrushGust& brush, const Vec3& position) {
   return std::cos(0.5 * std::numbers::pi * distance / brush.radius);
 }
 
-void AirForce::update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) {
-  if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-  particle_normals(system, position, normal_);
-  wind_ = wind_at(air_, time);
+namespace {
 
-  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
-  double *fx = force.x(), *fy = force.y(), *fz = force.z();
-  if (wind_.squaredNorm() > 0) {
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      const double push = air_.drag * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
-      fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
-    }
-  }
-  if (brush_) add_brush(position, force);
-}
-
-void AirForce::add_brush(const Vec3Field& position, Vec3Field& force) {
-  if (brush_force_.size() != position.size()) brush_force_ = Vec3Field(position.size());
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 n = normal_[i];
-    const Vec3 push = air_.drag * brush_falloff(*brush_, position[i]) * n.dot(brush_->velocity) * n;
-    brush_force_.set(i, push);
-    force.add(i, push);
-  }
-}
-
-void AirForce::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
-  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
-  const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
-  double *px = product.x(), *py = product.y(), *pz = product.z();
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    const double drag = air_.drag * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
-    px[i] += drag * nx[i], py[i] += drag * ny[i], pz[i] += drag * nz[i];
-  }
-}
-
-void AirForce::add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
-                                 Linearisation& to) const {
-  const double along = weights.velocity * air_.drag;
-  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(0, along, normal_[i]));
-}
-
-/// How much the falloff changes where a particle moves by `shift`.
+/// The change of brush_falloff where a particle at `position` moves by `shift`, to first order.
 double brush_falloff_change(const BrushGust& brush, const Vec3& position, const Vec3& shift) {
   const Eigen::Vector4d clip =
       brush.world_to_screen * Eigen::Vector4d(position.x(), position.y(), position.z(), 1);
@@ -81,41 +41,94 @@ double brush_falloff_change(const BrushGust& brush, const Vec3& position, const 
   return -rate * std::sin(rate * distance) * arm.dot(screen_change) / distance;
 }
 
-/// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
-void AirForce::add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
-                                      const Vec3Field& velocity, const Vec3Field& direction,
-                                      Vec3Field& product) const {
-  Vec3Field turned(position.size());
-  particle_normal_changes(system, position, direction, turned);
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 n = normal_[i], dn = turned[i];
-    Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();
-    if (brush_) {
-      w += brush_falloff(*brush_, position[i]) * brush_->velocity;
-      dw = brush_falloff_change(*brush_, position[i], direction[i]) * brush_->velocity;
-    }
-    product.add(i, -air_.drag * ((dn.dot(w) + n.dot(dw)) * n + n.dot(w) * dn));
+class AirForce : public Force {
+ public:
+  explicit AirForce(const Air& air) : air_(air) {}
+
+  void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
+  SweptIn join(SweepTerms& terms) const override {
+    if (brush_) return SweptIn::nothing;
+    terms.air = &air_;
+    return SweptIn::whole_steps;
   }
-}
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
+    if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
+    particle_normals(system, position, normal_);
+    wind_ = wind_at(air_, time);
 
-bool AirForce::add_node_damping(NodeDamping& damping) const {
-  damping.along_normal += air_.drag;
-  damping.normal = &normal_;
-  return true;
-}
+    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+    double *fx = force.x(), *fy = force.y(), *fz = force.z();
+    if (wind_.squaredNorm() > 0) {
+      for (std::size_t i = 0; i < position.size(); ++i) {
+        const double push = air_.drag * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
+        fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
+      }
+    }
+    if (brush_) add_brush(position, force);
+  }
+  void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
+    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+    const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+    double *px = product.x(), *py = product.y(), *pz = product.z();
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+      const double drag = air_.drag * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+      px[i] += drag * nx[i], py[i] += drag * ny[i], pz[i] += drag * nz[i];
+    }
+  }
+  bool add_node_damping(NodeDamping& damping) const override {
+    damping.along_normal += air_.drag;
+    damping.normal = &normal_;
+    return true;
+  }
+  void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
+    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+    const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+    power.air += air_.drag * ordered_sum(velocity.size(), [=, u = wind_](std::size_t i) {
+                   const double along = nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i];
+                   return along * (nx[i] * u.x() + ny[i] * u.y() + nz[i] * u.z() - along);
+                 });
+    if (brush_ && brush_force_.size() == velocity.size())
+      power.brush += dot(brush_force_.flat(), velocity.flat());
+  }
+  void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                         Linearisation& to) const override {
+    const double along = weights.velocity * air_.drag;
+    for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(0, along, normal_[i]));
+  }
+  bool has_asymmetric_part() const override { return true; }
+  /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
+  void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
+                              const Vec3Field& direction, Vec3Field& product) const override {
+    Vec3Field turned(position.size());
+    particle_normal_changes(system, position, direction, turned);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const Vec3 n = normal_[i], dn = turned[i];
+      Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();
+      if (brush_) {
+        w += brush_falloff(*brush_, position[i]) * brush_->velocity;
+        dw = brush_falloff_change(*brush_, position[i], direction[i]) * brush_->velocity;
+      }
+      product.add(i, -air_.drag * ((dn.dot(w) + n.dot(dw)) * n + n.dot(w) * dn));
+    }
+  }
 
-void AirForce::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
-  const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
-  const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
-  power.air += air_.drag * ordered_sum(velocity.size(), [=, u = wind_](std::size_t i) {
-                 const double along = nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i];
-                 return along * (nx[i] * u.x() + ny[i] * u.y() + nz[i] * u.z() - along);
-               });
-  if (brush_ && brush_force_.size() == velocity.size())
-    power.brush += dot(brush_force_.flat(), velocity.flat());
-}
+ private:
+  void add_brush(const Vec3Field& position, Vec3Field& force) {
+    if (brush_force_.size() != position.size()) brush_force_ = Vec3Field(position.size());
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const Vec3 n = normal_[i];
+      const Vec3 push = air_.drag * brush_falloff(*brush_, position[i]) * n.dot(brush_->velocity) * n;
+      brush_force_.set(i, push);
+      force.add(i, push);
+    }
+  }
 
-namespace {
+  Air air_;
+  std::optional<BrushGust> brush_;
+  Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
+  Vec3Field normal_;
+  Vec3Field brush_force_;  ///< N, sized only once a brush is used
+};
 
 StageInfo wind_stage(const Scene& scene) {
   if (!scene.air || !(scene.air->drag > 0 || scene.air->skin_friction > 0))

@@ -23,8 +23,13 @@ struct Work {
   double brush = 0;
   double pull = 0;
 
-  Work& operator+=(const Work& other);
-  friend Work operator*(double scale, Work work);
+  Work& operator+=(const Work& other) {
+    damping_loss += other.damping_loss, air += other.air, brush += other.brush, pull += other.pull;
+    return *this;
+  }
+  friend Work operator*(double scale, const Work& work) {
+    return {scale * work.damping_loss, scale * work.air, scale * work.brush, scale * work.pull};
+  }
 };
 
 /// The part of D that does not couple particles: isotropic * I + along_normal * n n^T, and one particle held
@@ -63,8 +68,8 @@ class Force {
 
   /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
   /// Where those ask for `position`, it is the same once more: few forces keep it.
-  virtual void update(const ClothSystem& system, const Vec3Field& position, double time,
-                      Vec3Field& force) = 0;
+  virtual void update(const ClothSystem&, const Vec3Field& /*position*/, double /*time*/,
+                      Vec3Field& /*force*/) {}
 
   /// Whether this force acts between the ends of springs: methods that treat springs as constraints leave it
   /// out.
@@ -74,23 +79,24 @@ class Force {
   virtual bool is_damper_of_springs() const { return false; }
 
   /// product += D v
-  virtual void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
+  virtual void add_damping(const Vec3Field& /*position*/, const Vec3Field& /*velocity*/,
+                           Vec3Field& /*product*/) const {}
 
   /// Adds this force's part of D to `damping` and returns true, or returns false: D couples particles.
-  virtual bool add_node_damping(NodeDamping& damping) const;
+  virtual bool add_node_damping(NodeDamping&) const { return true; }
 
   /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
-  virtual void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const;
+  virtual void add_power(const Vec3Field& /*position*/, const Vec3Field& /*velocity*/, Work&) const {}
 
   /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx.
-  virtual void add_linearisation(const ClothSystem& system, const Vec3Field& position,
-                                 const LinearisationWeights& weights, Linearisation& to) const;
+  virtual void add_linearisation(const ClothSystem&, const Vec3Field& /*position*/,
+                                 const LinearisationWeights&, Linearisation& /*to*/) const {}
 
   /// The rest of -df/dx at `velocity`: product += (-df/dx - K) direction. Only where has_asymmetric_part().
   virtual bool has_asymmetric_part() const { return false; }
-  virtual void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
-                                      const Vec3Field& velocity, const Vec3Field& direction,
-                                      Vec3Field& product) const;
+  virtual void add_asymmetric_product(const ClothSystem&, const Vec3Field& /*position*/,
+                                      const Vec3Field& /*velocity*/, const Vec3Field& /*direction*/,
+                                      Vec3Field& /*product*/) const {}
 };
 
 }  // namespace cloth

@@ -75,8 +75,7 @@ void ForceModel::add(std::unique_ptr<Force> force) {
 void ForceModel::update(const Vec3Field& position, double time) {
   if (!sweep_) {
     clear(position_force_, position.size());
-    for (const auto& force : forces_) force->update(*system_, position, time, position_force_);
-    if (pull_) pull_->update(*system_, position, time, position_force_);
+    for_each_force([&](Force& force) { force.update(*system_, position, time, position_force_); });
     return;
   }
   const bool has_load = pull_ || !apart_.empty();
@@ -114,15 +113,14 @@ Work ForceModel::step_load(const Vec3Field& position, const Vec3Field& velocity,
 
 void ForceModel::update_external(const Vec3Field& position, double time) {
   clear(position_force_, position.size());
-  for (const auto& force : forces_)
-    if (!force->is_internal()) force->update(*system_, position, time, position_force_);
-  if (pull_) pull_->update(*system_, position, time, position_force_);
+  for_each_force([&](Force& force) {
+    if (!force.is_internal()) force.update(*system_, position, time, position_force_);
+  });
 }
 
 NodeDamping ForceModel::damping_parts() const {
   NodeDamping parts;
-  for (const auto& force : forces_) force->add_node_damping(parts);
-  if (pull_) pull_->add_node_damping(parts);
+  for_each_force([&](Force& force) { force.add_node_damping(parts); });
   return parts;
 }
 
@@ -162,9 +160,9 @@ double ForceModel::coupled_damping(const Vec3Field& position, const Vec3Field& v
 double ForceModel::damping_product(const Vec3Field& position, const Vec3Field& velocity,
                                    Vec3Field& product) const {
   const double dampers = swept_dampers(position, velocity, product);
-  for (const auto& force : forces_)
-    if (!is_damped_by_sweep(*force)) force->add_damping(position, velocity, product);
-  if (pull_) pull_->add_damping(position, velocity, product);
+  for_each_force([&](Force& force) {
+    if (!is_damped_by_sweep(force)) force.add_damping(position, velocity, product);
+  });
   return dampers;
 }
 
@@ -180,7 +178,7 @@ void ForceModel::force(const Vec3Field& position, const Vec3Field& velocity, Vec
 Work ForceModel::force_and_power(const Vec3Field& position, const Vec3Field& velocity,
                                  Vec3Field& result) const {
   if (!has_damping_) {
-    force(position, velocity, result);
+    result = position_force_;
     return has_power_ ? power(position, velocity) : Work{};
   }
   Work power{.damping_loss = damping_product(position, velocity, result)};
@@ -199,24 +197,21 @@ Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) con
 /// Without that of dampers along springs where a sweep computes them.
 void ForceModel::add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity,
                                           Work& power) const {
-  for (const auto& force : forces_)
-    if (!is_damped_by_sweep(*force)) force->add_power(position, velocity, power);
-  if (pull_) pull_->add_power(position, velocity, power);
+  for_each_force([&](Force& force) {
+    if (!is_damped_by_sweep(force)) force.add_power(position, velocity, power);
+  });
 }
 
 void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights& weights,
                            Linearisation& result) const {
-  std::size_t springs = 0;
-  for (const SpringRun& run : system_->springs) springs += static_cast<std::size_t>(run.count);
   result.nodes.assign(position.size(), {});
   for (std::size_t i = 0; i < position.size(); ++i) {
     const double m = system_->mass[i];
     result.nodes.set(i, {m, 0, 0, m, 0, m});
   }
-  result.springs.assign(springs, {});
+  result.springs.assign(system_->springs.spring_count(), {});
   result.has_compressed = false;
-  for (const auto& force : forces_) force->add_linearisation(*system_, position, weights, result);
-  if (pull_) pull_->add_linearisation(*system_, position, weights, result);
+  for_each_force([&](Force& force) { force.add_linearisation(*system_, position, weights, result); });
 }
 
 bool ForceModel::has_asymmetric_part() const {

@@ -22,6 +22,8 @@ class ForceModel {
   ForceModel(const Scene& scene, const ClothSystem& system);
   void system_changed();
 
+  const ClothSystem& system() const { return *system_; }
+
   /// One more force, which no scene file describes; it takes part like those of the scene.
   void add(std::unique_ptr<Force> force);
 
@@ -86,6 +88,11 @@ class ForceModel {
 
  private:
   void sort_forces();
+  template <class Visit>  // visit(force): those of the scene in their order, then the pull
+  void for_each_force(const Visit& visit) const {
+    for (const auto& force : forces_) visit(*force);
+    if (pull_) visit(*pull_);
+  }
   bool sweeps_dampers() const { return sweep_ && swept_.spring_damping > 0; }
   bool is_damped_by_sweep(const Force& force) const {
     return sweeps_dampers() && force.is_damper_of_springs();

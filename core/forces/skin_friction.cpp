@@ -14,15 +14,42 @@ class SkinFriction : public Force {
   /// air.skin_friction is c_t in N s/m, of every particle.
   explicit SkinFriction(const Air& air) : air_(air) {}
 
-  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override;
-  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override;
-  bool add_node_damping(NodeDamping& damping) const override;
-  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override;
-  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
-                         const LinearisationWeights& weights, Linearisation& to) const override;
+  void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
+    if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
+    particle_normals(system, position, normal_);
+    wind_ = wind_at(air_, time);
+    if (wind_.squaredNorm() > 0)
+      for (std::size_t i = 0; i < position.size(); ++i) force.add(i, across(i, wind_));
+  }
+  void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
+    for (std::size_t i = 0; i < velocity.size(); ++i) product.add(i, across(i, velocity[i]));
+  }
+  bool add_node_damping(NodeDamping& damping) const override {
+    damping.isotropic += air_.skin_friction;
+    damping.along_normal -= air_.skin_friction;
+    damping.normal = &normal_;
+    return true;
+  }
+  void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
+    power.air += ordered_sum(velocity.size(),
+                             [&](std::size_t i) { return across(i, wind_ - velocity[i]).dot(velocity[i]); });
+  }
+  void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                         Linearisation& to) const override {
+    const double c = weights.velocity * air_.skin_friction;
+    for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(c, -c, normal_[i]));
+  }
   bool has_asymmetric_part() const override { return true; }
+  /// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
-                              const Vec3Field& direction, Vec3Field& product) const override;
+                              const Vec3Field& direction, Vec3Field& product) const override {
+    Vec3Field turned(position.size());
+    particle_normal_changes(system, position, direction, turned);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const Vec3 n = normal_[i], dn = turned[i], w = wind_ - velocity[i];
+      product.add(i, air_.skin_friction * (dn.dot(w) * n + n.dot(w) * dn));
+    }
+  }
 
  private:
   /// c_t times the part of `v` across the normal of particle i.
@@ -34,49 +61,6 @@ class SkinFriction : public Force {
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
 };
-
-void SkinFriction::update(const ClothSystem& system, const Vec3Field& position, double time,
-                          Vec3Field& force) {
-  if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-  particle_normals(system, position, normal_);
-  wind_ = wind_at(air_, time);
-  if (wind_.squaredNorm() > 0)
-    for (std::size_t i = 0; i < position.size(); ++i) force.add(i, across(i, wind_));
-}
-
-void SkinFriction::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
-  for (std::size_t i = 0; i < velocity.size(); ++i) product.add(i, across(i, velocity[i]));
-}
-
-bool SkinFriction::add_node_damping(NodeDamping& damping) const {
-  damping.isotropic += air_.skin_friction;
-  damping.along_normal -= air_.skin_friction;
-  damping.normal = &normal_;
-  return true;
-}
-
-void SkinFriction::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
-  power.air += ordered_sum(velocity.size(),
-                           [&](std::size_t i) { return across(i, wind_ - velocity[i]).dot(velocity[i]); });
-}
-
-void SkinFriction::add_linearisation(const ClothSystem&, const Vec3Field&,
-                                     const LinearisationWeights& weights, Linearisation& to) const {
-  const double c = weights.velocity * air_.skin_friction;
-  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(c, -c, normal_[i]));
-}
-
-/// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
-void SkinFriction::add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
-                                          const Vec3Field& velocity, const Vec3Field& direction,
-                                          Vec3Field& product) const {
-  Vec3Field turned(position.size());
-  particle_normal_changes(system, position, direction, turned);
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 n = normal_[i], dn = turned[i], w = wind_ - velocity[i];
-    product.add(i, air_.skin_friction * (dn.dot(w) * n + n.dot(w) * dn));
-  }
-}
 
 }  // namespace
 

@@ -83,111 +83,104 @@ double run_energy(const SpringRun& run, const Vec3Field& position) {
   return 0.5 * run.stiffness * sum;
 }
 
-}  // namespace
-
-void SpringForce::update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) {
-  Chunk g;
-  for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
-    spring_chunk(run, first, count, position, g);
-    add_to_ends(g, first, run.offset, count, force);
+/// Sum of the squares of the rates (m/s) at which a run's springs stretch.
+double squared_rates(const SpringRun& run, const Vec3Field& position, const Vec3Field& velocity) {
+  const auto *x = position.x() + run.first, *y = position.y() + run.first, *z = position.z() + run.first;
+  const auto *vx = velocity.x() + run.first, *vy = velocity.y() + run.first, *vz = velocity.z() + run.first;
+  const std::size_t to = static_cast<std::size_t>(run.offset);
+  return ordered_sum(static_cast<std::size_t>(run.count), [=](std::size_t s) {
+    const double dx = x[s + to] - x[s], dy = y[s + to] - y[s], dz = z[s + to] - z[s];
+    const double square = dx * dx + dy * dy + dz * dz;
+    const double rate = (vx[s + to] - vx[s]) * dx + (vy[s + to] - vy[s]) * dy + (vz[s + to] - vz[s]) * dz;
+    return square > 0 ? rate * rate / square : 0;
   });
 }
 
-/// -dp_i/dx_i = k (a a^T + (1 - L/|d|) (I - a a^T)) with a = d/|d|. A spring without direction has no slope
-/// of its own; k I bounds it.
-void SpringForce::add_linearisation(const ClothSystem& system, const Vec3Field& position,
-                                    const LinearisationWeights& weights, Linearisation& to) const {
-  std::size_t spring = 0;
-  for (const SpringRun& run : system.springs) {
-    const double k = weights.position * run.stiffness;
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
-      const Vec3 d = position[j] - position[i];
-      const double length = d.norm();
-      if (!(length > 0)) {
-        to.springs.add(spring, {k, 0, 0, k, 0, k});
-        continue;
-      }
-      double transverse = 1 - run.rest_length / length;
-      if (transverse < 0) {
-        to.has_compressed = true;
-        if (weights.clamped) transverse = 0;
-      }
-      to.springs.add(spring, block_along(k * transverse, k * (1 - transverse), d / length));
-    }
+class SpringForce : public Force {
+ public:
+  SweptIn join(SweepTerms&) const override { return SweptIn::every_pass; }
+  bool is_internal() const override { return true; }
+  void update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) override {
+    Chunk g;
+    for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
+      spring_chunk(run, first, count, position, g);
+      add_to_ends(g, first, run.offset, count, force);
+    });
   }
-}
+  /// -dp_i/dx_i = k (a a^T + (1 - L/|d|) (I - a a^T)) with a = d/|d|. A spring without direction has no slope
+  /// of its own; k I bounds it.
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override {
+    for_each_spring(system.springs,
+                    [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t j) {
+                      const double k = weights.position * run.stiffness;
+                      const Vec3 d = position[j] - position[i];
+                      const double length = d.norm();
+                      if (!(length > 0)) return to.springs.add(spring, {k, 0, 0, k, 0, k});
+                      double transverse = 1 - run.rest_length / length;
+                      if (transverse < 0) {
+                        to.has_compressed = true;
+                        if (weights.clamped) transverse = 0;
+                      }
+                      to.springs.add(spring, block_along(k * transverse, k * (1 - transverse), d / length));
+                    });
+  }
+};
 
-std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position) {
-  std::array<double, 3> energy{};
-  for (const SpringRun& run : system.springs)
-    energy[static_cast<std::size_t>(run.family)] += run_energy(run, position);
-  return energy;
-}
+/// F_i = k_d ((v_j - v_i) . d/|d|) d/|d| on every spring; 0 where |d| = 0.
+class SpringDamping : public Force {
+ public:
+  /// `damping` in N s/m; `system` must outlive the force.
+  SpringDamping(const ClothSystem& system, double damping) : system_(&system), damping_(damping) {}
 
-void SpringDamping::update(const ClothSystem&, const Vec3Field&, double, Vec3Field&) {}
-
-void SpringDamping::add_damping(const Vec3Field& position, const Vec3Field& velocity,
-                                Vec3Field& product) const {
-  Chunk g;
-  for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
-    damper_chunk(run, first, count, position, velocity, damping_, g);
-    add_to_ends(g, first, run.offset, count, product);
-  });
-}
-
-void SpringDamping::add_linearisation(const ClothSystem& system, const Vec3Field& position,
-                                      const LinearisationWeights& weights, Linearisation& to) const {
-  const double along = weights.velocity * damping_;
-  std::size_t spring = 0;
-  for (const SpringRun& run : system.springs)
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
+  SweptIn join(SweepTerms& terms) const override {
+    terms.spring_damping = damping_;
+    return SweptIn::every_pass;
+  }
+  bool is_damper_of_springs() const override { return true; }
+  bool is_internal() const override { return true; }
+  void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override {
+    Chunk g;
+    for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
+      damper_chunk(run, first, count, position, velocity, damping_, g);
+      add_to_ends(g, first, run.offset, count, product);
+    });
+  }
+  bool add_node_damping(NodeDamping& damping) const override {
+    damping.along_springs += damping_;
+    return false;
+  }
+  void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override {
+    for (const SpringRun& run : system_->springs)
+      power.damping_loss += damping_ * squared_rates(run, position, velocity);
+  }
+  void add_linearisation(const ClothSystem& system, const Vec3Field& position,
+                         const LinearisationWeights& weights, Linearisation& to) const override {
+    const double along = weights.velocity * damping_;
+    for_each_spring(system.springs, [&](const SpringRun&, std::size_t spring, std::size_t i, std::size_t j) {
       to.springs.add(spring, block_along(0, along, direction(position[j] - position[i])));
-    }
-}
-
-/// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
-void SpringDamping::add_asymmetric_product(const ClothSystem& system, const Vec3Field& position,
-                                           const Vec3Field& velocity, const Vec3Field& direction,
-                                           Vec3Field& product) const {
-  std::size_t spring = 0;
-  for (const SpringRun& run : system.springs) {
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
+    });
+  }
+  bool has_asymmetric_part() const override { return true; }
+  /// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
+  void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
+                              const Vec3Field& direction, Vec3Field& product) const override {
+    for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
       const double length = (position[j] - position[i]).norm();
-      if (!(length > 0)) continue;
+      if (!(length > 0)) return;
       const Vec3 e = (position[j] - position[i]) / length, u = velocity[j] - velocity[i],
                  dd = direction[j] - direction[i];
       const Vec3 de = (dd - e.dot(dd) * e) / length;
       const Vec3 change = damping_ * (u.dot(de) * e + u.dot(e) * de);  // of F_i
       product.add(i, -change);
       product.add(j, change);
-    }
+    });
   }
-}
 
-bool SpringDamping::add_node_damping(NodeDamping& damping) const {
-  damping.along_springs += damping_;
-  return false;
-}
-
-void SpringDamping::add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const {
-  for (const SpringRun& run : system_->springs) {
-    const auto *x = position.x() + run.first, *y = position.y() + run.first, *z = position.z() + run.first;
-    const auto *vx = velocity.x() + run.first, *vy = velocity.y() + run.first, *vz = velocity.z() + run.first;
-    const std::size_t to = static_cast<std::size_t>(run.offset);
-    power.damping_loss += damping_ * ordered_sum(static_cast<std::size_t>(run.count), [=](std::size_t s) {
-                            const double dx = x[s + to] - x[s], dy = y[s + to] - y[s], dz = z[s + to] - z[s];
-                            const double square = dx * dx + dy * dy + dz * dz;
-                            const double rate = (vx[s + to] - vx[s]) * dx + (vy[s + to] - vy[s]) * dy +
-                                                (vz[s + to] - vz[s]) * dz;
-                            return square > 0 ? rate * rate / square : 0;
-                          });
-  }
-}
-
-namespace {
+ private:
+  const ClothSystem* system_;
+  double damping_;  ///< N s/m
+};
 
 StageInfo family_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
   const std::string name = fmt::format("{} springs", name_of(family));
@@ -208,6 +201,13 @@ std::vector<StageInfo> explain_springs(const Scene& scene, const ClothSystem& sy
 }
 
 }  // namespace
+
+std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position) {
+  std::array<double, 3> energy{};
+  for (const SpringRun& run : system.springs)
+    energy[static_cast<std::size_t>(run.family)] += run_energy(run, position);
+  return energy;
+}
 
 ForceEntry spring_entry() {
   return {.make = [](const Scene&, const ClothSystem& system) -> std::unique_ptr<Force> {

@@ -16,15 +16,14 @@ class VelocitySolver {
   /// holds `known` and becomes v; pinned particles keep 0. `force` holds about p - D v, in N, from which
   /// the solution starts, and is scratch. Returns the iterations of conjugate gradients; 0 where the
   /// solution is closed.
-  int solve(const ClothSystem& system, const ForceModel& forces, double weight, const Vec3Field& position,
-            Vec3Field& velocity, Vec3Field& force);
+  int solve(const ForceModel& forces, double weight, const Vec3Field& position, Vec3Field& velocity,
+            Vec3Field& force);
 
  private:
   void solve_by_particle(const ClothSystem& system, const Vec3Field& position_force, double weight,
                          const NodeDamping& damping, Vec3Field& velocity);
-  int solve_coupled(const ClothSystem& system, const ForceModel& forces, double weight,
-                    const NodeDamping& local, const Vec3Field& position, Vec3Field& velocity,
-                    Vec3Field& product);
+  int solve_coupled(const ForceModel& forces, double weight, const NodeDamping& local,
+                    const Vec3Field& position, Vec3Field& velocity, Vec3Field& product);
 
   std::vector<double> inverse_diagonal_;  ///< 1/kg, scratch
   Vec3Field residual_, direction_;        ///< scratch, sized when first needed

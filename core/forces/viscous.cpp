@@ -1,32 +1,42 @@
-#include "forces/viscous.h"
-
+// Viscous damping, Eq. (2) of the report: F_i = -c v_i.
 #include "cloth/sums.h"
 #include "forces/registry.h"
 
 namespace cloth {
+namespace {
 
-void ViscousDamping::update(const ClothSystem&, const Vec3Field&, double, Vec3Field&) {}
+class ViscousDamping : public Force {
+ public:
+  explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
 
-void ViscousDamping::add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const {
-  const auto v = velocity.flat();
-  const auto out = product.flat();
-  for (std::size_t k = 0; k < v.size(); ++k) out[k] += coefficient_ * v[k];
-}
+  SweptIn join(SweepTerms& terms) const override {
+    terms.damping = coefficient_;
+    return SweptIn::every_pass;
+  }
+  void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
+    const auto v = velocity.flat();
+    const auto out = product.flat();
+    for (std::size_t k = 0; k < v.size(); ++k) out[k] += coefficient_ * v[k];
+  }
+  bool add_node_damping(NodeDamping& damping) const override {
+    damping.isotropic += coefficient_;
+    return true;
+  }
+  void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
+    power.damping_loss += coefficient_ * dot(velocity.flat(), velocity.flat());
+  }
+  void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                         Linearisation& to) const override {
+    const double diagonal = weights.velocity * coefficient_;
+    for (std::size_t i = 0; i < to.nodes.size(); ++i)
+      to.nodes.add(i, {diagonal, 0, 0, diagonal, 0, diagonal});
+  }
 
-bool ViscousDamping::add_node_damping(NodeDamping& damping) const {
-  damping.isotropic += coefficient_;
-  return true;
-}
+ private:
+  double coefficient_;  ///< N s/m
+};
 
-void ViscousDamping::add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const {
-  power.damping_loss += coefficient_ * dot(velocity.flat(), velocity.flat());
-}
-
-void ViscousDamping::add_linearisation(const ClothSystem&, const Vec3Field&,
-                                       const LinearisationWeights& weights, Linearisation& to) const {
-  const double diagonal = weights.velocity * coefficient_;
-  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, {diagonal, 0, 0, diagonal, 0, diagonal});
-}
+}  // namespace
 
 ForceEntry viscous_damping_entry() {
   return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {

@@ -81,18 +81,17 @@ void DormandPrince::forget(Change change) {
 }
 
 /// The slope at position_ and the stage's speed.
-void DormandPrince::evaluate(const ClothSystem& system, ForceModel& forces, int stage, double time,
-                             IntegratorReport& report) {
+void DormandPrince::evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report) {
   forces.update(position_, time);
   power_[stage] = forces.force_and_power(position_, speed_[stage], force_);
   acceleration_[stage].fill(0);
-  add_acceleration(system, 1, force_, acceleration_[stage]);
+  add_acceleration(forces.system(), 1, force_, acceleration_[stage]);
   ++report.force_evaluations;
 }
 
 /// All stages but the first. Leaves the new state in position_ and the last stage's speed.
-void DormandPrince::attempt(const ClothSystem& system, ForceModel& forces, const ClothState& from,
-                            const StepTimes& inner, IntegratorReport& report) {
+void DormandPrince::attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner,
+                            IntegratorReport& report) {
   for (int s = 1; s < stages; ++s) {
     position_ = from.position;
     speed_[s] = from.velocity;
@@ -101,7 +100,7 @@ void DormandPrince::attempt(const ClothSystem& system, ForceModel& forces, const
       add_scaled(inner.step * coupling[s][k], speed_[k], position_);
       add_scaled(inner.step * coupling[s][k], acceleration_[k], speed_[s]);
     }
-    evaluate(system, forces, s, node[s] == 1 ? inner.end : inner.begin + node[s] * inner.step, report);
+    evaluate(forces, s, node[s] == 1 ? inner.end : inner.begin + node[s] * inner.step, report);
   }
 }
 
@@ -140,8 +139,8 @@ DormandPrince::LargestError DormandPrince::estimated_error(const ClothSystem& sy
   return largest;
 }
 
-void DormandPrince::control(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                            ClothState& state, Work& work, IntegratorReport& report) {
+void DormandPrince::control(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+                            IntegratorReport& report) {
   report.inner_steps = 0;
   double elapsed = 0;
   LargestError error;
@@ -151,8 +150,8 @@ void DormandPrince::control(const ClothSystem& system, ForceModel& forces, const
     const double h = ends ? left : control_.size();
     if (!ends && h < smallest_step * times.step) break;
     const double begin = times.begin + elapsed;
-    attempt(system, forces, state, {begin, ends ? times.end : begin + h, h}, report);
-    error = estimated_error(system, h);
+    attempt(forces, state, {begin, ends ? times.end : begin + h, h}, report);
+    error = estimated_error(forces.system(), h);
     if (!(error.value <= 1)) {
       ++report.rejected_steps;
       control_.reject(h, error.value);
@@ -172,8 +171,8 @@ void DormandPrince::control(const ClothSystem& system, ForceModel& forces, const
                   tolerance_)};
 }
 
-IntegratorReport DormandPrince::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                     ClothState& state, Work& work) {
+IntegratorReport DormandPrince::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                     Work& work) {
   IntegratorReport report;
   const std::size_t size = state.position.size();
   if (force_.size() != size) {
@@ -184,13 +183,13 @@ IntegratorReport DormandPrince::step(const ClothSystem& system, ForceModel& forc
   if (!holds_slope_) {
     position_ = state.position;
     speed_[0] = state.velocity;
-    evaluate(system, forces, 0, times.begin, report);
+    evaluate(forces, 0, times.begin, report);
   }
   holds_slope_ = true;
   if (tolerance_ > 0) {
-    control(system, forces, times, state, work, report);
+    control(forces, times, state, work, report);
   } else {
-    attempt(system, forces, state, times, report);
+    attempt(forces, state, times, report);
     accept(times.step, state, work);
   }
   return report;

@@ -41,8 +41,7 @@ class DormandPrince : public Integrator {
   /// every step is one step of the method.
   explicit DormandPrince(double tolerance) : tolerance_(tolerance) {}
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   void forget(Change change) override;
   IntegratorMemory remember() const override { return {.fields = {}, .numbers = control_.numbers()}; }
   /// The slope is a function of state and time: the next step takes it again.
@@ -54,15 +53,13 @@ class DormandPrince : public Integrator {
     int particle = 0;
   };
 
-  void evaluate(const ClothSystem& system, ForceModel& forces, int stage, double time,
-                IntegratorReport& report);
-  void attempt(const ClothSystem& system, ForceModel& forces, const ClothState& from, const StepTimes& inner,
-               IntegratorReport& report);
+  void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
+  void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
   void accept(double step, ClothState& state, Work& work);
   int first_without_slope() const;
   LargestError estimated_error(const ClothSystem& system, double step) const;
-  void control(const ClothSystem& system, ForceModel& forces, const StepTimes& times, ClothState& state,
-               Work& work, IntegratorReport& report);
+  void control(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+               IntegratorReport& report);
 
   double tolerance_;
   StepSizeControl control_;

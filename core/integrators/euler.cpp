@@ -12,19 +12,19 @@ void evaluate(ForceModel& forces, const StepTimes& times, const ClothState& stat
 
 }  // namespace
 
-IntegratorReport ExplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                     ClothState& state, Work& work) {
+IntegratorReport ExplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                     Work& work) {
   evaluate(forces, times, state, force_, work);
   add_scaled(times.step, state.velocity, state.position);
-  add_acceleration(system, times.step, force_, state.velocity);
+  add_acceleration(forces.system(), times.step, force_, state.velocity);
   return {.force_evaluations = 1};
 }
 
-IntegratorReport SemiImplicitEuler::step(const ClothSystem& system, ForceModel& forces,
-                                         const StepTimes& times, ClothState& state, Work& work) {
+IntegratorReport SemiImplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                         Work& work) {
   evaluate(forces, times, state, force_, work);
   if (constraint_) constraint_->before_kick(times.step, times.step, state);
-  add_acceleration(system, times.step, force_, state.velocity);
+  add_acceleration(forces.system(), times.step, force_, state.velocity);
   add_scaled(times.step, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0, state);
   return {.force_evaluations = 1};

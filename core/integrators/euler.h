@@ -8,8 +8,7 @@ namespace cloth {
 /// x' = x + h v, v' = v + h a(x, v, t): order 1, unstable for every undamped oscillation.
 class ExplicitEuler : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;
@@ -19,8 +18,7 @@ class ExplicitEuler : public Integrator {
 /// symplectic without damping.
 class SemiImplicitEuler : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
     return true;

@@ -29,8 +29,7 @@ Work power_of(const ForceModel& forces, const StepSums& sums) {
 
 }  // namespace
 
-IntegratorReport FusedEuler::step(const ClothSystem&, ForceModel& forces, const StepTimes& times,
-                                  ClothState& state, Work& work) {
+IntegratorReport FusedEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   SweepLoads loads = loads_at(forces, {&times.begin, 1});
   Work power;
   if (forces.has_step_load()) {
@@ -60,11 +59,11 @@ IntegratorReport FusedEuler::step_many(ForceModel& forces, double step, std::spa
   return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
 }
 
-IntegratorReport FusedSemiImplicitEuler::step(const ClothSystem& system, ForceModel& forces,
-                                              const StepTimes& times, ClothState& state, Work& work) {
-  if (constraint_ && constraint_->holds()) return general_.step(system, forces, times, state, work);
+IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                              Work& work) {
+  if (constraint_ && constraint_->holds()) return general_.step(forces, times, state, work);
   if (constraint_) constraint_->before_kick(times.step, times.step, state);
-  const IntegratorReport report = FusedEuler::step(system, forces, times, state, work);
+  const IntegratorReport report = FusedEuler::step(forces, times, state, work);
   if (constraint_) constraint_->after_drift(0, state);
   return report;
 }
@@ -78,8 +77,8 @@ void FusedVerlet::evaluate(ForceModel& forces, const ClothState& state) {
     power_ = Work{.damping_loss = forces.swept().damping * forces.sweep()->squares(state.velocity)};
 }
 
-IntegratorReport FusedVerlet::step(const ClothSystem&, ForceModel& forces, const StepTimes& times,
-                                   ClothState& state, Work& work) {
+IntegratorReport FusedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                   Work& work) {
   IntegratorReport report{.force_evaluations = 1};
   if (!holds_position_force_) {
     forces.update(state.position, times.begin);
@@ -111,8 +110,7 @@ IntegratorReport FusedVerlet::step_many(ForceModel& forces, double step, std::sp
   return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
 }
 
-IntegratorReport FusedRk4::step(const ClothSystem&, ForceModel& forces, const StepTimes& times,
-                                ClothState& state, Work& work) {
+IntegratorReport FusedRk4::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   double squares = 0;
   sweep(forces, kutta_times(times), times.step, {&squares, 1}, state, work);
   return {.force_evaluations = kutta_stages, .speed_squares = squares};

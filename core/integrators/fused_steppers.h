@@ -19,8 +19,7 @@ class FusedEuler : public Integrator {
   explicit FusedEuler(bool drift_first) : drift_first_(drift_first) {}
   static bool suits(const ForceModel& forces, bool) { return forces.sweeps_steps(); }
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel& forces) const override;
   IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,
                              ClothState& state, Work& work) override;
@@ -35,8 +34,7 @@ class FusedSemiImplicitEuler : public FusedEuler {
  public:
   FusedSemiImplicitEuler() : FusedEuler(false) {}
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel& forces) const override {
     return !constraint_ && FusedEuler::gains_from_batches(forces);
   }
@@ -56,8 +54,7 @@ class FusedVerlet : public Verlet {
  public:
   static bool suits(const ForceModel& forces, bool constrained);
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel&) const override { return holds_position_force_; }
   IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,
                              ClothState& state, Work& work) override;
@@ -70,8 +67,7 @@ class FusedRk4 : public Integrator {
  public:
   static bool suits(const ForceModel& forces, bool) { return forces.is_swept_whole(); }
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel& forces) const override;
   IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,
                              ClothState& state, Work& work) override;

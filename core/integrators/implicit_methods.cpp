@@ -4,16 +4,12 @@
 
 namespace cloth {
 
-IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                     ClothState& state, Work& work) {
+IntegratorReport ImplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                     Work& work) {
   IntegratorReport report;
   velocity_ = state.velocity;
-  stage_.solve(system, forces,
-               {.weight = stage_weight * times.step,
-                .time = times.end,
-                .position = &state.position,
-                .velocity = &state.velocity},
-               velocity_, position_, report);
+  stage_.solve({forces, stage_weight * times.step, times.end, state.position, state.velocity, velocity_,
+                position_, report});
   std::swap(state.position, position_);
   std::swap(state.velocity, velocity_);
   if (forces.has_power()) end_power_ = forces.power(state.position, state.velocity);
@@ -22,15 +18,13 @@ IntegratorReport ImplicitEuler::step(const ClothSystem& system, ForceModel& forc
   return report;
 }
 
-IntegratorReport ImplicitMidpoint::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                        ClothState& state, Work& work) {
+IntegratorReport ImplicitMidpoint::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                        Work& work) {
   IntegratorReport report;
   const double half = stage_weight * times.step;
   velocity_ = state.velocity;
   stage_.solve(
-      system, forces,
-      {.weight = half, .time = times.begin + half, .position = &state.position, .velocity = &state.velocity},
-      velocity_, position_, report);
+      {forces, half, times.begin + half, state.position, state.velocity, velocity_, position_, report});
   if (forces.has_power()) work += times.step * forces.power(position_, velocity_);
   add_scaled(times.step, velocity_, state.position);
   const auto v = state.velocity.flat();
@@ -39,18 +33,17 @@ IntegratorReport ImplicitMidpoint::step(const ClothSystem& system, ForceModel& f
   return report;
 }
 
-IntegratorReport Bdf2::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                            ClothState& state, Work& work) {
+IntegratorReport Bdf2::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   if (history_ == History::held && times.step != step_before_) history_ = History::broken;
   Work of_step;
   IntegratorReport report;
   if (history_ == History::held) {
-    report = multistep(system, forces, times, state, of_step);
+    report = multistep(forces, times, state, of_step);
   } else {
     before_ = state;
     const bool is_first = history_ == History::none;
-    report = is_first ? midpoint_.step(system, forces, times, state, of_step)
-                      : euler_.step(system, forces, times, state, of_step);
+    report =
+        is_first ? midpoint_.step(forces, times, state, of_step) : euler_.step(forces, times, state, of_step);
     end_weight_ = is_first ? 0 : times.step;
     end_power_ = 1 / times.step * of_step;
   }
@@ -61,8 +54,7 @@ IntegratorReport Bdf2::step(const ClothSystem& system, ForceModel& forces, const
   return report;
 }
 
-IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                 ClothState& state, Work& work) {
+IntegratorReport Bdf2::multistep(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   IntegratorReport report;
   const double weight = stage_weight * times.step;
   const auto extrapolate = [](const Vec3Field& now, const Vec3Field& before, Vec3Field& known) {
@@ -74,10 +66,7 @@ IntegratorReport Bdf2::multistep(const ClothSystem& system, ForceModel& forces, 
   extrapolate(state.position, before_.position, known_position_);
   extrapolate(state.velocity, before_.velocity, known_velocity_);
   velocity_ = state.velocity;
-  stage_.solve(
-      system, forces,
-      {.weight = weight, .time = times.end, .position = &known_position_, .velocity = &known_velocity_},
-      velocity_, position_, report);
+  stage_.solve({forces, weight, times.end, known_position_, known_velocity_, velocity_, position_, report});
   before_.position = std::move(state.position);
   before_.velocity = std::move(state.velocity);
   state.position = position_;

@@ -10,8 +10,7 @@ class ImplicitEuler : public Integrator {
  public:
   static constexpr double stage_weight = 1;  ///< of the step, with which the equations count forces
   ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
 
  private:
@@ -24,8 +23,7 @@ class ImplicitMidpoint : public Integrator {
  public:
   static constexpr double stage_weight = 0.5;
   ImplicitMidpoint(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
 
  private:
   ImplicitStage stage_;
@@ -42,8 +40,7 @@ class Bdf2 : public Integrator {
       : stage_(tolerance, most_iterations),
         midpoint_(tolerance, most_iterations),
         euler_(tolerance, most_iterations) {}
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   /// After the limiter has acted, as a step of implicit Euler does.
   bool drifts_with_end_velocity() const override { return true; }
   void forget(Change change) override;
@@ -51,8 +48,7 @@ class Bdf2 : public Integrator {
   void recall(const IntegratorMemory& memory) override;
 
  private:
-  IntegratorReport multistep(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                             ClothState& state, Work& work);
+  IntegratorReport multistep(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
 
   enum class History { none, broken, held };
   History history_ = History::none;

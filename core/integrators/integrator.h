@@ -74,8 +74,8 @@ class Integrator {
 
   /// Advances position and velocity and adds the work of the forces to `work`, by a quadrature of the
   /// method's own order. Neither `state.time` nor `state.step` is touched.
-  virtual IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                ClothState& state, Work& work) = 0;
+  virtual IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                Work& work) = 0;
 
   /// Whether a batch of steps, whose states in between are not needed, now costs less than single steps.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }
@@ -102,13 +102,13 @@ class Integrator {
 
   /// Makes the velocity at the end of the last step anew, from `half_velocity`, in m/s, which led from its
   /// begin to where it ended without contact. Precondition: velocity_follows_positions().
-  virtual void follow_positions(const ClothSystem&, ForceModel&, const StepTimes&,
-                                const Vec3Field& /*half_velocity*/, ClothState&) {}
+  virtual void follow_positions(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
+                                ClothState&) {}
 
   /// Makes it once more, with the damping of the velocities in the state, which contact has answered.
   /// Precondition: follow_positions() was the last call.
-  virtual void follow_velocities(const ClothSystem&, ForceModel&, const StepTimes&,
-                                 const Vec3Field& /*half_velocity*/, ClothState&) {}
+  virtual void follow_velocities(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
+                                 ClothState&) {}
 
   /// The state at the end of the last step is another one by contact. Returns what that changes of the work
   /// which the step has added with the velocity that never happened.

@@ -3,86 +3,46 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/at.h"
+
 namespace cloth {
 
-bool Projective::holds_for(const ClothSystem& system, const Coefficients& numbers) const {
-  const Coefficients& held = coefficients_;
-  return factored_ && held.step == numbers.step && held.node_damping == numbers.node_damping &&
-         held.spring_damping == numbers.spring_damping && held.held_particle == numbers.held_particle &&
-         held.held_damping == numbers.held_damping && held.held_stiffness == numbers.held_stiffness &&
-         held.springs == system.springs && held.mass == system.mass && held.pinned == system.pinned;
-}
-
-void Projective::analyse(const ClothSystem& system) {
-  const Coefficients& c = coefficients_;
-  free_.clear();
-  row_.assign(c.pinned.size(), -1);
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (c.pinned[i]) continue;
-    row_[i] = static_cast<int>(free_.size());
-    free_.push_back(static_cast<int>(i));
+bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
+  if (!factored_ || pinned_ != system.pinned || springs_ != system.springs) {
+    rows_ = analyse_free_rows(system, factors_);
+    residual_.resize(3 * rows_.particle.size());
   }
-  residual_.resize(3 * free_.size());
+  coefficients_ = c, springs_ = system.springs, mass_ = system.mass, pinned_ = system.pinned;
 
-  std::vector<Coupling> couplings;
-  for (const SpringRun& run : c.springs) {
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int a = row_[static_cast<std::size_t>(i)], b = row_[static_cast<std::size_t>(i + run.offset)];
-      if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
-    }
-  }
-  std::vector<int> order = elimination_order(system);
-  for (int& particle : order) particle = row_[static_cast<std::size_t>(particle)];
-  factors_.analyse(couplings, order);
-}
-
-bool Projective::factorise() {
-  const Coefficients& c = coefficients_;
   const double h = c.step;
-  std::vector<double> diagonal(free_.size()), off_diagonal;
-  const auto add = [&](int particle, double value) {
-    if (const int row = row_[static_cast<std::size_t>(particle)]; row >= 0)
-      diagonal[static_cast<std::size_t>(row)] += value;
+  std::vector<double> diagonal(rows_.particle.size()), off_diagonal;
+  const auto add = [&](std::size_t particle, double value) {
+    if (const int row = rows_.row[particle]; row >= 0) diagonal[at(row)] += value;
   };
-  for (const int i : free_) add(i, c.mass[static_cast<std::size_t>(i)] + h * c.node_damping);
-  if (c.held_particle >= 0) add(c.held_particle, h * c.held_damping + h * h * c.held_stiffness);
-  for (const SpringRun& run : c.springs) {
+  for (const int i : rows_.particle) add(at(i), mass_[at(i)] + h * c.node_damping);
+  if (c.held_particle >= 0) add(at(c.held_particle), h * c.held_damping + h * h * c.held_stiffness);
+  for_each_spring(springs_, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
     const double weight = h * c.spring_damping + h * h * run.stiffness;
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int j = i + run.offset;
-      add(i, weight), add(j, weight);
-      if (row_[static_cast<std::size_t>(i)] >= 0 && row_[static_cast<std::size_t>(j)] >= 0)
-        off_diagonal.push_back(-weight);
-    }
-  }
-  return factors_.factorise(diagonal, off_diagonal);
-}
-
-bool Projective::factor(const ClothSystem& system, Coefficients numbers) {
-  const bool same_pattern =
-      factored_ && coefficients_.pinned == system.pinned && coefficients_.springs == system.springs;
-  numbers.springs = system.springs;
-  numbers.mass = system.mass;
-  numbers.pinned = system.pinned;
-  coefficients_ = std::move(numbers);
-  if (!same_pattern) analyse(system);
-  return factored_ = factorise();
+    add(i, weight), add(j, weight);
+    if (rows_.row[i] >= 0 && rows_.row[j] >= 0) off_diagonal.push_back(-weight);
+  });
+  return factored_ = factors_.factorise(diagonal, off_diagonal);
 }
 
 /// velocity -= A^-1 r; returns the largest change of a particle's speed, relative to the largest speed.
 double Projective::correct(const ClothSystem& system, const Vec3Field& start_velocity, double h,
                            Vec3Field& velocity) {
-  const std::size_t size = free_.size();
+  const std::size_t size = rows_.particle.size();
   double *x = residual_.data(), *y = x + size, *z = y + size;
   for (std::size_t row = 0; row < size; ++row) {
-    const auto i = static_cast<std::size_t>(free_[row]);
+    const std::size_t i = at(rows_.particle[row]);
     const Vec3 r = system.mass[i] * (velocity[i] - start_velocity[i]) - h * force_[i];
     x[row] = r.x(), y[row] = r.y(), z[row] = r.z();
   }
   factors_.solve(residual_, 3);
   double change = 0, largest = 0;
   for (std::size_t row = 0; row < size; ++row) {
-    const auto i = static_cast<std::size_t>(free_[row]);
+    const std::size_t i = at(rows_.particle[row]);
     const Vec3 correction(x[row], y[row], z[row]);
     velocity.add(i, -correction);
     change = std::max(change, correction.squaredNorm());
@@ -91,9 +51,9 @@ double Projective::correct(const ClothSystem& system, const Vec3Field& start_vel
   return largest > 0 ? std::sqrt(change / largest) : 0;
 }
 
-IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                                  ClothState& state, Work& work) {
+IntegratorReport Projective::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   IntegratorReport report;
+  const ClothSystem& system = forces.system();
   const double h = times.step;
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
 
@@ -103,13 +63,11 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
                              .spring_damping = parts.along_springs,
                              .held_particle = parts.held_particle,
                              .held_damping = parts.held_isotropic,
-                             .held_stiffness = parts.held_stiffness,
-                             .springs = {},
-                             .mass = {},
-                             .pinned = {}};
-  if (!holds_for(system, numbers)) {
+                             .held_stiffness = parts.held_stiffness};
+  if (!factored_ || coefficients_ != numbers || springs_ != system.springs || mass_ != system.mass ||
+      pinned_ != system.pinned) {
     ++report.factorisations;
-    if (!factor(system, numbers)) {
+    if (!factorise(system, numbers)) {
       report.failure = SolverFailure{0, "the constant matrix could not be factored"};
       return report;
     }
@@ -118,7 +76,7 @@ IntegratorReport Projective::step(const ClothSystem& system, ForceModel& forces,
   start_position_ = state.position;
   start_velocity_ = state.velocity;
   add_scaled(h, state.velocity, state.position);
-  for (int n = 0; n < iterations_ && !free_.empty(); ++n) {
+  for (int n = 0; n < iterations_ && !rows_.particle.empty(); ++n) {
     forces.update(state.position, times.end);
     forces.force(state.position, state.velocity, force_);
     report.residual = correct(system, start_velocity_, h, state.velocity);

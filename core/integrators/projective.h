@@ -18,8 +18,8 @@
 // whatever the shape, and the rest of the iteration contracts; iterates stay bounded in any wind.
 #pragma once
 
+#include "integrators/implicit/linear_solver.h"
 #include "integrators/integrator.h"
-#include "sparse/block_cholesky.h"
 
 namespace cloth {
 
@@ -27,34 +27,29 @@ class Projective : public Integrator {
  public:
   explicit Projective(int iterations) : iterations_(iterations) {}
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
 
  private:
-  /// All that A consists of.
+  /// What A consists of beside springs, masses and pins. Units as in NodeDamping.
   struct Coefficients {
     double step = 0;
     double node_damping = 0, spring_damping = 0;
     int held_particle = -1;
     double held_damping = 0, held_stiffness = 0;
-    SpringRuns springs;
-    std::vector<double> mass;
-    std::vector<std::uint8_t> pinned;
     bool operator==(const Coefficients&) const = default;
   };
 
-  bool holds_for(const ClothSystem& system, const Coefficients& numbers) const;
-  bool factor(const ClothSystem& system, Coefficients numbers);
-  void analyse(const ClothSystem& system);
-  bool factorise();
+  bool factorise(const ClothSystem& system, const Coefficients& numbers);
   double correct(const ClothSystem& system, const Vec3Field& start_velocity, double h, Vec3Field& velocity);
 
   int iterations_;
+  bool factored_ = false;  ///< `factors_` are those of A with these:
   Coefficients coefficients_;
-  bool factored_ = false;
-  std::vector<int> row_;   ///< of A, of each particle; -1 where pinned
-  std::vector<int> free_;  ///< the particle of each row
+  SpringRuns springs_;
+  std::vector<double> mass_;
+  std::vector<std::uint8_t> pinned_;
+  FreeRows rows_;
   BlockCholesky factors_{1};
   Vec3Field force_, start_position_, start_velocity_;
   std::vector<double> residual_;  ///< N s, of the free particles: x, y, z one after the other

@@ -12,8 +12,7 @@ std::array<double, kutta_stages> kutta_times(const StepTimes& times) {
   return at;
 }
 
-IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                           ClothState& state, Work& work) {
+IntegratorReport Rk4::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   const double h = times.step;
   const auto at = kutta_times(times);
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
@@ -26,14 +25,14 @@ IntegratorReport Rk4::step(const ClothSystem& system, ForceModel& forces, const 
     forces.update(stage_position_, at[static_cast<std::size_t>(s)]);
     work += h * kutta[s].weight * forces.force_and_power(stage_position_, stage_velocity_, force_);
     add_scaled(h * kutta[s].weight, stage_velocity_, next_position_);
-    add_acceleration(system, h * kutta[s].weight, force_, next_velocity_);
+    add_acceleration(forces.system(), h * kutta[s].weight, force_, next_velocity_);
     if (s + 1 == kutta_stages) break;
 
     const double ahead = h * kutta[s + 1].node;
     stage_position_ = state.position;
     add_scaled(ahead, stage_velocity_, stage_position_);
     stage_velocity_ = state.velocity;
-    add_acceleration(system, ahead, force_, stage_velocity_);
+    add_acceleration(forces.system(), ahead, force_, stage_velocity_);
   }
   std::swap(state.position, next_position_);
   std::swap(state.velocity, next_velocity_);

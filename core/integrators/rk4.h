@@ -14,8 +14,7 @@ std::array<double, kutta_stages> kutta_times(const StepTimes& times);
 
 class Rk4 : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
 
  private:
   Vec3Field force_;

@@ -4,8 +4,7 @@
 
 namespace cloth {
 
-IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                              ClothState& state, Work& work) {
+IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   IntegratorReport report;
   const double h = times.step;
   if (!holds_position_force_) {
@@ -17,14 +16,14 @@ IntegratorReport Verlet::step(const ClothSystem& system, ForceModel& forces, con
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
   const bool corrects = constraint_ && forces.has_damping_loss();
   if (corrects) keep_damping(forces, opening_damping_);
-  add_acceleration(system, 0.5 * h, force(forces), state.velocity);
+  add_acceleration(forces.system(), 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
   if (corrects && constraint_->opening_change())
     work.damping_loss -= 0.5 * h * dot(opening_damping_.flat(), constraint_->opening_change()->flat());
   forces.update(state.position, times.end);
   ++report.force_evaluations;
-  report.velocity_iterations = finish_velocity(system, forces, 0.5 * h, state);
+  report.velocity_iterations = finish_velocity(forces, 0.5 * h, state);
   evaluate(forces, state);
   work += 0.5 * h * power_;
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
@@ -63,35 +62,33 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
 }
 
 /// From the velocity at half the step; `force_` is the guess. Returns the iterations.
-int Verlet::finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step,
-                            ClothState& state) {
+int Verlet::finish_velocity(ForceModel& forces, double half_step, ClothState& state) {
   holds_force_ = false;
-  if (forces.has_damping())
-    return solver_.solve(system, forces, half_step, state.position, state.velocity, force_);
-  add_acceleration(system, half_step, forces.position_force(), state.velocity);
+  if (forces.has_damping()) return solver_.solve(forces, half_step, state.position, state.velocity, force_);
+  add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
   return 0;
 }
 
 /// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
 /// keep a speed of some omega^2 h^3 g that no position follows.
-void Verlet::follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                              const Vec3Field& half_velocity, ClothState& state) {
+void Verlet::follow_positions(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
+                              ClothState& state) {
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
   forces.update(state.position, times.end);
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
-  finish_velocity(system, forces, 0.5 * times.step, state);
+  finish_velocity(forces, 0.5 * times.step, state);
 }
 
 /// Without it the cloth beside a contact would be damped by the speed that it would have had without contact,
 /// and at rest keep a speed of some h^2 g times damping over mass.
-void Verlet::follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                               const Vec3Field& half_velocity, ClothState& state) {
+void Verlet::follow_velocities(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
+                               ClothState& state) {
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   holds_force_ = false;
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
-  add_acceleration(system, 0.5 * times.step, force(forces), state.velocity);
+  add_acceleration(forces.system(), 0.5 * times.step, force(forces), state.velocity);
 }
 
 /// The next step would begin with this evaluation.

@@ -18,17 +18,16 @@ namespace cloth {
 
 class Verlet : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
     return true;
   }
   bool velocity_follows_positions() const override { return true; }
-  void follow_velocities(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                         const Vec3Field& half_velocity, ClothState& state) override;
-  void follow_positions(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        const Vec3Field& half_velocity, ClothState& state) override;
+  void follow_velocities(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
+                         ClothState& state) override;
+  void follow_positions(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
+                        ClothState& state) override;
   Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
@@ -43,7 +42,7 @@ class Verlet : public Integrator {
   void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
   double closing_correction(const ForceModel& forces, double step);
   const Vec3Field& force(const ForceModel& forces) const;
-  int finish_velocity(const ClothSystem& system, ForceModel& forces, double half_step, ClothState& state);
+  int finish_velocity(ForceModel& forces, double half_step, ClothState& state);
 
   DriftConstraint* constraint_ = nullptr;
   Vec3Field force_;                              ///< p - D v, N; only where something damps

@@ -83,24 +83,17 @@ double Xpbd::visit(const SpringRun& run, std::size_t i, const Vec3Field& start, 
 
 double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
   double largest = 0;
-  std::size_t spring = 0;
-  for (const SpringRun& run : system.springs) {
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      if (!(run.stiffness > 0)) continue;
-      const auto i = static_cast<std::size_t>(run.first + s);
-      largest = std::max(largest, visit(run, i, start, h, impulse_[spring], velocity));
-    }
-  }
+  for_each_spring(system.springs, [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t) {
+    if (run.stiffness > 0) largest = std::max(largest, visit(run, i, start, h, impulse_[spring], velocity));
+  });
   return largest;
 }
 
-IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                            ClothState& state, Work& work) {
+IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   IntegratorReport report;
+  const ClothSystem& system = forces.system();
   report.inner_steps = substeps_;
   const double h = times.step / substeps_;
-  std::size_t springs = 0;
-  for (const SpringRun& run : system.springs) springs += static_cast<std::size_t>(run.count);
 
   for (int n = 0; n < substeps_; ++n) {
     const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
@@ -109,7 +102,7 @@ IntegratorReport Xpbd::step(const ClothSystem& system, ForceModel& forces, const
     if (constraint_) constraint_->before_kick(h, h, state);
     predict(system, forces, h, state.velocity);
 
-    impulse_.assign(springs, Vec3::Zero());
+    impulse_.assign(system.springs.spring_count(), Vec3::Zero());
     double changed = 0;
     for (int k = 0; k < iterations_; ++k) changed = pass(system, state.position, h, state.velocity);
     report.iterations += iterations_;

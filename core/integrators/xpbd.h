@@ -29,8 +29,7 @@ class Xpbd : public Integrator {
  public:
   Xpbd(int substeps, int iterations) : substeps_(substeps), iterations_(iterations) {}
 
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work& work) override;
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   /// Kept at the end of every substep.
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;

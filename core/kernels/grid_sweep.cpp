@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
-#include <utility>
 
 #include "cloth/grid.h"
 #include "cloth/sums.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {

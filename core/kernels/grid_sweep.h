@@ -14,7 +14,6 @@
 
 #include "cloth/cloth_system.h"
 #include "kernels/grid_pass.h"
-#include "kernels/instruction_set.h"
 #include "kernels/spring_sweep.h"
 
 namespace cloth {

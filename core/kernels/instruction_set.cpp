@@ -1,5 +1,7 @@
 #include "kernels/instruction_set.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -9,27 +11,19 @@
 namespace cloth {
 namespace {
 
-constexpr std::array all_sets{InstructionSet::portable, InstructionSet::sse2, InstructionSet::avx2,
-                              InstructionSet::avx512};
+constexpr std::array set_names{"portable", "sse2", "avx2", "avx512"};  // in the order of InstructionSet
 constexpr int no_override = -1;
 std::atomic<int> override_value = no_override;
 
 bool has(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::portable:
-      return true;
 #ifdef CLOTHLAB_X86_KERNELS
-    case InstructionSet::sse2:
-      return true;  // part of x86-64
-    case InstructionSet::avx2:
-      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    case InstructionSet::avx512:
-      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-             __builtin_cpu_supports("avx512vl");
+  if (set == InstructionSet::sse2) return true;  // part of x86-64
+  if (set == InstructionSet::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (set == InstructionSet::avx512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
 #endif
-    default:
-      return false;
-  }
+  return set == InstructionSet::portable;
 }
 
 bool is_supported(InstructionSet set) {
@@ -46,39 +40,23 @@ const std::string& requested_name() {
   return text;
 }
 
-std::string names_of(const std::vector<InstructionSet>& sets) {
-  std::string text;
-  for (const InstructionSet set : sets) text += (text.empty() ? "" : ", ") + std::string(name_of(set));
-  return text;
-}
-
 }  // namespace
 
 const char* name_of(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::portable:
-      return "portable";
-    case InstructionSet::sse2:
-      return "sse2";
-    case InstructionSet::avx2:
-      return "avx2";
-    case InstructionSet::avx512:
-      return "avx512";
-  }
-  return "";
+  return set_names.at(static_cast<std::size_t>(set));
 }
 
 std::optional<InstructionSet> instruction_set_named(std::string_view name) {
-  for (const InstructionSet set : all_sets)
-    if (name == name_of(set)) return set;
+  for (std::size_t k = 0; k < set_names.size(); ++k)
+    if (name == set_names[k]) return static_cast<InstructionSet>(k);
   return std::nullopt;
 }
 
 const std::vector<InstructionSet>& supported_instruction_sets() {
   static const std::vector<InstructionSet> sets = [] {
     std::vector<InstructionSet> found;
-    for (const InstructionSet set : all_sets)
-      if (has(set)) found.push_back(set);
+    for (std::size_t k = 0; k < set_names.size(); ++k)
+      if (const auto set = static_cast<InstructionSet>(k); has(set)) found.push_back(set);
     return found;
   }();
   return sets;
@@ -88,9 +66,11 @@ std::string instruction_set_problem() {
   if (requested_name().empty()) return "";
   const auto set = instruction_set_named(requested_name());
   if (set && is_supported(*set)) return "";
-  return std::string(instruction_set_variable) + "=" + requested_name() + ": " +
-         (set ? "this processor does not have it" : "no such instruction set") +
-         "; possible here: " + names_of(supported_instruction_sets());
+  std::vector<std::string> possible;
+  for (const InstructionSet each : supported_instruction_sets()) possible.push_back(name_of(each));
+  return fmt::format("{}={}: {}; possible here: {}", instruction_set_variable, requested_name(),
+                     set ? "this processor does not have it" : "no such instruction set",
+                     fmt::join(possible, ", "));
 }
 
 InstructionSet active_instruction_set() {

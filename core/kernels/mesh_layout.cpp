@@ -1,8 +1,6 @@
 #include "kernels/mesh_layout.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <tuple>
 
@@ -18,24 +16,16 @@ struct End {
   double stiffness, tension;
 };
 
-template <class Visit>  // visit(i, j, run)
-void for_each_spring(const ClothSystem& system, Visit visit) {
-  for (const SpringRun& run : system.springs)
-    for (int s = 0; s < run.count; ++s) visit(run.first + s, run.first + s + run.offset, run);
-}
-
 /// The numbering that the system has serves where few lanes stay empty and neighbours are in the first cache
 /// together: what an order of one's own gains is lost again by taking every state there and back.
 bool serves_as_it_is(const ClothSystem& system) {
   constexpr int near_enough = 1000;
   constexpr double slots_too_many = 1.2;
   std::vector<int> springs_of(system.mass.size());
-  int bandwidth = 0;
-  for_each_spring(system, [&](int i, int j, const SpringRun& run) {
-    ++springs_of[static_cast<std::size_t>(i)], ++springs_of[static_cast<std::size_t>(j)];
-    bandwidth = std::max(bandwidth, std::abs(run.offset));
+  if (bandwidth_of(system) > near_enough) return false;
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+    ++springs_of[i], ++springs_of[j];
   });
-  if (bandwidth > near_enough) return false;
   double lanes = 0, used = 0;
   for (std::size_t begin = 0; begin < springs_of.size(); begin += slice_width) {
     const auto end = std::min(begin + slice_width, springs_of.size());
@@ -51,10 +41,10 @@ std::vector<std::vector<End>> springs_of_lanes(const ClothSystem& system, const 
                                                std::size_t lanes) {
   constexpr std::size_t usual_springs = 16;
   const ParticleOrder number = inverse_of(order);
-  const auto lane_of = [&](int i) { return number.empty() ? i : number[static_cast<std::size_t>(i)]; };
+  const auto lane_of = [&](std::size_t i) { return number.empty() ? static_cast<int>(i) : number[i]; };
   std::vector<std::vector<End>> springs(lanes);
   for (auto& of_lane : springs) of_lane.reserve(usual_springs);
-  for_each_spring(system, [&](int i, int j, const SpringRun& run) {
+  for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
     const int a = lane_of(i), b = lane_of(j);
     const double tension = run.stiffness * run.rest_length;
     springs[static_cast<std::size_t>(a)].push_back({b, run.stiffness, tension});
@@ -187,10 +177,8 @@ MeshLayout make_mesh_layout(const ClothSystem& system) {
 }
 
 bool suits_mesh_layout(const ClothSystem& system) {
-  constexpr std::int64_t shortest_run = 16;
-  std::int64_t springs = 0;
-  for (const SpringRun& run : system.springs) springs += run.count;
-  return springs < shortest_run * static_cast<std::int64_t>(system.springs.size());
+  constexpr std::size_t shortest_run = 16;
+  return system.springs.spring_count() < shortest_run * system.springs.size();
 }
 
 }  // namespace cloth

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "cloth/sums.h"
+#include "kernels/instruction_set.h"
 #include "kernels/kutta.h"
 
 namespace cloth {
@@ -75,7 +76,7 @@ MeshPass MeshSweep::pass_with(const SweepLoads& loads, double step) {
   pass.particles = layout_.particles;
   pass.vectors = vectors_.data();
   pass.inverse_mass = inverse_mass_.data();
-  if (loads.load) pass.load = pointers(take(const_cast<Vec3Field&>(*loads.load), inner_.load));  // only read
+  if (loads.load) pass.load = read(*loads.load, inner_.load);
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = loads.weight[axis];
   pass.damping = loads.damping;
   pass.spring_damping = loads.spring_damping;
@@ -105,6 +106,10 @@ void MeshSweep::run(MeshPass& pass, Kernel kernel) {
   } else {
     load_all(pass);
   }
+  run_loaded(pass, kernel);
+}
+
+void MeshSweep::run_loaded(const MeshPass& pass, Kernel kernel) {
   for_each_share(layout_.blocks, [&](int begin, int end) {
     MeshPass share = pass;
     share.begin = begin, share.end = end;
@@ -119,23 +124,32 @@ double MeshSweep::sum_of(int which) const {
   });
 }
 
-void MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
-                      ClothState& state) {
-  assert(has_common_mass() && (!loads.load || sums.size() == 1));
-  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
+/// steps(pass, first, count) takes steps of the state for the sums [first, first + count).
+template <class Steps>
+void MeshSweep::step_state(std::size_t all, double step, const SweepLoads& loads, ClothState& state,
+                           const Steps& steps) {
+  in_jobs(kind_of(all), all, [&](std::size_t first, std::size_t count, int threads) {
     sharing_ = threads;
     Vec3Field &position = take(state.position, inner_.position),
               &velocity = take(state.velocity, inner_.velocity);
     MeshPass pass = pass_with(loads, step);
     pass.position = pointers(position), pass.velocity = pointers(velocity);
+    steps(pass, first, count);
+    give_back(position, state.position);
+    give_back(velocity, state.velocity);
+  });
+}
+
+void MeshSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
+                      ClothState& state) {
+  assert(has_common_mass() && (!loads.load || sums.size() == 1));
+  step_state(sums.size(), step, loads, state, [&](MeshPass& pass, std::size_t first, std::size_t count) {
     pass.drift_first = drift_first;
     for (StepSums& of_step : sums.subspan(first, count)) {
       run(pass, kernels_->euler);
       of_step = {sum_of(0), sum_of(1)};
       if (loads.spring_damping > 0) of_step.dampers = sum_of(dampers);
     }
-    give_back(position, state.position);
-    give_back(velocity, state.velocity);
   });
 }
 
@@ -149,19 +163,14 @@ double MeshSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
 void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
-  in_jobs(kind_of(squares.size()), squares.size(), [&](std::size_t first, std::size_t count, int threads) {
-    sharing_ = threads;
-    Vec3Field &position = take(state.position, inner_.position),
-              &velocity = take(state.velocity, inner_.velocity), &p = take(force, inner_.force);
-    MeshPass pass = pass_with(loads, step);
-    pass.position = pointers(position), pass.velocity = pointers(velocity), pass.force = pointers(p);
+  step_state(squares.size(), step, loads, state, [&](MeshPass& pass, std::size_t first, std::size_t count) {
+    Vec3Field& p = take(force, inner_.force);
+    pass.force = pointers(p);
     for (std::size_t k = 0; k < count; ++k) {
       pass.kicks = k == 0;
       run(pass, k + 1 < count ? kernels_->verlet_between : kernels_->verlet);
       squares[first + k] = sum_of(1);
     }
-    give_back(position, state.position);
-    give_back(velocity, state.velocity);
     give_back(p, force);
   });
 }
@@ -169,15 +178,12 @@ void MeshSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
 void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                             ClothState& state) {
   assert(has_common_mass() && !loads.load);
-  in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
-    sharing_ = threads;
-    Vec3Field &position = take(state.position, inner_.position),
-              &velocity = take(state.velocity, inner_.velocity);
-    for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
-      if (field->size() != position.size()) *field = Vec3Field(position.size());
-    MeshPass pass = pass_with(loads, step);
+  for (Vec3Field* field : {&stage_.position, &stage_.velocity, &sum_.position, &sum_.velocity})
+    if (field->size() != state.position.size()) *field = Vec3Field(state.position.size());
+  step_state(sums.size(), step, loads, state, [&](MeshPass& pass, std::size_t first, std::size_t count) {
+    const FieldPointers position = pass.position, velocity = pass.velocity;
     for (StageSums& of_step : sums.subspan(first, count)) {
-      runge_kutta_step(pass, step, pointers(position), pointers(velocity));
+      runge_kutta_step(pass, step, position, velocity);
       for (int stage = 0; stage < 4; ++stage) {
         const auto s = static_cast<std::size_t>(stage);
         of_step.squares[s] = sum_of(stage);
@@ -185,8 +191,6 @@ void MeshSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
       }
       of_step.after = sum_of(after);
     }
-    give_back(position, state.position);
-    give_back(velocity, state.velocity);
   });
 }
 
@@ -215,32 +219,39 @@ void MeshSweep::runge_kutta_step(MeshPass& pass, double step, const FieldPointer
   }
 }
 
-void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
-  in_jobs(PassKind::evaluation, 1, [&](std::size_t, std::size_t, int threads) {
+/// One pass that writes to `result`, in whatever order the layout has. `inputs(pass)` sets what the pass
+/// reads.
+template <class Inputs>
+void MeshSweep::compute(PassKind kind, Kernel kernel, const SweepLoads& loads, Vec3Field& result,
+                        const Inputs& inputs) {
+  in_jobs(kind, 1, [&](std::size_t, std::size_t, int threads) {
     sharing_ = threads;
     MeshPass pass = pass_with(loads, 0);
-    pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
-    if (!layout_.order.empty() && inner_.force.size() != force.size()) inner_.force = Vec3Field(force.size());
-    Vec3Field& result = layout_.order.empty() ? force : inner_.force;
-    pass.force = pointers(result);
-    run(pass, kernels_->evaluate);
-    give_back(result, force);
+    inputs(pass);
+    const bool in_place = layout_.order.empty();
+    if (!in_place && inner_.force.size() != result.size()) inner_.force = Vec3Field(result.size());
+    Vec3Field& inner = in_place ? result : inner_.force;
+    pass.force = pointers(inner);
+    run(pass, kernel);
+    give_back(inner, result);
   });
+}
+
+/// A field that a pass only reads.
+FieldPointers MeshSweep::read(const Vec3Field& field, Vec3Field& copy) {
+  return pointers(take(const_cast<Vec3Field&>(field), copy));
+}
+
+void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) {
+  compute(PassKind::evaluation, kernels_->evaluate, loads, force,
+          [&](MeshPass& pass) { pass.position = read(position, inner_.position); });
 }
 
 double MeshSweep::damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
                        Vec3Field& product) {
-  in_jobs(PassKind::dampers, 1, [&](std::size_t, std::size_t, int threads) {
-    sharing_ = threads;
-    MeshPass pass = pass_with({.spring_damping = damping}, 0);
-    pass.position = pointers(take(const_cast<Vec3Field&>(position), inner_.position));  // only read
-    pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
-    if (!layout_.order.empty() && inner_.force.size() != product.size())
-      inner_.force = Vec3Field(product.size());
-    Vec3Field& result = layout_.order.empty() ? product : inner_.force;
-    pass.force = pointers(result);
-    run(pass, kernels_->damp);
-    give_back(result, product);
+  compute(PassKind::dampers, kernels_->damp, {.spring_damping = damping}, product, [&](MeshPass& pass) {
+    pass.position = read(position, inner_.position);
+    pass.velocity = read(velocity, inner_.velocity);
   });
   return sum_of(dampers);
 }
@@ -249,12 +260,8 @@ double MeshSweep::squares(const Vec3Field& velocity) {
   in_jobs(PassKind::sums, 1, [&](std::size_t, std::size_t, int threads) {
     sharing_ = threads;
     MeshPass pass = pass_with({}, 0);
-    pass.velocity = pointers(take(const_cast<Vec3Field&>(velocity), inner_.velocity));  // only read
-    for_each_share(layout_.blocks, [&](int begin, int end) {
-      MeshPass share = pass;
-      share.begin = begin, share.end = end;
-      kernels_->sum_squares(share);
-    });
+    pass.velocity = read(velocity, inner_.velocity);
+    run_loaded(pass, kernels_->sum_squares);
   });
   return sum_of(1);
 }

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "kernels/instruction_set.h"
 #include "kernels/mesh_layout.h"
 #include "kernels/spring_sweep.h"
 
@@ -43,7 +42,15 @@ class MeshSweep : public SpringSweep {
   void give_back(const Vec3Field& copy, Vec3Field& field);
   kernels::MeshPass pass_with(const SweepLoads& loads, double step);
   void load_all(const kernels::MeshPass& pass);
+  kernels::FieldPointers read(const Vec3Field& field, Vec3Field& copy);
   void run(kernels::MeshPass& pass, Kernel kernel);
+  void run_loaded(const kernels::MeshPass& pass, Kernel kernel);
+  template <class Steps>
+  void step_state(std::size_t all, double step, const SweepLoads& loads, ClothState& state,
+                  const Steps& steps);
+  template <class Inputs>
+  void compute(PassKind kind, Kernel kernel, const SweepLoads& loads, Vec3Field& result,
+               const Inputs& inputs);
   template <class Visit>
   void for_each_share(int of, Visit visit);
   double sum_of(int which) const;

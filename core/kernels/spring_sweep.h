@@ -9,7 +9,6 @@
 #include <span>
 
 #include "cloth/cloth_system.h"
-#include "kernels/step_sums.h"
 #include "kernels/thread_choice.h"
 #include "kernels/worker_team.h"
 
@@ -32,6 +31,21 @@ struct SweepLoads {
   const Vec3Field* load = nullptr;  ///< N, or none
   double spring_damping = 0;        ///< N s/m
   SweptAir air{};                   ///< only in steps of Euler's and Kutta's, where takes_air()
+};
+
+/// What a whole step of an explicit method adds up on its way, over all particles and all springs.
+struct StepSums {
+  double before = 0, after = 0;  ///< of |v|^2, in (m/s)^2
+  double dampers = 0;            ///< W, taken by the dampers along springs before the step
+  double air = 0;                ///< W, given by the air before the step
+};
+
+/// Of Runge-Kutta at its four stages.
+struct StageSums {
+  std::array<double, 4> squares{};  ///< of |v|^2, in (m/s)^2
+  std::array<double, 4> dampers{};  ///< W
+  std::array<double, 4> air{};      ///< W
+  double after = 0;                 ///< of |v|^2, after the step
 };
 
 class SpringSweep {

@@ -25,8 +25,8 @@ class alignas(64) Milestone {
 
 class WorkerTeam {
  public:
-  /// The caller of run() is one of the `size` threads. Where the system gives fewer threads, or has no address
-  /// space for their stacks, the team is smaller. Precondition: size >= 1.
+  /// The caller of run() is one of the `size` threads. Where the system gives fewer threads, or has no
+  /// address space for their stacks, the team is smaller. Precondition: size >= 1.
   explicit WorkerTeam(int size);
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;

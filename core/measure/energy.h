@@ -4,7 +4,6 @@
 #include <array>
 
 #include "cloth/cloth_system.h"
-#include "scene/scene.h"
 
 namespace cloth {
 

@@ -1,9 +1,8 @@
 // The bound on a cloth's frequencies that holds in every shape: the scalar graph Laplacian of its springs.
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "geometry/split_mix.h"
 #include "measure/spectrum.h"
@@ -22,24 +21,21 @@ class ScaledLaplacian {
   Eigen::VectorXd operator*(const Eigen::VectorXd& vector) const {
     const Eigen::VectorXd u = scale_.cwiseProduct(vector);
     Eigen::VectorXd product = Eigen::VectorXd::Zero(u.size());
-    for (const SpringRun& run : system_.springs)
-      for (int i = run.first; i < run.first + run.count; ++i) {
-        const double force = run.stiffness * (u[i] - u[i + run.offset]);
-        product[i] += force;
-        product[i + run.offset] -= force;
-      }
+    for_each_spring(system_.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+      const double force = run.stiffness * (u[i] - u[j]);
+      product[i] += force;
+      product[j] -= force;
+    });
     return scale_.cwiseProduct(product);
   }
 
   /// Gershgorin's bound of each row: twice the diagonal, springs to pins once. 1/s^2
   Eigen::VectorXd row_bounds() const {
     Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(scale_.size());
-    for (const SpringRun& run : system_.springs)
-      for (int i = run.first; i < run.first + run.count; ++i) {
-        const int j = i + run.offset;
-        stiffness[i] += (scale_[j] > 0 ? 2 : 1) * run.stiffness;
-        stiffness[j] += (scale_[i] > 0 ? 2 : 1) * run.stiffness;
-      }
+    for_each_spring(system_.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+      stiffness[i] += (scale_[j] > 0 ? 2 : 1) * run.stiffness;
+      stiffness[j] += (scale_[i] > 0 ? 2 : 1) * run.stiffness;
+    });
     return scale_.cwiseProduct(scale_).cwiseProduct(stiffness);
   }
 
@@ -55,20 +51,6 @@ Eigen::VectorXd laplacian_start(const Eigen::VectorXd& row_bounds) {
   Eigen::VectorXd start = row_bounds.cwiseProduct(row_bounds) / std::pow(row_bounds.maxCoeff(), 2);
   for (double& value : start) value *= random.number();
   return start.normalized();
-}
-
-/// The largest Ritz value with its residual added. 1/s^2
-struct RitzBound {
-  double value, residual;
-};
-
-RitzBound largest_ritz(const std::vector<double>& diagonal, const std::vector<double>& coupling) {
-  const auto size = static_cast<Eigen::Index>(diagonal.size());
-  const Eigen::Map<const Eigen::VectorXd> main(diagonal.data(), size), beside(coupling.data(), size - 1);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(main, beside);
-  return {solver.eigenvalues()[size - 1],
-          coupling.back() * std::abs(solver.eigenvectors()(size - 1, size - 1))};
 }
 
 }  // namespace
@@ -94,9 +76,9 @@ double guaranteed_frequency(const ClothSystem& system) {
     coupling.push_back(next.norm());
     const bool ends = coupling.back() <= exhausted * most;
     if (ends || diagonal.size() == looks[look]) {
-      const RitzBound bound = largest_ritz(diagonal, coupling);
-      if (ends || ++look == looks.size() || bound.residual <= close_enough * bound.value)
-        return std::sqrt(std::min(most, bound.value + bound.residual));
+      const Spectrum found = ritz_extremes(diagonal, coupling, coupling.back());
+      if (ends || ++look == looks.size() || found.largest_residual <= close_enough * found.largest)
+        return std::sqrt(std::min(most, found.largest + found.largest_residual));
     }
     before = std::move(present);
     present = next / coupling.back();

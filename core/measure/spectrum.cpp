@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "geometry/split_mix.h"
 
@@ -30,24 +29,26 @@ class ScaledStiffness {
   VectorXd operator*(const VectorXd& vector) const {
     const VectorXd u = scale_.cwiseProduct(vector);
     VectorXd product = VectorXd::Zero(u.size());
-    for (const SpringRun& run : system_.springs)
-      for (int i = run.first; i < run.first + run.count; ++i) add_spring(run, i, i + run.offset, u, product);
+    for_each_spring(system_.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+      add_spring(run, i, j, u, product);
+    });
     return scale_.cwiseProduct(product);
   }
 
  private:
   /// k (n n^T + (1 - L/|d|) (I - n n^T)) (u_i - u_j) on i, its opposite on j
-  void add_spring(const SpringRun& run, int i, int j, const VectorXd& u, VectorXd& product) const {
-    const Vec3 d = position_[static_cast<std::size_t>(j)] - position_[static_cast<std::size_t>(i)];
+  void add_spring(const SpringRun& run, std::size_t i, std::size_t j, const VectorXd& u,
+                  VectorXd& product) const {
+    const Vec3 d = position_[j] - position_[i];
     const double length = d.norm();
-    const Index n = system_.size();
+    const std::size_t n = position_.size();
     const Vec3 difference(u[i] - u[j], u[n + i] - u[n + j], u[2 * n + i] - u[2 * n + j]);
     Vec3 force = run.stiffness * difference;
     if (length > 0) {
       const Vec3 across = difference - d * (d.dot(difference) / (length * length));
       force -= run.stiffness * run.rest_length / length * across;
     }
-    for (Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       product[axis * n + i] += force[axis];
       product[axis * n + j] -= force[axis];
     }
@@ -66,7 +67,8 @@ VectorXd start_vector(const VectorXd& scale) {
   return (scale.array() > 0).select(start, 0);
 }
 
-/// Ritz values and their residuals after the steps whose coefficients are given; `next` is the last coupling.
+}  // namespace
+
 Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<double>& coupling,
                        double next) {
   const auto size = static_cast<Index>(diagonal.size());
@@ -81,8 +83,6 @@ Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<do
   spectrum.iterations = static_cast<int>(size);
   return spectrum;
 }
-
-}  // namespace
 
 double Spectrum::largest_frequency() const {
   return std::sqrt(std::max(0.0, largest));

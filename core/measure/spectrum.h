@@ -20,6 +20,11 @@ struct Spectrum {
   double buckling_rate() const;      ///< 1/s; 0 if nothing buckles
 };
 
+/// The extreme Ritz values of a Lanczos iteration and their residuals: eigenvalues of the tridiagonal matrix
+/// of `diagonal` and of the `coupling` of neighbours; `next` is the coupling to the vector that would follow.
+/// 1/s^2
+Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<double>& coupling, double next);
+
 /// When to stop: after so many iterations, or when the residual of `largest` relative to it is small. On
 /// square grids at rest 60 iterations give the largest frequency to 2e-4 (40 x 40) or better (fewer
 /// particles).

@@ -48,7 +48,7 @@ struct ParameterInfo {
   double largest = infinity;      ///< physical bound on the magnitude; that of the unit if not declared
   double smallest = 0;            ///< likewise, of values that may not be 0: where minimum is an excluded 0
   bool unit_vector = false;       ///< a direction: any length but zero, normalised when used
-  double slider_minimum = 0;      ///< the range of the form's slider
+  double slider_minimum = 0;      ///< the range of the form's slider, 0 to 1 unless declared
   double slider_maximum = 1;
   bool auto_allowed = false;           ///< the word "auto" is a value too
   std::vector<std::string> choices{};  ///< Kind::choice

@@ -20,7 +20,6 @@ Fields<SpringMaterial> spring_fields() {
                            .formula = "F = k (|d| - L) d/|d|",
                            .scale = Scale::logarithmic,
                            .minimum = 0,
-                           .slider_minimum = 0,
                            .slider_maximum = 1e5});
   };
   return {
@@ -37,9 +36,7 @@ Fields<SpringMaterial> spring_fields() {
               .doc = "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
               .formula = "F = k_d ((v_j - v_i) . d/|d|) d/|d|",
               .scale = Scale::logarithmic,
-              .minimum = 0,
-              .slider_minimum = 0,
-              .slider_maximum = 1}),
+              .minimum = 0}),
   };
 }
 
@@ -51,14 +48,12 @@ Fields<Gust> gust_fields() {
                              .doc = "How far the wind's speed swings around its mean, as a fraction of it.",
                              .formula = "wind * (1 + amplitude * sin(2 pi frequency t))",
                              .minimum = 0,
-                             .slider_minimum = 0,
                              .slider_maximum = 2}),
       number(&G::frequency, {.key = "frequency",
                              .label = "Gust frequency",
                              .unit = "Hz",
                              .doc = "Swings of the wind per second.",
                              .minimum = 0,
-                             .slider_minimum = 0,
                              .slider_maximum = 5}),
   };
 }
@@ -73,9 +68,7 @@ Fields<Air> air_fields() {
               .doc = "Force of the air per particle and speed along the normal; 0 leaves the air out.",
               .formula = "F = c_a (n . (u - v)) n",
               .scale = Scale::logarithmic,
-              .minimum = 0,
-              .slider_minimum = 0,
-              .slider_maximum = 1}),
+              .minimum = 0}),
       number(&A::skin_friction,
              {.key = "skin_friction",
               .label = "Skin friction",
@@ -83,9 +76,7 @@ Fields<Air> air_fields() {
               .doc = "Force of the air per particle and speed along the cloth; 0 leaves it out.",
               .formula = "F = c_t (I - n n^T) (u - v)",
               .scale = Scale::logarithmic,
-              .minimum = 0,
-              .slider_minimum = 0,
-              .slider_maximum = 1}),
+              .minimum = 0}),
       vector(&A::wind, {.key = "wind",
                         .label = "Wind",
                         .unit = "m/s",
@@ -105,8 +96,7 @@ Fields<Deformation> deformation_fields() {
               .formula = "|d| <= (1 + rate) L",
               .scale = Scale::logarithmic,
               .minimum = 0,
-              .slider_minimum = 0.001,
-              .slider_maximum = 1}),
+              .slider_minimum = 0.001}),
       words(&D::springs, {.key = "springs",
                           .label = "Limited springs",
                           .doc = "Which spring families the deformation rate limits.",
@@ -166,9 +156,7 @@ Fields<SelfContact> self_contact_fields() {
       number(&S::friction, {.key = "friction",
                             .label = "Friction",
                             .doc = "Coefficient of friction of the cloth on itself.",
-                            .minimum = 0,
-                            .slider_minimum = 0,
-                            .slider_maximum = 1}),
+                            .minimum = 0}),
   };
 }
 
@@ -183,14 +171,12 @@ Fields<Recording> recording_fields() {
                             .scale = Scale::logarithmic,
                             .minimum = 0,
                             .minimum_excluded = true,
-                            .slider_minimum = 1e-4,
-                            .slider_maximum = 1}),
+                            .slider_minimum = 1e-4}),
   };
 }
 
 Field<Scene> title_field() {
-  return text(&Scene::title,
-              {.key = "title", .label = "Title", .doc = "What the scene shows.", .cost = EditCost::live});
+  return text(&Scene::title, {.key = "title", .label = "Title", .doc = "What the scene shows."});
 }
 
 Field<Scene> damping_field() {
@@ -201,9 +187,7 @@ Field<Scene> damping_field() {
                          .doc = "Resistance to every motion of a particle, free fall included.",
                          .formula = "F = -c v",
                          .scale = Scale::logarithmic,
-                         .minimum = 0,
-                         .slider_minimum = 0,
-                         .slider_maximum = 1});
+                         .minimum = 0});
 }
 
 Field<Scene> gravity_field() {

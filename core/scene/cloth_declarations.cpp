@@ -69,15 +69,13 @@ Fields<ClothSheet> grid_cloth_fields() {
                           .doc = "Direction of a row.",
                           .cost = EditCost::restart,
                           .unit_vector = true,
-                          .slider_minimum = -1,
-                          .slider_maximum = 1}),
+                          .slider_minimum = -1}),
       vector(&C::down, {.key = "down",
                         .label = "Down",
                         .doc = "Direction of a column.",
                         .cost = EditCost::restart,
                         .unit_vector = true,
-                        .slider_minimum = -1,
-                        .slider_maximum = 1}),
+                        .slider_minimum = -1}),
   };
 }
 

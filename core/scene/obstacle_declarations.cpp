@@ -22,16 +22,12 @@ Fields<Obstacle> with_response(Fields<Obstacle> fields) {
       number(&O::friction, {.key = "friction",
                             .label = "Friction",
                             .doc = "Coulomb: coefficient of friction. Reflect: what is kept of the velocity.",
-                            .minimum = 0,
-                            .slider_minimum = 0,
-                            .slider_maximum = 1}));
+                            .minimum = 0}));
   fields.push_back(number(&O::restitution, {.key = "restitution",
                                             .label = "Restitution",
                                             .doc = "Coulomb: what is kept of the normal speed, 0 to 1.",
                                             .minimum = 0,
-                                            .maximum = 1,
-                                            .slider_minimum = 0,
-                                            .slider_maximum = 1}));
+                                            .maximum = 1}));
   return fields;
 }
 

@@ -14,14 +14,14 @@ void check_parameters(const Scene& scene, std::vector<Problem>& problems) {
   for (const Parameter& parameter : parameters_of(scene)) {
     const ParameterValue value = parameter.get(scene);
     if (const auto rule = broken_rule(parameter.info, value))
-      problems.push_back({parameter.path, value_text(parameter.info, value), *rule, "", 0, 0});
+      problems.push_back({parameter.path, value_text(parameter.info, value), *rule});
   }
 }
 
 /// Of meshes that load_meshes() could not read, or has not been asked for.
 void check_meshes(const Scene& scene, std::vector<Problem>& problems) {
   const auto check = [&](const std::string& path, const MeshChoice& mesh) {
-    if (!mesh.is_loaded()) problems.push_back({path, '"' + mesh.file + '"', "has not been read", "", 0, 0});
+    if (!mesh.is_loaded()) problems.push_back({path, '"' + mesh.file + '"', "has not been read"});
   };
   if (scene.cloth.is_mesh()) check("cloth.mesh", scene.cloth.mesh);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
@@ -36,7 +36,7 @@ void check_vertex_pins(const ClothSheet& cloth, std::vector<Problem>& problems) 
     if (pin && pin->row == 0 && pin->column >= 0 && pin->column < cloth.columns) continue;
     problems.push_back({fmt::format("cloth.pins.{}", i),
                         pin ? std::to_string(pin->column) : name_of(std::get<NamedPin>(cloth.pins[i])),
-                        fmt::format("must be a vertex of the mesh: 0 to {}", cloth.columns - 1), "", 0, 0});
+                        fmt::format("must be a vertex of the mesh: 0 to {}", cloth.columns - 1)});
   }
 }
 
@@ -46,10 +46,9 @@ void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
     const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
     if (!pin) continue;
     if (pin->row >= 0 && pin->row < cloth.rows && pin->column >= 0 && pin->column < cloth.columns) continue;
-    problems.push_back(
-        {fmt::format("cloth.pins.{}", i), fmt::format("[{}, {}]", pin->row, pin->column),
-         fmt::format("must lie in the grid: row 0 to {}, column 0 to {}", cloth.rows - 1, cloth.columns - 1),
-         "", 0, 0});
+    problems.push_back({fmt::format("cloth.pins.{}", i), fmt::format("[{}, {}]", pin->row, pin->column),
+                        fmt::format("must lie in the grid: row 0 to {}, column 0 to {}", cloth.rows - 1,
+                                    cloth.columns - 1)});
   }
 }
 
@@ -60,7 +59,7 @@ void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
   if (cloth.across.normalized().cross(cloth.down.normalized()).norm() > least_sine) return;
   const Vec3& down = cloth.down;
   problems.push_back({"cloth.down", fmt::format("[{}, {}, {}]", down.x(), down.y(), down.z()),
-                      "must not be parallel to cloth.across", "", 0, 0});
+                      "must not be parallel to cloth.across"});
 }
 
 void check_keyframes(const Scene& scene, std::vector<Problem>& problems) {
@@ -71,11 +70,10 @@ void check_keyframes(const Scene& scene, std::vector<Problem>& problems) {
       for (const Field<Keyframe>& field : keyframe_fields())
         if (const auto rule = broken_rule(field.info, field.get(keys[i])))
           problems.push_back(
-              {path + "." + field.info.key, value_text(field.info, field.get(keys[i])), *rule, "", 0, 0});
+              {path + "." + field.info.key, value_text(field.info, field.get(keys[i])), *rule});
       if (i > 0 && !(keys[i].time > keys[i - 1].time))
         problems.push_back({path + ".time", fmt::format("{} s", keys[i].time),
-                            fmt::format("must be later than the key before, {} s", keys[i - 1].time), "", 0,
-                            0});
+                            fmt::format("must be later than the key before, {} s", keys[i - 1].time)});
     }
   }
 }
@@ -96,8 +94,7 @@ void check_self_contact(const Scene& scene, std::vector<Problem>& problems) {
   const double most = 0.5 * shortest_edge(scene.cloth);
   if (scene.self_contact->thickness <= most) return;
   problems.push_back({"self_contact.thickness", fmt::format("{} m", scene.self_contact->thickness),
-                      fmt::format("must be at most half of the shortest structural spring, {:.4g} m", most),
-                      "", 0, 0});
+                      fmt::format("must be at most half of the shortest structural spring, {:.4g} m", most)});
 }
 
 /// m, of a cell's side, of a mesh the mean of its edges.
@@ -114,7 +111,7 @@ double cell_size(const ClothSheet& cloth) {
 void check_steps(const Scene& scene, std::vector<Problem>& problems) {
   if (!scene.integrator.time_step || !(*scene.integrator.time_step > 0)) return;  // said already
   if (const auto rule = too_many_steps(scene.duration, *scene.integrator.time_step))
-    problems.push_back({"duration", fmt::format("{} s", scene.duration), *rule, "", 0, 0});
+    problems.push_back({"duration", fmt::format("{} s", scene.duration), *rule});
 }
 
 /// What is made of a list for each of its entries takes time and messages: no real scene has so many.
@@ -122,8 +119,7 @@ void check_counts(const Scene& scene, std::vector<Problem>& problems) {
   constexpr std::size_t most_obstacles = 1000, most_keyframes = 100'000;
   const auto check = [&](const std::string& path, std::size_t count, std::size_t most) {
     if (count > most)
-      problems.push_back(
-          {path, "", fmt::format("has {} entries; there may be at most {}", count, most), "", 0, 0});
+      problems.push_back({path, "", fmt::format("has {} entries; there may be at most {}", count, most)});
   };
   check("obstacles", scene.obstacles.size(), most_obstacles);
   for (std::size_t k = 0; k < scene.obstacles.size() && k <= most_obstacles; ++k)

@@ -151,7 +151,7 @@ std::vector<Problem> load_meshes(Scene& scene, const Scene* known) {
     if (mesh.loaded) return;
     Loading loading = load(mesh.file, scene.folder);
     mesh.loaded = std::move(loading.mesh);
-    if (!mesh.loaded) problems.push_back({path, '"' + mesh.file + '"', loading.rule, "", 0, 0});
+    if (!mesh.loaded) problems.push_back({path, '"' + mesh.file + '"', loading.rule});
   });
   if (scene.cloth.is_mesh() && scene.cloth.mesh.is_loaded()) {
     scene.cloth.rows = 1;

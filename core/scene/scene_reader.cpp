@@ -222,11 +222,7 @@ class SceneReader : public JsonReader<json> {
       case Kind::text:
         if (value.is_string() && is_utf8(value.get_ref<const std::string&>()))
           return value.get<std::string>();
-        if (value.is_string()) {
-          problem(path, value, "must be UTF-8 text");
-          return std::nullopt;
-        }
-        problem(path, value, "must be a text in quotes");
+        problem(path, value, value.is_string() ? "must be UTF-8 text" : "must be a text in quotes");
         return std::nullopt;
       case Kind::words:
         return parse_words(value, path);
@@ -332,7 +328,7 @@ SceneReading read_scene(const std::string& text, const std::string& place,
   for (const Override& override_ : overrides)
     if (!set_at(document, override_.path, parse_value(override_.value)))
       reader.problems.push_back(
-          {override_.path, override_.value, "there is no such parameter in this scene", "", 0, 0});
+          {override_.path, override_.value, "there is no such parameter in this scene"});
 
   Scene scene = reader.read(document);
   scene.folder = meshes.folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()});

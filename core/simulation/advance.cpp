@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "forces/gravity.h"
 #include "measure/stability_limit.h"
 #include "simulation/simulation.h"
 #include "simulation/time_step.h"

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "integrators/registry.h"
 #include "io/process.h"
+#include "scene/method_facts.h"
 
 namespace cloth {
 namespace {

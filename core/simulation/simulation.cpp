@@ -148,7 +148,7 @@ std::optional<Divergence> Simulation::step() {
     ledger_before_ = run_.ledger;
     if (limiter_) tension_before_ = limiter_->tension();
   }
-  const IntegratorReport report = integrator_->step(system_, *forces_, times, run_.state, run_.ledger.forces);
+  const IntegratorReport report = integrator_->step(*forces_, times, run_.state, run_.ledger.forces);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
   if (run_.last_contact.interrupted && !report.failure) {

@@ -1,12 +1,13 @@
 // Forces computed by hand on a few particles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "cloth/grid.h"
 #include "forces/air.h"
-#include "forces/springs.h"
+#include "forces/registry.h"
 #include "support/direct_run.h"
 #include "support/reference.h"
 #include "support/scenes.h"
@@ -45,12 +46,18 @@ TEST(SpringDamping, ByRunsIsTheSumOverTheSprings) {
     const ClothSystem system = make_grid(scene.cloth, *scene.springs);
     ClothState state = crumpled_state(system, 0.04, 0.3, random);
     state.position.set(1, state.position[0]);  // a spring of no length
-    SpringDamping damping(system, 0.7);
+    scene.springs->damping = 0.7;
+    const auto entry =
+        std::find_if(force_registry().begin(), force_registry().end(), [&](const ForceEntry& e) {
+          const auto force = e.make(scene, system);
+          return force && force->is_damper_of_springs();
+        });
+    const auto damping = entry->make(scene, system);
     Vec3Field product(state.position.size()), none(state.position.size()), expected;
-    damping.update(system, state.position, 0, none);
-    damping.add_damping(state.position, state.velocity, product);
+    damping->update(system, state.position, 0, none);
+    damping->add_damping(state.position, state.velocity, product);
     Work power;
-    damping.add_power(state.position, state.velocity, power);
+    damping->add_power(state.position, state.velocity, power);
     const double loss = damper_product(system, 0.7, state, expected);
     EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected));
     EXPECT_NEAR(power.damping_loss, loss, 1e-13 * loss);

@@ -46,7 +46,7 @@ struct ChainRun {
     Work work;
     for (int n = 0; n < 1000; ++n) {
       const Vec3 before = momentum(chain.system, state);
-      method.step(chain.system, forces, {n * frame, (n + 1) * frame, frame}, state, work);
+      method.step(forces, {n * frame, (n + 1) * frame, frame}, state, work);
       longest = std::max(longest, -0.19 - state.position[19].y());
       const Vec3 gained = momentum(chain.system, state) - before;
       top_force = gained.y() / frame + 10 * (18 + last_mass);

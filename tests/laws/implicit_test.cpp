@@ -115,7 +115,7 @@ TEST(NewtonsMethod, IsQuadraticOnAStretchedCloth) {
   int iterations = 0;
   for (int n = 0; n < 20; ++n) {
     const IntegratorReport report =
-        integrator.step(run.system, run.forces, {n * 0.01, (n + 1) * 0.01, 0.01}, run.state, run.work);
+        integrator.step(run.forces, {n * 0.01, (n + 1) * 0.01, 0.01}, run.state, run.work);
     ASSERT_FALSE(report.failure);
     iterations = std::max(iterations, report.iterations);
     EXPECT_LE(report.residual, 1e-12 + 1e-10);

@@ -370,9 +370,7 @@ TEST(Projective, FactorsOnceAndAgainWhenTheStepOrTheHandChanges) {
   const Scene scene = smooth_scene(5, 5);
   const auto method = make_integrator(projective(7));
   DirectRun run(scene, "verlet");  // for its system and forces
-  const auto step = [&](double h) {
-    return method->step(run.system, run.forces, {0, h, h}, run.state, run.work);
-  };
+  const auto step = [&](double h) { return method->step(run.forces, {0, h, h}, run.state, run.work); };
   EXPECT_EQ(step(0.01).factorisations, 1);
   const IntegratorReport report = step(0.01);
   EXPECT_EQ(report.factorisations, 0);

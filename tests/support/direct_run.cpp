@@ -33,7 +33,7 @@ void DirectRun::advance(int steps, double step) {
   for (int n = 0; n < steps; ++n) {
     const auto now = static_cast<double>(state.step);
     const StepTimes times{now * step, (now + 1) * step, step};
-    const IntegratorReport report = integrator().step(system, forces, times, state, work);
+    const IntegratorReport report = integrator().step(forces, times, state, work);
     if (report.failure) throw std::runtime_error(report.failure->cause);
     force_evaluations += report.force_evaluations;
     inner_steps += report.inner_steps;

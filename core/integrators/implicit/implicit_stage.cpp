@@ -47,25 +47,29 @@ double norm_of(const Vec3Field& field) {
   return std::sqrt(dot(field.flat(), field.flat()));
 }
 
+Vec3Field negative(Vec3Field field) {
+  for (double& value : field.flat()) value = -value;
+  return field;
+}
+
 double work_along(const Vec3Field& direction, const Vec3Field& residual) {
   return dot(direction.flat(), residual.flat());
 }
 
 }  // namespace
 
-void ImplicitStage::evaluate(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                             const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
-  position = *equation.position;
-  add_scaled(equation.weight, velocity, position);
-  forces.update(position, equation.time);
-  forces.force(position, velocity, force_);
-  ++report.force_evaluations;
-  const std::span<const double> v = velocity.flat(), v0 = equation.velocity->flat(), f = force_.flat();
+void ImplicitStage::evaluate(const StageEquation& e) {
+  e.position = e.start_position;
+  add_scaled(e.weight, e.velocity, e.position);
+  e.forces.update(e.position, e.time);
+  e.forces.force(e.position, e.velocity, force_);
+  ++e.report.force_evaluations;
+  const std::span<const double> v = e.velocity.flat(), v0 = e.start_velocity.flat(), f = force_.flat();
   const auto r = residual_.flat();
-  const std::size_t size = velocity.size();
+  const std::size_t size = e.velocity.size();
   for (std::size_t k = 0; k < r.size(); ++k)
-    r[k] = system.mass[k % size] * (v[k] - v0[k]) - equation.weight * f[k];
-  clear_pinned(system, residual_);
+    r[k] = e.forces.system().mass[k % size] * (v[k] - v0[k]) - e.weight * f[k];
+  clear_pinned(e.forces.system(), residual_);
 }
 
 /// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model
@@ -85,21 +89,19 @@ void ImplicitStage::choose_forcing() {
 
 /// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite, or where
 /// conjugate gradients did not get there.
-bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod method,
-                                    IntegratorReport& report) {
+bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method) {
   linear_method_ = method;
-  Vec3Field right_hand_side = residual_;
-  for (double& value : right_hand_side.flat()) value = -value;
+  const Vec3Field right_hand_side = negative(residual_);
   if (linear_method_ == LinearMethod::cholesky) {
-    ++report.factorisations;
-    if (!factors_.factorise(system, linearisation_)) return false;
+    ++e.report.factorisations;
+    if (!factors_.factorise(e.forces.system(), linearisation_)) return false;
     factors_.solve(right_hand_side, downhill_);
     return true;
   }
-  jacobi_.prepare(system, linearisation_);
+  jacobi_.prepare(e.forces.system(), linearisation_);
   const KrylovReport krylov =
-      gradients_.solve(system, linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
-  report.linear_iterations += krylov.iterations;
+      gradients_.solve(e.forces.system(), linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
+  e.report.linear_iterations += krylov.iterations;
   if (krylov.indefinite) {
     escape_ = gradients_.direction();
     for (double& value : escape_.flat()) value *= krylov.reach;
@@ -107,42 +109,36 @@ bool ImplicitStage::solve_symmetric(const ClothSystem& system, LinearMethod meth
   return krylov.converged;
 }
 
-void ImplicitStage::find_direction(const ClothSystem& system, ForceModel& forces,
-                                   const StageEquation& equation, const Vec3Field& velocity,
-                                   const Vec3Field& position, IntegratorReport& report) {
-  const double h = equation.weight;
+void ImplicitStage::find_direction(const StageEquation& e) {
+  const double h = e.weight;
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
-  forces.linearise(position, weights, linearisation_);
-  const LinearMethod method = choose_linear_method(system, weights).method;
+  e.forces.linearise(e.position, weights, linearisation_);
+  const LinearMethod method = choose_linear_method(e.forces.system(), weights).method;
   escape_.fill(0);
-  if (!solve_symmetric(system, method, report)) {
+  if (!solve_symmetric(e, method)) {
     weights.clamped = true;
-    forces.linearise(position, weights, linearisation_);
-    if (!solve_symmetric(system, method, report)) solve_symmetric(system, LinearMethod::cholesky, report);
+    e.forces.linearise(e.position, weights, linearisation_);
+    if (!solve_symmetric(e, method)) solve_symmetric(e, LinearMethod::cholesky);
   }
   direction_ = downhill_;
-  if (forces.has_asymmetric_part()) correct_direction(system, forces, equation, velocity, position, report);
+  if (e.forces.has_asymmetric_part()) correct_direction(e);
   add_escape();
 }
 
 /// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
-void ImplicitStage::correct_direction(const ClothSystem& system, ForceModel& forces,
-                                      const StageEquation& equation, const Vec3Field& velocity,
-                                      const Vec3Field& position, IntegratorReport& report) {
-  const double h = equation.weight;
-  Vec3Field turned(velocity.size()), right_hand_side = residual_;
-  for (double& value : right_hand_side.flat()) value = -value;
+void ImplicitStage::correct_direction(const StageEquation& e) {
+  Vec3Field turned(e.velocity.size());
   const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
-    linearisation_.multiply(system, in, out);
-    forces.asymmetric_product(position, velocity, in, turned);
-    add_scaled(h * h, turned, out);
-    clear_pinned(system, out);
+    linearisation_.multiply(e.forces.system(), in, out);
+    e.forces.asymmetric_product(e.position, e.velocity, in, turned);
+    add_scaled(e.weight * e.weight, turned, out);
+    clear_pinned(e.forces.system(), out);
   };
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     linear_method_ == LinearMethod::cholesky ? factors_.solve(in, out) : jacobi_.solve(in, out);
   };
-  report.linear_iterations +=
-      minimal_residuals(jacobian, preconditioner, right_hand_side, forcing_, direction_).iterations;
+  e.report.linear_iterations +=
+      minimal_residuals(jacobian, preconditioner, negative(residual_), forcing_, direction_).iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
@@ -160,17 +156,16 @@ void ImplicitStage::add_escape() {
 /// Goes along the direction until the residual's work along it has fallen: less far where it has turned
 /// against the direction, further where it has hardly fallen, as on the way off a saddle. Returns the largest
 /// change.
-double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                                Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
-  start_ = velocity;
+double ImplicitStage::take_step(const StageEquation& e) {
+  start_ = e.velocity;
   const double before = work_along(direction_, residual_);
   double near = 0, near_work = before;  // the longest step that was too short
   std::optional<double> far;            // the shortest that was too long, and its work
   double far_work = 0, length = 1;
   for (int trial = 1;; ++trial) {
-    velocity = start_;
-    add_scaled(length, direction_, velocity);
-    evaluate(system, forces, equation, velocity, position, report);
+    e.velocity = start_;
+    add_scaled(length, direction_, e.velocity);
+    evaluate(e);
     const double after = work_along(direction_, residual_);
     if (std::abs(after) <= accepted_work * std::abs(before) || trial == most_trials) break;
     if (after < 0) {
@@ -188,41 +183,41 @@ double ImplicitStage::take_step(const ClothSystem& system, ForceModel& forces, c
   return length * largest_component(direction_);
 }
 
-void ImplicitStage::solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                          Vec3Field& velocity, Vec3Field& position, IntegratorReport& report) {
-  const std::size_t size = velocity.size();
+void ImplicitStage::solve(const StageEquation& e) {
+  const std::size_t size = e.velocity.size();
   if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = escape_ = start_ = Vec3Field(size);
-  evaluate(system, forces, equation, velocity, position, report);
+  evaluate(e);
 
   // Positions are rounded to eps |x|: velocities that differ by eps |x| / h are the same.
   const double rounding =
-      64 * std::numeric_limits<double>::epsilon() * largest_component(position) / equation.weight;
-  double scale = std::max(largest_component(velocity), largest_component(*equation.velocity));
+      64 * std::numeric_limits<double>::epsilon() * largest_component(e.position) / e.weight;
+  double scale = std::max(largest_component(e.velocity), largest_component(e.start_velocity));
   double relative = 0;
   residual_norm_ = 0;
   for (int n = 0; n < most_iterations_; ++n) {
     choose_forcing();
-    find_direction(system, forces, equation, velocity, position, report);
-    const double change = take_step(system, forces, equation, velocity, position, report);
-    ++report.iterations;
+    find_direction(e);
+    const double change = take_step(e);
+    ++e.report.iterations;
     if (!std::isfinite(change) || !std::isfinite(largest_component(residual_))) {
-      report.failure = {place_of_largest(residual_),
-                        "the forces of an iteration of Newton's method are not finite"};
+      e.report.failure = {place_of_largest(residual_),
+                          "the forces of an iteration of Newton's method are not finite"};
       return;
     }
-    scale = std::max(scale, largest_component(velocity));
+    scale = std::max(scale, largest_component(e.velocity));
     relative = change > 0 ? change / scale : 0;
     if (change <= tolerance_ * scale + rounding) {
-      report.residual = std::max(report.residual, relative);
+      e.report.residual = std::max(e.report.residual, relative);
       return;
     }
   }
-  report.residual = std::max(report.residual, relative);
+  e.report.residual = std::max(e.report.residual, relative);
   if (relative <= good_enough) return;
-  report.failure = {place_of_largest(residual_),
-                    fmt::format("Newton's method did not converge: after {} iterations the velocities still "
-                                "change by {:.2g} of the largest",
-                                most_iterations_, relative)};
+  e.report.failure = {
+      place_of_largest(residual_),
+      fmt::format("Newton's method did not converge: after {} iterations the velocities still "
+                  "change by {:.2g} of the largest",
+                  most_iterations_, relative)};
 }
 
 }  // namespace cloth

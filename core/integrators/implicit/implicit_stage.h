@@ -17,10 +17,14 @@
 namespace cloth {
 
 struct StageEquation {
-  double weight = 0;                    ///< s
-  double time = 0;                      ///< s, at which the forces are taken
-  const Vec3Field* position = nullptr;  ///< x0, m
-  const Vec3Field* velocity = nullptr;  ///< v0, m/s
+  ForceModel& forces;               ///< stands at the solution afterwards
+  double weight = 0;                ///< s
+  double time = 0;                  ///< s, at which the forces are taken
+  const Vec3Field& start_position;  ///< x0, m
+  const Vec3Field& start_velocity;  ///< v0, m/s
+  Vec3Field& velocity;              ///< m/s, holds the guess and becomes the solution v
+  Vec3Field& position;              ///< m, becomes x0 + weight v
+  IntegratorReport& report;         ///< gets the cost added, and the failure if there is one
 };
 
 class ImplicitStage {
@@ -29,23 +33,16 @@ class ImplicitStage {
   ImplicitStage(double tolerance, int most_iterations)
       : tolerance_(tolerance), most_iterations_(most_iterations) {}
 
-  /// `velocity` holds the guess and becomes the solution, `position` becomes x0 + weight v; the force model
-  /// stands there afterwards. Adds its cost to `report`, and the failure if there is one.
-  void solve(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-             Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
+  void solve(const StageEquation& equation);
 
  private:
-  void evaluate(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                const Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
-  void find_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                      const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
+  void evaluate(const StageEquation& e);
+  void find_direction(const StageEquation& e);
   void choose_forcing();
-  void correct_direction(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                         const Vec3Field& velocity, const Vec3Field& position, IntegratorReport& report);
+  void correct_direction(const StageEquation& e);
   void add_escape();
-  bool solve_symmetric(const ClothSystem& system, LinearMethod method, IntegratorReport& report);
-  double take_step(const ClothSystem& system, ForceModel& forces, const StageEquation& equation,
-                   Vec3Field& velocity, Vec3Field& position, IntegratorReport& report);
+  bool solve_symmetric(const StageEquation& e, LinearMethod method);
+  double take_step(const StageEquation& e);
 
   double tolerance_;
   int most_iterations_;

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "geometry/at.h"
+
 namespace cloth {
 namespace {
 
@@ -40,6 +42,25 @@ void add_block(double scale, const SymmetricBlock& block, double* to) {
 
 }  // namespace
 
+FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
+  FreeRows rows;
+  rows.row.assign(system.pinned.size(), -1);
+  for (std::size_t i = 0; i < rows.row.size(); ++i) {
+    if (system.pinned[i]) continue;
+    rows.row[i] = static_cast<int>(rows.particle.size());
+    rows.particle.push_back(static_cast<int>(i));
+  }
+  std::vector<Coupling> couplings;
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+    if (rows.row[i] >= 0 && rows.row[j] >= 0) couplings.emplace_back(rows.row[i], rows.row[j]);
+  });
+  std::vector<int> order = elimination_order(system);
+  for (int& particle : order) particle = rows.row[static_cast<std::size_t>(particle)];
+  factors.analyse(couplings, order);
+  rows.couplings = couplings.size();
+  return rows;
+}
+
 bool CholeskyFactors::fits(const ClothSystem& system) const {
   if (pinned_ != system.pinned || runs_.size() != system.springs.size()) return false;
   return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
@@ -51,71 +72,48 @@ bool CholeskyFactors::fits(const ClothSystem& system) const {
 void CholeskyFactors::analyse(const ClothSystem& system) {
   pinned_ = system.pinned;
   runs_ = system.springs;
-  unknown_.assign(system.pinned.size(), -1);
-  int unknowns = 0;
-  for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (!system.pinned[i]) unknown_[i] = unknowns++;
-
-  std::vector<Coupling> couplings;
-  for (const SpringRun& run : system.springs) {
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int a = unknown_[static_cast<std::size_t>(i)],
-                b = unknown_[static_cast<std::size_t>(i + run.offset)];
-      if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
-    }
-  }
-  std::vector<int> order = elimination_order(system);
-  for (int& particle : order) particle = unknown_[static_cast<std::size_t>(particle)];
-  factors_.analyse(couplings, order);
-  diagonal_.resize(9 * static_cast<std::size_t>(unknowns));
-  off_diagonal_.resize(9 * couplings.size());
-  values_.resize(3 * static_cast<std::size_t>(unknowns));
+  rows_ = analyse_free_rows(system, factors_);
+  diagonal_.resize(9 * rows_.particle.size());
+  off_diagonal_.resize(9 * rows_.couplings);
+  values_.resize(3 * rows_.particle.size());
 }
 
 bool CholeskyFactors::factorise(const ClothSystem& system, const Linearisation& linearisation) {
   if (!fits(system)) analyse(system);
   std::fill(diagonal_.begin(), diagonal_.end(), 0.0);
   std::fill(off_diagonal_.begin(), off_diagonal_.end(), 0.0);
-  const auto on_diagonal = [&](int unknown) { return diagonal_.data() + 9 * unknown; };
-  for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) add_block(1, linearisation.nodes[i], on_diagonal(unknown_[i]));
-  std::size_t spring = 0;
+  const auto add_to_diagonal = [&](std::size_t particle, const SymmetricBlock& block) {
+    if (rows_.row[particle] >= 0) add_block(1, block, diagonal_.data() + 9 * rows_.row[particle]);
+  };
+  for (std::size_t i = 0; i < rows_.row.size(); ++i) add_to_diagonal(i, linearisation.nodes[i]);
   double* coupling = off_diagonal_.data();
-  for (const SpringRun& run : system.springs) {
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      const int i = unknown_[static_cast<std::size_t>(run.first + s)];
-      const int j = unknown_[static_cast<std::size_t>(run.first + s + run.offset)];
-      const SymmetricBlock block = linearisation.springs[spring];
-      if (i >= 0) add_block(1, block, on_diagonal(i));
-      if (j >= 0) add_block(1, block, on_diagonal(j));
-      if (i < 0 || j < 0) continue;
-      add_block(-1, block, coupling);
-      coupling += 9;
-    }
-  }
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t spring, std::size_t i, std::size_t j) {
+    const SymmetricBlock block = linearisation.springs[spring];
+    add_to_diagonal(i, block);
+    add_to_diagonal(j, block);
+    if (rows_.row[i] < 0 || rows_.row[j] < 0) return;
+    add_block(-1, block, coupling);
+    coupling += 9;
+  });
   return factors_.factorise(diagonal_, off_diagonal_);
 }
 
 void CholeskyFactors::solve(const Vec3Field& right_hand_side, Vec3Field& solution) {
-  for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) Eigen::Map<Vec3>(values_.data() + 3 * unknown_[i]) = right_hand_side[i];
+  for (std::size_t row = 0; row < rows_.particle.size(); ++row)
+    Eigen::Map<Vec3>(values_.data() + 3 * row) = right_hand_side[at(rows_.particle[row])];
   factors_.solve(values_, 1);
   solution.fill(0);
-  for (std::size_t i = 0; i < unknown_.size(); ++i)
-    if (unknown_[i] >= 0) solution.set(i, Eigen::Map<const Vec3>(values_.data() + 3 * unknown_[i]));
+  for (std::size_t row = 0; row < rows_.particle.size(); ++row)
+    solution.set(at(rows_.particle[row]), Eigen::Map<const Vec3>(values_.data() + 3 * row));
 }
 
 void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linearisation) {
   inverse_ = linearisation.nodes;
-  std::size_t spring = 0;
-  for (const SpringRun& run : system.springs) {
-    for (int s = 0; s < run.count; ++s, ++spring) {
-      const auto i = static_cast<std::size_t>(run.first + s), j = i + static_cast<std::size_t>(run.offset);
-      const SymmetricBlock block = linearisation.springs[spring];
-      inverse_.add(i, block);
-      inverse_.add(j, block);
-    }
-  }
+  for_each_spring(system.springs, [&](const SpringRun&, std::size_t spring, std::size_t i, std::size_t j) {
+    const SymmetricBlock block = linearisation.springs[spring];
+    inverse_.add(i, block);
+    inverse_.add(j, block);
+  });
   for (std::size_t i = 0; i < inverse_.size(); ++i)
     inverse_.set(i, system.pinned[i] ? SymmetricBlock{} : inverse_of(inverse_[i]));
 }

@@ -14,6 +14,17 @@ namespace cloth {
 /// result = operator(direction). Both have one vector per particle, zero on pins.
 using LinearMap = std::function<void(const Vec3Field& direction, Vec3Field& result)>;
 
+/// The rows of a matrix with one block row for each free particle, and one block off the diagonal for each
+/// spring between two of them.
+struct FreeRows {
+  std::vector<int> row;       ///< of each particle; -1 where pinned
+  std::vector<int> particle;  ///< of each row
+  std::size_t couplings = 0;  ///< springs between free particles
+};
+
+/// Numbers the free particles and has `factors` analyse the pattern of their matrix.
+FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors);
+
 /// Sparse Cholesky factors of A in 3x3 blocks. The pattern is analysed once and again only when springs or
 /// pins change.
 class CholeskyFactors {
@@ -28,7 +39,7 @@ class CholeskyFactors {
 
   std::vector<std::uint8_t> pinned_;  ///< that the pattern was made for
   SpringRuns runs_;                   ///< of the springs that were analysed
-  std::vector<int> unknown_;          ///< of each particle; -1 where pinned
+  FreeRows rows_;
   BlockCholesky factors_{3};
   std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch
 };

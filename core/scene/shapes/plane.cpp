@@ -16,8 +16,7 @@ class PlaneShape final : public ObstacleShape {
                                        .label = "Normal",
                                        .doc = "Outward direction of the plane.",
                                        .unit_vector = true,
-                                       .slider_minimum = -1,
-                                       .slider_maximum = 1})};
+                                       .slider_minimum = -1})};
   }
   Vec3& place(Obstacle& plane) const override { return plane.point; }
   void start(Obstacle& plane, const Vec3& middle, double span) const override {

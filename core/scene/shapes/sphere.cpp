@@ -19,8 +19,7 @@ class SphereShape final : public ObstacleShape {
                                        .doc = "Radius of the sphere.",
                                        .minimum = 0,
                                        .minimum_excluded = true,
-                                       .slider_minimum = 0.01,
-                                       .slider_maximum = 1})};
+                                       .slider_minimum = 0.01})};
   }
   Vec3& place(Obstacle& sphere) const override { return sphere.center; }
   void start(Obstacle& sphere, const Vec3& middle, double span) const override {

@@ -24,8 +24,7 @@ namespace {
 /// Eq. (8) with its 3 k3: y' = y + h/6 (k1 + 2 k2 + 3 k3 + k4). The weights sum to 7/6: order 0.
 class PrintedRk4 : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work&) override {
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work&) override {
     constexpr std::array<double, 4> nodes{0, 0.5, 0.5, 1};
     constexpr std::array<double, 4> weights{1.0 / 6, 2.0 / 6, 3.0 / 6, 1.0 / 6};  // as printed
     const double h = times.step;
@@ -36,13 +35,13 @@ class PrintedRk4 : public Integrator {
       forces.update(stage_position_, times.begin + nodes[s] * h);
       forces.force(stage_position_, stage_velocity_, force_);
       add_scaled(h * weights[s], stage_velocity_, next_position_);
-      add_acceleration(system, h * weights[s], force_, next_velocity_);
+      add_acceleration(forces.system(), h * weights[s], force_, next_velocity_);
       if (s + 1 == nodes.size()) break;
       const double ahead = h * nodes[s + 1];
       stage_position_ = state.position;
       add_scaled(ahead, stage_velocity_, stage_position_);
       stage_velocity_ = state.velocity;
-      add_acceleration(system, ahead, force_, stage_velocity_);
+      add_acceleration(forces.system(), ahead, force_, stage_velocity_);
     }
     std::swap(state.position, next_position_);
     std::swap(state.velocity, next_velocity_);
@@ -57,8 +56,7 @@ class PrintedRk4 : public Integrator {
 /// a: that lags by half a step, and the order falls to 1 where a force depends on the velocity.
 class PrintedVerlet : public Integrator {
  public:
-  IntegratorReport step(const ClothSystem& system, ForceModel& forces, const StepTimes& times,
-                        ClothState& state, Work&) override {
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work&) override {
     const double h = times.step;
     if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
     forces.update(state.position, times.begin);
@@ -66,12 +64,12 @@ class PrintedVerlet : public Integrator {
     if (!previous_) {  // the start by Taylor's formula: x(t-h) = x - h v + h^2/2 a
       previous_ = state.position;
       add_scaled(-h, state.velocity, *previous_);
-      add_acceleration(system, 0.5 * h * h, force_, *previous_);
+      add_acceleration(forces.system(), 0.5 * h * h, force_, *previous_);
     }
     next_ = state.position;
     add_scaled(1, state.position, next_);
     add_scaled(-1, *previous_, next_);
-    add_acceleration(system, h * h, force_, next_);
+    add_acceleration(forces.system(), h * h, force_, next_);
     state.velocity.fill(0);
     add_scaled(1 / h, next_, state.velocity);
     add_scaled(-1 / h, state.position, state.velocity);
@@ -110,7 +108,7 @@ Vec3Field shape_after(const Scene& scene, Integrator& method, int steps) {
   ForceModel forces(scene, system);
   Work work;
   const double h = scene.duration / steps;
-  for (int n = 0; n < steps; ++n) method.step(system, forces, {n * h, (n + 1) * h, h}, state, work);
+  for (int n = 0; n < steps; ++n) method.step(forces, {n * h, (n + 1) * h, h}, state, work);
   return state.position;
 }
 

@@ -1,8 +1,8 @@
 #include "commands.h"
 #include "compare/comparison_json.h"
 #include "console.h"
-#include "scene/reference_page.h"
 #include "scene/scene_json.h"
+#include "scene/scene_parameters.h"
 
 namespace clothlab::cli {
 

@@ -22,12 +22,6 @@ ParticleOrder order_for_sweeps(const ClothSystem& system);
 /// The order that undoes `order`.
 ParticleOrder inverse_of(const ParticleOrder& order);
 
-/// The same cloth with its particles in this order: springs one by one, by family and then by their ends. A
-/// grid becomes a mesh of one row.
-ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order);
-ClothState renumbered(const ClothState& state, const ParticleOrder& order);
-Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order);
-
 /// The largest difference between the numbers of a spring's ends.
 int bandwidth_of(const ClothSystem& system);
 

@@ -2,7 +2,10 @@
 //
 //     f(x, v, t) = p(x, t) - D(x) v        p: position force, D: symmetric, positive semi-definite
 //
-// so a force is written once as p, D, its energy and its power, and an integrator may treat D v as it likes.
+// so a force is written once as p, D, its energy and its power, and each integrator decides how it treats D
+// v. Wind is in p, drag in D (forces/air.h). Verlet, for example, takes D v implicitly at the end of a step
+// (integrators/verlet.h). Forces are made from a scene by forces/registry.h and summed by ForceModel
+// (forces/force_model.h).
 #pragma once
 
 #include <optional>
@@ -15,8 +18,8 @@ namespace cloth {
 
 struct Air;
 
-/// Power of the non-conservative forces, or its integral: work. Signed into the cloth, except the loss. W or
-/// J.
+/// Power of the non-conservative forces in W, or its time integral, work, in J. Positive values add energy to
+/// the cloth; `damping_loss` is positive where energy is taken out.
 struct Work {
   double damping_loss = 0;  ///< taken by viscous and spring damping
   double air = 0;
@@ -32,8 +35,9 @@ struct Work {
   }
 };
 
-/// The part of D that does not couple particles: isotropic * I + along_normal * n n^T, and one particle held
-/// by hand; and the constants of what else methods bound or take apart.
+/// The part of D that does not couple particles: the block isotropic * I + along_normal * n n^T of every
+/// particle, and what the hand adds for the particle that it holds. `along_springs` is the coefficient of the
+/// part that does couple particles.
 struct NodeDamping {
   double isotropic = 0;     ///< N s/m
   double along_normal = 0;  ///< N s/m
@@ -44,7 +48,8 @@ struct NodeDamping {
   double along_springs = 0;   ///< N s/m of every spring; the part of D that couples particles
 };
 
-/// What the passes of the kernels (kernels/spring_sweep.h) compute in one go with the springs' elasticity.
+/// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the
+/// springs' elastic forces.
 struct SweepTerms {
   bool uniform_mass = false;  ///< given: all particles have the same mass
   Vec3 gravity{0, 0, 0};      ///< m/s^2
@@ -53,7 +58,8 @@ struct SweepTerms {
   const Air* air = nullptr;
 };
 
-/// Which passes of the kernels compute a force: none, those of whole explicit steps, or evaluations as well.
+/// Which passes of the kernels compute a force: none; those that do a whole explicit step; or also those that
+/// only evaluate the force.
 enum class SweptIn { nothing, whole_steps, every_pass };
 
 class Force {
@@ -63,29 +69,30 @@ class Force {
   /// Adds this force to what the kernels compute, and says in which passes they do; see SweepTerms.
   virtual SweptIn join(SweepTerms&) const { return SweptIn::nothing; }
 
-  /// The wind brush, of which only the air takes notice.
+  /// Sets the wind brush, or removes it; only air drag uses it.
   virtual void set_brush(const std::optional<BrushGust>&) {}
 
-  /// Takes the positions and time that all calls below refer to until the next update, and adds p to `force`.
-  /// Where those ask for `position`, it is the same once more: few forces keep it.
+  /// Adds p at (position, time) to `force`, in N. All calls below refer to this position and time until the
+  /// next update; where they take `position`, the caller passes the same field again, so that forces need no
+  /// copy.
   virtual void update(const ClothSystem&, const Vec3Field& /*position*/, double /*time*/,
                       Vec3Field& /*force*/) {}
 
-  /// Whether this force acts between the ends of springs: methods that treat springs as constraints leave it
-  /// out.
+  /// Whether this force acts between the ends of springs. Methods that treat springs as constraints (XPBD)
+  /// leave such forces out of the evaluation.
   virtual bool is_internal() const { return false; }
 
-  /// Whether this is the damping along springs, which the kernels compute apart from the rest of D.
+  /// Whether this is the damping along springs, which the kernels compute separately from the rest of D.
   virtual bool is_damper_of_springs() const { return false; }
 
-  /// product += D v
+  /// product += D v, in N
   virtual void add_damping(const Vec3Field& /*position*/, const Vec3Field& /*velocity*/,
                            Vec3Field& /*product*/) const {}
 
   /// Adds this force's part of D to `damping` and returns true, or returns false: D couples particles.
   virtual bool add_node_damping(NodeDamping&) const { return true; }
 
-  /// Adds the power of this force at `velocity`, unless it is the derivative of an energy.
+  /// Adds the power of this force at `velocity`, in W. Conservative forces add nothing.
   virtual void add_power(const Vec3Field& /*position*/, const Vec3Field& /*velocity*/, Work&) const {}
 
   /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx.

@@ -1,7 +1,10 @@
-// The forces that a scene has, as one sum f(x, v, t) = p(x, t) - D(x) v. What integrators see.
+// The sum of a scene's forces, f(x, v, t) = p(x, t) - D(x) v: all that integrators know of forces.
 //
-// Springs, their damping and the weight are summed by the kernels (kernels/spring_sweep.h) where those know
-// the cloth; every other force is added through the interface of Force.
+// The kernels (kernels/spring_sweep.h) compute springs, their damping and gravity where they support the
+// cloth; every other force is added through the interface of Force.
+//
+//     forces.update(position, time);               // one force evaluation: p, and what D needs
+//     forces.force(position, velocity, force);     // p - D v, in N
 #pragma once
 
 #include <memory>
@@ -17,18 +20,18 @@ struct Scene;
 
 class ForceModel {
  public:
-  /// Only the forces that the scene has. `system` must outlive the model; after a change of its springs or
-  /// masses call system_changed().
+  /// Makes the forces that the scene has. `system` must outlive the model; call system_changed() after a
+  /// change of its springs or masses.
   ForceModel(const Scene& scene, const ClothSystem& system);
   void system_changed();
 
   const ClothSystem& system() const { return *system_; }
 
-  /// One more force, which no scene file describes; it takes part like those of the scene.
+  /// Adds a force that no scene file describes; it is treated like those of the scene.
   void add(std::unique_ptr<Force> force);
 
-  /// One force evaluation: p, and whatever D needs, at (position, time). All other calls refer to it; where
-  /// they ask for `position`, it is the same once more.
+  /// One force evaluation: computes p, and what D needs, at (position, time). All other calls refer to it;
+  /// where they take `position`, pass the same field again.
   void update(const Vec3Field& position, double time);
 
   /// The same without springs and their damping. Only position_force() and damping_parts() may follow.
@@ -36,28 +39,28 @@ class ForceModel {
 
   /// p of the last update, in N.
   const Vec3Field& position_force() const { return position_force_; }
-  /// The same, for a step of the sweep that takes the positions on and leaves p where they end.
+  /// The same, for kernels that advance the positions and leave p at the new ones.
   Vec3Field& position_force_to_advance() { return position_force_; }
 
-  /// What D and the pull consist of; the coefficients hold whatever the shape.
+  /// The coefficients of D and of the pull; they do not depend on the shape of the cloth.
   NodeDamping damping_parts() const;
   /// Whether D couples particles, as dampers along springs do.
   bool couples_particles() const;
-  /// product = the part of D v that couples particles, and the hand's. Returns v . product, in W.
+  /// product = D v, in N, of the forces that couple particles and of the hand. Returns v . product, in W.
   double coupled_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
 
   /// p - D v, in N. Pinned particles have a force too; their inverse mass is 0.
   void force(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& result) const;
 
-  /// The same, and its power().
+  /// Computes the same force and returns power().
   Work force_and_power(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& result) const;
 
-  /// The power of everything that is not the derivative of an energy.
+  /// The power of all non-conservative forces.
   Work power(const Vec3Field& position, const Vec3Field& velocity) const;
 
   bool has_damping() const { return has_damping_; }
   bool has_power() const { return has_power_; }
-  /// Whether any power is booked as a loss by damping: more than air and hand.
+  /// Whether a force of the scene adds to Work::damping_loss (viscous damping, damping along springs).
   bool has_damping_loss() const { return has_damping_loss_; }
 
   /// A = M + weights.velocity D + weights.position K at the last update.
@@ -68,20 +71,22 @@ class ForceModel {
   void asymmetric_product(const Vec3Field& position, const Vec3Field& velocity, const Vec3Field& direction,
                           Vec3Field& product) const;
 
-  /// The hand. A brush without air and a pull on a pinned particle have no effect.
+  /// Sets or removes the wind brush and the pull (forces/hand.h). A brush without air drag and a pull on a
+  /// pinned particle have no effect. `stiffness` in N/m, `damping` in N s/m.
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull, double stiffness, double damping);
 
-  /// The kernels that know this cloth, null: none do.
+  /// The kernels for this cloth; null where no kernel supports it.
   SpringSweep* sweep() const { return sweep_.get(); }
-  /// What they compute of this scene; only where there are kernels.
+  /// The terms of this scene that those kernels compute. Precondition: sweep().
   const SweepTerms& swept() const { return swept_; }
-  /// N, of every particle, where the kernels compute it, else 0.
+  /// The weight of every particle in N where the kernels compute gravity; else 0.
   Vec3 weight() const;
-  /// Whether whole steps of the kernels compute every force of this model.
+  /// Whether the kernels' whole steps include every force of this model.
   bool is_swept_whole() const { return sweeps_steps() && !has_step_load(); }
-  /// Whether the kernels can do whole steps of this cloth, and which forces would then have to be added as a
-  /// load: p - D v, in N, at (position, time). Returns its power.
+  /// Whether the kernels can do whole steps of this cloth; whether forces remain that they do not compute;
+  /// and the sum of those, p - D v in N at (position, time), which such a step takes as a load. Returns its
+  /// power.
   bool sweeps_steps() const { return sweep_ && swept_.uniform_mass; }
   bool has_step_load() const { return pull_ || !apart_from_steps_.empty(); }
   Work step_load(const Vec3Field& position, const Vec3Field& velocity, double time, Vec3Field& load);
@@ -106,8 +111,8 @@ class ForceModel {
   std::unique_ptr<Force> pull_;
   std::unique_ptr<SpringSweep> sweep_;
   SweepTerms swept_;
-  std::vector<Force*> apart_;             ///< those of forces_ that evaluations of the sweep do not compute
-  std::vector<Force*> apart_from_steps_;  ///< those that its whole steps do not compute
+  std::vector<Force*> apart_;             ///< forces that the kernels' evaluations do not include
+  std::vector<Force*> apart_from_steps_;  ///< forces that the kernels' whole steps do not include
   Vec3Field position_force_;              ///< sized when first needed
   mutable Vec3Field product_;             ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false, has_damping_loss_ = false;

@@ -4,7 +4,6 @@
 
 #include "cloth/sums.h"
 #include "forces/registry.h"
-#include "scene/blocks.h"
 
 namespace cloth {
 

@@ -1,5 +1,5 @@
-// What a person's hand does to the cloth: the wind brush and the pull. Plain values, so that they can be sent
-// between threads and logged.
+// The user's input to a running simulation: the wind brush and the pull. Plain values, which are sent between
+// threads and logged.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,8 @@
-// The symmetric part of a linearised step, A = M + weight_velocity D + weight_position K with K = -dp/dx, as
-// one 3x3 block for every particle and one for every spring: A = diag(node) + sum over springs of
-// (e_i - e_j) B (e_i - e_j)^T. What of -df/dx is not symmetric (a drag whose normal turns, a damper that
-// turns) is a product only: Force::add_asymmetric_product.
+// The symmetric matrix of a linearised step, A = M + weight_velocity D + weight_position K, K the symmetric
+// part of -dp/dx. It is stored as one 3x3 block for every particle and one, B, for every spring between
+// particles i and j: A = diag(node) + sum over springs of (e_i - e_j) B (e_i - e_j)^T. The asymmetric part of
+// -df/dx (drag whose normal turns, a damper that turns) is not stored; Force::add_asymmetric_product
+// multiplies with it.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,11 +38,13 @@ inline SymmetricBlock block_along(double isotropic, double along, const Vec3& n)
           isotropic + along * n.y() * n.y(), along * n.y() * n.z(), isotropic + along * n.z() * n.z()};
 }
 
-/// What the parts of A are weighted with, and whether the transverse stiffness of compressed springs counts.
+/// The weights of the parts of A, and the treatment of compressed springs.
 struct LinearisationWeights {
-  double position = 1;   ///< of K, s^2 in a step
-  double velocity = 1;   ///< of D, s in a step
-  bool clamped = false;  ///< leaves out k (1 - L/|d|) where it is negative: A is then positive definite
+  double position = 1;  ///< of K, s^2 in a step
+  double velocity = 1;  ///< of D, s in a step
+  /// Leaves the transverse stiffness k (1 - L/|d|) out where it is negative, so that A is positive definite
+  /// (Choi and Ko 2002).
+  bool clamped = false;
 };
 
 /// Many blocks as six contiguous runs (structure of arrays), so that products with them vectorise.
@@ -64,12 +67,12 @@ class SymmetricBlocks {
 struct Linearisation {
   SymmetricBlocks nodes;        ///< one of each particle
   SymmetricBlocks springs;      ///< run after run, in the order of ClothSystem::springs
-  bool has_compressed = false;  ///< a spring is shorter than its rest length: clamping would matter
+  bool has_compressed = false;  ///< some spring is shorter than its rest length, so that clamping changes A
 
   /// product = A direction; pinned particles get 0.
   void multiply(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
 
-  /// The same, except that what pinned particles get has no meaning. `direction` is zero on them.
+  /// The same, but the products of pinned particles are undefined. Precondition: `direction` is 0 on them.
   void multiply_free(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
 };
 

@@ -1,5 +1,6 @@
-// What each particle has of m + weight D for itself, applied and solved strip by strip: so few particles at a
-// time that they stay in the nearest cache from one loop to the next.
+// The block-diagonal part of m + weight D, one 3x3 block for each particle. It is applied and solved strip by
+// strip: few enough particles at a time that their data stay in the first-level cache from one loop to the
+// next.
 #pragma once
 
 #include <algorithm>
@@ -48,10 +49,11 @@ inline double dot(const Strip<const double>& a, const Strip<double>& b) {
   return sum;
 }
 
-/// What each particle has of m + weight D for itself: L = (m + w a) I + w b n n^T, n of length one or zero.
+/// The blocks L = (m + w a) I + w b n n^T: w the weight in s, a and b the coefficients `isotropic` and
+/// `along_normal` of NodeDamping in N s/m, n the unit normal, or zero where there is none.
 class NodeMatrix {
  public:
-  /// `inverse` is scratch, and must outlive the matrix like the rest.
+  /// `inverse` is used as scratch. All arguments must outlive the matrix.
   NodeMatrix(const ClothSystem& system, double weight, const NodeDamping& damping,
              std::vector<double>& inverse)
       : mass_(system.mass.data()),
@@ -123,7 +125,7 @@ class NodeMatrix {
   const Vec3Field* normal_;
 };
 
-/// One strip that belongs to no field.
+/// Scratch memory for one strip.
 class OwnStrip {
  public:
   Strip<double> of(std::size_t count) {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "scene/blocks.h"
-
 namespace cloth {
 
 // Each in the file of its force.

@@ -8,7 +8,6 @@
 #include "cloth/grid.h"
 #include "cloth/sums.h"
 #include "forces/registry.h"
-#include "scene/blocks.h"
 
 namespace cloth {
 namespace {

@@ -1,7 +1,8 @@
-// The damping centred in time, as Verlet needs it: (m + weight D) v = m known + weight p for the velocity of
-// the free particles. Where D couples no particles (viscous damping, air) every particle has a 3x3 system
-// with a closed solution; spring damping couples them and takes a few steps of conjugate gradients,
-// preconditioned by the closed solution of the rest.
+// Solves (m + weight D) v = m known + weight p for the velocities v of the free particles: damping that is
+// implicit in the velocity at the end of a step, as Verlet needs it. Where D does not couple particles
+// (viscous damping, air) every particle has a 3x3 system with a closed solution. Spring damping couples
+// particles: the system is then solved by conjugate gradients, preconditioned by the closed solution for the
+// other forces.
 #pragma once
 
 #include <vector>
@@ -12,9 +13,9 @@ namespace cloth {
 
 class VelocitySolver {
  public:
-  /// p and D are those of the last update of `forces`, which was at `position`; `weight` in s. `velocity`
-  /// holds `known` and becomes v; pinned particles keep 0. `force` holds about p - D v, in N, from which
-  /// the solution starts, and is scratch. Returns the iterations of conjugate gradients; 0 where the
+  /// p and D are those of the last update of `forces`, which was at `position`; `weight` in s. In: `velocity`
+  /// holds `known`, `force` an estimate of p - D v in N, from which the iteration starts. Out: `velocity` is
+  /// v; pinned particles keep 0; `force` is overwritten. Returns the number of iterations; 0 where the
   /// solution is closed.
   int solve(const ForceModel& forces, double weight, const Vec3Field& position, Vec3Field& velocity,
             Vec3Field& force);

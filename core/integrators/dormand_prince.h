@@ -11,19 +11,19 @@
 
 namespace cloth {
 
-/// Chooses step sizes from error estimates in units of what is allowed, and remembers the last of both.
+/// Chooses the sizes of inner steps from error estimates, given in units of the allowed error.
 class StepSizeControl {
  public:
-  /// s; no limit before the first step
+  /// The size of the next step in s; infinite before the first step.
   double size() const { return size_; }
 
-  /// A step of length `step` has been accepted, perhaps shorter than size().
+  /// Call after a step of length `step` in s, perhaps shorter than size(), was accepted.
   void accept(double step, double error);
-  /// Or rejected. `error` may be infinite or NaN.
+  /// Call after it was rejected. `error` may be infinite or NaN.
   void reject(double step, double error);
   void forget_history();
 
-  /// All that it remembers, as numbers and back.
+  /// The whole state as numbers, for IntegratorMemory, and back.
   std::vector<double> numbers() const { return {size_, last_error_, rejected_ ? 1.0 : 0.0}; }
   void recall(const std::vector<double>& numbers);
 

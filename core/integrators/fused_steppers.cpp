@@ -17,46 +17,44 @@ SweepLoads loads_at(const ForceModel& forces, std::span<const double> times) {
   return loads;
 }
 
-/// The steps of a batch take all forces at one time.
-bool gains_from_batches_of(const ForceModel& forces) {
-  const Air* air = forces.swept().air;
-  return !(air && air->gust) && forces.sweep()->gains_steps_at_once();
-}
-
-Work power_of(const ForceModel& forces, const StepSums& sums) {
-  return {.damping_loss = forces.swept().damping * sums.before + sums.dampers, .air = sums.air};
-}
-
 }  // namespace
 
-IntegratorReport FusedEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
+IntegratorReport FusedStepper::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                    Work& work) {
+  double squares = 0;
+  sweep(forces, times, {&squares, 1}, state, work);
+  return {.force_evaluations = evaluations_, .speed_squares = squares};
+}
+
+IntegratorReport FusedStepper::step_many(ForceModel& forces, double step, std::span<double> speed_squares,
+                                         ClothState& state, Work& work) {
+  sweep(forces, {0, 0, step}, speed_squares, state, work);  // at any time: no force changes with it
+  return {.force_evaluations = evaluations_, .speed_squares = speed_squares.back()};
+}
+
+/// The steps of a batch take all forces at one time.
+bool FusedStepper::gains_from_batches(const ForceModel& forces) const {
+  const Air* air = forces.swept().air;
+  return forces.is_swept_whole() && !(air && air->gust) && forces.sweep()->gains_steps_at_once();
+}
+
+void FusedEuler::sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares,
+                       ClothState& state, Work& work) {
   SweepLoads loads = loads_at(forces, {&times.begin, 1});
-  Work power;
+  Work power_of_load;
   if (forces.has_step_load()) {
-    power = forces.step_load(state.position, state.velocity, times.begin, load_);
+    power_of_load = forces.step_load(state.position, state.velocity, times.begin, load_);
     loads.load = &load_;
   }
-  StepSums sums;
-  forces.sweep()->euler(times.step, drift_first_, loads, {&sums, 1}, state);
-  power += power_of(forces, sums);
-  if (forces.has_power()) work += times.step * power;
-  return {.force_evaluations = 1, .speed_squares = sums.after};
-}
-
-bool FusedEuler::gains_from_batches(const ForceModel& forces) const {
-  return forces.is_swept_whole() && gains_from_batches_of(forces);
-}
-
-IntegratorReport FusedEuler::step_many(ForceModel& forces, double step, std::span<double> speed_squares,
-                                       ClothState& state, Work& work) {
-  std::vector<StepSums> sums(speed_squares.size());
-  constexpr std::array any_time{0.0};
-  forces.sweep()->euler(step, drift_first_, loads_at(forces, any_time), sums, state);
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    speed_squares[k] = sums[k].after;
-    if (forces.has_power()) work += step * power_of(forces, sums[k]);
+  sums_.assign(speed_squares.size(), {});
+  forces.sweep()->euler(times.step, drift_first_, loads, sums_, state);
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    speed_squares[k] = sums_[k].after;
+    Work power = power_of_load;
+    power +=
+        {.damping_loss = forces.swept().damping * sums_[k].before + sums_[k].dampers, .air = sums_[k].air};
+    if (forces.has_power()) work += times.step * power;
   }
-  return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
 }
 
 IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
@@ -110,34 +108,18 @@ IntegratorReport FusedVerlet::step_many(ForceModel& forces, double step, std::sp
   return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
 }
 
-IntegratorReport FusedRk4::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
-  double squares = 0;
-  sweep(forces, kutta_times(times), times.step, {&squares, 1}, state, work);
-  return {.force_evaluations = kutta_stages, .speed_squares = squares};
-}
-
-bool FusedRk4::gains_from_batches(const ForceModel& forces) const {
-  return gains_from_batches_of(forces);
-}
-
-IntegratorReport FusedRk4::step_many(ForceModel& forces, double step, std::span<double> speed_squares,
-                                     ClothState& state, Work& work) {
-  sweep(forces, {}, step, speed_squares, state, work);
-  return {.force_evaluations = kutta_stages, .speed_squares = speed_squares.back()};
-}
-
-void FusedRk4::sweep(ForceModel& forces, const std::array<double, kutta_stages>& times, double step,
-                     std::span<double> speed_squares, ClothState& state, Work& work) {
+void FusedRk4::sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares,
+                     ClothState& state, Work& work) {
   sums_.resize(speed_squares.size());
-  forces.sweep()->runge_kutta(step, loads_at(forces, times), sums_, state);
+  forces.sweep()->runge_kutta(times.step, loads_at(forces, kutta_times(times)), sums_, state);
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     double loss = 0, given = 0;
     for (std::size_t s = 0; s < kutta_stages; ++s) {
       loss += kutta[s].weight * (forces.swept().damping * sums_[k].squares[s] + sums_[k].dampers[s]);
       given += kutta[s].weight * sums_[k].air[s];
     }
-    work.damping_loss += step * loss;
-    work.air += step * given;
+    work.damping_loss += times.step * loss;
+    work.air += times.step * given;
     speed_squares[k] = sums_[k].after;
   }
 }

@@ -1,11 +1,8 @@
-// Explicit methods whose steps the kernels do whole: force and motion in one pass over the particles
-// (kernels/spring_sweep.h). They compute what the general methods of euler.h, verlet.h and rk4.h do, to
-// rounding, and serve the same scenes as long as the kernels know every force (ForceModel::is_swept_whole());
-// Euler's take others as a load.
-// The registry chooses them; see make_stepper().
+// Explicit methods whose whole step is one pass of the kernels over the particles, force and motion together
+// (kernels/spring_sweep.h). They agree with the general methods of euler.h, verlet.h and rk4.h to rounding.
+// They need kernels that compute every force of the scene (ForceModel::is_swept_whole()); only the Euler
+// methods take other forces, as a load. make_stepper() of registry.h chooses them.
 #pragma once
-
-#include <array>
 
 #include "integrators/euler.h"
 #include "integrators/rk4.h"
@@ -13,20 +10,39 @@
 
 namespace cloth {
 
-/// Semi-implicit Euler, or explicit Euler (`drift_first`).
-class FusedEuler : public Integrator {
+/// Methods that carry nothing from one step to the next: a single step and a batch are one call of the
+/// kernels.
+class FusedStepper : public Integrator {
  public:
-  explicit FusedEuler(bool drift_first) : drift_first_(drift_first) {}
-  static bool suits(const ForceModel& forces, bool) { return forces.sweeps_steps(); }
-
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel& forces) const override;
   IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,
                              ClothState& state, Work& work) override;
 
+ protected:
+  explicit FusedStepper(int evaluations) : evaluations_(evaluations) {}
+  /// Takes as many steps as there are `speed_squares`, all with time-dependent forces evaluated at `times`.
+  virtual void sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares,
+                     ClothState& state, Work& work) = 0;
+
+ private:
+  int evaluations_;  ///< of the force, in a step
+};
+
+/// Semi-implicit Euler, or explicit Euler (`drift_first`).
+class FusedEuler : public FusedStepper {
+ public:
+  explicit FusedEuler(bool drift_first) : FusedStepper(1), drift_first_(drift_first) {}
+  static bool suits(const ForceModel& forces, bool) { return forces.sweeps_steps(); }
+
+ protected:
+  void sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares, ClothState& state,
+             Work& work) override;
+
  private:
   bool drift_first_;
-  Vec3Field load_;  ///< N, of the forces that the kernels do not know
+  Vec3Field load_;              ///< N, of the forces that the kernels do not know
+  std::vector<StepSums> sums_;  ///< scratch
 };
 
 /// Semi-implicit Euler. A step in which a constraint holds particles is one of the general method.
@@ -48,8 +64,8 @@ class FusedSemiImplicitEuler : public FusedEuler {
   SemiImplicitEuler general_;
 };
 
-/// Without dampers along springs, air and constraints, whose kicks need the force field of the general
-/// method.
+/// Only for scenes without dampers along springs, air drag and constraints; with these the kicks need the
+/// force of the general method.
 class FusedVerlet : public Verlet {
  public:
   static bool suits(const ForceModel& forces, bool constrained);
@@ -63,19 +79,16 @@ class FusedVerlet : public Verlet {
   void evaluate(ForceModel& forces, const ClothState& state) override;
 };
 
-class FusedRk4 : public Integrator {
+class FusedRk4 : public FusedStepper {
  public:
+  FusedRk4() : FusedStepper(kutta_stages) {}
   static bool suits(const ForceModel& forces, bool) { return forces.is_swept_whole(); }
 
-  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
-  bool gains_from_batches(const ForceModel& forces) const override;
-  IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,
-                             ClothState& state, Work& work) override;
+ protected:
+  void sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares, ClothState& state,
+             Work& work) override;
 
  private:
-  void sweep(ForceModel& forces, const std::array<double, kutta_stages>& times, double step,
-             std::span<double> speed_squares, ClothState& state, Work& work);
-
   std::vector<StageSums> sums_;  ///< scratch
 };
 

@@ -1,4 +1,4 @@
-// The three implicit methods. Each is one ImplicitStage and what surrounds it.
+// Three implicit methods. Each step solves one nonlinear system (ImplicitStage).
 #pragma once
 
 #include "integrators/implicit/implicit_stage.h"
@@ -8,7 +8,7 @@ namespace cloth {
 /// v' = v + h a(x', v', t'), x' = x + h v': order 1, damps every oscillation by omega h/2.
 class ImplicitEuler : public Integrator {
  public:
-  static constexpr double stage_weight = 1;  ///< of the step, with which the equations count forces
+  static constexpr double stage_weight = 1;  ///< ImplicitStage's weight divided by the step
   ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
@@ -31,8 +31,9 @@ class ImplicitMidpoint : public Integrator {
 };
 
 /// y' = 4/3 y(n) - 1/3 y(n-1) + 2/3 h f(y', t') for y = (x, v, work) (Curtiss and Hirschfelder 1952): order
-/// 2, damps what it cannot resolve. The very first step is a midpoint step; one after the limiter, a contact
-/// or an edit has changed the state is a step of implicit Euler, since the history then bends.
+/// 2, damps fast oscillations. The first step of a run is a midpoint step. A step after the limiter, contact
+/// or an edit has changed the state is a step of implicit Euler, since the previous states then no longer
+/// extrapolate.
 class Bdf2 : public Integrator {
  public:
   static constexpr double stage_weight = 2.0 / 3;

@@ -1,5 +1,6 @@
-// An integrator advances a state by one step of m a = f(x, v, t). It depends neither on which forces exist
-// nor on the stages after it (limiter, contact). The simulation owns time.
+// An integrator advances a state by one step of m a = f(x, v, t). It does not depend on which forces exist,
+// nor on the stages that follow it in a step (deformation limiter, contact; see simulation/simulation.h). The
+// simulation counts time. integrators/registry.h lists the methods.
 #pragma once
 
 #include <optional>
@@ -11,59 +12,62 @@
 
 namespace cloth {
 
-/// From t to t + h. The end is given, not added up, so that the last bit does not depend on the way there.
+/// From t to t + h. `end` is given rather than computed as begin + step, so that rounding errors do not add
+/// up.
 struct StepTimes {
   double begin = 0, end = 0, step = 0;  ///< s
 };
 
-/// Why a step could not be solved: bad numerics are data.
+/// Why the equations of a step could not be solved.
 struct SolverFailure {
-  int particle = 0;  ///< where the trouble is largest
+  int particle = 0;  ///< the one with the largest residual or error
   std::string cause;
 };
 
 struct IntegratorReport {
   int force_evaluations = 0;
-  int velocity_iterations = 0;  ///< of the solve for centred damping
-  int inner_steps = 1;          ///< accepted ones, of methods that divide the step
-  int rejected_steps = 0;       ///< of error control
-  int iterations = 0;           ///< of Newton's method, or local and global, or over all constraints
-  int linear_iterations = 0;    ///< of conjugate gradients or another Krylov method
-  int factorisations = 0;
-  double residual =
-      0;  ///< what the last iteration still changed: largest speed, relative to the largest of all
+  int velocity_iterations = 0;  ///< of VelocitySolver
+  int inner_steps = 1;          ///< accepted inner steps, of methods that divide the step
+  int rejected_steps = 0;       ///< inner steps rejected by error control
+  int iterations = 0;         ///< of Newton's method; of projective dynamics; passes of XPBD over the springs
+  int linear_iterations = 0;  ///< of conjugate gradients or another Krylov method
+  int factorisations = 0;     ///< of sparse matrices
+  /// The largest change of a particle's speed by the last iteration, divided by the largest speed.
+  double residual = 0;
   std::optional<SolverFailure> failure = {};
-  std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, where it is known
+  std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, if computed anyway
 };
 
 /// What something other than the integrator has changed.
 enum class Change { forces, state };
 
-/// What a method carries from one step to the next beside the state, as far as later bits depend on it.
-/// Caches and scratch are none of it. Only the method that made one can read it.
+/// What a method keeps from one step to the next in addition to the state, where later results depend on it.
+/// Caches and scratch memory do not belong to it. Only the method that made one can read it.
 struct IntegratorMemory {
   std::vector<Vec3Field> fields;
   std::vector<double> numbers;
 };
 
-/// What the positions must obey whatever the forces say, as a method that kicks and then drifts asks for it.
-/// It is no force of the model, but the tension that the last step needed may act as one in the next.
+/// A constraint on the positions (the deformation limiter, limiter/step_limiter.h), enforced within the step
+/// by methods that first update the velocity (kick) and then the position (drift). It is not a force of
+/// ForceModel; the tensions that it needed in the last step act as a force in the next kick.
 class DriftConstraint {
  public:
   virtual ~DriftConstraint() = default;
   /// Whether before_kick() would change the velocity.
   virtual bool holds() const = 0;
-  /// When the forces are known: their kick of `kick` seconds and a drift of `drift` seconds follow. Adds its
-  /// own kick. A step may have several kicks with a drift each.
+  /// Called once the forces are known, before they act on the velocity for `kick` seconds and the position
+  /// moves for `drift` seconds. Adds the constraint's own change of velocity. A step may have several such
+  /// pairs.
   virtual void before_kick(double kick, double drift, ClothState& state) = 0;
-  /// After the drift: moves positions to where they may be, changes the velocity, which led there, by
-  /// displacement/drift, and adds its part of a closing kick of `closing_kick` seconds.
+  /// Called after the drift. Moves positions until they satisfy the constraint, changes the velocity by
+  /// displacement / drift, and adds the constraint's part of the closing kick of `closing_kick` seconds.
   virtual void after_drift(double closing_kick, ClothState& state) = 0;
-  /// Adds that part to a velocity that is made anew from the drift's.
+  /// Adds that part again, to a velocity that is recomputed from that of the drift.
   virtual void close(ClothState& state) = 0;
-  /// m/s, what the last step's opening kick and after_drift(), and its closing kick, have changed; null:
-  /// nothing. The constraint's work is that of the one as if it came before all else, of the other as if it
-  /// came last.
+  /// The changes of velocity in m/s in the last step: by before_kick() and after_drift(), and by the closing
+  /// kick. Null: none. The work of the constraint is computed as if the first came before all forces and the
+  /// second after.
   virtual const Vec3Field* opening_change() const = 0;
   virtual const Vec3Field* closing_change() const = 0;
 };
@@ -72,46 +76,48 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Advances position and velocity and adds the work of the forces to `work`, by a quadrature of the
-  /// method's own order. Neither `state.time` nor `state.step` is touched.
+  /// Advances position and velocity by one step and adds the work of the forces to `work`, by a quadrature of
+  /// the order of the method. Does not change `state.time` and `state.step`.
   virtual IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                 Work& work) = 0;
 
-  /// Whether a batch of steps, whose states in between are not needed, now costs less than single steps.
+  /// Whether several steps in one call cost less than single steps, where nobody needs the states in between.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }
-  /// A batch: as many steps of length `step` as there are `speed_squares`, to the same bits. Gives each
-  /// step's speed_squares, and the report that each of them would give. Precondition: gains_from_batches().
+  /// Takes as many steps of length `step` (s) as there are `speed_squares`, with bitwise the same result as
+  /// single steps. Fills in each step's sum of |v|^2 and returns the report of one step. Precondition:
+  /// gains_from_batches().
   virtual IntegratorReport step_many(ForceModel&, double /*step*/, std::span<double> /*speed_squares*/,
                                      ClothState&, Work&) {
     return {};
   }
 
-  /// Has every step keep `constraint`, null for none, which must outlive its use. False: this method has no
-  /// drift between two kicks, and what is to hold must be made to hold after the step.
+  /// Makes every step enforce `constraint`; null: none. It must outlive its use. Returns false where the
+  /// method cannot enforce it within a step; the caller must then enforce it after each step.
   virtual bool set_drift_constraint(DriftConstraint* /*constraint*/) { return false; }
 
-  /// Whether a step goes from where it began with the velocity at its end, x' = x + h v'.
+  /// Whether the positions of a step are x' = x + h v' with the velocity v' at its end.
   virtual bool drifts_with_end_velocity() const { return false; }
 
-  /// Something else has changed the forces, or the state too: what is remembered of them no longer holds.
+  /// Tells the method that something else has changed the forces, or the state: values kept of them are
+  /// invalid.
   virtual void forget(Change) {}
 
-  /// Whether the velocity at a step's end is made with the force where the step ends, so that it has to
-  /// follow where contact has moved that.
+  /// Whether the velocity at the end of a step is computed with the force at the end positions, so that it
+  /// must be recomputed after contact has moved those.
   virtual bool velocity_follows_positions() const { return false; }
 
-  /// Makes the velocity at the end of the last step anew, from `half_velocity`, in m/s, which led from its
-  /// begin to where it ended without contact. Precondition: velocity_follows_positions().
+  /// Recomputes the velocity at the end of the last step for the positions in `state`. `half_velocity` in m/s
+  /// is the displacement of the step divided by its length. Precondition: velocity_follows_positions().
   virtual void follow_positions(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
                                 ClothState&) {}
 
-  /// Makes it once more, with the damping of the velocities in the state, which contact has answered.
-  /// Precondition: follow_positions() was the last call.
+  /// Recomputes it once more, with the damping forces at the velocities in `state`, which contact has
+  /// changed. Precondition: follow_positions() was the last call.
   virtual void follow_velocities(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
                                  ClothState&) {}
 
-  /// The state at the end of the last step is another one by contact. Returns what that changes of the work
-  /// which the step has added with the velocity that never happened.
+  /// Called after contact has changed the state at the end of the last step. Returns the correction of the
+  /// work that the step added, since it was computed with the velocities before contact.
   virtual Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) {
     forget(Change::state);
     if (end_weight_ == 0 || !forces.has_power()) return {};
@@ -121,16 +127,16 @@ class Integrator {
     return correction;
   }
 
-  /// What `recall` needs to go on from the present state to the bit, perhaps in another object of the same
-  /// choice. Most methods need nothing.
+  /// What `recall` needs to continue from the present state with bitwise the same results, also in another
+  /// object made from the same IntegratorChoice. Most methods need nothing.
   virtual IntegratorMemory remember() const { return {}; }
 
-  /// The state is again that at which `memory` was made; the forces stand elsewhere.
+  /// Continues from the state at which `memory` was made; the force model may have been updated elsewhere
+  /// since.
   virtual void recall(const IntegratorMemory&) { forget(Change::state); }
 
  protected:
-  /// Of methods whose work takes the power at the end of the step: that power, and the time in s that it
-  /// counts for.
+  /// Methods that compute work from the power at the end of the step store that power, and its weight in s.
   Work end_power_;
   double end_weight_ = 0;
 };

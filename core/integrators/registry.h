@@ -1,4 +1,4 @@
-// The one list of methods.
+// The list of methods, and how a stepper is chosen. To add a method, see docs/architecture.md.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,16 @@ class ForceModel;
 class Integrator;
 struct IntegratorChoice;
 
-/// The method for any forces. Precondition: `choice.method` is one of integrator_names().
+/// The general method, which works with any forces. Precondition: `choice.method` is one of
+/// integrator_names().
 std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice);
 
-/// Whether the method has a fused stepper (fused_steppers.h) that knows all of `forces`; `constrained`:
-/// beside a DriftConstraint.
+/// Whether the method has a fused stepper (fused_steppers.h) that supports all of `forces`; `constrained`:
+/// together with a DriftConstraint.
 bool suits_fused_stepper(const std::string& method, const ForceModel& forces, bool constrained);
 
-/// The fused stepper where it suits, else the general method. What it is made for may not change: a pull, a
-/// brush, another cloth may need the other one.
+/// The fused stepper where it is suitable, else the general method. Call it again after a change of the
+/// forces, the cloth or the constraint.
 std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const ForceModel& forces,
                                          bool constrained);
 

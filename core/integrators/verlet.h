@@ -5,10 +5,16 @@
 //     x'     = x + h v_half
 //     v'     = v_half + h/2 a(x', v', t+h)      solved for v', a is affine in it
 //
-// A constraint of the positions acts between drift and closing kick, on x' and v_half.
+// The accelerations hold every force of the scene, a = (p - D v) / m (forces/force.h). Air drag enters twice:
+// in the opening kick with the velocity v at t, and in the closing kick, where its D (AirForce in
+// forces/air.cpp) is part of the linear system that VelocitySolver solves for v'. Wind is part of p at both
+// times.
 //
-// Order 2 with damping, drag and wind, one force evaluation a step, stable to omega h = 2 for every damping
-// ratio.
+// A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
+// v_half.
+//
+// Order 2 with damping, drag and wind. A step costs one force evaluation, and a second one where contact or
+// an edit has changed the state since the last step. Stable for omega h < 2 at every damping ratio.
 #pragma once
 
 #include "forces/velocity_solver.h"
@@ -32,7 +38,8 @@ class Verlet : public Integrator {
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  protected:
-  /// The power, and the force where something damps; the positions are those of the last update.
+  /// Computes the power and, where forces depend on the velocity, the force p - D v. The positions are those
+  /// of the last ForceModel::update.
   virtual void evaluate(ForceModel& forces, const ClothState& state);
 
   Work power_;                         ///< at the end of the last step
@@ -45,8 +52,8 @@ class Verlet : public Integrator {
   int finish_velocity(ForceModel& forces, double half_step, ClothState& state);
 
   DriftConstraint* constraint_ = nullptr;
-  Vec3Field force_;                              ///< p - D v, N; only where something damps
-  Vec3Field opening_damping_, closing_damping_;  ///< - D v at both ends, N; only beside a constraint
+  Vec3Field force_;                              ///< p - D v, N; used only where has_damping()
+  Vec3Field opening_damping_, closing_damping_;  ///< -D v in the two kicks, N; used only with a constraint
   double closing_correction_ = 0;                ///< J, of the last step
   bool holds_force_ = false;                     ///< `force_` and `power_` are those at the state
   VelocitySolver solver_;

@@ -1,7 +1,9 @@
-#include "measure/resting_frequency.h"
+// The bound on the frequencies at rest, without iterating.
 
 #include <algorithm>
 #include <cmath>
+
+#include "measure/spectrum.h"
 
 namespace cloth {
 namespace {

@@ -9,7 +9,6 @@
 #include "cloth/mesh_cloth.h"
 #include "forces/registry.h"
 #include "measure/amplification.h"
-#include "measure/resting_frequency.h"
 #include "measure/spectrum.h"
 #include "scene/method_facts.h"
 

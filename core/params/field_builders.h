@@ -1,6 +1,7 @@
 // How a declaration is written down: a member pointer and its facts.
 #pragma once
 
+#include <concepts>
 #include <type_traits>
 #include <utility>
 
@@ -8,56 +9,28 @@
 
 namespace cloth {
 
+/// A member of type double, Vec3, std::string or Words; its type decides the kind: a std::string is a choice
+/// where `info` has choices, else a text.
 template <class Owner, class Value>
-Field<Owner> plain_field(Value Owner::*member, ParameterInfo info) {
+Field<Owner> field(Value Owner::*member, ParameterInfo info) {
+  if constexpr (std::is_same_v<Value, Vec3>) info.kind = Kind::vector;
+  if constexpr (std::is_same_v<Value, Words>) info.kind = Kind::words;
+  if constexpr (std::is_same_v<Value, std::string>)
+    info.kind = info.choices.empty() ? Kind::text : Kind::choice;
   return {with_physical_bound(std::move(info)),
           [member](const Owner& owner) { return ParameterValue(owner.*member); },
           [member](Owner& owner, const ParameterValue& value) { owner.*member = std::get<Value>(value); }};
 }
 
-template <class Owner>
-Field<Owner> number(double Owner::*member, ParameterInfo info) {
-  return plain_field(member, std::move(info));
-}
-
-template <class Owner>
-Field<Owner> vector(Vec3 Owner::*member, ParameterInfo info) {
-  info.kind = Kind::vector;
-  return plain_field(member, std::move(info));
-}
-
-template <class Owner>
-Field<Owner> integer(std::int64_t Owner::*member, ParameterInfo info) {
+/// A whole number.
+template <class Owner, std::integral Value>
+Field<Owner> field(Value Owner::*member, ParameterInfo info) {
   info.kind = Kind::integer;
-  return plain_field(member, std::move(info));
-}
-
-template <class Owner>
-Field<Owner> integer(int Owner::*member, ParameterInfo info) {
-  info.kind = Kind::integer;
-  return {std::move(info),
+  return {with_physical_bound(std::move(info)),
           [member](const Owner& owner) { return ParameterValue(std::int64_t{owner.*member}); },
           [member](Owner& owner, const ParameterValue& value) {
-            owner.*member = static_cast<int>(std::get<std::int64_t>(value));
+            owner.*member = static_cast<Value>(std::get<std::int64_t>(value));
           }};
-}
-
-template <class Owner>
-Field<Owner> choice(std::string Owner::*member, ParameterInfo info) {
-  info.kind = Kind::choice;
-  return plain_field(member, std::move(info));
-}
-
-template <class Owner>
-Field<Owner> text(std::string Owner::*member, ParameterInfo info) {
-  info.kind = Kind::text;
-  return plain_field(member, std::move(info));
-}
-
-template <class Owner>
-Field<Owner> words(Words Owner::*member, ParameterInfo info) {
-  info.kind = Kind::words;
-  return plain_field(member, std::move(info));
 }
 
 /// A number whose absence is the word "auto".

@@ -13,14 +13,14 @@ namespace {
 Fields<SpringMaterial> spring_fields() {
   using S = SpringMaterial;
   const auto stiffness = [](double S::*member, const char* key, const char* label, const char* doc) {
-    return number(member, {.key = key,
-                           .label = label,
-                           .unit = "N/m",
-                           .doc = doc,
-                           .formula = "F = k (|d| - L) d/|d|",
-                           .scale = Scale::logarithmic,
-                           .minimum = 0,
-                           .slider_maximum = 1e5});
+    return field(member, {.key = key,
+                          .label = label,
+                          .unit = "N/m",
+                          .doc = doc,
+                          .formula = "F = k (|d| - L) d/|d|",
+                          .scale = Scale::logarithmic,
+                          .minimum = 0,
+                          .slider_maximum = 1e5});
   };
   return {
       stiffness(&S::structural, "structural", "Structural stiffness",
@@ -29,102 +29,102 @@ Fields<SpringMaterial> spring_fields() {
                 "Resistance to shearing, along the diagonals of each cell; 0 leaves these springs out."),
       stiffness(&S::flexion, "flexion", "Flexion stiffness",
                 "Resistance to bending, between particles two apart; 0 leaves these springs out."),
-      number(&S::damping,
-             {.key = "damping",
-              .label = "Spring damping",
-              .unit = "N s/m",
-              .doc = "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
-              .formula = "F = k_d ((v_j - v_i) . d/|d|) d/|d|",
-              .scale = Scale::logarithmic,
-              .minimum = 0}),
+      field(&S::damping,
+            {.key = "damping",
+             .label = "Spring damping",
+             .unit = "N s/m",
+             .doc = "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
+             .formula = "F = k_d ((v_j - v_i) . d/|d|) d/|d|",
+             .scale = Scale::logarithmic,
+             .minimum = 0}),
   };
 }
 
 Fields<Gust> gust_fields() {
   using G = Gust;
   return {
-      number(&G::amplitude, {.key = "amplitude",
-                             .label = "Gust amplitude",
-                             .doc = "How far the wind's speed swings around its mean, as a fraction of it.",
-                             .formula = "wind * (1 + amplitude * sin(2 pi frequency t))",
-                             .minimum = 0,
-                             .slider_maximum = 2}),
-      number(&G::frequency, {.key = "frequency",
-                             .label = "Gust frequency",
-                             .unit = "Hz",
-                             .doc = "Swings of the wind per second.",
-                             .minimum = 0,
-                             .slider_maximum = 5}),
+      field(&G::amplitude, {.key = "amplitude",
+                            .label = "Gust amplitude",
+                            .doc = "How far the wind's speed swings around its mean, as a fraction of it.",
+                            .formula = "wind * (1 + amplitude * sin(2 pi frequency t))",
+                            .minimum = 0,
+                            .slider_maximum = 2}),
+      field(&G::frequency, {.key = "frequency",
+                            .label = "Gust frequency",
+                            .unit = "Hz",
+                            .doc = "Swings of the wind per second.",
+                            .minimum = 0,
+                            .slider_maximum = 5}),
   };
 }
 
 Fields<Air> air_fields() {
   using A = Air;
   return {
-      number(&A::drag,
-             {.key = "drag",
-              .label = "Air drag",
-              .unit = "N s/m",
-              .doc = "Force of the air per particle and speed along the normal; 0 leaves the air out.",
-              .formula = "F = c_a (n . (u - v)) n",
-              .scale = Scale::logarithmic,
-              .minimum = 0}),
-      number(&A::skin_friction,
-             {.key = "skin_friction",
-              .label = "Skin friction",
-              .unit = "N s/m",
-              .doc = "Force of the air per particle and speed along the cloth; 0 leaves it out.",
-              .formula = "F = c_t (I - n n^T) (u - v)",
-              .scale = Scale::logarithmic,
-              .minimum = 0}),
-      vector(&A::wind, {.key = "wind",
-                        .label = "Wind",
-                        .unit = "m/s",
-                        .doc = "Mean velocity of the air.",
-                        .slider_minimum = -20,
-                        .slider_maximum = 20}),
+      field(&A::drag,
+            {.key = "drag",
+             .label = "Air drag",
+             .unit = "N s/m",
+             .doc = "Force of the air per particle and speed along the normal; 0 leaves the air out.",
+             .formula = "F = c_a (n . (u - v)) n",
+             .scale = Scale::logarithmic,
+             .minimum = 0}),
+      field(&A::skin_friction,
+            {.key = "skin_friction",
+             .label = "Skin friction",
+             .unit = "N s/m",
+             .doc = "Force of the air per particle and speed along the cloth; 0 leaves it out.",
+             .formula = "F = c_t (I - n n^T) (u - v)",
+             .scale = Scale::logarithmic,
+             .minimum = 0}),
+      field(&A::wind, {.key = "wind",
+                       .label = "Wind",
+                       .unit = "m/s",
+                       .doc = "Mean velocity of the air.",
+                       .slider_minimum = -20,
+                       .slider_maximum = 20}),
   };
 }
 
 Fields<Deformation> deformation_fields() {
   using D = Deformation;
   return {
-      number(&D::rate,
-             {.key = "rate",
-              .label = "Deformation rate",
-              .doc = "Largest elongation that limited springs may keep, as a fraction of the rest length.",
-              .formula = "|d| <= (1 + rate) L",
-              .scale = Scale::logarithmic,
-              .minimum = 0,
-              .slider_minimum = 0.001}),
-      words(&D::springs, {.key = "springs",
+      field(&D::rate,
+            {.key = "rate",
+             .label = "Deformation rate",
+             .doc = "Largest elongation that limited springs may keep, as a fraction of the rest length.",
+             .formula = "|d| <= (1 + rate) L",
+             .scale = Scale::logarithmic,
+             .minimum = 0,
+             .slider_minimum = 0.001}),
+      field(&D::springs, {.key = "springs",
                           .label = "Limited springs",
                           .doc = "Which spring families the deformation rate limits.",
                           .word_sets = {{}, {"structural"}, {"structural", "shear"}}}),
-      number(&D::tolerance,
-             {.key = "tolerance",
-              .label = "Tolerance",
-              .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
-              .scale = Scale::logarithmic,
-              .minimum = 0,
-              .minimum_excluded = true,
-              .slider_minimum = 1e-6,
-              .slider_maximum = 1e-2}),
-      integer(&D::max_sweeps,
-              {.key = "max_sweeps",
-               .label = "Most sweeps",
-               .doc = "Of the solver \"sweeps\": how many per step before the rest is reported as excess.",
-               .scale = Scale::logarithmic,
-               .minimum = 1,
-               .maximum = 1000000,
-               .slider_minimum = 1,
-               .slider_maximum = 1000}),
-      choice(&D::solver,
-             {.key = "solver",
-              .label = "Solver",
-              .doc = "How the rate is kept: by tensions of the limited springs (auto), by sweeps as "
-                     "Provot's, or by the nearest shape that obeys it.",
-              .choices = {"auto", "sweeps", "direct"}}),
+      field(&D::tolerance,
+            {.key = "tolerance",
+             .label = "Tolerance",
+             .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
+             .scale = Scale::logarithmic,
+             .minimum = 0,
+             .minimum_excluded = true,
+             .slider_minimum = 1e-6,
+             .slider_maximum = 1e-2}),
+      field(&D::max_sweeps,
+            {.key = "max_sweeps",
+             .label = "Most sweeps",
+             .doc = "Of the solver \"sweeps\": how many per step before the rest is reported as excess.",
+             .scale = Scale::logarithmic,
+             .minimum = 1,
+             .maximum = 1000000,
+             .slider_minimum = 1,
+             .slider_maximum = 1000}),
+      field(&D::solver,
+            {.key = "solver",
+             .label = "Solver",
+             .doc = "How the rate is kept: by tensions of the limited springs (auto), by sweeps as "
+                    "Provot's, or by the nearest shape that obeys it.",
+             .choices = {"auto", "sweeps", "direct"}}),
   };
 }
 
@@ -142,41 +142,41 @@ ParameterInfo thickness_info(const char* doc) {
 
 Fields<ContactSettings> contact_fields() {
   return {
-      number(&ContactSettings::thickness,
-             thickness_info("Distance that contact keeps between cloth and obstacles.")),
+      field(&ContactSettings::thickness,
+            thickness_info("Distance that contact keeps between cloth and obstacles.")),
   };
 }
 
 Fields<SelfContact> self_contact_fields() {
   using S = SelfContact;
   return {
-      number(&S::thickness,
-             thickness_info("Distance that contact keeps between two layers of the cloth; at most half "
-                            "of the shortest structural spring.")),
-      number(&S::friction, {.key = "friction",
-                            .label = "Friction",
-                            .doc = "Coefficient of friction of the cloth on itself.",
-                            .minimum = 0}),
+      field(&S::thickness,
+            thickness_info("Distance that contact keeps between two layers of the cloth; at most half "
+                           "of the shortest structural spring.")),
+      field(&S::friction, {.key = "friction",
+                           .label = "Friction",
+                           .doc = "Coefficient of friction of the cloth on itself.",
+                           .minimum = 0}),
   };
 }
 
 Fields<Recording> recording_fields() {
   using R = Recording;
   return {
-      number(&R::interval, {.key = "interval",
-                            .label = "Record interval",
-                            .unit = "s",
-                            .doc = "Simulated time between two rows of a recording.",
-                            .cost = EditCost::restart,
-                            .scale = Scale::logarithmic,
-                            .minimum = 0,
-                            .minimum_excluded = true,
-                            .slider_minimum = 1e-4}),
+      field(&R::interval, {.key = "interval",
+                           .label = "Record interval",
+                           .unit = "s",
+                           .doc = "Simulated time between two rows of a recording.",
+                           .cost = EditCost::restart,
+                           .scale = Scale::logarithmic,
+                           .minimum = 0,
+                           .minimum_excluded = true,
+                           .slider_minimum = 1e-4}),
   };
 }
 
 Field<Scene> title_field() {
-  return text(&Scene::title, {.key = "title", .label = "Title", .doc = "What the scene shows."});
+  return field(&Scene::title, {.key = "title", .label = "Title", .doc = "What the scene shows."});
 }
 
 Field<Scene> damping_field() {
@@ -201,15 +201,15 @@ Field<Scene> gravity_field() {
 }
 
 Field<Scene> duration_field() {
-  return number(&Scene::duration, {.key = "duration",
-                                   .label = "Duration",
-                                   .unit = "s",
-                                   .doc = "Simulated time of a run on the command line.",
-                                   .scale = Scale::logarithmic,
-                                   .minimum = 0,
-                                   .minimum_excluded = true,
-                                   .slider_minimum = 0.1,
-                                   .slider_maximum = 100});
+  return field(&Scene::duration, {.key = "duration",
+                                  .label = "Duration",
+                                  .unit = "s",
+                                  .doc = "Simulated time of a run on the command line.",
+                                  .scale = Scale::logarithmic,
+                                  .minimum = 0,
+                                  .minimum_excluded = true,
+                                  .slider_minimum = 0.1,
+                                  .slider_maximum = 100});
 }
 
 /// As thick as the default says, or as the cells allow.

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "scene/scene_parameters.h"
-#include "scene/stage_info.h"
 
 namespace cloth {
 
@@ -37,6 +36,13 @@ const std::vector<BlockRow>& block_rows();
 
 /// In the order of a file.
 const std::vector<const BlockRow*>& block_rows_of_file();
+
+/// One stage of a step, as `explain` tells it.
+struct StageInfo {
+  std::string name;
+  bool present = false;
+  std::string reason;  ///< what it does here, or why it is not needed
+};
 
 /// What `explain` says of a stage whose block the scene does not have; none where it has it.
 std::optional<StageInfo> absent_stage(const std::string& stage, const Scene& scene, const std::string& block);

@@ -11,7 +11,7 @@ namespace {
 Fields<IntegratorChoice> common_integrator_fields() {
   using I = IntegratorChoice;
   return {
-      choice(
+      field(
           &I::method,
           {.key = "method", .label = "Method", .doc = "The time integrator.", .choices = integrator_names()}),
       number_or_auto(&I::time_step, {.key = "time_step",
@@ -28,27 +28,27 @@ Fields<IntegratorChoice> common_integrator_fields() {
 }
 
 Field<IntegratorChoice> tolerance_field(double minimum, bool excluded, const char* doc) {
-  return number(&IntegratorChoice::tolerance, {.key = "tolerance",
-                                               .label = "Tolerance",
-                                               .doc = doc,
-                                               .scale = Scale::logarithmic,
-                                               .minimum = minimum,
-                                               .maximum = 1,
-                                               .minimum_excluded = excluded,
-                                               .slider_minimum = 1e-12,
-                                               .slider_maximum = 1e-2});
+  return field(&IntegratorChoice::tolerance, {.key = "tolerance",
+                                              .label = "Tolerance",
+                                              .doc = doc,
+                                              .scale = Scale::logarithmic,
+                                              .minimum = minimum,
+                                              .maximum = 1,
+                                              .minimum_excluded = excluded,
+                                              .slider_minimum = 1e-12,
+                                              .slider_maximum = 1e-2});
 }
 
 Field<IntegratorChoice> count_field(std::int64_t IntegratorChoice::*member, const char* key,
                                     const char* label, const char* doc) {
-  return integer(member, {.key = key,
-                          .label = label,
-                          .doc = doc,
-                          .scale = Scale::logarithmic,
-                          .minimum = 1,
-                          .maximum = 100000,
-                          .slider_minimum = 1,
-                          .slider_maximum = 200});
+  return field(member, {.key = key,
+                        .label = label,
+                        .doc = doc,
+                        .scale = Scale::logarithmic,
+                        .minimum = 1,
+                        .maximum = 100000,
+                        .slider_minimum = 1,
+                        .slider_maximum = 200});
 }
 
 Fields<IntegratorChoice> own_integrator_fields(MethodSettings settings) {

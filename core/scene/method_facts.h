@@ -25,7 +25,7 @@ struct MethodFacts {
   std::string name;              ///< as it stands in scene files
   std::string title;             ///< for people: "Semi-implicit Euler"
   int order = 1;                 ///< of the position error, for smooth scenes
-  int evaluations_per_step = 1;  ///< of the force; 0: as many as its iterations or its error control take
+  int evaluations_per_step = 0;  ///< of the force; 0: as many as its iterations or its error control take
   std::string source;
   MethodSettings settings = MethodSettings::none;
   bool keeps_force = false;  ///< over to the next step: one more evaluation if something else moved the cloth

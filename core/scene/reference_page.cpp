@@ -1,5 +1,3 @@
-#include "scene/reference_page.h"
-
 #include <fmt/format.h>
 
 #include <map>

@@ -8,11 +8,22 @@
 #include <vector>
 
 #include "geometry/loaded_mesh.h"
+#include "params/parameter.h"
 #include "params/problem.h"
 
 namespace cloth {
 
 struct Scene;
+
+/// A mesh is chosen by its file; load_meshes() reads it.
+template <class Owner>
+Field<Owner> field(MeshChoice Owner::*member, ParameterInfo info) {
+  info.kind = Kind::text;
+  return {std::move(info), [member](const Owner& owner) { return ParameterValue((owner.*member).file); },
+          [member](Owner& owner, const ParameterValue& value) {
+            (owner.*member).file = std::get<std::string>(value);
+          }};
+}
 
 /// Where the files lie that a scene names. It is where values come from, none itself: two scenes are equal
 /// whatever folders they came from.

@@ -62,6 +62,9 @@ std::vector<BlockOffer> offers_for(const Scene& scene);
 /// Takes a removable block out. Unknown or absent paths leave the scene as it is.
 void remove_block(Scene& scene, const std::string& path);
 
+/// docs/parameters.md, as Markdown: the reference of all parameters, made from their declarations.
+std::string reference_page();
+
 /// What an absent value means in the file: the default of the declaration, for resets and tooltips.
 std::optional<ParameterValue> default_of(const Scene& scene, const std::string& path);
 

@@ -32,8 +32,8 @@ std::string megabytes(double bytes) {
   return fmt::format("{:.0f} MB", bytes / 1e6);
 }
 
-}  // namespace
-
+/// What a run of the scene takes at least, in bytes: its particles and their springs in its method's arrays.
+/// What depends on the motion, such as contact's lists, comes on top.
 double least_memory(const Scene& scene) {
   MethodSettings settings = MethodSettings::none;
   for (const MethodFacts& facts : integrator_facts())
@@ -41,6 +41,8 @@ double least_memory(const Scene& scene) {
   const double particles = static_cast<double>(scene.cloth.rows) * scene.cloth.columns;
   return particles * bytes_per_particle(settings, scene.springs.has_value());
 }
+
+}  // namespace
 
 std::optional<std::string> memory_problem(const Scene& scene) {
   return memory_problem(std::vector<Scene>{scene});

@@ -10,10 +10,6 @@
 
 namespace cloth {
 
-/// What a run of the scene takes at least, in bytes: its particles and their springs in its method's arrays.
-/// What depends on the motion, such as contact's lists, comes on top.
-double least_memory(const Scene& scene);
-
 /// That a run needs more memory than this process can have, in words; nothing where it can have it.
 std::optional<std::string> memory_problem(const Scene& scene);
 

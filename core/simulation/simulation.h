@@ -1,4 +1,8 @@
-// The loop that owns time: integrate, limit, contact, advance; and the ledger of energy beside it.
+// Runs a scene step by step. Simulation::step runs the stages integrate, limit the deformation, contact,
+// advance time, in this order, and keeps the energy ledger. The stages are integrators/integrator.h,
+// limiter/step_limiter.h and contact/contact_stage.h; a stage that the scene does not need is not made and
+// costs nothing. explain_stages() (stages.h) lists the stages of a scene and what each does in a step;
+// StepCount (outcome.h) counts the work done.
 //
 //     Simulation simulation(scene);                       // a scene without problems and with a time step
 //     while (simulation.time() < scene.duration)
@@ -23,7 +27,7 @@ namespace cloth {
 
 class WorkerTeam;
 
-/// Everything a row of a recording says about the present state.
+/// The values of one row of a recording.
 struct Measurement {
   double time = 0;
   std::int64_t step = 0;
@@ -33,13 +37,14 @@ struct Measurement {
   std::int64_t limiter_sweeps = 0;  ///< of the last step
   double limiter_excess = 0;
   int contacts = 0;
-  int held_back = 0;              ///< particles that contact kept from getting where they should
-  Vec3 contact_impulse{0, 0, 0};  ///< N s, given to the cloth since t = 0; only continuous contact says it
-  /// total - total(0) - works + losses: what the method itself added or lost, J
+  int held_back = 0;              ///< particles that contact kept from their target positions
+  Vec3 contact_impulse{0, 0, 0};  ///< N s, given to the cloth since t = 0; 0 without continuous contact
+  /// total - total(0) - works + losses in J: energy that the method itself added or lost
   double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
 };
 
-/// Which optional quantities the scene's stages give: columns, curves and rows of a form follow it.
+/// The optional quantities that the scene's stages produce. Columns, curves and the rows of forms follow from
+/// it.
 struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
   bool structural = false, shear = false;
@@ -47,15 +52,15 @@ struct Quantities {
   bool operator==(const Quantities&) const = default;
 };
 
-/// How strongly the hand holds a particle.
+/// The spring and the damper by which the hand holds a particle.
 struct PullStrength {
   double stiffness = 0;  ///< N/m
   double damping = 0;    ///< N s/m
   bool operator==(const PullStrength&) const = default;
 };
 
-/// Puts a run into a start that no scene file describes: other masses, rest lengths, positions, velocities.
-/// Positions beyond the deformation rate are then brought within it, before the first step.
+/// Changes the start of a run in ways that no scene file describes: masses, rest lengths, positions,
+/// velocities. Positions that exceed the deformation rate are brought within it before the first step.
 using Preparation = std::function<void(ClothSystem&, ClothState&)>;
 
 class Simulation {
@@ -66,33 +71,35 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step; or, where the new state is not finite or has diverged, why. The state is then the bad one.
+  /// Takes one step. Returns a Divergence where the new state is not finite or has diverged; the state is
+  /// then that bad one.
   std::optional<Divergence> step();
 
-  /// `steps` steps, or fewer to the first that step() would have stopped at; the motion of step() to the bit.
-  /// Where nothing needs the states in between, steps are taken in batches, which some methods do faster.
-  /// Fewer also where the stop test interrupted one.
+  /// Takes `steps` steps, with bitwise the same result as step(). Ends early at the first step that diverges
+  /// or that the stop test interrupts. Where nothing needs the states in between, steps are taken in batches,
+  /// which are faster with some methods.
   std::optional<Divergence> advance(std::int64_t steps);
 
-  /// Asked within a step that takes long, where contact is continuous; once it says so the step is not taken:
-  /// the state stays the one before it, and interrupted() is true until the next step.
+  /// `test` is called during steps with continuous contact, which may take long. When it returns true the
+  /// step is cancelled: the state stays as it was before, and interrupted() is true until the next step.
   void set_stop_test(std::function<bool()> test);
   bool interrupted() const { return interrupted_; }
 
-  /// Puts an edited scene in force from the next step on, keeping the state. Precondition: as for the
-  /// constructor, and only parameters of EditCost::live differ (and pins). The ledger takes up the jump in
-  /// energy.
+  /// Uses an edited scene from the next step on and keeps the state. Preconditions: those of the constructor,
+  /// and only pins and parameters of EditCost::live differ. The ledger's initial energy changes by the jump
+  /// in energy.
   void edit(const Scene& scene);
 
   Checkpoint checkpoint() const;
-  /// Goes to a checkpoint of this simulation, or of another one of the same start. The scene in force stays
-  /// as it is: to go on to the bit it must be the one that was in force at the checkpoint.
+  /// Restores a checkpoint of this simulation, or of another one with the same start. The scene stays as it
+  /// is; bitwise equal results need the scene that was used at the checkpoint.
   void restore(const Checkpoint& checkpoint);
 
-  /// Threads that a step may use, 1 without this call: while they are seen to gain, or always. The motion is
-  /// the same to the bit.
+  /// How many threads a step may use (1 without this call), and whether it uses them always or only while
+  /// measurements show that they save time. The motion is bitwise the same for any number.
   void set_threads(int threads, ThreadUse use = ThreadUse::where_they_gain);
-  /// How many of them: one where the cloth is too small to share, or the method cannot.
+  /// How many threads a pass over the springs can use: 1 where the cloth is too small or no kernel supports
+  /// it.
   int threads() const;
 
   /// The hand, from the next step on.
@@ -101,8 +108,8 @@ class Simulation {
   const std::optional<BrushGust>& brush() const { return run_.brush; }
   const std::optional<Pull>& pull() const { return run_.pull; }
 
-  /// The strongest hand that the method stands at its step; and no stronger than `most` from now on, so that
-  /// one hand can hold several simulations alike.
+  /// The strongest pull that is stable with the method and its time step. limit_pull() bounds the pull by
+  /// `most` as well, so that several simulations can be pulled equally.
   const PullStrength& strongest_pull() const { return strongest_pull_; }
   void limit_pull(const std::optional<PullStrength>& most);
 
@@ -111,11 +118,12 @@ class Simulation {
   const ClothState& state() const { return run_.state; }
   double time() const { return run_.state.time; }
   double time_step() const { return run_.time_step; }
-  /// The step after which the present time step came in force.
+  /// The step number at which the present time step came into use.
   std::int64_t first_step() const { return run_.first_step; }
   /// The time then, s.
   double first_time() const { return run_.first_time; }
-  /// Steps of the present length in a record interval, or in what was left of one at first_step().
+  /// Steps of the present length in a record interval, or in the rest of the interval that began at
+  /// first_step().
   std::int64_t steps_to_row() const;
   bool is_within_interval() const { return run_.automatic.next_change >= 0; }
   /// Where "auto" has shortened the step since t = 0.
@@ -132,9 +140,9 @@ class Simulation {
   /// Where an obstacle is at a time, in s, with the transition after an edit included.
   Pose obstacle_pose(std::size_t obstacle, double time) const;
 
-  // Contact as one can see it. Nothing of it is computed unless it is asked for.
-  /// Appends where the cloth touched something at the end of the last step; nothing after an edit or a
-  /// restore(), until there is a next step, where contact is continuous.
+  // Data for showing contact, computed only in these calls.
+  /// Appends the points where the cloth touched something at the end of the last step. With continuous
+  /// contact there are none between an edit or restore() and the next step.
   void append_contact_marks(std::vector<ContactMark>& marks) const;
   /// Levels of the hierarchy of boxes around an obstacle's mesh, or with -1 around the cloth; 0: there is
   /// none.
@@ -142,16 +150,16 @@ class Simulation {
   /// Appends its boxes `level` below the root; of a mesh as the scene has it, before any motion.
   void append_hierarchy_boxes(int obstacle, int level, std::vector<Bounds>& boxes);
 
-  /// The cloth as it is now.
+  /// The cloth's surface at the present positions, m.
   TriangleMesh cloth_mesh() const;
 
   Measurement measure() const;
 
-  /// The most energy in J that the scene could have put into motion so far. A run whose ledger leaves ten
-  /// times as much unexplained has diverged.
+  /// An upper estimate in J of the energy that the scene can have put into motion so far. A run has diverged
+  /// where the ledger cannot explain ten times as much.
   double energy_scale() const;
 
-  /// What a stop here would say of the particle that is not finite or else the fastest.
+  /// The report of a stop at the present state: the particle that is not finite, else the fastest one.
   Divergence stop_at_fastest(const std::string& cause) const;
 
  private:

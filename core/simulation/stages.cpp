@@ -10,7 +10,6 @@
 #include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
-#include "scene/blocks.h"
 
 namespace cloth {
 namespace {

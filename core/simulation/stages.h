@@ -1,10 +1,12 @@
-// Which stages a scene is run with, and which were left out and why.
+// Lists the stages of a step for a scene, with those that are left out and why: what `clothlab-cli explain`
+// prints. Forces come first, then the integrator with its force evaluations per step, limiter and contact.
+// The cost of contact depends on its kind; see contact/contact_stage.h. `clothlab-bench` measures both
+// (docs/performance.md): a step with a sphere is one of its cases.
 #pragma once
 
 #include <vector>
 
-#include "scene/scene.h"
-#include "scene/stage_info.h"
+#include "scene/blocks.h"
 
 namespace cloth {
 

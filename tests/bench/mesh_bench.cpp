@@ -81,7 +81,7 @@ void print(const std::vector<Subject>& subjects) {
 }
 
 void measure(const std::string& name, const Scene& scene, const ClothSystem& given, int repeats) {
-  const ClothSystem ordered = renumbered(given, order_for_sweeps(given));
+  const ClothSystem ordered = test::renumbered(given, order_for_sweeps(given));
   ReferenceKernel as_given(scene, given, starting_state(given)),
       reference(scene, ordered, starting_state(ordered));
   MeshStep one(scene, ordered, 1), two(scene, ordered, 2), mesh_as_given(scene, given, 1);
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   fmt::print("ns per particle and step, medians of {} interleaved repeats; instruction set {}\n", repeats,
              name_of(active_instruction_set()));
   const ClothSystem grid = make_grid(scene.cloth, scene.springs.value());
-  measure("shuffled grid", scene, renumbered(grid, test::random_order(grid.size(), random)), repeats);
+  measure("shuffled grid", scene, test::renumbered(grid, test::random_order(grid.size(), random)), repeats);
   measure("irregular triangulation", scene, test::irregular_triangulation(side, side, 100, true, random),
           repeats);
   return 0;

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "io/text_file.h"
 #include "io/machine.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
-#include "scene/reference_page.h"
+#include "scene/scene_parameters.h"
 #include "support/files.h"
 
 namespace cloth::test::usage_test {

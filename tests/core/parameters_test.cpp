@@ -5,7 +5,6 @@
 
 #include "scene/builtin_scenes.h"
 #include "scene/obstacle_shape.h"
-#include "scene/reference_page.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "scene/scene_parameters.h"

@@ -10,7 +10,6 @@
 #include "cloth/normals.h"
 #include "geometry/mesh_repair.h"
 #include "integrators/registry.h"
-#include "measure/resting_frequency.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_json.h"

@@ -1,10 +1,12 @@
 #include "support/meshes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <numeric>
+#include <tuple>
 
-#include "cloth/mesh_order.h"
+#include "geometry/at.h"
 #include "geometry/mesh_repair.h"
 #include "scene/scene_mesh.h"
 #include "support/direct_run.h"
@@ -111,6 +113,45 @@ std::vector<int> random_order(int size, Random& random) {
   for (int k = size - 1; k > 0; --k)
     std::swap(order[static_cast<std::size_t>(k)], order[static_cast<std::size_t>(random.integer(0, k))]);
   return order;
+}
+
+Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order) {
+  assert(field.size() == order.size());
+  Vec3Field result(field.size());
+  for (std::size_t k = 0; k < order.size(); ++k) result.set(k, field[at(order[k])]);
+  return result;
+}
+
+ClothState renumbered(const ClothState& state, const ParticleOrder& order) {
+  return {.position = renumbered(state.position, order),
+          .velocity = renumbered(state.velocity, order),
+          .time = state.time,
+          .step = state.step};
+}
+
+ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order) {
+  assert(system.mass.size() == order.size());
+  ClothSystem result;
+  result.rows = 1;
+  result.columns = static_cast<int>(order.size());
+  result.diagonal = system.diagonal;
+  result.start = renumbered(system.start, order);
+  for (const int old : order) {
+    result.mass.push_back(system.mass[at(old)]);
+    result.inverse_mass.push_back(system.inverse_mass[at(old)]);
+    result.pinned.push_back(system.pinned[at(old)]);
+  }
+  const ParticleOrder number = inverse_of(order);
+  std::vector<SpringRun> springs;
+  for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+    const auto [low, high] = std::minmax(number[i], number[j]);
+    springs.push_back({run.family, low, 1, high - low, run.rest_length, run.stiffness});
+  });
+  std::stable_sort(springs.begin(), springs.end(), [](const SpringRun& a, const SpringRun& b) {
+    return std::tuple(a.family, a.first, a.offset) < std::tuple(b.family, b.first, b.offset);
+  });
+  result.springs = springs;
+  return result;
 }
 
 }  // namespace cloth::test

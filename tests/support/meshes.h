@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cloth/cloth_system.h"
+#include "cloth/mesh_order.h"
 #include "scene/scene.h"
 #include "support/random.h"
 
@@ -32,6 +32,12 @@ ClothSystem shuffled_grid(int rows, int columns, Random& random);
 
 /// A surface as the mesh of a scene's cloth, under the name of a file that is not there.
 MeshChoice mesh_of_scene(const TriangleMesh& surface);
+
+/// The same cloth with its particles in this order: springs one by one, by family and then by their ends. A
+/// grid becomes a mesh of one row.
+ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order);
+ClothState renumbered(const ClothState& state, const ParticleOrder& order);
+Vec3Field renumbered(const Vec3Field& field, const ParticleOrder& order);
 
 /// The order of a shuffle.
 std::vector<int> random_order(int size, Random& random);

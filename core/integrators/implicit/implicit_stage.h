@@ -4,10 +4,10 @@
 //
 // by Newton's method in v. Implicit Euler takes weight = h, the midpoint rule h/2, BDF2 2h/3.
 //
-// Each iteration solves with the exact Jacobian; the transverse stiffness of compressed springs, which makes
-// it indefinite, is left out only when it is (Choi and Ko 2002), so that Newton goes downhill and does not
-// end at a saddle. A line search on the work of the residual along the direction (Matthies and Strang 1979)
-// needs no energy, which drag and dampers do not have.
+// Each iteration solves with the exact Jacobian. Where that is indefinite, the transverse stiffness of
+// compressed springs is left out (Choi and Ko 2002), so that the direction is one of descent and the
+// iteration does not end at a saddle point. The line search uses the work of the residual along the direction
+// (Matthies and Strang 1979); it needs no energy, since drag and dampers have none.
 #pragma once
 
 #include "integrators/implicit/linear_choice.h"

@@ -1,7 +1,7 @@
-// How the linear systems of an implicit step are solved. Factors cost the same for every stiffness; conjugate
-// gradients cost more the further the step reaches beyond the fastest oscillation. The choice is a fixed rule
-// from costs as measured once, so that a scene always takes the same way; docs/methods/implicit-euler.md has
-// the measurements.
+// Chooses how the linear systems of an implicit step are solved. The cost of a sparse Cholesky factorisation
+// does not depend on the stiffness; the cost of conjugate gradients grows with the ratio of the step to the
+// period of the fastest oscillation. The rule uses costs measured once on one machine, so that the same scene
+// is solved in the same way everywhere; docs/methods/implicit-euler.md has the measurements.
 #pragma once
 
 #include "forces/linearisation.h"

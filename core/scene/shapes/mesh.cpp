@@ -1,7 +1,6 @@
 #include <numbers>
 
 #include "params/field_builders.h"
-#include "scene/mesh_field.h"
 #include "scene/obstacle_shape.h"
 
 namespace cloth {
@@ -22,32 +21,31 @@ class MeshShape final : public ObstacleShape {
                        BodyKind::surface, true}) {}
 
   Fields<Obstacle> fields() const override {
-    return {
-        mesh_file(&Obstacle::mesh, {.key = "file",
+    return {field(&Obstacle::mesh, {.key = "file",
                                     .label = "Mesh",
                                     .doc = "OBJ file, as seen from the scene's folder, or built-in mesh."}),
-        number(&Obstacle::scale, {.key = "scale",
-                                  .label = "Scale",
-                                  .doc = "Factor on the file's lengths.",
-                                  .scale = Scale::logarithmic,
-                                  .minimum = 0,
-                                  .minimum_excluded = true,
-                                  .smallest = 1e-9,
-                                  .slider_minimum = 0.01,
-                                  .slider_maximum = 100}),
-        vector(&Obstacle::rotate, {.key = "rotate",
-                                   .label = "Rotation",
-                                   .unit = "deg",
-                                   .doc = "Turns about the x, then the y, then the z axis.",
-                                   .slider_minimum = -180,
-                                   .slider_maximum = 180}),
-        vector(&Obstacle::translate, {.key = "translate",
-                                      .label = "Position",
-                                      .unit = "m",
-                                      .doc = "Where the file's origin is put.",
-                                      .formula = "x = translate + R_z R_y R_x scale x_file",
-                                      .slider_minimum = -2,
-                                      .slider_maximum = 2})};
+            field(&Obstacle::scale, {.key = "scale",
+                                     .label = "Scale",
+                                     .doc = "Factor on the file's lengths.",
+                                     .scale = Scale::logarithmic,
+                                     .minimum = 0,
+                                     .minimum_excluded = true,
+                                     .smallest = 1e-9,
+                                     .slider_minimum = 0.01,
+                                     .slider_maximum = 100}),
+            field(&Obstacle::rotate, {.key = "rotate",
+                                      .label = "Rotation",
+                                      .unit = "deg",
+                                      .doc = "Turns about the x, then the y, then the z axis.",
+                                      .slider_minimum = -180,
+                                      .slider_maximum = 180}),
+            field(&Obstacle::translate, {.key = "translate",
+                                         .label = "Position",
+                                         .unit = "m",
+                                         .doc = "Where the file's origin is put.",
+                                         .formula = "x = translate + R_z R_y R_x scale x_file",
+                                         .slider_minimum = -2,
+                                         .slider_maximum = 2})};
   }
   Vec3& place(Obstacle& mesh) const override { return mesh.translate; }
   void start(Obstacle& mesh, const Vec3& middle, double span) const override {

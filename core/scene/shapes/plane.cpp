@@ -11,12 +11,12 @@ class PlaneShape final : public ObstacleShape {
   PlaneShape() : ObstacleShape({"plane", "Plane", "A floor under the cloth.", BodyKind::half_space}) {}
 
   Fields<Obstacle> fields() const override {
-    return {vector(&Obstacle::point, place_info("point", "Point", "A point of the plane.")),
-            vector(&Obstacle::normal, {.key = "normal",
-                                       .label = "Normal",
-                                       .doc = "Outward direction of the plane.",
-                                       .unit_vector = true,
-                                       .slider_minimum = -1})};
+    return {field(&Obstacle::point, place_info("point", "Point", "A point of the plane.")),
+            field(&Obstacle::normal, {.key = "normal",
+                                      .label = "Normal",
+                                      .doc = "Outward direction of the plane.",
+                                      .unit_vector = true,
+                                      .slider_minimum = -1})};
   }
   Vec3& place(Obstacle& plane) const override { return plane.point; }
   void start(Obstacle& plane, const Vec3& middle, double span) const override {

@@ -12,14 +12,14 @@ class SphereShape final : public ObstacleShape {
   SphereShape() : ObstacleShape({"sphere", "Sphere", "A ball under the cloth.", BodyKind::ball}) {}
 
   Fields<Obstacle> fields() const override {
-    return {vector(&Obstacle::center, place_info("center", "Centre", "Centre of the sphere.")),
-            number(&Obstacle::radius, {.key = "radius",
-                                       .label = "Radius",
-                                       .unit = "m",
-                                       .doc = "Radius of the sphere.",
-                                       .minimum = 0,
-                                       .minimum_excluded = true,
-                                       .slider_minimum = 0.01})};
+    return {field(&Obstacle::center, place_info("center", "Centre", "Centre of the sphere.")),
+            field(&Obstacle::radius, {.key = "radius",
+                                      .label = "Radius",
+                                      .unit = "m",
+                                      .doc = "Radius of the sphere.",
+                                      .minimum = 0,
+                                      .minimum_excluded = true,
+                                      .slider_minimum = 0.01})};
   }
   Vec3& place(Obstacle& sphere) const override { return sphere.center; }
   void start(Obstacle& sphere, const Vec3& middle, double span) const override {

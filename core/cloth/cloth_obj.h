@@ -1,4 +1,4 @@
-// A cloth as it lies, as a Wavefront OBJ file.
+// A cloth in its present state as a Wavefront OBJ file.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace cloth {
 /// texture coordinates, of which the first row is the upper edge. `title` becomes a comment.
 std::string cloth_obj(const ClothSystem& system, const ClothState& state, const std::string& title);
 
-/// The comment: what the cloth is of, and when.
+/// The title of such a file: the scene's title and the time in s.
 std::string title_at(const std::string& scene_title, double time);
 
 }  // namespace cloth

@@ -1,4 +1,5 @@
-// What a cloth is made from: a sheet, its pins and the stiffness of its springs. SI units throughout.
+// The description of a cloth in a scene: a sheet, its pins and the stiffness of its springs. SI units
+// throughout.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Numberings of the particles of a general mesh with a small bandwidth: the ends of a spring are close in
-// memory, and few particles are shared between threads.
+// Numberings of the particles of a general mesh with a small bandwidth, so that the ends of a spring are
+// close in memory and few particles are shared between threads.
 #pragma once
 
 #include <vector>

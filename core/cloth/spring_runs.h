@@ -34,7 +34,7 @@ struct SpringBlock {
   bool operator==(const SpringBlock&) const = default;
 };
 
-/// Blocks, seen as the runs that they consist of.
+/// Blocks of runs, iterated run by run.
 class SpringRuns {
  public:
   class Iterator {

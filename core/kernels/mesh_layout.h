@@ -1,4 +1,5 @@
-// The springs of a general mesh, arranged once so that the forces on eight particles are summed side by side.
+// The springs of a general mesh, arranged once so that the forces on eight particles are summed in SIMD
+// lanes.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// The springs of a cloth in one pass over its particles, together with what an explicit method does with the
-// force: a whole step reads and writes every particle once. A grid has one way to do that (grid_sweep.h), a
-// general mesh another (mesh_sweep.h). The same bits for any number of threads.
+// Computes the springs of a cloth in one pass over its particles, together with the update of an explicit
+// method, so that a whole step reads and writes every particle once. Two implementations: grids
+// (grid_sweep.h) and general meshes (mesh_sweep.h). Results are bitwise the same for any number of threads.
 #pragma once
 
 #include <array>
@@ -17,14 +17,15 @@ namespace cloth {
 /// The mass of every free particle, if all particles have the same.
 std::optional<double> common_mass(const ClothSystem& system);
 
-/// F_i = drag (n . (wind - v_i)) n, with the wind of each of a step's evaluations of the force.
+/// Air drag, F_i = drag (n . (wind - v_i)) n (forces/air.h), with the wind at each force evaluation of a
+/// step.
 struct SweptAir {
   double drag = 0;           ///< N s/m
-  std::array<Vec3, 4> wind;  ///< m/s, only of those there are, and where there is drag
+  std::array<Vec3, 4> wind;  ///< m/s, one for each evaluation of the step; unused without drag
 };
 
-/// What acts beside the springs' elasticity: f = springs + weight + load + air - damping v - D v, where D are
-/// dampers along the springs: F_i = spring_damping ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0.
+/// The forces beside the springs' elastic ones: f = springs + weight + load + air - damping v - D v, where D
+/// are dampers along the springs: F_i = spring_damping ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0.
 struct SweepLoads {
   Vec3 weight{0, 0, 0};             ///< N, on every particle
   double damping = 0;               ///< N s/m
@@ -50,20 +51,20 @@ struct StageSums {
 
 class SpringSweep {
  public:
-  /// `mass` is that of the free particles; the steps below need it.
+  /// `mass` in kg is that of every particle, if all have the same; the steps below need it.
   explicit SpringSweep(std::optional<double> mass) : mass_(mass) {}
   virtual ~SpringSweep() = default;
 
   bool has_common_mass() const { return mass_.has_value(); }
   double mass() const { return mass_.value(); }
 
-  /// The team whose threads share the particles; null: one thread.
+  /// Sets the threads that share the particles; null: one thread.
   void set_team(WorkerTeam* team, ThreadUse use = ThreadUse::where_they_gain) { team_ = team, use_ = use; }
-  /// How many of the team's threads a pass may use: only one where the shares would be too small.
+  /// How many of the team's threads a pass may use; 1 where the shares would be too small.
   virtual int threads() const = 0;
 
-  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v); as many steps as there are `sums`, each
-  /// to the bits of a step alone. A load only where there is one step.
+  /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v). Takes as many steps as there are `sums`,
+  /// with bitwise the same result as single ones. A load is allowed for one step only.
   virtual void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                      ClothState& state) = 0;
   /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
@@ -81,22 +82,21 @@ class SpringSweep {
 
   /// force = springs + weight + load; `load` may be `force`.
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
-  /// to = from, each thread the part that it is going to step.
+  /// to = from; each thread copies the part that it will step.
   void copy(const ClothState& from, ClothState& to);
-  /// product = D v for dampers of `damping`, in N s/m, along the springs at `position`. Returns what they
-  /// take, in W.
+  /// product = D v for dampers of `damping`, in N s/m, along the springs at `position`. Returns the power in
+  /// W that they take from the cloth.
   virtual double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
-  /// The sum of |v|^2 to the bits in which the steps report it.
+  /// The sum of |v|^2, in the order in which the steps add it up.
   virtual double squares(const Vec3Field& velocity) = 0;
 
  protected:
-  /// Each takes its own time, and so makes its own choice of threads.
+  /// Each kind is timed separately and chooses its own number of threads.
   enum class PassKind { step, several_steps, evaluation, dampers, sums, copies };
   static constexpr std::size_t pass_kinds = 6;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
-  /// With fewer particles for each thread the others need not be tried: waking them takes as long as the
-  /// pass.
+  /// With fewer particles per thread several threads are not tried: waking them takes as long as the pass.
   static constexpr int fewest_particles = 1000;
 
   /// job(first, count, threads) for one run of passes after the other, until `passes` are done: as many at

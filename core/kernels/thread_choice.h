@@ -1,5 +1,5 @@
-// Whether a job that is done again and again is done sooner by several threads: tried out while it runs,
-// since that depends on the size of the job, on the machine, and on what else the machine is doing.
+// Decides whether a job that is repeated many times runs on one thread or on several. It times both while the
+// program runs, since the answer depends on the size of the job, the machine and its other load.
 //
 //     const int threads = choice.next(most);   // before the job
 //     choice.took(seconds);                    // after it, where choice.wants_time()

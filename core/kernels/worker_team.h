@@ -1,5 +1,5 @@
-// A few threads that do one job together, again and again. Between jobs they wait awake for a moment, since
-// the next step of a simulation follows within microseconds, and then sleep.
+// A team of threads that run one job together, many times. Between jobs they spin for a moment, since the
+// next step of a simulation follows within microseconds, and then sleep.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace cloth {
 
-/// How far one thread of a job has come, for others that need what it has done so far.
+/// The progress of one thread of a job, for others that need its results.
 class alignas(64) Milestone {
  public:
   /// Before the job.

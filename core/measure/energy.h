@@ -17,7 +17,7 @@ struct Energy {
 /// sum 1/2 m |v|^2, in J.
 double kinetic_energy(const ClothSystem& system, const Vec3Field& velocity);
 
-/// Without gravity its potential is 0.
+/// The energies of `state`; `gravity_acceleration` in m/s^2.
 Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleration, const ClothState& state);
 
 }  // namespace cloth

@@ -1,8 +1,8 @@
-// How long a step may be: the largest frequency of the cloth and each method's limit for it.
+// Stability limits of the time step: the largest frequency of the cloth, and each method's limit for it.
 //
-// Two frequencies matter: that of the flat grid at rest, unbounded (a finite or pinned grid has less), and a
-// bound that no shape passes. Stretching, shearing or crumpling takes a cloth from the one towards the other,
-// a factor of 1.15 to 1.41 above it.
+// Two frequencies are used: that of the flat, infinite grid at rest (finite or pinned grids have lower ones),
+// and an upper bound for every shape, 1.15 to 1.41 times higher. Stretching, shearing or crumpling raises the
+// frequency of a cloth from the first towards the second.
 #pragma once
 
 #include <optional>
@@ -51,11 +51,11 @@ std::optional<double> stable_step(const std::string& method, double largest_omeg
 /// The limit of `method` for this scene: stable_step() at the frequency of the flat grid.
 std::optional<double> stable_step(const std::string& method, const Scene& scene);
 
-/// The limit of `method` in every shape of the cloth, damping at its bounds: below it no stretching or
-/// crumpling makes energy grow exponentially. What a step is compared with.
+/// The limit of `method` for every shape of the cloth, with damping at its bounds: below it no stretching or
+/// crumpling makes energy grow exponentially. The stability gauge compares the time step with it.
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene);
 
-/// 2 / omega in s at the guaranteed frequency: no explicit method with one evaluation of the force stands a
+/// 2 / omega in s at the guaranteed frequency: no explicit method with one force evaluation is stable at a
 /// longer step. infinity without springs.
 double explicit_step_limit(const Scene& scene);
 

@@ -1,4 +1,4 @@
-// How a declaration is written down: a member pointer and its facts.
+// Functions that make the declaration of a parameter from a member pointer and a ParameterInfo.
 #pragma once
 
 #include <concepts>
@@ -8,6 +8,13 @@
 #include "params/parameter.h"
 
 namespace cloth {
+
+/// The same declaration for values greater than 0.
+inline ParameterInfo positive(ParameterInfo info) {
+  info.minimum = 0;
+  info.minimum_excluded = true;
+  return info;
+}
 
 /// A member of type double, Vec3, std::string or Words; its type decides the kind: a std::string is a choice
 /// where `info` has choices, else a text.
@@ -49,7 +56,7 @@ Field<Owner> number_or_auto(std::optional<double> Owner::*member, ParameterInfo 
           }};
 }
 
-/// A root value whose absence is absent physics. `get` needs it to be present.
+/// An optional value at the root of a scene; absent: that force does not exist. `get` needs it to be present.
 template <class Owner, class Value>
 Field<Owner> optional_field(std::optional<Value> Owner::*member, ParameterInfo info) {
   if (std::is_same_v<Value, Vec3>) info.kind = Kind::vector;

@@ -1,5 +1,5 @@
-// A parameter is declared once. Forms, JSON, the JSON Schema, `--set`, chart labels and the reference page
-// follow from the declaration; nothing else knows a parameter's unit, range or wording.
+// The declaration of a parameter. Forms, JSON, the JSON Schema, `--set`, chart labels and the reference page
+// are made from it; no other code repeats a parameter's unit, range or wording.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,9 +55,9 @@ struct ParameterInfo {
   std::vector<Words> word_sets{};      ///< Kind::words: the combinations that are allowed
 };
 
-/// Magnitudes that a model of cloth in the air has no use for, by unit: beyond them sums of squares, times
-/// and counts of steps leave what doubles and whole numbers hold. `smallest` is of lengths, times and masses
-/// that may not be 0; 0 where a unit has none.
+/// The largest and smallest magnitudes that are accepted for a unit. Beyond them sums of squares, times and
+/// numbers of steps could overflow doubles and integers. `smallest` applies to lengths, times and masses that
+/// may not be 0; it is 0 for other units.
 struct PhysicalBound {
   double largest, smallest;
 };

@@ -10,6 +10,17 @@
 namespace cloth {
 namespace {
 
+/// A force for each particle, or spring, and speed.
+ParameterInfo coefficient_info(const char* key, const char* label, const char* doc, const char* formula) {
+  return {.key = key,
+          .label = label,
+          .unit = "N s/m",
+          .doc = doc,
+          .formula = formula,
+          .scale = Scale::logarithmic,
+          .minimum = 0};
+}
+
 Fields<SpringMaterial> spring_fields() {
   using S = SpringMaterial;
   const auto stiffness = [](double S::*member, const char* key, const char* label, const char* doc) {
@@ -30,13 +41,10 @@ Fields<SpringMaterial> spring_fields() {
       stiffness(&S::flexion, "flexion", "Flexion stiffness",
                 "Resistance to bending, between particles two apart; 0 leaves these springs out."),
       field(&S::damping,
-            {.key = "damping",
-             .label = "Spring damping",
-             .unit = "N s/m",
-             .doc = "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
-             .formula = "F = k_d ((v_j - v_i) . d/|d|) d/|d|",
-             .scale = Scale::logarithmic,
-             .minimum = 0}),
+            coefficient_info(
+                "damping", "Spring damping",
+                "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
+                "F = k_d ((v_j - v_i) . d/|d|) d/|d|")),
   };
 }
 
@@ -61,22 +69,14 @@ Fields<Gust> gust_fields() {
 Fields<Air> air_fields() {
   using A = Air;
   return {
-      field(&A::drag,
-            {.key = "drag",
-             .label = "Air drag",
-             .unit = "N s/m",
-             .doc = "Force of the air per particle and speed along the normal; 0 leaves the air out.",
-             .formula = "F = c_a (n . (u - v)) n",
-             .scale = Scale::logarithmic,
-             .minimum = 0}),
+      field(&A::drag, coefficient_info(
+                          "drag", "Air drag",
+                          "Force of the air per particle and speed along the normal; 0 leaves the air out.",
+                          "F = c_a (n . (u - v)) n")),
       field(&A::skin_friction,
-            {.key = "skin_friction",
-             .label = "Skin friction",
-             .unit = "N s/m",
-             .doc = "Force of the air per particle and speed along the cloth; 0 leaves it out.",
-             .formula = "F = c_t (I - n n^T) (u - v)",
-             .scale = Scale::logarithmic,
-             .minimum = 0}),
+            coefficient_info("skin_friction", "Skin friction",
+                             "Force of the air per particle and speed along the cloth; 0 leaves it out.",
+                             "F = c_t (I - n n^T) (u - v)")),
       field(&A::wind, {.key = "wind",
                        .label = "Wind",
                        .unit = "m/s",
@@ -101,15 +101,14 @@ Fields<Deformation> deformation_fields() {
                           .label = "Limited springs",
                           .doc = "Which spring families the deformation rate limits.",
                           .word_sets = {{}, {"structural"}, {"structural", "shear"}}}),
-      field(&D::tolerance,
-            {.key = "tolerance",
-             .label = "Tolerance",
-             .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
-             .scale = Scale::logarithmic,
-             .minimum = 0,
-             .minimum_excluded = true,
-             .slider_minimum = 1e-6,
-             .slider_maximum = 1e-2}),
+      field(
+          &D::tolerance,
+          positive({.key = "tolerance",
+                    .label = "Tolerance",
+                    .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
+                    .scale = Scale::logarithmic,
+                    .slider_minimum = 1e-6,
+                    .slider_maximum = 1e-2})),
       field(&D::max_sweeps,
             {.key = "max_sweeps",
              .label = "Most sweeps",
@@ -129,15 +128,13 @@ Fields<Deformation> deformation_fields() {
 }
 
 ParameterInfo thickness_info(const char* doc) {
-  return {.key = "thickness",
-          .label = "Thickness",
-          .unit = "m",
-          .doc = doc,
-          .scale = Scale::logarithmic,
-          .minimum = 0,
-          .minimum_excluded = true,
-          .slider_minimum = 1e-4,
-          .slider_maximum = 0.05};
+  return positive({.key = "thickness",
+                   .label = "Thickness",
+                   .unit = "m",
+                   .doc = doc,
+                   .scale = Scale::logarithmic,
+                   .slider_minimum = 1e-4,
+                   .slider_maximum = 0.05});
 }
 
 Fields<ContactSettings> contact_fields() {
@@ -163,15 +160,13 @@ Fields<SelfContact> self_contact_fields() {
 Fields<Recording> recording_fields() {
   using R = Recording;
   return {
-      field(&R::interval, {.key = "interval",
-                           .label = "Record interval",
-                           .unit = "s",
-                           .doc = "Simulated time between two rows of a recording.",
-                           .cost = EditCost::restart,
-                           .scale = Scale::logarithmic,
-                           .minimum = 0,
-                           .minimum_excluded = true,
-                           .slider_minimum = 1e-4}),
+      field(&R::interval, positive({.key = "interval",
+                                    .label = "Record interval",
+                                    .unit = "s",
+                                    .doc = "Simulated time between two rows of a recording.",
+                                    .cost = EditCost::restart,
+                                    .scale = Scale::logarithmic,
+                                    .slider_minimum = 1e-4})),
   };
 }
 
@@ -180,14 +175,10 @@ Field<Scene> title_field() {
 }
 
 Field<Scene> damping_field() {
-  return optional_field(&Scene::damping,
-                        {.key = "damping",
-                         .label = "Viscous damping",
-                         .unit = "N s/m",
-                         .doc = "Resistance to every motion of a particle, free fall included.",
-                         .formula = "F = -c v",
-                         .scale = Scale::logarithmic,
-                         .minimum = 0});
+  return optional_field(
+      &Scene::damping,
+      coefficient_info("damping", "Viscous damping",
+                       "Resistance to every motion of a particle, free fall included.", "F = -c v"));
 }
 
 Field<Scene> gravity_field() {
@@ -201,15 +192,13 @@ Field<Scene> gravity_field() {
 }
 
 Field<Scene> duration_field() {
-  return field(&Scene::duration, {.key = "duration",
-                                  .label = "Duration",
-                                  .unit = "s",
-                                  .doc = "Simulated time of a run on the command line.",
-                                  .scale = Scale::logarithmic,
-                                  .minimum = 0,
-                                  .minimum_excluded = true,
-                                  .slider_minimum = 0.1,
-                                  .slider_maximum = 100});
+  return field(&Scene::duration, positive({.key = "duration",
+                                           .label = "Duration",
+                                           .unit = "s",
+                                           .doc = "Simulated time of a run on the command line.",
+                                           .scale = Scale::logarithmic,
+                                           .slider_minimum = 0.1,
+                                           .slider_maximum = 100}));
 }
 
 /// As thick as the default says, or as the cells allow.

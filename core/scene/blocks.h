@@ -1,5 +1,5 @@
-// The table of a scene's blocks, a row each (block_declarations.cpp). The reader and the writer of scene
-// files, the JSON Schema, forms, the Add menu, removal and default values all go by it.
+// The table of a scene's blocks, one row each (block_declarations.cpp). The reader and the writer of scene
+// files, the JSON Schema, forms, the Add menu, removal and default values use it.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace cloth {
 
-/// How a block that a scene may do without comes and goes.
+/// How an optional block is added to a scene and removed.
 struct OptionalBlock {
   std::function<void(Scene&)> add;     ///< with the values that a file's empty block has
   std::function<void(Scene&)> start;   ///< with the values that the Add menu fills in
@@ -44,7 +44,7 @@ struct StageInfo {
   std::string reason;  ///< what it does here, or why it is not needed
 };
 
-/// What `explain` says of a stage whose block the scene does not have; none where it has it.
+/// The text of `explain` for a stage whose block the scene does not have; none where it has the block.
 std::optional<StageInfo> absent_stage(const std::string& stage, const Scene& scene, const std::string& block);
 
 /// "springs" of "springs.shear", "" of "damping": the object of a file in which a parameter or block stands.

@@ -14,16 +14,15 @@ Fields<IntegratorChoice> common_integrator_fields() {
       field(
           &I::method,
           {.key = "method", .label = "Method", .doc = "The time integrator.", .choices = integrator_names()}),
-      number_or_auto(&I::time_step, {.key = "time_step",
-                                     .label = "Time step",
-                                     .unit = "s",
-                                     .doc = "Length of a step; auto takes 80 % of the method's limit for the "
-                                            "flat cloth, and at most 95 % of that for every shape.",
-                                     .scale = Scale::logarithmic,
-                                     .minimum = 0,
-                                     .minimum_excluded = true,
-                                     .slider_minimum = 1e-6,
-                                     .slider_maximum = 0.1}),
+      number_or_auto(&I::time_step,
+                     positive({.key = "time_step",
+                               .label = "Time step",
+                               .unit = "s",
+                               .doc = "Length of a step; auto takes 80 % of the method's limit for the "
+                                      "flat cloth, and at most 95 % of that for every shape.",
+                               .scale = Scale::logarithmic,
+                               .slider_minimum = 1e-6,
+                               .slider_maximum = 0.1})),
   };
 }
 

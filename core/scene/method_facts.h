@@ -1,5 +1,5 @@
-// What is known of each method: one entry of integrators/registry.cpp holds it all. Scene files, forms,
-// stability theory and reports read it here, without the methods themselves.
+// The properties of each method, declared in integrators/registry.cpp. Scene files, forms, stability theory
+// and reports use them without including the methods.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,12 @@
 
 namespace cloth {
 
-/// Which settings of IntegratorChoice a method has beside its step.
+/// Which settings of IntegratorChoice a method has in addition to its time step.
 enum class MethodSettings { none, error_control, newton, projective, xpbd };
 
-/// A step on the oscillator x'' = -omega^2 x - c x'; measure/amplification.h computes with it. Of the
-/// Runge-Kutta family: R(z) = (1 + z/a (1 + z/b (1 + ...))) / (1 - implicit z), `divisors` a, b, ...
-/// (stability functions: Hairer et al., II, IV.2 and IV.3).
+/// The step of a method on the oscillator x'' = -omega^2 x - c x', used by measure/amplification.h. For the
+/// Runge-Kutta family the stability function is R(z) = (1 + z/a (1 + z/b (1 + ...))) / (1 - implicit z),
+/// `divisors` a, b, ... (stability functions: Hairer et al., II, IV.2 and IV.3).
 struct OscillatorStep {
   enum class Family { runge_kutta, semi_implicit_euler, verlet, bdf2 };
   Family family = Family::runge_kutta;
@@ -25,21 +25,24 @@ struct MethodFacts {
   std::string name;              ///< as it stands in scene files
   std::string title;             ///< for people: "Semi-implicit Euler"
   int order = 1;                 ///< of the position error, for smooth scenes
-  int evaluations_per_step = 0;  ///< of the force; 0: as many as its iterations or its error control take
+  int evaluations_per_step = 0;  ///< of the force; 0: depends on iterations or error control
   std::string source;
   MethodSettings settings = MethodSettings::none;
-  bool keeps_force = false;  ///< over to the next step: one more evaluation if something else moved the cloth
+  /// Reuses the force at the end of a step in the next one. It is evaluated once more where something else
+  /// has changed the state in between, such as contact.
+  bool keeps_force = false;
   OscillatorStep oscillator = {};
   /// The largest stable step in s for the oscillator with omega and c in 1/s, not both 0: 0 if none is
   /// stable. No closed form: scanned_limit() of measure/amplification.h. Not asked where `a_stable`.
   double (*limit)(double omega, double c) = nullptr;
   bool a_stable = false;  ///< stable for every oscillator at every step
-  /// The part of the step with which forces count in the equations that the method solves.
+  /// The weight of the forces in the equations that the method solves, divided by the step; none: it solves
+  /// none.
   std::optional<double> stage_weight = {};
   bool controls_error = false;       ///< divides its steps where a tolerance is given
-  bool may_heat = false;             ///< can gain energy slowly below its limit, so that "auto" looks for it
+  bool may_heat = false;             ///< may gain energy slowly below its limit (simulation/automatic_step.h)
   bool bounds_jointly = false;       ///< springs and dampers share one bound, h^2 K + 2 h C < 4 m
-  bool iterates_to_residual = true;  ///< an open residual means that its equations are not solved
+  bool iterates_to_residual = true;  ///< a residual above tolerance means that its equations are not solved
 };
 
 /// All methods, in the order in which they are listed everywhere.

@@ -25,16 +25,16 @@ Field<Owner> field(MeshChoice Owner::*member, ParameterInfo info) {
           }};
 }
 
-/// Where the files lie that a scene names. It is where values come from, none itself: two scenes are equal
-/// whatever folders they came from.
+/// The folder of the files that a scene names. It is not a value of the scene: scenes from different folders
+/// can be equal.
 struct SceneFolder {
   std::string path;       ///< "": the current folder
   bool built_in = false;  ///< a built-in scene: built-in meshes go before files
   bool operator==(const SceneFolder&) const { return true; }
 };
 
-/// Reads every mesh that the scene names and has not read yet. `known` may have some of them already. What
-/// cannot be used is a problem.
+/// Reads every mesh that the scene names and that is not loaded yet, or takes it from `known` where that has
+/// it. Returns a problem for each mesh that cannot be used.
 std::vector<Problem> load_meshes(Scene& scene, const Scene* known = nullptr);
 
 /// What is unusual about the scene's meshes (a cloth may have a border), a sentence each: `obstacles.0.file =

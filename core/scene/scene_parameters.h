@@ -1,5 +1,5 @@
-// The parameters of a scene, seen without knowing its structs: what forms, `--set`, sweeps and the reference
-// page use. Declarations stand in *_declarations.cpp, once each.
+// Access to the parameters of a scene by path, without its structs: for forms, `--set`, sweeps and the
+// reference page. Each parameter is declared once, in *_declarations.cpp or in a file of scene/shapes/.
 #pragma once
 
 #include <string>

@@ -1,7 +1,8 @@
-// What "auto" does while a run goes on. Below the limit of every shape no energy grows exponentially, but
-// Verlet and semi-implicit Euler may still heat a violent scene slowly: resonances, springs that pass through
-// zero length. So the ledger of energy is looked at every few steps, and where energy that nothing explains
-// has come in, the step becomes shorter by sqrt(2): at most four times, never longer again.
+// The time step "auto" during a run. Below the stability limit for every shape no energy grows exponentially,
+// but with Verlet and semi-implicit Euler the energy of a violent scene may still grow slowly: by resonances,
+// and by springs that pass through zero length. So the energy ledger is checked every few steps; where it
+// shows unexplained energy the step is divided by sqrt(2), at most four times, and never becomes longer
+// again.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,10 @@
 
 namespace cloth {
 
-/// How the step of a run stands; a part of its state.
+/// The state of the automatic step; part of RunState.
 struct AutomaticStep {
-  double longest = 0;      ///< s, what the scene alone says
-  double origin = 0;       ///< s, from where record intervals are counted
+  double longest = 0;      ///< s, resolved_time_step() of the scene
+  double origin = 0;       ///< s, the time from which record intervals are counted
   double least_error = 0;  ///< the lowest energy error since the last change, in energy scales
   int shortened = 0;       ///< times
   std::int64_t next_change =
@@ -27,14 +28,15 @@ struct AutomaticStep {
 /// Steps between two looks at the ledger, for the choice of the step as for divergence.
 inline constexpr std::int64_t ledger_interval = 8;
 
-/// Whether the step of this scene is watched: "auto", with a method that may heat below its limit, and with
-/// springs.
+/// Whether the step of this scene is checked: it is "auto", the method may gain energy below its limit
+/// (MethodFacts::may_heat), and there are springs.
 bool is_step_watched(const Scene& scene);
 
-/// Whether an energy error, in energy scales, asks for a shorter step. Keeps the lowest one so far.
+/// Whether an energy error, in units of Simulation::energy_scale(), requires a shorter step. Records the
+/// lowest error.
 bool asks_for_shorter(AutomaticStep& automatic, double error);
 
-/// Steps of a record interval after so many shortenings: the fewest whole ones that are short enough.
+/// The number of steps of a record interval after so many shortenings: the smallest that is short enough.
 std::int64_t steps_after_shortening(double interval, double longest, int shortened);
 
 }  // namespace cloth

@@ -1,4 +1,4 @@
-// What the ledger's error means: its size beside the energies that the motion exchanged.
+// Rates the error of the energy ledger by the energies that the motion exchanged.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@ namespace cloth {
 
 struct Measurement;
 
-/// Gathers a run's rows. The error of a row is total energy - that at the start - works + losses; a
+/// Collects the rows of a run. The error of a row is total energy - that at the start - works + losses; a
 /// deformation rate that is kept only ever takes energy, so that what the limiter has given in sum is an
 /// error too. What was exchanged is the largest that the kinetic, elastic or potential energy has changed by
 /// since the first row, or that any one work or loss of the ledger has come to.
 class EnergyAccount {
  public:
-  /// Beyond this part of the energy exchanged, a run says that its motion cannot be relied on.
+  /// Above this part of the energy exchanged a run reports that its motion is not reliable.
   static constexpr double doubtful_share = 0.05;
 
   void add(const Measurement& measurement);

@@ -1,12 +1,11 @@
-// The history of a run: states to go back to, and the log of everything that was done. Any step of the run is
-// reached again, to the bit, from the state kept before it and what the log has since.
+// The history of a run: checkpoints and the log of commands. Any step of the run is reached again with
+// bitwise the same state, from the checkpoint before it and the commands logged since.
 //
 //     history.begin(simulation);
 //     ... simulation.step(); history.extend(simulation); history.keep(simulation); ...
-//     history.log(action, simulation);                    // what has just been carried out
-//     history.go_to(simulation, {.step = 120}, {});       // all that was logged up to step 120 is in force
-//     history.cut(simulation);                            // before going on from there: what came later is
-//     dropped
+//     history.log(action, simulation);                    // after the action has been carried out
+//     history.go_to(simulation, {.step = 120}, {});       // with all commands up to step 120
+//     history.cut(simulation);                            // before continuing there: drops what came later
 #pragma once
 
 #include <memory>
@@ -21,10 +20,10 @@ struct HistoryTarget {
   double time = 0;  ///< s
 };
 
-/// How a way through the history ended.
+/// The result of going to a step of the history.
 struct HistoryArrival {
   bool arrived = false;
-  std::optional<Divergence> divergence;  ///< the simulation holds the bad state
+  std::optional<Divergence> divergence;  ///< the simulation is then in the diverged state
   std::vector<Problem> problems;         ///< of a logged command that could not be carried out
 };
 
@@ -34,32 +33,34 @@ class History {
 
   explicit History(std::size_t most_bytes = default_most_bytes) : most_bytes_(most_bytes) {}
 
-  /// A new run, with `simulation` at its start.
+  /// Starts the history of a new run; `simulation` is at its start.
   void begin(const Simulation& simulation);
-  /// A run that a session describes, not gone through yet. Carries out what it has before the first step.
+  /// Starts the history of a recorded session, which has not been simulated yet. Carries out its commands
+  /// before the first step.
   std::vector<Problem> begin(Simulation& simulation, const Session& session);
 
-  /// The simulation has made a good step at the end of the history, or inside of it: then nothing changes.
+  /// Call after each good step. At the end of the history it becomes longer; inside, nothing changes.
   void extend(const Simulation& simulation);
 
-  /// The present state as one to go back to: the newest is always kept, older ones in even intervals.
+  /// Stores a checkpoint of the present state. The newest one is always kept, older ones at even intervals.
   void keep(const Simulation& simulation);
 
-  /// What has just been carried out, at the end of the history.
+  /// Logs an action that has just been carried out at the end of the history.
   void log(SessionAction action, const Simulation& simulation);
 
-  /// Makes the present step the end. True if something came later, which is then dropped.
+  /// Makes the present step the end of the history. Returns true if something came later and was dropped.
   bool cut(const Simulation& simulation);
 
-  /// Brings the simulation to a step of the history, with everything in force that was logged up to it.
-  /// `go_on` is asked after each step on the way: false ends the way there, at a step like any other.
+  /// Brings the simulation to a step of the history, with all commands logged up to it carried out. `go_on`
+  /// is called after each step; where it returns false the simulation stays at that step.
   HistoryArrival go_to(Simulation& simulation, const HistoryTarget& target,
                        const std::function<bool()>& go_on);
 
-  /// One step along the history and what was logged after it. Precondition: not at the end.
+  /// Takes one step and carries out the commands logged after it. Precondition: not at the end.
   HistoryArrival step(Simulation& simulation) const;
 
-  /// The newest state before a step; for a simulation that has diverged there. The history ends at it then.
+  /// Restores the newest checkpoint before the step at which the simulation diverged, and ends the history
+  /// there.
   void return_from(const Divergence& divergence, Simulation& simulation);
 
   /// The whole history as a session.
@@ -76,8 +77,8 @@ class History {
   }  ///< of a session's end, if it is the end
 
   std::size_t most_bytes() const { return most_bytes_; }
-  /// Of the states, which stay within most_bytes() unless the first and the newest alone are more, and of the
-  /// log, which is all kept: it is the session.
+  /// Memory of the checkpoints, at most most_bytes() unless the first and the newest alone need more, and of
+  /// the log, which is kept whole.
   std::size_t bytes() const { return state_bytes_ + command_bytes_; }
 
  private:

@@ -1,5 +1,5 @@
-// Whether there is memory for a run, asked before anything is assembled: a system that lends memory which it
-// does not have ends the process later, without a word.
+// Checks before a run is assembled whether there is enough memory: a system that overcommits memory would end
+// the process later without a message.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace cloth {
 
-/// That a run needs more memory than this process can have, in words; nothing where it can have it.
+/// A message where a run of the scene needs more memory than this process can have; else nothing.
 std::optional<std::string> memory_problem(const Scene& scene);
 
 /// The same of runs that are all in memory at once, as the panes of a comparison.

@@ -1,4 +1,4 @@
-// What a run has come to: all that its next step depends on beside the scene in force.
+// The state of a run: everything that its next step depends on in addition to the scene.
 #pragma once
 
 #include <optional>
@@ -15,12 +15,13 @@
 
 namespace cloth {
 
-/// What entered the cloth since t = 0, in J; the loss left it.
+/// The energy that entered the cloth since t = 0, in J. Positive values are energy gained, except
+/// forces.damping_loss, which is energy lost.
 struct EnergyLedger {
   Work forces;
   double limiter = 0;
   double contact = 0;
-  double initial = 0;  ///< total energy at t = 0, moved by what edits added
+  double initial = 0;  ///< total energy at t = 0, plus what edits added
   double entered() const {
     return forces.air + forces.brush + forces.pull + limiter + contact - forces.damping_loss;
   }
@@ -29,13 +30,13 @@ struct EnergyLedger {
 struct RunState {
   ClothState state;
   EnergyLedger ledger;
-  double time_step = 0;   ///< s, in force since `first_step`, which began at `first_time`
+  double time_step = 0;   ///< s, used since `first_step`, which began at `first_time`
   double first_time = 0;  ///< s
   std::int64_t first_step = 0;
   AutomaticStep automatic;
   std::optional<BrushGust> brush;
   std::optional<Pull> pull;
-  bool was_brushed = false, was_pulled = false;  ///< the hand has acted: its column stays
+  bool was_brushed = false, was_pulled = false;  ///< since t = 0; the record then keeps the column
   StepCount count;
   LimiterReport last_limit;  ///< of the last step
   std::optional<RateBreach> rate_breach;
@@ -48,13 +49,13 @@ struct RunState {
   double hand_energy = 0;     ///< J, the most that the hand's spring has held so far
 };
 
-/// Enough to go on from here later, to the bit: the run's state, and what its stages remember. Later steps
-/// may only cost something else, where a method fills a cache again.
+/// What is needed to continue from here later with bitwise the same results: the run's state and the internal
+/// state of its stages. Only the cost of later steps may differ, where a method fills a cache again.
 struct Checkpoint : RunState {
   std::string method;  ///< that `memory` is of
   IntegratorMemory memory;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
-  std::vector<double> tension;       ///< N, of the limited springs, as the limiter holds them
+  std::vector<double> tension;       ///< N, of the limited springs
 
   std::size_t bytes() const;
 };

@@ -1,5 +1,5 @@
-// Steps taken in batches (Simulation::advance): of a frame, of a row, of all between two of them. Their
-// number follows the clock, so that whoever has to be asked between two batches waits for a moment at most.
+// Takes steps in batches (Simulation::advance). The size of a batch follows from measured time, so that
+// requests which are handled between two batches wait for some milliseconds at most.
 #pragma once
 
 #include <functional>
@@ -13,22 +13,22 @@ namespace cloth {
 class BatchSize {
  public:
   std::int64_t steps() const { return steps_; }
-  void note(std::int64_t steps, double seconds);  ///< that a batch of so many steps took
+  void note(std::int64_t steps, double seconds);  ///< records the time that a batch took
 
  private:
   std::int64_t steps_ = 1;
 };
 
-/// A run whose states are looked at only now and then, to the bit the same as by single steps. The simulation
-/// must outlive it.
+/// Runs a simulation whose states are read only now and then; bitwise the same as single steps. The
+/// simulation must outlive it.
 class StepBatches {
  public:
-  /// `stop` is asked after every batch; true ends it. Empty: nothing does.
+  /// `stop` is called after every batch; when it returns true the run ends. May be empty.
   StepBatches(Simulation& simulation, std::function<bool()> stop)
       : simulation_(simulation), stop_(std::move(stop)) {}
 
-  /// Until the simulation is at step `last`. False: it diverged, and its state is the bad one; or it was
-  /// stopped.
+  /// Runs until step `last`. Returns false where the simulation diverged (its state is the diverged one) or
+  /// was stopped.
   bool run_to(std::int64_t last);
 
   const std::optional<Divergence>& divergence() const { return divergence_; }

@@ -1,4 +1,4 @@
-// The step a scene is run with.
+// The time step of a run.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace cloth {
 
-/// "auto" stays at these parts of the method's limits: for the flat cloth, and for every shape of it.
+/// "auto" uses these fractions of the method's stability limits, for the flat cloth and for every shape of
+/// it.
 inline constexpr double auto_flat_fraction = 0.8, auto_guaranteed_fraction = 0.95;
 
 /// The scene's step in s, or the one that "auto" means: the largest one that divides the record interval
@@ -20,7 +21,7 @@ std::optional<double> resolved_time_step(const Scene& scene);
 /// `time_step` where it divides `interval` into whole steps; else the longest shorter one that does. s
 double step_dividing(double interval, double time_step);
 
-/// Why `auto` has no answer for this scene, in words.
+/// A message that says why "auto" finds no stable step for this scene.
 std::string no_stable_step_text(const Scene& scene);
 
 /// Steps between two rows of a recording: the interval in steps, rounded, at least 1.
@@ -29,7 +30,8 @@ std::int64_t steps_per_row(double record_interval, double time_step);
 /// Steps that cover `duration`, most_steps_of_run at most.
 std::int64_t steps_to_cover(double duration, double time_step);
 
-/// That the last step goes beyond the duration, in words, where it is no whole number of steps; else empty.
+/// A message where the duration is not a whole number of steps, so that the last step goes beyond it; else
+/// empty.
 std::string uneven_duration_text(double duration, double time_step);
 
 }  // namespace cloth

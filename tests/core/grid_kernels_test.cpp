@@ -7,6 +7,7 @@
 #include "cloth/grid.h"
 #include "integrators/registry.h"
 #include "kernels/grid_sweep.h"
+#include "kernels/instruction_set.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/reference.h"

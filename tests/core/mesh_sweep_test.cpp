@@ -12,6 +12,7 @@
 #include "cloth/grid.h"
 #include "cloth/mesh_order.h"
 #include "forces/springs.h"
+#include "kernels/instruction_set.h"
 #include "support/direct_run.h"
 #include "support/meshes.h"
 #include "support/reference.h"

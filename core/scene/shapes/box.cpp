@@ -39,14 +39,12 @@ class BoxShape final : public ObstacleShape {
 
   Fields<Obstacle> fields() const override {
     return {field(&Obstacle::center, place_info("center", "Centre", "Centre of the box.")),
-            field(&Obstacle::size, {.key = "size",
-                                    .label = "Size",
-                                    .unit = "m",
-                                    .doc = "Full lengths of the box along x, y and z.",
-                                    .minimum = 0,
-                                    .minimum_excluded = true,
-                                    .slider_minimum = 0.01,
-                                    .slider_maximum = 2})};
+            field(&Obstacle::size, positive({.key = "size",
+                                             .label = "Size",
+                                             .unit = "m",
+                                             .doc = "Full lengths of the box along x, y and z.",
+                                             .slider_minimum = 0.01,
+                                             .slider_maximum = 2}))};
   }
   Vec3& place(Obstacle& box) const override { return box.center; }
   void start(Obstacle& box, const Vec3& middle, double span) const override {

@@ -13,13 +13,11 @@ class SphereShape final : public ObstacleShape {
 
   Fields<Obstacle> fields() const override {
     return {field(&Obstacle::center, place_info("center", "Centre", "Centre of the sphere.")),
-            field(&Obstacle::radius, {.key = "radius",
-                                      .label = "Radius",
-                                      .unit = "m",
-                                      .doc = "Radius of the sphere.",
-                                      .minimum = 0,
-                                      .minimum_excluded = true,
-                                      .slider_minimum = 0.01})};
+            field(&Obstacle::radius, positive({.key = "radius",
+                                               .label = "Radius",
+                                               .unit = "m",
+                                               .doc = "Radius of the sphere.",
+                                               .slider_minimum = 0.01}))};
   }
   Vec3& place(Obstacle& sphere) const override { return sphere.center; }
   void start(Obstacle& sphere, const Vec3& middle, double span) const override {

@@ -260,35 +260,67 @@ void sum_squares_band(const Pass& pass) {
   }
 }
 
+/// The rows that the four stages read and write: rings of three for each stage's state, of seven for the
+/// sums.
+struct KuttaRows {
+  static constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * kutta_stages;
+  static constexpr int first_sum_row = first_ring_row + 3 * stage_ring * 2,
+                       first_air_row = first_sum_row + sum_ring * 2;
+  const Pass& pass;
+
+  Row stage(int stage, int row, int field) const {  // of stages 1, 2, 3
+    return scratch_row(pass, first_ring_row + ((stage - 1) * stage_ring + row % stage_ring) * 2 + field);
+  }
+  Row sum(int row, int field) const {
+    return scratch_row(pass, first_sum_row + (row % sum_ring) * 2 + field);
+  }
+  Row state(int row, int field) const {
+    return row_of(pass, field == 0 ? pass.position : pass.velocity, row);
+  }
+  ParticleRow particles(int s, int row) const {
+    if (s == 0) return {state(row, 0), state(row, 1)};
+    return {stage(s, row, 0), stage(s, row, 1)};
+  }
+
+  StageUpdate update(int s, int row) const {
+    const bool is_last = s + 1 == kutta_stages;
+    StageUpdate update{};
+    update.weight = Lanes::set(pass.step * kutta[s].weight);
+    update.ahead = Lanes::set(is_last ? 0 : pass.step * kutta[s + 1].node);
+    update.damping = Lanes::set(pass.damping);
+    update.is_last = is_last;
+    update.stage_velocity = s == 0 ? state(row, 1) : stage(s, row, 1);
+    update.inverse_mass = inverse_masses(pass, row);
+    update.sum_position = s == 0 ? state(row, 0) : sum(row, 0);
+    update.sum_velocity = s == 0 ? state(row, 1) : sum(row, 1);
+    update.next_sum_position = is_last ? state(row, 0) : sum(row, 0);
+    update.next_sum_velocity = is_last ? state(row, 1) : sum(row, 1);
+    update.state_position = state(row, 0);
+    update.state_velocity = state(row, 1);
+    if (!is_last) {
+      update.next_position = stage(s + 1, row, 0);
+      update.next_velocity = stage(s + 1, row, 1);
+    }
+    return update;
+  }
+};
+
 /// The four stages follow each other down the rows, two rows apart, so that what lies between them never
-/// leaves the cache: rings of three rows for each stage's state, of seven for the sums. Near the band's ends
-/// the first stages also do the rows of other bands that the later ones will need.
+/// leaves the cache. Near the band's ends the first stages also do the rows of other bands that the later
+/// ones will need.
 template <Law law>
 void runge_kutta_rows(const Pass& pass) {
   const Springs springs(pass);
-  const int rows = pass.grid.rows;
-  constexpr int stage_ring = 3, sum_ring = 7, first_ring_row = 2 * kutta_stages;
-  constexpr int first_sum_row = first_ring_row + 3 * stage_ring * 2,
-                first_air_row = first_sum_row + sum_ring * 2;
-  const auto stage_row = [&](int stage, int row, int field) {  // of stages 1, 2, 3
-    return scratch_row(pass, first_ring_row + ((stage - 1) * stage_ring + row % stage_ring) * 2 + field);
-  };
-  const auto sum_row = [&](int row, int field) {
-    return scratch_row(pass, first_sum_row + (row % sum_ring) * 2 + field);
-  };
-  const auto state_row = [&](int row, int field) {
-    return row_of(pass, field == 0 ? pass.position : pass.velocity, row);
-  };
-
+  const KuttaRows rows{pass};
   int start[kutta_stages], begin[kutta_stages], end[kutta_stages];  // rows that add, rows that are done
   for (int s = 0; s < kutta_stages; ++s) {
     const int reach = 2 * (kutta_stages - 1 - s);
     begin[s] = pass.first - reach < 0 ? 0 : pass.first - reach;
     start[s] = first_row_of_springs(begin[s]);
-    end[s] = pass.last + reach > rows ? rows : pass.last + reach;
+    end[s] = pass.last + reach > pass.grid.rows ? pass.grid.rows : pass.last + reach;
   }
   const auto chain = [&](int s) {
-    return RowChain<law>(pass, springs, {2 * s, first_air_row + 2 * s, s}, start[s]);
+    return RowChain<law>(pass, springs, {2 * s, KuttaRows::first_air_row + 2 * s, s}, start[s]);
   };
   RowChain<law> chains[kutta_stages] = {chain(0), chain(1), chain(2), chain(3)};
 
@@ -297,38 +329,9 @@ void runge_kutta_rows(const Pass& pass) {
       const int row = front - 2 * s;
       if (row < start[s] || row >= end[s]) continue;
       const bool own = row >= begin[s];
-      StageUpdate update{};
-      if (own) {
-        const bool is_last = s + 1 == kutta_stages;
-        update.weight = Lanes::set(pass.step * kutta[s].weight);
-        update.ahead = Lanes::set(is_last ? 0 : pass.step * kutta[s + 1].node);
-        update.damping = Lanes::set(pass.damping);
-        update.is_last = is_last;
-        update.stage_velocity = s == 0 ? state_row(row, 1) : stage_row(s, row, 1);
-        update.inverse_mass = inverse_masses(pass, row);
-        update.sum_position = s == 0 ? state_row(row, 0) : sum_row(row, 0);
-        update.sum_velocity = s == 0 ? state_row(row, 1) : sum_row(row, 1);
-        update.next_sum_position = is_last ? state_row(row, 0) : sum_row(row, 0);
-        update.next_sum_velocity = is_last ? state_row(row, 1) : sum_row(row, 1);
-        update.state_position = state_row(row, 0);
-        update.state_velocity = state_row(row, 1);
-        if (!is_last) {
-          update.next_position = stage_row(s + 1, row, 0);
-          update.next_velocity = stage_row(s + 1, row, 1);
-        }
-      }
-      const Powers powers = s == 0 ? chains[s].run(
-                                         row, begin[s],
-                                         [&](int r) {
-                                           return ParticleRow{state_row(r, 0), state_row(r, 1)};
-                                         },
-                                         update)
-                                   : chains[s].run(
-                                         row, begin[s],
-                                         [&](int r) {
-                                           return ParticleRow{stage_row(s, r, 0), stage_row(s, r, 1)};
-                                         },
-                                         update);
+      StageUpdate update = own ? rows.update(s, row) : StageUpdate{};
+      const Powers powers = chains[s].run(
+          row, begin[s], [&](int r) { return rows.particles(s, r); }, update);
       if (!own) continue;
       store_sum(pass, stage_squares + s, row, update.squares);
       if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, powers.dampers);

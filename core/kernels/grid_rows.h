@@ -78,6 +78,14 @@ CLOTHLAB_INLINE Particles particles_at(const ParticleRow& row, int j, int count,
   return {x, load(row.velocity, j, count, otherwise.velocity)};
 }
 
+/// What springs of the rows above do to the block below.
+template <bool Full, bool Edge>
+CLOTHLAB_INLINE Vector force_below(const RowWork& work, int j, int count) {
+  if (Full || (work.has_below && work.uses_b)) return load(work.b, j);
+  if (work.has_below) return initial<Edge>(work.load_below, work.weight, j, count);
+  return {Lanes::zero(), Lanes::zero(), Lanes::zero()};
+}
+
 /// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so
 /// in all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may
 /// lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no
@@ -92,13 +100,8 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
     return particles_at<law>(row, j + columns);
   };
   const Vector nothing{Lanes::zero(), Lanes::zero(), Lanes::zero()};
-  const bool has_below = Full || work.has_below;
   Vector force = load(work.a, j);
-  Vector below_force = nothing;
-  if (Full || (has_below && work.uses_b))
-    below_force = load(work.b, j);
-  else if (has_below)
-    below_force = initial<Edge>(work.load_below, work.weight, j, count);
+  Vector below_force = force_below<Full, Edge>(work, j, count);
   Vector one = nothing, two = nothing, one_below = nothing;  // what moves on to later columns
   Vector d;
 
@@ -141,7 +144,7 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
   }
   if (has(right_one | antidiagonal)) force = force + moved_one(carry.one, one);
   if (has(right_two)) force = force - moved_two(carry.two, two);
-  if (has_below) store(work.a, j, below_force);
+  if (Full || work.has_below) store(work.a, j, below_force);
   carry = {one, two, one_below};
   return force;
 }

@@ -17,10 +17,6 @@ namespace cloth {
 struct SymmetricBlock {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
-  SymmetricBlock& operator+=(const SymmetricBlock& other) {
-    xx += other.xx, xy += other.xy, xz += other.xz, yy += other.yy, yz += other.yz, zz += other.zz;
-    return *this;
-  }
   Vec3 operator*(const Vec3& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};

@@ -88,10 +88,6 @@ double Spectrum::largest_frequency() const {
   return std::sqrt(std::max(0.0, largest));
 }
 
-double Spectrum::buckling_rate() const {
-  return std::sqrt(std::max(0.0, -smallest));
-}
-
 Spectrum measure_spectrum(const ClothSystem& system, const Vec3Field& position, const LanczosLimits& limits) {
   constexpr double exhausted = 1e-12;  // a coupling this small, relative: the vectors span all there is
   const ScaledStiffness stiffness(system, position);

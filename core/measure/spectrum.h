@@ -17,7 +17,6 @@ struct Spectrum {
   int iterations = 0;
 
   double largest_frequency() const;  ///< omega_max in 1/s
-  double buckling_rate() const;      ///< 1/s; 0 if nothing buckles
 };
 
 /// The extreme Ritz values of a Lanczos iteration and their residuals: eigenvalues of the tridiagonal matrix

@@ -17,6 +17,7 @@
 #include "bench/speed/speed_scenes.h"
 #include "cloth/grid.h"
 #include "cloth/mesh_order.h"
+#include "kernels/instruction_set.h"
 #include "kernels/mesh_sweep.h"
 #include "support/meshes.h"
 

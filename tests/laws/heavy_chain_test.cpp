@@ -6,6 +6,7 @@
 #include <map>
 
 #include "integrators/xpbd.h"
+#include "scene/scene.h"
 #include "support/states.h"
 
 namespace cloth::test::heavy_chain_test {

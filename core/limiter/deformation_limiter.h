@@ -26,7 +26,7 @@ class DeformationLimiter {
  public:
   /// Every sweep but the first takes this many times the excess. The nearer to 2, the fewer the sweeps; but
   /// over-correction becomes velocity, and from 1.8 on the motion is chaotic: a scene and the same scene
-  /// rotated diverge from each other (tests/laws/invariance_test.cpp).
+  /// rotated diverge from each other (tests/laws/motion/invariance_test.cpp).
   static constexpr double over_relaxation = 1.5;
 
   /// `unreachable`: the pins make the rate unreachable, which saves the direct solver the attempt.

@@ -1,4 +1,5 @@
-// Rules of the sources that a compiler does not hold: functions stay short enough to be read at one sight.
+// Rules that a compiler does not hold: functions stay short enough to be read at one sight, and the
+// documentation names files that there are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,6 +82,22 @@ TEST(Functions, HaveFewerThanSixtyLines) {
       }
     }
   EXPECT_GT(seen, 3000u);
+}
+
+TEST(Documentation, NamesSourcesThatThereAre) {
+  static const std::regex path("\\b(core|app|ui|tests)/[a-z_/]+\\.(h|cpp)\\b");
+  const fs::path root = CLOTHLAB_SOURCE_DIR;
+  std::size_t seen = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
+    if (entry.path().extension() != ".md") continue;
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);)
+      for (std::sregex_iterator it(line.begin(), line.end(), path), end; it != end; ++it) {
+        ++seen;
+        EXPECT_TRUE(fs::exists(root / it->str())) << entry.path() << " names " << it->str();
+      }
+  }
+  EXPECT_GT(seen, 50u);
 }
 
 TEST(Functions, AreFoundWithTheirLengths) {

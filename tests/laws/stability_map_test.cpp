@@ -9,6 +9,7 @@
 #include "io/csv.h"
 #include "scene/builtin_scenes.h"
 #include "study/stability_report.h"
+#include "study/study_folder.h"
 #include "support/scenes.h"
 
 namespace cloth::test::stability_map_test {

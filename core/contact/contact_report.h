@@ -30,7 +30,8 @@ struct ContactReport {
   int rounds = 0;         ///< of continuous contact
   std::size_t pairs = 0;  ///< pairs of near features in the last round
   std::optional<Pinch> pinch;
-  bool exhausted = false;    ///< the bound on the work of a step was reached; treated like a pinch
+  bool exhausted =
+      false;  ///< the limit of pairs and particles over a step's rounds was reached; treated like a pinch
   bool interrupted = false;  ///< the stop test ended it: the positions are not usable
 };
 
@@ -44,8 +45,8 @@ struct ContactMemory {
   /// Of each particle: whether contact acted on it at the end of the step without restitution. In the next
   /// step its approach is then load, not an impact.
   std::vector<std::uint8_t> held;
-  /// J, of each particle: kinetic energy that the impulse at the end of the step has taken and the impulse at
-  /// the beginning of the next step returns. Only for Verlet's method.
+  /// J, of each particle: Verlet's method takes this kinetic energy with the impulse at the end of a step and
+  /// returns it with the impulse at the beginning of the next step.
   std::vector<double> deferred;
 
   void resize(std::size_t particles) {

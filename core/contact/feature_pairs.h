@@ -11,9 +11,9 @@
 
 namespace cloth {
 
-/// The cloth's feature is named first. Spheres pair with faces and planes with vertices, each as a whole; a
-/// box pairs with vertices as a solid, with edges by its edges and with faces by its corners; a mesh and the
-/// cloth itself by their features.
+/// The cloth's feature is named first. The pairs of each kind of body: sphere: face_sphere; plane:
+/// vertex_plane; box: vertex_box (the solid), edge_edge (its edges) and face_vertex (its corners); mesh and
+/// the cloth itself: vertex_face, edge_edge and face_vertex.
 enum class PairKind : std::uint8_t {
   vertex_plane,
   vertex_box,
@@ -29,7 +29,7 @@ struct FeaturePair {
   int obstacle = cloth_itself;
   PairKind kind = PairKind::vertex_plane;
   int feature = 0;  ///< vertex, edge or face of the cloth, as `kind` says
-  int foreign = 0;  ///< of the obstacle's mesh or box, or of the cloth itself
+  int foreign = 0;  ///< feature of the obstacle's mesh or box, or the second one of the cloth itself
   auto operator<=>(const FeaturePair&) const = default;
 };
 

@@ -2,10 +2,10 @@
 //
 //     f(x, v, t) = p(x, t) - D(x) v        p: position force, D: symmetric, positive semi-definite
 //
-// so a force is written once as p, D, its energy and its power, and each integrator decides how it treats D
-// v. Wind is in p, drag in D (forces/air.h). Verlet, for example, takes D v implicitly at the end of a step
-// (integrators/verlet.h). Forces are made from a scene by forces/registry.h and summed by ForceModel
-// (forces/force_model.h).
+// so a force is written once as p, D, its energy and its power, and each integrator decides how it treats
+// D v. Of the air's force (forces/air.h) the wind's part is in p, the resistance to the particle's own
+// velocity in D. Verlet, for example, takes D v implicitly at the end of a step (integrators/verlet.h).
+// Forces are made from a scene by forces/registry.h and summed by ForceModel (forces/force_model.h).
 #pragma once
 
 #include <optional>

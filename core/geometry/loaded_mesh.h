@@ -1,4 +1,4 @@
-// A triangle mesh that came from a file, with what follows from it however it is placed.
+// A triangle mesh that came from a file, with derived data that does not depend on its placement.
 #pragma once
 
 #include <array>
@@ -11,20 +11,21 @@
 
 namespace cloth {
 
-/// A mesh as it came from its file, each vertex once; what is constant however it is placed.
+/// A mesh as it came from its file, each vertex once.
 struct LoadedMesh {
-  std::string file;  ///< as it was asked for
+  std::string file;  ///< as requested
   bool built_in = false;
-  TriangleMesh surface;                    ///< m
-  std::vector<std::array<int, 2>> edges;   ///< each once, lower vertex first, ascending
-  std::vector<std::array<int, 2>> hinges;  ///< the vertices opposite an edge of two triangles, likewise
-  Eigen::AlignedBox3d bounds;              ///< m, of the vertices
-  std::string hash;                        ///< of vertices and triangles, 16 hexadecimal digits
-  std::size_t open_edges = 0;              ///< of one triangle only: a border
-  std::vector<std::string> notices;        ///< what else is unusual about it, a sentence each
+  TriangleMesh surface;                   ///< m
+  std::vector<std::array<int, 2>> edges;  ///< each once, lower vertex first, ascending
+  /// The vertices opposite an edge of two triangles, each pair once, ascending.
+  std::vector<std::array<int, 2>> hinges;
+  Eigen::AlignedBox3d bounds;        ///< m, of the vertices
+  std::string hash;                  ///< of vertices and triangles, 16 hexadecimal digits
+  std::size_t open_edges = 0;        ///< boundary edges, of one triangle only
+  std::vector<std::string> notices;  ///< other warnings, one sentence each
 };
 
-/// A mesh that was chosen: a file, and what was in it when it was read. Two are the same if both are.
+/// A mesh that was chosen: a file, and its contents when it was read. Two are equal if file and contents are.
 struct MeshChoice {
   std::string file;                          ///< relative to the scene's folder, or a built-in mesh; "": none
   std::shared_ptr<const LoadedMesh> loaded;  ///< of `file`, once it has been read (scene/scene_mesh.h)

@@ -11,8 +11,8 @@ namespace cloth {
 /// normal where the two differ by more than 40 degrees, so that edges stay sharp.
 std::vector<Vec3> corner_normals(const TriangleMesh& mesh);
 
-/// Coordinates of every vertex, in m, in the plane that fits the triangles best, measured from the smallest
-/// of each. A closed surface is projected along its shortest extent.
+/// Coordinates of every vertex, in m, in the plane that fits the triangles best, with the minimum of
+/// each coordinate as origin. A closed surface is projected along its shortest extent.
 struct FlatPattern {
   std::vector<Eigen::Vector2d> at;
   Eigen::Vector2d size{0, 0};  ///< m

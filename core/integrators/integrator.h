@@ -66,8 +66,8 @@ class DriftConstraint {
   /// Adds that part again, to a velocity that is recomputed from that of the drift.
   virtual void close(ClothState& state) = 0;
   /// The changes of velocity in m/s in the last step: by before_kick() and after_drift(), and by the closing
-  /// kick. Null: none. The work of the constraint is computed as if the first came before all forces and the
-  /// second after.
+  /// kick. Null: none. The work of the constraint is computed as if the opening change
+  /// acted before all forces of the step and the closing change after them.
   virtual const Vec3Field* opening_change() const = 0;
   virtual const Vec3Field* closing_change() const = 0;
 };
@@ -81,7 +81,8 @@ class Integrator {
   virtual IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                 Work& work) = 0;
 
-  /// Whether several steps in one call cost less than single steps, where nobody needs the states in between.
+  /// Whether several steps in one call cost less than single steps, where the states in between are not
+  /// needed.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }
   /// Takes as many steps of length `step` (s) as there are `speed_squares`, with bitwise the same result as
   /// single steps. Fills in each step's sum of |v|^2 and returns the report of one step. Precondition:

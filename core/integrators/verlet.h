@@ -8,7 +8,8 @@
 // The accelerations hold every force of the scene, a = (p - D v) / m (forces/force.h). Air drag enters twice:
 // in the opening kick with the velocity v at t, and in the closing kick, where its D (AirForce in
 // forces/air.cpp) is part of the linear system that VelocitySolver solves for v'. Wind is part of p at both
-// times.
+// times. After continuous contact has moved the positions, the closing kick is repeated at the new ones:
+// follow_positions() and follow_velocities(), which contact/velocity_response.cpp calls.
 //
 // A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
 // v_half.
@@ -43,7 +44,7 @@ class Verlet : public Integrator {
   virtual void evaluate(ForceModel& forces, const ClothState& state);
 
   Work power_;                         ///< at the end of the last step
-  bool holds_position_force_ = false;  ///< the force model stands at the state's position and time
+  bool holds_position_force_ = false;  ///< the force model was last updated at the state
 
  private:
   void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
@@ -54,8 +55,8 @@ class Verlet : public Integrator {
   DriftConstraint* constraint_ = nullptr;
   Vec3Field force_;                              ///< p - D v, N; used only where has_damping()
   Vec3Field opening_damping_, closing_damping_;  ///< -D v in the two kicks, N; used only with a constraint
-  double closing_correction_ = 0;                ///< J, of the last step
-  bool holds_force_ = false;                     ///< `force_` and `power_` are those at the state
+  double closing_correction_ = 0;  ///< J, of the constraint's part of the damping loss, last step
+  bool holds_force_ = false;       ///< `force_` and `power_` are those at the state
   VelocitySolver solver_;
 };
 

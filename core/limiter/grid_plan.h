@@ -1,4 +1,4 @@
-// The limited springs of a grid as families of one direction each, in arrays with padding on every side, so
+// The limited springs of a grid grouped by direction, in arrays with padding on every side, so
 // that loops over springs need no boundary cases.
 #pragma once
 
@@ -22,7 +22,7 @@ struct GridFamily {
 struct GridPlan {
   int rows = 0, columns = 0;
   int reach = 0;   ///< rows and columns of padding on every side
-  int stride = 0;  ///< numbers in a row, padding included
+  int stride = 0;  ///< array elements per row, padding included
   std::vector<GridFamily> families;
 
   std::ptrdiff_t index(int row, int column) const {
@@ -36,7 +36,8 @@ struct GridPlan {
   }
 };
 
-/// None unless these are complete directions of a grid of at least five rows and columns.
+/// Empty unless the springs contain every spring of each of their directions, on a grid of at least five rows
+/// and columns.
 std::optional<GridPlan> plan_grid(const std::vector<TensionSpring>& springs, const ClothSystem& system);
 
 }  // namespace cloth

@@ -1,5 +1,5 @@
 // The nearest shape that satisfies the deformation rate. The shapes x with |x_j - x_i| <= (1 + rate) L for
-// every limited spring form a convex set, so that one of them is nearest to a given x0:
+// every limited spring form a convex set, so that the one nearest to a given x0 is unique:
 //
 //     minimise 1/2 sum w_i |x_i - x0_i|^2 + rho/2 sum e_s^2   where   |x_j - x_i| - (1 + rate) L_s <= e_s,
 //
@@ -17,9 +17,9 @@
 namespace cloth {
 
 struct NearestShapeReport {
-  int iterations = 0;      ///< one factorisation each
-  double excess = 0;       ///< largest (|d| - limit)/rest length that is left, 0 if none is over
-  bool converged = false;  ///< the conditions of a minimum hold; with unreachable pins beside an excess
+  int iterations = 0;  ///< one factorisation each
+  double excess = 0;   ///< largest (|d| - limit)/rest length that is left; 0 if no spring exceeds its limit
+  bool converged = false;  ///< the conditions of a minimum hold; with unreachable pins an excess remains
 };
 
 class NearestShape {

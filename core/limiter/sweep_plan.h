@@ -16,16 +16,17 @@ struct SpringBatch {
   FreeEnds ends = FreeEnds::both;
   double limit = 0;        ///< m, (1 + rate) times the rest length
   double rest_length = 0;  ///< m
-  int low = 0, high = 0;   ///< rows of particles that the springs end in, from `low` to `high`
+  int low = 0, high = 0;   ///< first and last row of particles that the springs touch
 };
 
-/// The runs in their order, divided at the ends of rows and where the free ends change; every piece has a
-/// stride of 1. Springs between two pins are left out, because the limiter cannot change them.
+/// The runs of springs (cloth/spring_runs.h) in their order, divided into pieces at the ends of rows and
+/// where FreeEnds changes; the springs of a piece are consecutive. Springs between two pins are left out,
+/// because the limiter cannot change them.
 std::vector<SpringBatch> pieces_of(const ClothSystem& system, const std::vector<SpringRun>& runs,
                                    double rate);
 
 /// The pieces divided into independent springs: those between neighbours into even and odd ones, longer ones
-/// into stretches no longer than their offset, which on a grid are whole rows.
+/// into index ranges of at most their offset, which on a grid are whole rows.
 std::vector<SpringBatch> batches_of(const std::vector<SpringBatch>& pieces, int columns);
 
 /// Row by row of the first particle, so that a row's particles are in the cache for all its springs.

@@ -1,6 +1,7 @@
 // The deformation rate by tensions, a complementarity problem: every limited spring may have a tension t >= 0
 // (N) that pulls its ends together, and t > 0 only at its limit, |d| = (1 + rate) L. Positions move by h^2 W
-// J^T t, the effect of the tensions within one step h. Tensions are kept from step to step (warm start): a
+// J^T t, the effect of the tensions within one step h, where W holds the inverse masses and the rows of J the
+// springs' directions at their two ends. Tensions are kept from step to step (warm start): a
 // step begins with the held tensions as forces, and only their changes are solved for.
 //
 //     std::vector<double> tension(solver.springs().size(), 0.0);
@@ -30,11 +31,11 @@ struct TensionReport {
   int rounds = 0;
   int line_sweeps = 0;
   int cg_iterations = 0;
-  int factorisations = 0;  ///< of the interior point method, where rounds did not end
-  double excess = 0;       ///< largest (|d| - (1 + rate) L)/L that is left, 0 if none is over
+  int factorisations = 0;  ///< of the interior point method, where rounds did not converge
+  double excess = 0;       ///< largest (|d| - (1 + rate) L)/L that is left; 0 if no spring exceeds its limit
   double slack = 0;        ///< largest ((1 + rate) L - |d|)/L of a spring that has a tension
-  /// Excess and slack are within the tolerance; where the rate is known to be unreachable, those of soft
-  /// springs are, and an excess is left.
+  /// Excess and slack are within the tolerance. Where the pins make the rate unreachable, limits are replaced
+  /// by stiff springs (soft constraints); their equations are solved then, and an excess remains.
   bool converged = false;
 };
 
@@ -42,7 +43,7 @@ class TensionSolver {
  public:
   /// `unreachable`: the pins make the rate unreachable, so that springs are soft.
   TensionSolver(const Deformation& deformation, const ClothSystem& system, bool unreachable = false);
-  /// In the order of the system's springs. So are tensions.
+  /// In the order of the system's springs; tensions have the same order.
   const std::vector<TensionSpring>& springs() const { return springs_; }
 
   /// Moves positions and changes tensions (N; in: held, out: solved) until excess and slack are within the
@@ -53,7 +54,7 @@ class TensionSolver {
 
   double shortest() const { return shortest_; }  ///< m, rest length
 
-  /// The largest (|d| - (1 + rate) L)/L of a limited spring, 0 if none is over.
+  /// The largest (|d| - (1 + rate) L)/L of a limited spring; 0 if none exceeds its limit.
   double excess(const Vec3Field& position) const { return largest_excess(springs_, position); }
 
   /// force += J^T tension, N: each tension pulls its ends together.
@@ -76,7 +77,7 @@ class TensionSolver {
   Deformation deformation_;
   const TensionKernels* kernels_;
   std::vector<TensionSpring> springs_;
-  std::vector<double> hold_;  ///< N s^2, of each spring: h^2 times the most that is held
+  std::vector<double> hold_;  ///< N s^2, of each spring: h^2 times the largest held tension
   std::optional<GridPlan> grid_;
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for

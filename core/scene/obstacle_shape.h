@@ -14,10 +14,10 @@
 
 namespace cloth {
 
-/// As what contact and the view meet an obstacle. Three have closed forms, by the obstacle's members: a half
-/// space by point and normal, a ball by center and radius, a box by center and size. A surface is any other
-/// shape: triangles without a thickness of their own, met by vertices, edges and faces under continuous
-/// contact.
+/// The kind of body that contact and the view treat an obstacle as. Three have closed forms, by the
+/// obstacle's members: a half space by point and normal, a ball by center and radius, a box by center and
+/// size. A surface is any other shape: triangles without a thickness of their own, whose vertices, edges and
+/// faces continuous contact pairs with those of the cloth.
 enum class BodyKind { half_space, ball, box, surface };
 
 struct ShapeFacts {
@@ -56,7 +56,7 @@ class ObstacleShape : public ShapeFacts {
   /// Fills in a new obstacle for a cloth with this middle and this largest length, in m.
   virtual void start(Obstacle& obstacle, const Vec3& middle, double span) const = 0;
 
-  /// m, where the scene describes it, before any motion; empty: without end, or not read.
+  /// m, where the scene describes it, before any motion; empty: unbounded, or not read.
   virtual Eigen::AlignedBox3d bounds(const Obstacle& obstacle) const = 0;
 
   /// The same in a pose.

@@ -1,4 +1,4 @@
-// How a step or a run ended. Bad numerics are data.
+// How a step or a run ended. Divergence is a reported result, not an error.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,17 @@ struct Divergence {
   bool on_grid = true;  ///< a mesh has no rows and columns
   int row = 0, column = 0;
   std::string cause;     ///< "position is not finite", ...
-  double time_step = 0;  ///< s, as run
-  double stable_step =
-      0;  ///< s, the method's limit in every shape; 0 if there is none, infinity if any will do
+  double time_step = 0;  ///< s, used in the run
+  /// s, the largest step that is stable for every shape of the cloth; 0: none is, infinity: all are.
+  double stable_step = 0;
   bool solver_failed = false;  ///< the equations of the step could not be solved: no divergence
-  bool pinched = false;        ///< an obstacle met cloth that cannot give way: no divergence
+  bool pinched = false;        ///< an obstacle pressed on cloth that cannot move away: no divergence
 };
 
-/// A shorter step that came in force by itself.
+/// An automatic reduction of the time step.
 struct StepChange {
-  std::int64_t step = 0;  ///< after which
-  double time = 0;        ///< s, then
+  std::int64_t step = 0;  ///< the last one before the change
+  double time = 0;        ///< s, of the change
   double time_step = 0;   ///< s
   bool operator==(const StepChange&) const = default;
 };
@@ -50,18 +50,18 @@ std::string describe(const Divergence& divergence);
 /// One sentence: how often and where the step became shorter. Empty: never.
 std::string describe(const std::vector<StepChange>& changes);
 
-/// Where springs were left beyond the deformation rate and its tolerance. The run goes on, but it is not the
-/// run that the scene asks for.
+/// Where springs were left beyond the deformation rate and its tolerance. The run goes on, but its result
+/// violates the scene's deformation rate.
 struct RateBreach {
-  std::int64_t steps = 0;                       ///< in which that was so
-  std::int64_t first_step = 0;                  ///< the first of them
+  std::int64_t steps = 0;                       ///< in which the rate was exceeded
+  std::int64_t first_step = 0;                  ///< the first of those
   double first_time = 0;                        ///< s, at its end
-  int first_particle = 0, second_particle = 0;  ///< ends of the spring that was furthest beyond then
+  int first_particle = 0, second_particle = 0;  ///< ends of the spring with the largest excess in that step
   double first_excess = 0;                      ///< (|d| - (1 + rate) L)/L of that spring
-  std::int64_t largest_step = 0;                ///< where it was worst
+  std::int64_t largest_step = 0;                ///< the step with the largest excess
   double largest_excess = 0;
-  bool unreachable = false;  ///< in the first of them the pins were too far apart
-  bool by_contact = false;   ///< in the first of them contact stretched what the limiter had limited
+  bool unreachable = false;  ///< in `first_step` the pins were too far apart
+  bool by_contact = false;   ///< in `first_step` contact stretched springs after the limiter
   int columns = 0;           ///< of the grid; 0 for a mesh
   bool operator==(const RateBreach&) const = default;
 };

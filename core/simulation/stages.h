@@ -1,7 +1,7 @@
 // Lists the stages of a step for a scene, with those that are left out and why: what `clothlab-cli explain`
 // prints. Forces come first, then the integrator with its force evaluations per step, limiter and contact.
-// The cost of contact depends on its kind; see contact/contact_stage.h. `clothlab-bench` measures both
-// (docs/performance.md): a step with a sphere is one of its cases.
+// The cost of contact depends on its kind; see contact/contact_stage.h. `clothlab-bench` measures a step
+// of each kind, with a sphere too (docs/performance.md).
 #pragma once
 
 #include <vector>

@@ -19,7 +19,7 @@ class BatchSize {
   std::int64_t steps_ = 1;
 };
 
-/// Runs a simulation whose states are read only now and then; bitwise the same as single steps. The
+/// Runs a simulation whose states are read only occasionally; bitwise the same as single steps. The
 /// simulation must outlive it.
 class StepBatches {
  public:
@@ -32,7 +32,7 @@ class StepBatches {
   bool run_to(std::int64_t last);
 
   const std::optional<Divergence>& divergence() const { return divergence_; }
-  double seconds() const { return seconds_; }  ///< of wall time, of stepping alone
+  double seconds() const { return seconds_; }  ///< wall time spent in steps only
 
  private:
   Simulation& simulation_;
@@ -42,7 +42,7 @@ class StepBatches {
   double seconds_ = 0;
 };
 
-/// Threads that may work at once on this machine; at least 1.
+/// Hardware threads of this machine; at least 1.
 int machine_threads();
 
 /// Steps of `time_step` (s) until `time` has passed `end`; at least 1.

@@ -4,25 +4,27 @@
 
 #include <cstddef>
 
+#include "kernels/kernel_table.h"
+
 namespace cloth::kernels {
 namespace {
 
 template <class Number>
-[[gnu::always_inline]] inline Number larger(Number a, Number b) {
+CLOTHLAB_INLINE Number larger(Number a, Number b) {
   return a > b ? a : b;
 }
 template <class Number>
-[[gnu::always_inline]] inline Number smaller(Number a, Number b) {
+CLOTHLAB_INLINE Number smaller(Number a, Number b) {
   return a < b ? a : b;
 }
 template <class Number>
-[[gnu::always_inline]] inline Number size_of(Number a) {
+CLOTHLAB_INLINE Number size_of(Number a) {
   return a > 0 ? a : -a;
 }
 
 /// Visits k = 0 .. count in blocks of `parts`, telling each which part of a sum it belongs to.
 template <int parts, class Count, class Visit>
-[[gnu::always_inline]] inline void in_parts(Count count, Visit visit) {
+CLOTHLAB_INLINE void in_parts(Count count, Visit visit) {
   Count k = 0;
   for (; k + parts <= count; k += parts)
 #pragma GCC ivdep
@@ -31,11 +33,11 @@ template <int parts, class Count, class Visit>
 }
 
 /// The parts added pairwise, as ordered_sum() of cloth/sums.h does.
-[[gnu::always_inline]] inline double pairwise_sum(const double (&part)[8]) {
+CLOTHLAB_INLINE double pairwise_sum(const double (&part)[8]) {
   return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
 }
 
-[[gnu::always_inline]] inline double dot_product(const double* a, const double* b, std::size_t count) {
+CLOTHLAB_INLINE double dot_product(const double* a, const double* b, std::size_t count) {
   double sum[8] = {};
   in_parts<8>(count, [&](std::size_t k, int part) { sum[part] += a[k] * b[k]; });
   return pairwise_sum(sum);

@@ -23,6 +23,9 @@
   static const Kernels& avx2();        \
   static const Kernels& avx512();
 
+/// Of every function that a kernel's loop calls.
+#define CLOTHLAB_INLINE [[gnu::always_inline]] inline
+
 namespace cloth::kernels {
 
 /// Doubles in a register of the instruction set that this file is compiled for.

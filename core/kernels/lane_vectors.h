@@ -2,8 +2,6 @@
 // for every instruction set, after its Lanes; everything here has internal linkage.
 #pragma once
 
-#define CLOTHLAB_INLINE [[gnu::always_inline]] inline
-
 namespace cloth::kernels {
 namespace {
 

@@ -11,7 +11,7 @@ namespace {
 
 /// 1/sqrt(a) for a >= 0, large but finite for 0: Newton's iteration from a guess that is linear in the
 /// exponent (Lomont 2003), faster than a root and a division.
-[[gnu::always_inline]] inline double inverse_root(double a) {
+CLOTHLAB_INLINE double inverse_root(double a) {
   const auto bits = __builtin_bit_cast(std::uint64_t, a);
   double y = __builtin_bit_cast(double, std::uint64_t{0x5FE6EB50C7B537A9} - (bits >> 1));
   const double half = 0.5 * a;
@@ -20,7 +20,7 @@ namespace {
   y = y * (1.5 - half * y * y);
   return y * (1.5 - half * y * y);
 }
-[[gnu::always_inline]] inline float inverse_root(float a) {
+CLOTHLAB_INLINE float inverse_root(float a) {
   const auto bits = __builtin_bit_cast(std::uint32_t, a);
   float y = __builtin_bit_cast(float, std::uint32_t{0x5F375A86} - (bits >> 1));
   const float half = 0.5f * a;
@@ -44,8 +44,8 @@ inline EquationRule equation_rule(const SpringRule& rule) {
   return {1 / (rule.limit * rule.limit), 1 / rule.limit, static_cast<float>(rule.limit),
           static_cast<float>(rule.softness)};
 }
-[[gnu::always_inline]] inline Equation equation_of(const EquationRule& rule, double dx, double dy, double dz,
-                                                   double t, float both) {
+CLOTHLAB_INLINE Equation equation_of(const EquationRule& rule, double dx, double dy, double dz, double t,
+                                     float both) {
   const double q = (dx * dx + dy * dy + dz * dz) * rule.per_square;
   const float ratio = static_cast<float>(q), inverse = inverse_root(ratio);
   const float beyond = static_cast<float>(q - 1);

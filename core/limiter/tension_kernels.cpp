@@ -65,9 +65,9 @@ void clear_lanes(const LineScratch& s, std::ptrdiff_t row, int begin, int end) {
 }
 
 /// One row of the forward elimination.
-[[gnu::always_inline]] inline void eliminate_lines(const LineBlock& block, const EquationRule& rule,
-                                                   float share, std::ptrdiff_t i, LaneRange lanes,
-                                                   std::ptrdiff_t row, const LineScratch& scratch) {
+CLOTHLAB_INLINE void eliminate_lines(const LineBlock& block, const EquationRule& rule, float share,
+                                     std::ptrdiff_t i, LaneRange lanes, std::ptrdiff_t row,
+                                     const LineScratch& scratch) {
   const double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i;
   const double *w = block.nodes.weight + i, *t = block.tension + i;
   const std::ptrdiff_t e = block.step, back = -block.lanes;
@@ -89,8 +89,8 @@ void clear_lanes(const LineScratch& s, std::ptrdiff_t row, int begin, int end) {
 }
 
 /// One row of the back substitution. Earlier springs of a line see the clipped tensions of later ones.
-[[gnu::always_inline]] inline void substitute_lines(const LineBlock& block, std::ptrdiff_t i, LaneRange lanes,
-                                                    std::ptrdiff_t row, const LineScratch& scratch) {
+CLOTHLAB_INLINE void substitute_lines(const LineBlock& block, std::ptrdiff_t i, LaneRange lanes,
+                                      std::ptrdiff_t row, const LineScratch& scratch) {
   double *x = block.nodes.x + i, *y = block.nodes.y + i, *z = block.nodes.z + i, *t = block.tension + i;
   const double* w = block.nodes.weight + i;
   const std::ptrdiff_t e = block.step, next = block.lanes;

@@ -5,8 +5,6 @@
 namespace cloth {
 namespace {
 
-#define CLOTH_INLINE inline __attribute__((always_inline))
-
 /// `lanes` neighbouring rows of a column.
 template <int lanes>
 struct Pack {
@@ -19,8 +17,8 @@ constexpr int tile_columns = 6;  // 12 sums, 2 packs of rows and a factor: the 1
 /// c(0..rows, 0..columns) -= a(0..rows, :) b(0..columns, :)^T with rows = packs * lanes: the sums stay in
 /// registers.
 template <int lanes, int packs, int columns>
-CLOTH_INLINE void subtract_tile(double* c, std::size_t c_stride, const double* a, const double* b,
-                                std::size_t stride, int depth) {
+CLOTHLAB_INLINE void subtract_tile(double* c, std::size_t c_stride, const double* a, const double* b,
+                                   std::size_t stride, int depth) {
   using Vector = typename Pack<lanes>::Vector;
   Vector sum[columns][packs] = {};
   for (int p = 0; p < depth; ++p, a += stride, b += stride) {
@@ -34,8 +32,8 @@ CLOTH_INLINE void subtract_tile(double* c, std::size_t c_stride, const double* a
 }
 
 template <int lanes, int columns>
-CLOTH_INLINE void subtract_strip(double* c, std::size_t c_stride, const double* a, const double* b,
-                                 std::size_t stride, int rows, int depth) {
+CLOTHLAB_INLINE void subtract_strip(double* c, std::size_t c_stride, const double* a, const double* b,
+                                    std::size_t stride, int rows, int depth) {
   int i = 0;
   for (; i + 2 * lanes <= rows; i += 2 * lanes)
     subtract_tile<lanes, 2, columns>(c + i, c_stride, a + i, b, stride, depth);
@@ -49,8 +47,8 @@ CLOTH_INLINE void subtract_strip(double* c, std::size_t c_stride, const double* 
 }
 
 template <int lanes>
-CLOTH_INLINE void subtract_product(double* c, std::size_t c_stride, const double* a, const double* b,
-                                   std::size_t stride, int rows, int columns, int depth) {
+CLOTHLAB_INLINE void subtract_product(double* c, std::size_t c_stride, const double* a, const double* b,
+                                      std::size_t stride, int rows, int columns, int depth) {
   if (columns == tile_columns)
     subtract_strip<lanes, tile_columns>(c, c_stride, a, b, stride, rows, depth);
   else if (columns == 3)
@@ -100,16 +98,16 @@ void subtract_square(DenseBlock update, DenseBlock a, int size, int width) {
   }
 }
 
-CLOTH_INLINE void add_product(double& to, double factor, double from) {
+CLOTHLAB_INLINE void add_product(double& to, double factor, double from) {
   to += factor * from;
 }
-CLOTH_INLINE void add_product(Quad& to, double factor, const Quad& from) {
+CLOTHLAB_INLINE void add_product(Quad& to, double factor, const Quad& from) {
   for (int n = 0; n < 4; ++n) to.of[n] += factor * from.of[n];
 }
-CLOTH_INLINE void divide(double& value, double by) {
+CLOTHLAB_INLINE void divide(double& value, double by) {
   value /= by;
 }
-CLOTH_INLINE void divide(Quad& value, double by) {
+CLOTHLAB_INLINE void divide(Quad& value, double by) {
   for (int n = 0; n < 4; ++n) value.of[n] /= by;
 }
 

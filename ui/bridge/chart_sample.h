@@ -1,5 +1,5 @@
-// One point of every live chart. A NaN is a quantity that this sample does not have: the curve has a gap
-// there.
+// Samples that a worker sends to the live charts. NaN marks a quantity that the sample does not have; its
+// curve has a gap there.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ struct ChartSample {
   double max_strain = 0;      ///< a fraction; charts show percent
   double step_ms = no_value;  ///< one simulation step
   double draw_ms = no_value;  ///< one drawing of the view
-  bool is_cut =
-      false;  ///< no point: the run went back to this time and on from there; what came later is gone
+  bool is_cut = false;  ///< a marker, not a point: the run went back to this time, and the charts delete all
+                        ///< later points
 };
 
 /// One pane at one common time.
@@ -26,13 +26,14 @@ struct PaneSample {
   double total_J = no_value;
   double max_strain = no_value;  ///< a fraction
   double step_ms = no_value;     ///< mean of the steps since the common time before
-  double rms_m = no_value;       ///< from the reference
+  double rms_m = no_value;       ///< rms distance from the reference
 };
 
 struct CompareSample {
   double time_s = 0;
-  bool is_start = false;                            ///< of a new run: what came before belongs to another
-  std::array<PaneSample, cloth::most_panes> panes;  ///< by style_of(pane): A, B, C, D, whatever their order
+  bool is_start = false;  ///< the first sample of a new run
+  std::array<PaneSample, cloth::most_panes>
+      panes;  ///< indexed by style_of(pane): A, B, C, D, independent of the panes' order
 };
 
 }  // namespace clothlab

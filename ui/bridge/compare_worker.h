@@ -1,6 +1,6 @@
-// The worker of a comparison: owns the panes in lock step and their threads. The window sends commands and
-// fetches frames, samples and status; it never locks the panes and never waits for them. What acts on the
-// cloth is put in force at a common time that all panes have reached.
+// The worker of a comparison: owns the simulations of all panes and their threads. The window sends commands
+// and fetches frames, samples and status; it never locks a simulation and never waits for one. Commands that
+// change the cloths are applied at a common time that all panes have reached.
 #pragma once
 
 #include <deque>
@@ -16,10 +16,10 @@ namespace clothlab {
 
 class CompareWorker final : public Worker<CompareCommand, CompareSample, CompareStatus> {
  public:
-  /// Panes run on `threads`; 0: on all cores but one, which is the window's.
+  /// Runs the panes on `threads` threads; 0: one for each core except one, which is left to the window.
   explicit CompareWorker(int threads = 0);
 
-  /// The pane's newest frame that was not fetched yet, or nullptr.
+  /// The pane's newest frame that was not fetched yet, or nullptr. Called by the window's thread.
   std::shared_ptr<const ClothFrame> take_frame(std::size_t pane) { return frames_[pane].take(); }
 
  private:
@@ -59,18 +59,19 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   std::array<FrameExchange, cloth::most_panes> frames_;  ///< shared with the window
   int threads_;
   std::deque<CompareCommand> waiting_;
-  bool handling_ = false;                    ///< a command that is not yet among handled_
-  std::uint64_t handled_ = 0, settled_ = 0;  ///< commands; the second: with the step that they asked for
+  bool handling_ = false;  ///< a command is being carried out and not counted in handled_ yet
+  std::uint64_t handled_ = 0,
+                settled_ = 0;  ///< commands carried out; settled_: including the step that they requested
   std::unique_ptr<cloth::LockStep> lockstep_;
-  std::optional<std::int64_t> under_way_;  ///< the common time that panes are on their way to
+  std::optional<std::int64_t> under_way_;  ///< index of the common time that the panes are computing
   std::optional<cloth::ComparisonRecorder> recorder_;
   Colouring colouring_ = Colouring::strain;
   std::uint64_t topology_ = 0;
   cloth::Vec3Field normals_;  ///< scratch of frames
   Clock::time_point last_flush_{};
 
-  std::jthread
-      thread_;  ///< last: starts when all else is there; ends first, within one step and with the recording
+  std::jthread thread_;  ///< declared last: it starts after all members are constructed and is joined first;
+                         ///< it ends within one step and closes the recording
 };
 
 }  // namespace clothlab

@@ -1,4 +1,5 @@
-// The account of the energy of a run that one may go back in: what it says when its error is too large.
+// Watches the energy account of a run and warns when its error is too large. The run may go back to an
+// earlier step.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +13,12 @@ namespace clothlab {
 
 class EnergyWatch {
  public:
-  /// A row later than all before it.
+  /// Adds a measurement; its step is later than those of all rows so far.
   void add(const cloth::Measurement& measurement);
-  /// Forgets the rows after a step: something else happens there now.
+  /// Deletes the rows after a step, because the run continues differently from there.
   void cut(std::int64_t step);
-  /// Empty while the account closes, and in the first rows, where next to nothing was exchanged. Changes only
-  /// where the error has grown to twice its share.
+  /// The warning for the user. Empty while the account closes, and in the first rows, where almost no energy
+  /// was exchanged. The text changes only when the error's share has doubled.
   const std::string& notice() const { return notice_; }
 
  private:
@@ -28,7 +29,7 @@ class EnergyWatch {
 
   std::int64_t rows_ = 0, stride_ = 1;
   cloth::EnergyAccount account_;
-  std::vector<Row> kept_;  ///< every stride_th row, to go back to
+  std::vector<Row> kept_;  ///< every stride_-th row, for cut()
   std::string notice_;
   double said_share_ = 0;
 };

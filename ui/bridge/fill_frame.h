@@ -1,4 +1,5 @@
-// A frame from a simulation: everything that a picture needs and that the window's thread need not compute.
+// Fills a ClothFrame from a simulation. Called on the worker's thread, so that the window's thread only
+// draws.
 #pragma once
 
 #include <vector>
@@ -8,19 +9,22 @@
 
 namespace clothlab {
 
-/// All but `topology`, which the worker counts, and `shows_difference`. The state may be an earlier one of
-/// the simulation. `normals` is scratch. Neither allocates when the cloth has the size of the last time.
+/// Fills all members except `topology`, which the worker counts, and `shows_difference`. `state` may be an
+/// earlier state of the simulation. `normals` is scratch memory. Neither overload allocates while the size of
+/// the cloth stays the same.
 void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& state,
                 cloth::Vec3Field& normals, ClothFrame& frame);
 void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame);
 
-/// Colours the frame by these distances from a reference in m, one of each particle; empty: there are none.
+/// Stores the distances from a reference (m, one for each particle) in `frame.strain`; empty: no distance is
+/// known.
 void show_difference(const std::vector<float>& distance, ClothFrame& frame);
 
-/// What a frame tells of contact, for those who want to see it.
+/// Fills the part of a frame that shows contact.
 class ContactFiller {
  public:
-  /// Fills `frame.contact` from the simulation's present state. Allocates nothing once it has been as much.
+  /// Fills `frame.contact` from the simulation's present state. Allocates only when there is more to show
+  /// than in any earlier frame.
   void fill(cloth::Simulation& simulation, const ContactChoice& choice, ClothFrame& frame);
 
  private:

@@ -1,5 +1,6 @@
-// Frames from the worker to the window: newest wins, and the memory of a frame that is no longer shown
-// is used again, its reference count included: once a few frames have gone round, none allocates.
+// Passes frames from the worker's thread to the window's thread; the newest frame replaces older ones. The
+// memory of frames that are no longer used is recycled, including the reference counts of the pointers: after
+// a few frames nothing is allocated. All members are thread-safe.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,7 @@ class FrameExchange {
   template <typename T>
   struct SlotAllocator;
 
-  std::shared_ptr<Pool> pool_;  ///< shared with the frames: one may outlive the exchange
+  std::shared_ptr<Pool> pool_;  ///< shared with the frames, because a frame may outlive the exchange
   std::mutex mutex_;
   std::shared_ptr<const ClothFrame> newest_;
 };

@@ -1,5 +1,5 @@
-// A recording that is written while the window runs: the same files and rows as clothlab-cli run, and the log
-// of edits.
+// Writes a recording while the window runs: the same files and rows as clothlab-cli run, and the log of
+// edits. Used by the worker's thread. Functions that write return the error, or nullopt.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,8 @@ class LiveRecording {
   LiveRecording(const LiveRecording&) = delete;
   LiveRecording& operator=(const LiveRecording&) = delete;
 
-  /// Begins in `folder` at the simulation's present state and writes its first row. A recording that begins
-  /// later than step 0 keeps the state it began from in start_state.csv.
+  /// Begins in `folder` at the simulation's present state and writes the first row. If that state is later
+  /// than step 0, it is saved as start_state.csv.
   std::optional<cloth::IoError> begin(const std::filesystem::path& folder,
                                       const cloth::Simulation& simulation);
 
@@ -27,20 +27,20 @@ class LiveRecording {
   const std::filesystem::path& folder() const { return folder_.path(); }
   std::int64_t rows() const { return rows_; }
 
-  /// A row that is due; `steps` since the row before took `wall` s. Where the scene's stages have changed
-  /// since the last row, a new file (record-2.csv, ...) with the new columns goes on.
+  /// Writes a row; the `steps` steps since the previous row took `wall` seconds. If the scene's stages have
+  /// changed since then, a new file (record-2.csv, ...) with the new columns is begun.
   std::optional<cloth::IoError> add_row(const cloth::Simulation& simulation,
                                         const cloth::Measurement& measurement, double wall,
                                         std::int64_t steps);
 
-  /// One line of edits.jsonl for each value that the command sets.
+  /// Writes one line to edits.jsonl for each value that the command sets.
   std::optional<cloth::IoError> log(const cloth::SessionCommand& command);
 
-  /// Puts everything on disk if the last time was more than half a second ago, or `now`.
+  /// Flushes the files if `now` is true or the last flush was more than half a second ago.
   std::optional<cloth::IoError> keep_current(bool now);
 
-  /// Ends with final_state.csv (of `last_good`) and summary.json; without them where something could not be
-  /// written.
+  /// Ends the recording: writes final_state.csv (of `last_good`) and summary.json, unless an earlier write
+  /// failed.
   std::optional<cloth::IoError> end(const cloth::Simulation& simulation, const cloth::ClothState& last_good,
                                     const std::optional<cloth::Divergence>& divergence);
 

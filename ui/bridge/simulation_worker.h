@@ -1,5 +1,6 @@
-// The worker: owns the simulation and its thread. The window sends commands and fetches frames, samples and
-// status; it never locks the simulation and never waits for it. Edits are put in force between steps.
+// The worker of one scene: owns the simulation and the thread that computes it. The window sends commands and
+// fetches frames, samples and status; it never locks the simulation and never waits for it. Edits are applied
+// between steps.
 #pragma once
 
 #include <thread>
@@ -17,10 +18,10 @@ namespace clothlab {
 
 class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerStatus> {
  public:
-  /// `most_history` bytes of states are kept to go back to.
+  /// `most_history`: limit of the history's memory, bytes.
   explicit SimulationWorker(std::size_t most_history = cloth::History::default_most_bytes);
 
-  /// The newest frame that was not fetched yet, or nullptr.
+  /// The newest frame that was not fetched yet, or nullptr. Called by the window's thread.
   std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }
 
  private:
@@ -66,9 +67,9 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
   std::unique_ptr<cloth::Simulation> simulation_;
   cloth::History history_;
   bool playing_again_ = false;
-  bool gave_up_ = false;                 ///< for want of memory, and nothing has been started since
-  bool batch_is_done_ = true;            ///< no command waits behind the present one but those in the inbox
-  std::int64_t last_sampled_step_ = -1;  ///< samples up to here have been given
+  bool gave_up_ = false;                 ///< memory ran out, and no scene has been started since
+  bool batch_is_done_ = true;            ///< the present command is the last of those received together
+  std::int64_t last_sampled_step_ = -1;  ///< the step of the last sample sent
   cloth::RowClock rows_;
   LiveRecording recording_;
   EnergyWatch energy_;

@@ -1,4 +1,4 @@
-// What the windows ask of their workers.
+// The commands that windows send to their workers. Workers carry them out in order, between steps.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@
 
 namespace clothlab {
 
-/// What the frames' colours stand for.
+/// The quantity that the frames' colours show.
 enum class Colouring { strain, difference };
 
 namespace command {
-/// A scene or a comparison as a new start, paused.
+/// Starts a scene or a comparison at t = 0, paused.
 template <class Content>
 struct Load {
   Content content;
@@ -24,8 +24,9 @@ struct Load {
 template <class Content>
 Load(Content) -> Load<Content>;
 
-/// A scene with other live parameters or pins, or a comparison, which is in force at once where it can be
-/// (see cloth::acts_at_once), else from t = 0, and goes on playing.
+/// Replaces the scene by one with other live parameters or pins, or replaces the comparison. A comparison
+/// that cannot be applied during a run (see cloth::acts_at_once) starts again at t = 0. A playing run
+/// continues to play.
 template <class Content>
 struct Edit {
   Content content;
@@ -33,13 +34,13 @@ struct Edit {
 template <class Content>
 Edit(Content) -> Edit<Content>;
 
-struct Restart {};  ///< what is in force, from t = 0, paused
+struct Restart {};  ///< starts the present scene or comparison again at t = 0, paused
 struct Play {};
-struct Pause {};       ///< a comparison at the common time that is next
-struct SingleStep {};  ///< a comparison to the next common time
+struct Pause {};       ///< a comparison pauses at its next common time
+struct SingleStep {};  ///< a comparison goes to its next common time
 struct Speed {
   double factor;
-};  ///< infinity: as fast as it goes
+};  ///< simulated seconds per second; infinity: as fast as possible
 struct Brush {
   std::optional<cloth::BrushGust> gust;
 };
@@ -48,27 +49,27 @@ struct Pull {
 };
 struct StartRecording {
   std::filesystem::path folder;
-};  ///< ends with StopRecording or a new start, of a comparison also with its duration
+};  ///< ends with StopRecording or a new start; a comparison's also at the end of its duration
 struct StopRecording {};
 
 struct GoTo {
   cloth::HistoryTarget target;
-};                    ///< pauses there; one that comes later takes the place of one that is not there yet
-struct PlayAgain {};  ///< what the history has, from here to its end, and pauses there
+};                    ///< pauses at the target; a later GoTo replaces one that has not arrived yet
+struct PlayAgain {};  ///< replays the history from the present time to its end, then pauses
 struct SaveSession {
   std::filesystem::path file;
-};  ///< the whole history
+};  ///< saves the whole history
 struct OpenSession {
   std::variant<std::filesystem::path, cloth::Session> session;
-};  ///< a new start, paused, with the session as its history: GoTo and PlayAgain go through it
+};  ///< starts paused, with the session as history, through which GoTo and PlayAgain move
 struct ShowContact {
   ContactChoice choice;
-};  ///< what frames tell of contact from now on
+};  ///< which contact data all later frames contain
 struct Colour {
   Colouring by;
 };
 
-/// Whether a command is of one of these kinds.
+/// Whether the variant holds one of these kinds of command.
 template <class... Kinds, class Variant>
 bool is_one_of(const Variant& command) {
   return (std::holds_alternative<Kinds>(command) || ...);

@@ -1,5 +1,5 @@
-// A worker as the window sees it: what is new is fetched at the screen's pace while there is anything to
-// fetch, and nothing at all is done while there is not.
+// Connects a worker to the window's thread: a QTimer fetches frames, samples and status at the screen's rate
+// and emits them as signals. The timer stops while the worker is idle.
 #pragma once
 
 #include <QObject>
@@ -16,19 +16,20 @@ class WorkerLink : public QObject {
  protected:
   explicit WorkerLink(QObject* parent);
 
-  /// Something was sent.
+  /// Starts the timer; called after each command sent.
   void wake() {
     if (!timer_.isActive()) timer_.start();
   }
 
-  /// Delivers what is new. False: nothing more will come until something is sent.
+  /// Emits what is new. Returns false if nothing more will come until a command is sent; the timer then
+  /// stops.
   virtual bool fetch() = 0;
 
  private:
   QTimer timer_;
 };
 
-/// The link to one kind of worker.
+/// The link to one kind of worker, which it owns.
 template <class Worker>
 class LinkTo : public WorkerLink {
  public:
@@ -38,7 +39,8 @@ class LinkTo : public WorkerLink {
   }
   const typename Worker::Status& status() const { return status_; }
 
-  /// Waits for the commands sent so far and delivers what they gave. For tests and for orderly ends.
+  /// Blocks until the commands sent so far are carried out, then emits their results. For tests and for
+  /// closing.
   void settle() {
     worker_.wait_until_idle();
     fetch();
@@ -74,7 +76,7 @@ class SimulationLink : public LinkTo<SimulationWorker> {
     ++sent_;
     LinkTo::send(std::move(command));
   }
-  /// Whether the status knows of everything that was sent.
+  /// Whether the status already reflects every command sent.
   bool isUpToDate() const { return status().commands == sent_; }
 
  Q_SIGNALS:
@@ -97,7 +99,7 @@ class CompareLink : public LinkTo<CompareWorker> {
   explicit CompareLink(QObject* parent = nullptr) : LinkTo(parent) {}
 
  Q_SIGNALS:
-  /// For every pane that has a new one.
+  /// Emitted for every pane that has a new frame.
   void frameReady(std::size_t pane, std::shared_ptr<const clothlab::ClothFrame> frame);
   void samplesReady(const std::vector<clothlab::CompareSample>& samples);
   void statusChanged(const clothlab::CompareStatus& status);

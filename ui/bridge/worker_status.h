@@ -1,4 +1,4 @@
-// What the windows show of their workers besides the cloths and the curves.
+// The workers' state that windows show besides frames and samples.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,13 @@
 
 namespace clothlab {
 
-/// Of any run, of one simulation or of a comparison.
+/// The state of any run, of one scene or of a comparison.
 struct RunStatus {
   bool playing = false;
   double time = 0;                ///< s; of a comparison the common time that all panes have reached
   double speed = 1;               ///< simulated seconds per second asked for
-  double real_time_factor = 0;    ///< as it goes
-  std::string refusal;            ///< why the last scene, comparison or edit is not in force
+  double real_time_factor = 0;    ///< simulated seconds per second, measured
+  std::string refusal;            ///< why the last scene, comparison or edit was refused; empty: it was not
   std::int64_t lost_samples = 0;  ///< chart points dropped because the window did not fetch them
 
   bool recording = false;
@@ -28,11 +28,11 @@ struct RunStatus {
   std::string recording_error;
 };
 
-/// What can be gone back to.
+/// The part of the run that can be gone back to.
 struct HistoryStatus {
   std::int64_t first_step = 0, last_step = 0;
   double first_time = 0, last_time = 0;  ///< s
-  std::size_t states = 0;                ///< kept; steps between them are computed again
+  std::size_t states = 0;                ///< stored states; steps between them are computed again
   std::size_t bytes = 0, most_bytes = 0;
 };
 
@@ -42,17 +42,18 @@ struct WorkerStatus : RunStatus {
   double steps_per_second = 0;
   std::optional<cloth::Divergence> divergence;
   std::string notice;  ///< e.g. a rate that the pins make unreachable, or an energy that is not accounted for
-  std::uint64_t commands = 0;  ///< sent so far that are carried out, or were overtaken by a later one
+  std::uint64_t commands = 0;  ///< number of commands that were carried out or replaced by a later one
 
   HistoryStatus history;
-  bool playing_again = false;          ///< what the history has, rather than something new
-  std::string session_error;           ///< why the last session was not saved, opened or gone through
-  std::optional<bool> session_agrees;  ///< at an opened session's end: whether it came out to the bit
+  bool playing_again = false;  ///< replaying the history rather than computing new steps
+  std::string session_error;   ///< why the last session could not be saved, opened or replayed
+  std::optional<bool>
+      session_agrees;  ///< at the end of an opened session: whether the replayed state agrees to the bit
   /// How often the worker itself has changed time or scene: by going back or forth, opening a session, or
   /// returning from a divergence.
   std::int64_t jumps = 0;
-  /// In force; another pointer when it is another scene. A document takes it up once `commands` says that no
-  /// edit of its own is on the way.
+  /// The scene that the worker runs; the pointer changes with the scene. A document adopts it once `commands`
+  /// shows that none of its own edits is still waiting.
   std::shared_ptr<const cloth::Scene> scene;
 };
 
@@ -60,11 +61,11 @@ struct CompareStatus : RunStatus {
   double duration = 0;  ///< s
   int threads = 1;
   std::shared_ptr<const cloth::Comparison> comparison;  ///< in force
-  std::vector<cloth::PaneResult> panes;                 ///< one of each pane
-  std::string reference;                                ///< what differences are from, for people
-  std::string reference_failure;                        ///< not empty: the reference stopped, and why
+  std::vector<cloth::PaneResult> panes;                 ///< one for each pane
+  std::string reference;                                ///< name of the reference, to be displayed
+  std::string reference_failure;                        ///< why the reference stopped; empty: it did not
   std::optional<double> floor;                          ///< m, see cloth::LockStep::floor
-  std::int64_t new_starts = 0;  ///< how often an edit could not be put in force in the middle of the run
+  std::int64_t new_starts = 0;                          ///< how often an edit made the run start again
 };
 
 }  // namespace clothlab

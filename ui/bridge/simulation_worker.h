@@ -78,12 +78,13 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
   cloth::Vec3Field normals_;  ///< scratch
   ContactChoice contact_;
   ContactFiller contact_filler_;
-  std::optional<ChartSample> first_sample_;  ///< held back until there is a second one: one point is no curve
-  double wall_since_row_ = 0;                ///< s
+  std::optional<ChartSample>
+      first_sample_;           ///< sent together with the second sample, because one point is not a curve
+  double wall_since_row_ = 0;  ///< s
   std::int64_t steps_since_row_ = 0;
 
-  std::jthread
-      thread_;  ///< last: starts when all else is there; ends first, within one step and with the recording
+  std::jthread thread_;  ///< declared last: it starts after all members are constructed and is joined first;
+                         ///< it ends within one step and closes the recording
 };
 
 }  // namespace clothlab

@@ -1,6 +1,5 @@
-// Runs one study at a time in a thread of its own, at low priority, on copies of what it was given. The
-// window only ever looks: the newest table wins, and no call waits for the study but `wait` and the
-// destructor.
+// Runs one study at a time in its own thread, at low priority, on copies of its inputs. The window polls
+// status and tables; the newest table replaces older ones. Only `wait` and the destructor wait for the study.
 #pragma once
 
 #include <chrono>
@@ -22,24 +21,25 @@ using StudyOptions =
 struct StudyOrder {
   cloth::Scene scene;  ///< extremes: not used, see ExtremesOptions::scene
   StudyOptions options;
-  std::filesystem::path folder;  ///< finished runs are on disk there at once; an unfinished study goes on
-  std::string command;           ///< what made it
+  std::filesystem::path folder;  ///< each finished run is written there at once; an unfinished study of the
+                                 ///< same inputs is continued
+  std::string command;           ///< the equivalent command line, stored with the results
 };
 
 struct StudyStatus {
   bool running = false;
-  bool stopping = false;       ///< cancelled, but not yet at its next step
-  double fraction = 0;         ///< of the whole study
+  bool stopping = false;       ///< cancelled; the present step has not ended yet
+  double fraction = 0;         ///< part of the whole study that is done, 0 to 1
   std::string text;            ///< what is being done
   double elapsed = 0;          ///< s
-  std::optional<double> left;  ///< s, estimated; none: too early to say
-  std::string problem;         ///< why the folder could not be written, or the study not brought to its end
+  std::optional<double> left;  ///< estimated time left, s; none: no estimate yet
+  std::string problem;  ///< why the folder could not be written or the study did not finish; empty: no error
 };
 
 class StudyRunner {
  public:
   StudyRunner() = default;
-  ~StudyRunner();  ///< cancels and waits: for one step and the writing of what is finished
+  ~StudyRunner();  ///< cancels, then waits for the present step and for finished runs to be written
   StudyRunner(const StudyRunner&) = delete;
   StudyRunner& operator=(const StudyRunner&) = delete;
 
@@ -52,7 +52,7 @@ class StudyRunner {
   /// The newest table since the last call; null if there is none.
   std::shared_ptr<const cloth::StudyTable> take();
 
-  /// Until what runs has ended and its folder is written. For tests and orderly ends.
+  /// Blocks until the study has ended and its folder is written. For tests and for closing.
   void wait() {
     if (thread_.joinable()) thread_.join();
   }
@@ -69,12 +69,12 @@ class StudyRunner {
   template <class Table>
   void keep(const Table& table, bool last);
 
-  mutable std::mutex mutex_;  // of the members down to the blank line
+  mutable std::mutex mutex_;  // guards the members up to the blank line
   StudyStatus status_;
   Clock::time_point start_;
   std::shared_ptr<const cloth::StudyTable> newest_;
 
-  Clock::time_point offered_;  // of the worker alone
+  Clock::time_point offered_;  // used by the study's thread only, like recorder_
   cloth::StudyRecorder recorder_;
   std::jthread thread_;
 };

@@ -1,5 +1,6 @@
-// What passes between the window and a worker's thread: commands in, samples and status out. The window never
-// waits: the lock is held only while something changes hands, and no frame passes here (see FrameExchange).
+// Exchanges data between the window's thread and a worker's thread: commands in, samples and status out. The
+// window never waits for a computation: the mutex is held only while data are moved. Frames pass through
+// FrameExchange instead.
 #pragma once
 
 #include <atomic>
@@ -17,14 +18,15 @@
 
 namespace clothlab {
 
-/// The base of a worker that owns what it computes and a thread for it.
+/// The base of a worker that owns a computation and the thread for it. Public members are called by the
+/// window's thread, protected ones by the worker's thread.
 template <class CommandType, class SampleType, class StatusType>
 class Worker {
  public:
   using Command = CommandType;
   using Sample = SampleType;
   using Status = StatusType;
-  static constexpr std::size_t most_samples = 1 << 18;  ///< an hour at 60 a second
+  static constexpr std::size_t most_samples = 1 << 18;  ///< more than an hour at 60 samples a second
 
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -46,7 +48,7 @@ class Worker {
     return std::exchange(samples_, {});
   }
 
-  /// The newest; copied without the lock.
+  /// The newest status; copied outside the lock.
   Status status() const {
     std::shared_ptr<const Status> newest;
     {
@@ -56,23 +58,23 @@ class Worker {
     return *newest;
   }
 
-  /// True while fetching is worth while: playing, or something is waiting to be done or fetched.
+  /// True while the worker plays or has commands to carry out or results to fetch.
   bool is_busy() const { return busy_; }
 
-  /// Blocks until every command sent before is in force. For tests and for closing; the window never calls
-  /// it.
+  /// Blocks until every command sent before is carried out. For tests and for closing; the running window
+  /// never calls it.
   void wait_until_idle() {
     std::unique_lock lock(mutex_);
     idle_.wait(lock, [this, last = sent_] { return done_ >= last; });
   }
 
- protected:  // for the worker's thread
+ protected:  // called on the worker's thread
   using Clock = WorkerPace::Clock;
 
   Worker() = default;
   ~Worker() = default;
 
-  /// The commands that have come; waits for one until `due`, or for as long as it takes.
+  /// The commands received; waits for one until `due`, or without a limit if `due` is empty.
   std::vector<Command> receive(const std::stop_token& stop, std::optional<Clock::time_point> due) {
     std::unique_lock lock(mutex_);
     const auto has_command = [this] { return !inbox_.empty(); };
@@ -84,17 +86,17 @@ class Worker {
     return std::exchange(inbox_, {});
   }
 
-  /// Whether a command waits: cheap enough to be asked before every step.
+  /// Whether a command waits. Reads one atomic value, so it can be called before every step.
   bool has_mail() const { return has_mail_; }
 
-  /// Whether a command waits that `is` is true for, in front of all others.
+  /// Whether a command waits and `is` is true for the first one.
   template <class Predicate>
   bool next_is(Predicate is) const {
     const std::lock_guard lock(mutex_);
     return !inbox_.empty() && is(inbox_.front());
   }
 
-  /// A sample is lost where the window has not fetched any for very long.
+  /// Queues a sample. When the queue is full (most_samples), the sample is lost and counted in the status.
   void deliver(const Sample& sample) {
     const std::lock_guard lock(mutex_);
     if (samples_.size() < most_samples)
@@ -103,20 +105,21 @@ class Worker {
       ++status_.lost_samples;
   }
 
-  /// Those that were not fetched.
+  /// Deletes the samples that were not fetched.
   void drop_samples() {
     const std::lock_guard lock(mutex_);
     samples_.clear();
   }
 
-  /// `status_` as it is now.
+  /// Makes a copy of `status_` available to the window.
   void publish() {
     auto newest = std::make_shared<const Status>(status_);
     const std::lock_guard lock(mutex_);
     published_.swap(newest);  // the one before goes after the lock
   }
 
-  /// `done` commands since the start are in force; `busy`: there is more to come than what waits here.
+  /// `done` commands since the start are carried out; `busy`: results are still to come, even without further
+  /// commands.
   void report_done(std::uint64_t done, bool busy) {
     const std::lock_guard lock(mutex_);
     busy_ = busy || !inbox_.empty();
@@ -125,7 +128,7 @@ class Worker {
     idle_.notify_all();
   }
 
-  /// From now on simulated time runs from `time`, in s.
+  /// Begins to count simulated time from `time` (s).
   void restart_clock(double time) {
     pace_.restart(time, Clock::now());
     meter_.restart(time, Clock::now());
@@ -135,15 +138,15 @@ class Worker {
     pace_.set_speed(factor, time, Clock::now());
   }
 
-  /// Nothing if nothing is recorded.
+  /// Ends the recording; does nothing if there is none.
   virtual void end_recording() = 0;
-  /// What a write to the recording gave: an error ends it.
+  /// Handles the result of a write to the recording: an error is stored in the status and ends the recording.
   void note_record(const std::optional<cloth::IoError>& error) {
     if (!error) return;
     status_.recording_error = error->text();
     end_recording();
   }
-  /// What the end of the recording gave. The first error is the one to be shown.
+  /// Handles the result of ending the recording. The status keeps the first error.
   void note_end(const std::optional<cloth::IoError>& error) {
     if (error && status_.recording_error.empty()) status_.recording_error = error->text();
   }

@@ -1,5 +1,5 @@
-// What the windows' documents have in common: a file, the undo history, and whether there is something to
-// save.
+// The base of the windows' documents: file path, undo history and unsaved changes. Used by the GUI thread
+// only.
 #pragma once
 
 #include <QObject>
@@ -18,23 +18,25 @@ class Document : public QObject {
 
   QUndoStack& undoStack() { return undo_stack_; }
   const QUndoStack& undoStack() const { return undo_stack_; }
-  QString path() const { return path_; }  ///< of the file; empty for one that is built in or was never saved
-  virtual QString title() const = 0;      ///< its own, else by the file's name, else "Untitled"
-  virtual LabDocument& form() = 0;        ///< the scene that the form edits
+  QString path() const {
+    return path_;
+  }  ///< of the file; empty for a built-in document or one that was never saved
+  virtual QString title() const = 0;  ///< the document's title, else the file's name, else "Untitled"
+  virtual LabDocument& form() = 0;    ///< the scene that the form edits
   bool isModified() const { return unsaved_ || !undo_stack_.isClean(); }
 
-  /// The document as it is now lies in the file `path`.
+  /// Records that the file `path` contains the document as it is now.
   void markSaved(const QString& path);
 
  Q_SIGNALS:
-  void loaded();  ///< the whole content is new; no other signal about it comes with it
+  void loaded();  ///< the whole content was replaced; no other signal is emitted for it
   void titleChanged();
   void modifiedChanged(bool modified);
 
  protected:
   explicit Document(QObject* parent);
 
-  /// Another content was taken over: forgets the history. `unsaved`: it lies in no file yet.
+  /// Called after the content was replaced: clears the undo history. `unsaved`: no file contains it yet.
   void beginHistory(const QString& path, bool unsaved);
 
  private:

@@ -1,6 +1,6 @@
-// The one home for state: the scene being edited, its file and its undo history. Every edit is an undoable
-// command, and every change, undo and redo included, is announced by the same signals. It knows no worker and
-// no widget.
+// The scene being edited, its file and its undo history. All other parts of the window read the scene from
+// here. Every edit is an undoable command, and every change, undo and redo included, emits the same signals.
+// It depends on no worker and no widget.
 #pragma once
 
 #include <optional>
@@ -13,12 +13,13 @@
 
 namespace clothlab {
 
-/// What an edit asks of a running simulation, from ParameterInfo::cost: the next step takes a live edit over,
-/// a restart needs a new start. A block that comes or goes demands a restart if one of its parameters does.
+/// How a running simulation applies an edit, from ParameterInfo::cost: a live edit before the next step, a
+/// restart by starting again at t = 0. Adding or removing a block is a restart if an edit of one of its
+/// parameters is.
 struct SceneChange {
-  /// `none`: the run has it already, see LabDocument::follow().
+  /// `none`: the run already has the change, see LabDocument::follow().
   enum class Effect { none, live, restart } effect = Effect::live;
-  std::string path;  ///< of the parameter or block; "cloth.pins" for pins; empty for a scene followed
+  std::string path;  ///< of the parameter or block; "cloth.pins" for pins; empty after follow()
 };
 
 class LabDocument : public Document {
@@ -34,46 +35,49 @@ class LabDocument : public Document {
   QString title() const override;
   LabDocument& form() override { return *this; }
 
-  /// Takes another scene over and forgets the history.
+  /// Replaces the scene and clears the undo history.
   void load(cloth::Scene scene, const QString& path = {});
 
-  /// Changes one parameter. Returns the rule that `value` breaks ("must be >= 0") and then changes nothing;
-  /// returns an empty string when done. An equal value is no edit.
+  /// Changes one parameter. On error returns the rule that `value` breaks ("must be >= 0") and changes
+  /// nothing; returns an empty string on success. Setting an equal value is not an edit.
   QString setParameter(const std::string& path, const cloth::ParameterValue& value);
-  /// Back to the declared default, as far as there is one.
+  /// Sets the declared default, if there is one. Returns like setParameter().
   QString resetParameter(const std::string& path);
 
-  /// Between the two, edits of one parameter are one undo step, and none at all if the value comes back.
+  /// Between beginDrag() and endDrag(), all edits of one parameter are one undo step, or none if the value
+  /// ends where it began.
   void beginDrag() { drag_ = ++last_drag_; }
   void endDrag() { drag_ = 0; }
-  int presentDrag() const { return drag_; }  ///< its number; 0: none
+  int presentDrag() const { return drag_; }  ///< number of the present drag; 0: none
 
-  /// By the path of a cloth::BlockOffer ("air", "sphere"); false if the scene is not offered it.
+  /// Adds the block of a cloth::BlockOffer with this path ("air", "sphere"); false if the scene has no such
+  /// offer.
   bool addBlock(const std::string& offer_path);
-  /// By the path of a removable cloth::Block; false if there is none.
+  /// Removes the removable cloth::Block with this path; false if there is none.
   bool removeBlock(const std::string& block_path);
 
-  /// Makes the cloth a mesh, or with no file a grid, about where the cloth was and without pins. Returns why
-  /// a file cannot be used, and then changes nothing.
+  /// Replaces the cloth by a mesh, or by a grid if `file` is empty, at about the same place and without pins.
+  /// On error returns why the file cannot be used and changes nothing; returns an empty string on success.
   QString setClothMesh(const std::string& file);
 
-  /// The obstacle of this number is now where, and what, `moved` says: a live edit, which a drag makes one
-  /// undo step of. Of its block's parameters it must keep the rules.
+  /// Replaces the obstacle with index `number` by `moved`, as a live edit; within a drag all moves are one
+  /// undo step. `moved` must satisfy the rules of the block's parameters.
   void moveObstacle(int number, const cloth::Obstacle& moved);
 
-  /// Pins a free particle and frees a pinned one; see toggled_pins().
+  /// Pins a free particle or frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);
 
-  /// Takes up the scene of a run that has gone back or forth in its own history: one undo step, however often
-  /// it goes to and fro, and none if it comes back to where it was. Without edits to undo, as after opening a
-  /// session, the document just becomes that scene.
+  /// Adopts the scene of a run that has moved in its own history. Consecutive calls are one undo step, or
+  /// none if the scene ends where it began. If there are no edits to undo, as after opening a session, the
+  /// scene is replaced without an undo step.
   void follow(const cloth::Scene& scene);
 
  Q_SIGNALS:
   void parameterChanged(const std::string& path);
-  void
-  blocksChanged();  ///< blocks or parameters came or went; comes before parameterChanged of the same edit
-  void sceneChanged(const clothlab::SceneChange& change);  ///< once for each edit, undo and redo; last
+  void blocksChanged();  ///< blocks or parameters were added or removed; emitted before parameterChanged of
+                         ///< the same edit
+  void sceneChanged(const clothlab::SceneChange&
+                        change);  ///< emitted once for each edit, undo and redo, after the other signals
 
  private:
   class EditCommand;

@@ -1,4 +1,4 @@
-// Where results go that were given no folder, and how a file is written.
+// The default folder of results, recently used paths, and writing a file.
 #pragma once
 
 #include <QByteArray>
@@ -7,23 +7,24 @@
 
 namespace clothlab {
 
-/// In the user's documents.
+/// The folder for results inside the user's documents folder.
 QString results_folder();
 
-/// The path of a folder in `parent` that is not there yet, named by the time and `words`.
+/// The path of a folder in `parent` that does not exist yet, named after the present time and `words`.
+/// Creates nothing.
 QString new_folder(const QString& parent, const QStringList& words);
 
-/// Paths that were opened or saved lately, kept in the settings.
+/// Recently opened or saved paths, stored in QSettings under `key`, at most `most`.
 struct RecentPaths {
   const char* key;
   int most;
-  bool (*holds)(const QString& path);  ///< whether there still is at `path` what was there
+  bool (*holds)(const QString& path);  ///< whether `path` still exists and has the right kind of content
 
   QStringList list() const;  ///< newest first
   void remember(const QString& path) const;
 };
 
-/// Writes a file that is old or new, never half. What went wrong; empty if nothing did.
+/// Writes a file atomically: after an error the old file is unchanged. Returns the error; empty on success.
 QString write_file(const QString& path, const QByteArray& bytes);
 
 }  // namespace clothlab

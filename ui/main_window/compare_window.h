@@ -1,5 +1,5 @@
-// The window of a comparison: two to four panes of one scene side by side, the form with what they share and
-// what each has of its own, charts over all of them, and their ranking.
+// The window of a comparison: two to four panes of one scene side by side, a form for shared values and for
+// each pane's own values, common charts, and the ranking.
 #pragma once
 
 #include "bridge/worker_link.h"
@@ -22,10 +22,10 @@ class CompareWindow : public LabWindow {
   explicit CompareWindow(QWidget* parent = nullptr);
   ~CompareWindow() override { deleteWidgets(); }
 
-  /// A file or the name of a built-in comparison. What cannot be opened is said in the window, and the
-  /// comparison before stays.
+  /// Opens a file or a built-in comparison. On error the window shows a message and keeps the present
+  /// comparison.
   void openComparison(const QString& name);
-  /// The scene run by its own method and by two others.
+  /// Compares the scene's own method with two others.
   void compareScene(const cloth::Scene& scene);
 
   CompareDocument& document() { return document_; }
@@ -66,7 +66,7 @@ class CompareWindow : public LabWindow {
   QComboBox* reference_ = nullptr;
 
   CompareStatus shown_status_;
-  QElapsedTimer ranking_clock_;  ///< since the table was filled last
+  QElapsedTimer ranking_clock_;  ///< time since the table was last filled
 };
 
 }  // namespace clothlab

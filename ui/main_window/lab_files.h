@@ -1,5 +1,4 @@
-// Where scenes, sessions and comparisons come from: files, the built-in ones, and those that were open
-// lately.
+// Opens and saves scenes, sessions and comparisons: files, built-in ones and recent ones.
 #pragma once
 
 #include <QString>
@@ -12,10 +11,10 @@
 
 namespace clothlab {
 
-/// A scene, or why there is none, in words for a person.
+/// A scene, or the errors that prevented opening it.
 struct OpenedScene {
   std::optional<cloth::Scene> scene;
-  std::optional<cloth::Session> session;  ///< the file's, where it is a session; `scene` is its start then
+  std::optional<cloth::Session> session;  ///< set if the file is a session; `scene` is then its first scene
   QString path;                           ///< of the file; empty for a built-in scene
   QString problems;                       ///< every problem, a line each
 };
@@ -28,7 +27,7 @@ QString save_scene_file(const cloth::Scene& scene, const QString& path);
 
 extern const RecentPaths recent_scenes;  ///< files
 
-/// A comparison, or why there is none, in words for a person.
+/// A comparison, or the errors that prevented opening it.
 struct OpenedComparison {
   std::optional<cloth::Comparison> comparison;
   QString path;      ///< of the file; empty for a built-in one
@@ -41,11 +40,11 @@ OpenedComparison open_comparison(const QString& name);
 /// Empty when done, else what went wrong.
 QString save_comparison_file(const cloth::Comparison& comparison, const QString& path);
 
-/// Whether a file of this name is taken for a comparison rather than for a scene.
+/// Whether a file of this name is opened as a comparison rather than as a scene.
 bool is_comparison_name(const QString& name);
 
-/// The scene as it is, beside the same with two other methods; these choose their step themselves where the
-/// scene's is beyond their limit.
+/// A comparison of the scene with two copies that use other methods. A copy uses the time step `auto` if the
+/// scene's step is not stable for its method.
 cloth::Comparison comparison_of_scene(const cloth::Scene& scene);
 
 /// Writes a frame's cloth as an OBJ file: vertices in m, single precision as the view has them, normals,

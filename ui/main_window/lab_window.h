@@ -1,5 +1,5 @@
-// What the windows of a scene and of a comparison have in common: the actions and menus of files, edits and
-// runs, the question before changes are lost, messages, docks, and recording.
+// The base of the windows of a scene and of a comparison: actions and menus for files, edits and runs, the
+// dialog about unsaved changes, messages, docks and recording.
 #pragma once
 
 #include <QMainWindow>
@@ -21,7 +21,7 @@ class LabWindow : public QMainWindow {
   /// Whether closing or opening another document asks about unsaved changes.
   void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
-  /// Records into `folder` until the record action is switched off, or the recording ends by itself.
+  /// Records into `folder` until the record action is switched off or the worker ends the recording.
   void startRecording(const QString& folder) { send(command::StartRecording{folder.toStdString()}); }
   /// False, with a message in the window, if the file could not be written.
   bool saveTo(const QString& path);
@@ -30,17 +30,17 @@ class LabWindow : public QMainWindow {
   NoticeBar& notice() { return *notice_; }
 
  protected:
-  /// What is different in words.
+  /// The texts that differ between the windows.
   struct Wording {
     QString document;            ///< "scene"
     QString open_title, filter;  ///< of the dialogs for files
-    QString ending;              ///< of a file that is given none
+    QString ending;              ///< suffix appended to a file name without one
     QString title;               ///< of the window; %1 is the document's
     QString unsaved;             ///< the question before changes of %1 are lost
     QString play_tip, step_tip, record_tip;
     QString widest_time, widest_rate;  ///< in the transport bar
   };
-  /// What every worker can be told.
+  /// The commands that every worker accepts.
   using RunCommand =
       std::variant<command::Restart, command::Play, command::Pause, command::SingleStep, command::Speed,
                    command::Brush, command::Pull, command::StartRecording, command::StopRecording>;
@@ -49,29 +49,29 @@ class LabWindow : public QMainWindow {
   bool hasAir() { return scene().air && scene().air->drag > 0; }
   void brush(const cloth::BrushGust& gust);
   Document& anyDocument() { return *any_document_; }
-  /// For a derived class's destructor: the widgets refer to its link.
+  /// Called by a derived class's destructor, because the widgets refer to its link.
   void deleteWidgets();
-  /// The form of the document, and the place for messages.
+  /// Makes the form of the document and the notice bar.
   void makeForm();
 
   virtual void send(const RunCommand& command) = 0;
   virtual void open(const QString& path) = 0;
   /// Empty when done, else what went wrong.
   virtual QString write(const QString& path) = 0;
-  /// That of all panes.
+  /// The edited scene; in a comparison the scene that all panes share.
   virtual const cloth::Scene& scene() = 0;
   virtual void togglePin(int row, int column) = 0;
-  /// Says that the wind brush needs air.
+  /// Shows a message that the wind brush needs air, with a button that adds air.
   virtual void offerAir(const QString& text) = 0;
   virtual void play(bool on);
   virtual void restart() { send(command::Restart{}); }
 
   void closeEvent(QCloseEvent* event) override;
 
-  /// Of this window, with a shortcut that its tooltip tells.
+  /// An action of this window; its tooltip contains the shortcut.
   QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
                       const char* name);
-  /// What the hand does in a view, or in the panes, goes to the worker. The brush is told how to get air.
+  /// Connects pull, wind brush and pin signals of a view or of the panes to the worker and the document.
   template <class View>
   void connectHand(View* view) {
     connect(view, &View::pullChanged, this, [this](const cloth::Pull& pull) { send(command::Pull{pull}); });
@@ -85,7 +85,7 @@ class LabWindow : public QMainWindow {
       togglePin(particle / columns, particle % columns);
     });
   }
-  /// In the middle of the window, from top to bottom.
+  /// Sets the central widget: `parts` from top to bottom, of which `stretched` takes the free height.
   void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched);
   QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
   void addTransport();
@@ -100,14 +100,14 @@ class LabWindow : public QMainWindow {
 
   /// Shows a message, or withdraws the one of this cause if the text is empty.
   void say(const QString& cause, NoticeBar::Level level, const QString& text);
-  /// The actions and messages of a run and of its recording.
+  /// Updates actions and messages from the state of a run and of its recording.
   void followRun(const RunStatus& now);
   void followRecording(const RunStatus& before, const RunStatus& now);
   void updateTitle();
   bool mayLoseChanges();
   bool save() { return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path()); }
   bool saveAs();
-  /// A path that a person chose to save under, with `ending` if it has none; empty: none was chosen.
+  /// Asks for a path to save to and appends `ending` if it has no suffix; empty: the user cancelled.
   QString askForPath(const QString& title, const QString& filter, const QString& ending,
                      const QString& present = {});
   void openWithDialog();

@@ -1,5 +1,5 @@
-// The window: the view in the middle, parameters and charts beside it, the worker behind it. It connects the
-// rooms and decides nothing that one of them could.
+// The window of one scene: the view in the middle, parameters and charts beside it. It owns the document and
+// the worker's link and connects their signals to the widgets.
 #pragma once
 
 #include "bridge/worker_link.h"
@@ -22,11 +22,11 @@ class MainWindow : public LabWindow {
   explicit MainWindow(QWidget* parent = nullptr);
   ~MainWindow() override { deleteWidgets(); }
 
-  /// A scene's or a session's file or the name of a built-in scene; a session is played. What cannot be
-  /// opened is said in the window, and the scene before stays.
+  /// Opens a scene file, a session file or a built-in scene; a session is replayed. On error the window shows
+  /// a message and keeps the present scene.
   void openScene(const QString& name);
 
-  /// The run so far, with everything that was done to it (docs/sessions.md).
+  /// Saves the run so far with all its edits (docs/sessions.md).
   void saveSession(const QString& path);
 
   LabDocument& document() { return document_; }
@@ -104,11 +104,11 @@ class MainWindow : public LabWindow {
   QAction* save_cloth_ = nullptr;
 
   WorkerStatus shown_status_;
-  std::shared_ptr<const cloth::Scene> followed_;  ///< the worker's scene that the document knows
-  std::optional<cloth::Session> session_;         ///< to be opened in the place of the document's scene
+  std::shared_ptr<const cloth::Scene> followed_;  ///< the worker's scene that the document adopted last
+  std::optional<cloth::Session> session_;         ///< a session to be opened instead of the document's scene
   QString saving_session_;                        ///< the file, until it is written
   bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
-  std::optional<cloth::Obstacle> dragged_;        ///< an obstacle, as it was before the hand took it
+  std::optional<cloth::Obstacle> dragged_;        ///< the dragged obstacle as it was before the drag
 };
 
 }  // namespace clothlab

@@ -1,5 +1,5 @@
-// A program that is told to end from outside (Ctrl+C, a closed terminal, kill, the end of the session) ends
-// in order: what is being recorded is finished.
+// Turns signals that end the process (Ctrl+C, a closed terminal, kill, the end of the session) into a call
+// from the event loop, so that the program can finish its recordings.
 //
 //     const StopSignals stop_signals([] { QCoreApplication::exit(130); });
 #pragma once
@@ -12,8 +12,8 @@ namespace clothlab {
 
 class StopSignals {
  public:
-  /// From now on the first SIGINT, SIGTERM or SIGHUP calls `stop` from the event loop; a second one of its
-  /// kind ends the process at once. SIGHUP stays ignored under nohup. One object at a time.
+  /// Until destruction, the first SIGINT, SIGTERM or SIGHUP calls `stop` from the event loop; a second one of
+  /// its kind ends the process at once. SIGHUP stays ignored under nohup. One object at a time.
   explicit StopSignals(std::function<void()> stop);
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;

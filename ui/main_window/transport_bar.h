@@ -1,4 +1,4 @@
-// Below the view: play, step, reset, speed; how time goes; the stability gauge; record.
+// The bar below the view: play, step, reset, speed, simulated time and rate, stability gauge, record.
 #pragma once
 
 #include <QFrame>
@@ -17,26 +17,26 @@ class TransportBar : public QFrame {
   Q_OBJECT
 
  public:
-  /// The actions as buttons, the first one, to play, the largest; and room for the widest texts of time and
-  /// rate.
+  /// Shows the actions as buttons, the first one (play) larger. The widest texts fix the width of the time
+  /// and rate fields.
   TransportBar(const QList<QAction*>& actions, const QString& widest_time, const QString& widest_rate,
                QWidget* parent);
 
   void showStatus(const WorkerStatus& status);
   void showStatus(const CompareStatus& status);
-  /// For a newly opened scene: one that is over in the blink of an eye begins slowed down, and the next one
-  /// of usual length goes back to the speed of before.
+  /// Called for a newly opened scene: selects a lower speed if its duration is very short; for the next
+  /// longer scene restores the previous speed.
   void suitDuration(double seconds);
   StabilityGauge& gauge() { return *gauge_; }
 
  Q_SIGNALS:
-  void speedChosen(double factor);  ///< simulated seconds per second; infinity: as fast as it goes
+  void speedChosen(double factor);  ///< simulated seconds per second; infinity: as fast as possible
 
  private:
   void fillSpeeds();
 
   QComboBox* speed_;
-  std::optional<int> speed_before_;  ///< the row that was chosen before a short scene
+  std::optional<int> speed_before_;  ///< the row that was selected before a short scene
   Reading* time_;
   Reading* rate_;
   Reading* recording_;

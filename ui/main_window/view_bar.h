@@ -1,5 +1,5 @@
-// Above the view: what the mouse does, how the cloth is drawn, from where. Where the window is narrow, the
-// last buttons go; what they do is in the menus.
+// The bar above the view: mouse tool, view mode, contact display and camera. In a narrow window the last
+// buttons are hidden; their actions remain in the menus.
 #pragma once
 
 #include <QAction>
@@ -17,7 +17,7 @@ class QToolButton;
 
 namespace clothlab {
 
-/// One of several things to choose, as a bar and a menu show it.
+/// One of several exclusive choices, shown in a bar and in a menu.
 template <class Value>
 struct ViewChoice {
   Value value;
@@ -26,11 +26,12 @@ struct ViewChoice {
   const char* name;
 };
 
-/// Its tooltip tells the shortcut.
+/// An action whose tooltip contains the shortcut.
 QAction* make_view_action(const char* icon_name, const QString& text, const QString& tip,
                           const QString& shortcut, const char* name, QObject* parent);
 
-/// Of which one is checked, at first the first.
+/// An exclusive group of checkable actions; the first one is checked initially. A triggered action calls
+/// `choose` with its value.
 template <class Value, class Choose>
 QActionGroup* make_choices(QObject* parent, const std::vector<ViewChoice<Value>>& choices, Choose choose) {
   auto* group = new QActionGroup(parent);
@@ -43,7 +44,7 @@ QActionGroup* make_choices(QObject* parent, const std::vector<ViewChoice<Value>>
   return group;
 }
 
-/// A button with a menu of the places to look from.
+/// A button with a menu of the camera presets.
 QToolButton* make_camera_button(QWidget* parent, const std::function<void(CameraPreset)>& choose);
 
 class ViewBar : public QFrame {
@@ -52,7 +53,7 @@ class ViewBar : public QFrame {
  public:
   ViewBar(ClothView& view, QAction* save_picture, QWidget* parent = nullptr);
 
-  /// The same choices for the window's menu bar.
+  /// Adds the same choices to a menu of the window's menu bar.
   void fillMenu(QMenu& menu) const;
 
   QSize minimumSizeHint() const override;
@@ -75,7 +76,7 @@ class ViewBar : public QFrame {
   QAction* contact_ = nullptr;
   QSpinBox* box_level_ = nullptr;
   QList<QAction*> camera_;
-  QList<QWidget*> last_;  ///< those that may go, from left to right: the first to go is the last
+  QList<QWidget*> last_;  ///< the buttons that may be hidden, from left to right; the last is hidden first
   QAction* frame_all_ = nullptr;
 };
 

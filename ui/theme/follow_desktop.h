@@ -10,8 +10,8 @@ class QApplication;
 
 namespace clothlab {
 
-/// What the desktop says in its settings portal (GNOME, KDE and others answer there): dark, light, or
-/// nothing. Qt 6.4 does not ask it by itself.
+/// The colour scheme from the desktop's settings portal (GNOME, KDE and others): true for dark, false for
+/// light, nullopt without a preference or a portal. Qt 6.4 does not read it.
 std::optional<bool> portal_prefers_dark();
 
 class FollowDesktop : public QObject {

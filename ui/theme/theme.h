@@ -1,4 +1,5 @@
-// The look: one light and one dark set of colours that follow the desktop, one accent, one spacing unit.
+// The theme: a light and a dark set of colours, chosen as the desktop's, with one accent colour and one
+// spacing unit.
 #pragma once
 
 #include <QColor>
@@ -47,8 +48,8 @@ QString style_sheet(const Theme& theme);
 /// `part` of `over` laid on `under`: 0 gives `under`, 1 gives `over`.
 QColor blend(const QColor& under, const QColor& over, qreal part);
 
-/// A static library's resources are dropped by the linker unless somebody asks for them; both the style sheet
-/// and the icons ask here.
+/// Registers the resources. The linker drops the resources of a static library that no code refers to, so the
+/// style sheet and the icons call this first.
 void ensure_resources();
 
 }  // namespace clothlab

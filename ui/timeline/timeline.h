@@ -1,5 +1,5 @@
-// Under the view: the run so far as a line to scrub on, what playing from here would drop, and the memory
-// that the states to go back to take.
+// The timeline below the view: the run so far with a handle to move in it, the part that playing from here
+// would delete, and the memory of the stored states.
 #pragma once
 
 #include <QFrame>
@@ -13,31 +13,32 @@ class QLabel;
 
 namespace clothlab {
 
-/// The line of the timeline: the run so far from left to right, and a handle at the present time that mouse
-/// and keys move.
+/// The track of the timeline: the run so far from left to right, and a handle at the present time, moved by
+/// mouse and keys.
 class TimelineTrack : public QWidget {
   Q_OBJECT
 
  public:
   explicit TimelineTrack(QWidget* parent = nullptr);
 
-  /// Times in s. `last` 0: nothing was played yet, and there is nowhere to go.
+  /// Times in s. `last` 0: nothing has been computed yet, and the track is disabled.
   void setTimes(double present, double last);
-  /// What an arrow key goes, in s; Page Up and Page Down and Shift with an arrow go ten times as far.
+  /// The time (s) of an arrow key; Page Up, Page Down and Shift with an arrow move ten times as far.
   void setStep(double seconds) { step_ = seconds; }
-  /// The worker is where it was sent: the handle follows the run again, unless the mouse holds it.
+  /// Called when the worker has reached the requested time: the handle follows the run again, except during a
+  /// drag.
   void arrive();
 
-  /// Where the handle is, in s: where it was dragged to, or else the present.
+  /// The handle's time (s): the requested time, else the present one.
   double time() const { return wanted_.value_or(present_); }
-  double timeAt(double x) const;  ///< s, for a place in px
+  double timeAt(double x) const;  ///< time (s) at a horizontal position (px)
   double placeOf(double time) const;
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return {120, sizeHint().height()}; }
 
  Q_SIGNALS:
-  void timeWanted(double time);  ///< s, by a person; again and again during a drag
+  void timeWanted(double time);  ///< s; requested by the user, repeatedly during a drag
 
  protected:
   void mousePressEvent(QMouseEvent* event) override;
@@ -56,7 +57,7 @@ class TimelineTrack : public QWidget {
   double present_ = 0, last_ = 0;  ///< s
   double step_ = 0.01;             ///< s
   bool dragging_ = false;
-  std::optional<double> wanted_;  ///< s: sent for and not reached yet
+  std::optional<double> wanted_;  ///< s; requested and not reached yet
   std::optional<double> cursor_;  ///< px, of the mouse over the track
 };
 
@@ -67,7 +68,7 @@ class Timeline : public QFrame {
   /// `play_again` is shown as a button.
   explicit Timeline(QAction* play_again, QWidget* parent = nullptr);
 
-  /// `arrived`: nothing that the window has sent is still on the way.
+  /// `arrived`: the worker has carried out all commands sent.
   void showStatus(const WorkerStatus& status, bool arrived);
 
   TimelineTrack& track() { return *track_; }

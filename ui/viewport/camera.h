@@ -1,4 +1,4 @@
-// The eye of the view: turns about a target, y is up. Plain mathematics without widgets or OpenGL, in metres,
+// The camera of the view, which orbits a target; y is up. It uses no widgets and no OpenGL; units are metres,
 // radians and device-independent pixels (x right, y down).
 #pragma once
 
@@ -10,8 +10,8 @@ namespace clothlab {
 
 enum class CameraPreset { front, back, left, right, top, isometric };
 
-/// Where the eye is: `distance` from `target`. yaw 0, pitch 0 looks along -z; yaw turns to +x, pitch lifts
-/// the eye.
+/// Camera position: at `distance` from `target`. yaw 0, pitch 0 looks along -z; yaw turns to +x, pitch raises
+/// the camera.
 struct CameraPose {
   Eigen::Vector3d target{0, 0.5, 0};  ///< m
   double distance = 3;                ///< m
@@ -32,12 +32,12 @@ class Camera {
   void set_pose(const CameraPose& pose);
 
   void orbit(double pixels_right, double pixels_down);
-  /// The target's plane follows the cursor.
+  /// Moves the target so that its plane follows the cursor.
   void pan(double pixels_right, double pixels_down);
   /// Divides the distance by `factor`; what lies under the cursor in the target's plane stays there.
   void zoom(double factor, const Eigen::Vector2d& cursor);
 
-  /// This pose, moved so that all of `box` is seen as large as it can be with a little air around it.
+  /// This pose, moved so that all of `box` is visible and fills the picture up to a small margin.
   CameraPose framed(const Eigen::AlignedBox3d& box, const CameraPose& from) const;
   /// The present target and distance, seen from a named side.
   CameraPose seen_from(CameraPreset preset) const;
@@ -68,7 +68,7 @@ inline QPointF as_point(const Eigen::Vector2d& p) {
   return {p.x(), p.y()};
 }
 
-/// A short, eased way from one pose to another.
+/// A short eased animation from one pose to another.
 class CameraFlight {
  public:
   static constexpr double duration = 0.35;  ///< s

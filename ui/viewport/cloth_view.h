@@ -1,5 +1,5 @@
-// The 3-D view: shows the newest frame and lets a hand into it. It draws, it never simulates: what the mouse
-// does to the cloth leaves as signals.
+// The 3-D view: draws the newest frame and turns mouse and keyboard input into camera motion and signals. It
+// does not simulate: pull, wind brush, pins and moved obstacles are reported by signals. GUI thread only.
 //
 //   left-drag      on the cloth: pull a particle; beside it: orbit   (tool pin: click pins or frees a
 //   particle) Shift+left     wind brush, also without Shift when it is the tool; wheel while blowing: radius
@@ -48,21 +48,22 @@ class ClothView : public QWidget {
   bool hasOpenGl() const { return problem_.isEmpty(); }
   QString openGlProblem() const { return problem_; }
 
-  /// The newest wins. Frames whose array sizes do not fit rows x columns are ignored.
+  /// Shows a frame instead of the present one. Frames whose array sizes do not fit rows x columns are
+  /// ignored.
   void showFrame(std::shared_ptr<const ClothFrame> frame);
   const std::shared_ptr<const ClothFrame>& frame() const { return frame_; }
-  /// No cloth: the empty state.
+  /// Removes the frame and shows the empty state.
   void clear();
 
   ViewMode mode() const { return mode_; }
   void setMode(ViewMode mode);
-  /// The top of the colours' range where several views share one, and a bar beside them; nothing: the view
-  /// chooses its own and shows it.
+  /// Sets the maximum of the colour range for several views with one common colour bar; nullopt: the view
+  /// chooses its own range and shows a bar.
   void setColourMaximum(std::optional<double> maximum);
   Tool tool() const { return tool_; }
   void setTool(Tool tool);
 
-  /// What is shown of contact; frames have it once contactChosen() has reached whoever makes them.
+  /// The contact data to show; frames contain it once the worker has handled contactChosen().
   const ContactChoice& contact() const { return contact_; }
   void setContact(const ContactChoice& choice);
   /// Whether obstacles show a handle to drag them by.
@@ -72,15 +73,15 @@ class ClothView : public QWidget {
   void setCameraPose(const CameraPose& pose);
   bool cameraWasMoved() const { return camera_moved_; }  ///< by the user, since resetCamera()
   void frameAll();
-  /// Whether all of the cloth has left the picture, or under a camera that was not moved nearly all. The view
-  /// then says how to see it.
+  /// Whether all of the cloth is outside the picture, or nearly all if the user has not moved the camera. The
+  /// view then shows a hint.
   bool clothIsOutOfSight() const;
   void setPreset(CameraPreset preset) { flyTo(camera_.seen_from(preset)); }
   /// For a newly opened scene: the next frame is framed, and every new topology until the user moves the
   /// camera.
   void resetCamera();
   bool animated() const { return animated_; }
-  void setAnimated(bool animated) { animated_ = animated; }  ///< camera presets fly or jump
+  void setAnimated(bool animated) { animated_ = animated; }  ///< camera presets are animated or immediate
 
   double brushRadius() const { return brush_radius_; }  ///< px
   void setBrushRadius(double pixels);

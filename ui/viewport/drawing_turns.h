@@ -1,5 +1,5 @@
-// Pictures that the processor draws are drawn one in each event of the window's thread, in turn: however many
-// views there are, a click waits for one drawing at most.
+// Schedules software rendering: one view draws in each event of the GUI thread, in turn, so that an input
+// event waits for at most one drawing.
 #pragma once
 
 #include <QObject>
@@ -12,7 +12,7 @@ class DrawingTurns : public QObject {
   Q_OBJECT
 
  public:
-  /// Who has something to draw.
+  /// The interface of a view that has something to draw.
   class Drawer {
    public:
     virtual void takeTurn() = 0;
@@ -24,9 +24,9 @@ class DrawingTurns : public QObject {
   /// One for all views of the application.
   static DrawingTurns& ofTheApplication();
 
-  /// `drawer` gets a turn in an event to come, after those that asked before; once, however often it asks.
+  /// Queues `drawer` for one turn in a later event; has no effect if it is queued already.
   void ask(Drawer* drawer);
-  /// It does not want one any more.
+  /// Removes `drawer` from the queue.
   void leave(Drawer* drawer);
 
  private:
@@ -34,7 +34,7 @@ class DrawingTurns : public QObject {
   void next();
 
   std::deque<Drawer*> waiting_;
-  QTimer timer_;  ///< runs only while somebody waits
+  QTimer timer_;  ///< runs only while a drawer is queued
 };
 
 }  // namespace clothlab

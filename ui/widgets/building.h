@@ -1,4 +1,4 @@
-// Short ways to build bars and forms.
+// Helper functions that build bars and forms.
 #pragma once
 
 #include <QAction>
@@ -7,21 +7,21 @@
 
 namespace clothlab {
 
-/// Tests find a part by its name.
+/// Sets the object name, by which tests and style sheets find the part.
 template <class Part>
 Part* named(const QString& name, Part* part) {
   part->setObjectName(name);
   return part;
 }
 
-/// Text in the quieter colour.
+/// Shows the label's text in the theme's muted colour.
 template <class Label>
 Label* muted(Label* label) {
   label->setProperty("muted", true);
   return label;
 }
 
-/// `gap` in px between its parts, and so many px around them.
+/// Sets the spacing between the layout's parts and its margins (px).
 template <class Layout>
 Layout* spaced(Layout* layout, int gap, QMargins around = {}) {
   layout->setContentsMargins(around);
@@ -29,7 +29,7 @@ Layout* spaced(Layout* layout, int gap, QMargins around = {}) {
   return layout;
 }
 
-/// How a bar shows an action.
+/// A flat tool button for an action in a bar.
 inline QToolButton* make_action_button(QAction* action, QWidget* parent) {
   auto* button = named(action->objectName() + "Button", new QToolButton(parent));
   button->setDefaultAction(action);

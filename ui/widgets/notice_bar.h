@@ -1,5 +1,5 @@
-// One message above the view: what happened, what would help, a button that does it. Messages replace each
-// other by cause, so that a failure that repeats does not pile up.
+// One message above the view: what happened, how to correct it, and optionally a button with an action. A new
+// message replaces the present one.
 #pragma once
 
 #include <QFrame>
@@ -23,7 +23,7 @@ class NoticeBar : public QFrame {
   void show(const QString& cause, Level level, const QString& text, const QString& button = {},
             std::function<void()> action = {});
 
-  /// Takes a message away once its cause is gone.
+  /// Hides the message if it has this cause.
   void withdraw(const QString& cause) {
     if (cause_ == cause) hide();
   }

@@ -1,5 +1,5 @@
-// A line of text that changes many times a second. A QLabel would have the whole window laid out anew at
-// every text; this keeps the size that its widest text needs.
+// A line of text that changes many times a second. A QLabel updates the layout of the whole window with every
+// new text; this widget keeps the size of its widest text.
 #pragma once
 
 #include <QWidget>

@@ -1,9 +1,9 @@
-// What every panel of charts does: draws what is recorded as it comes and as a hand zooms and pans, reads
-// values under the pointer, and saves pictures and points. Every sample appended is kept; what is drawn is
-// decimated to the width of the plots.
+// The base of the chart panels: draws recorded samples as they arrive, zooms and pans by mouse, shows values
+// under the pointer, and saves pictures and data. Keeps every sample appended; the drawn curves are decimated
+// to the width of the plots.
 //
-// Costs nothing while hidden or while nothing new arrives: samples are only stored, and drawn once the panel
-// is seen.
+// While the panel is hidden, samples are only stored; they are drawn when it is shown. No timer runs while no
+// samples arrive.
 #pragma once
 
 #include <QTimer>
@@ -42,9 +42,9 @@ class ChartArea : public QWidget {
 
   /// Of a file with points.
   virtual std::vector<CsvColumn> csv_columns() const = 0;
-  /// Says on a chart that nothing is recorded yet, or no more.
+  /// Shows or hides the message that nothing is recorded yet.
   virtual void show_message() = 0;
-  /// Lays out what stands above the charts. Returns where they begin, in px.
+  /// Lays out the widgets above the charts. Returns the y coordinate at which the charts begin (px).
   virtual int lay_out_head() = 0;
 
   void data_changed();
@@ -66,7 +66,7 @@ class ChartArea : public QWidget {
   void update_read_out();
 
   QSize export_size_;
-  QTimer data_timer_{this};  ///< runs only while there is something new and somebody to see it
+  QTimer data_timer_{this};  ///< runs only while new samples have arrived and the panel is visible
   QTimer view_timer_{this};  ///< joins the mouse moves between two paints into one update
   bool stale_ = true;
   bool was_live_ = true;

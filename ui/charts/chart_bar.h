@@ -1,5 +1,5 @@
-// The row above the charts: which times they show, and what else can be done with them. What has no room is
-// in a menu at its end.
+// The tool bar above the charts: the time span shown, and tools. Buttons without room are in a menu at its
+// end.
 #pragma once
 
 #include <QWidget>
@@ -19,12 +19,12 @@ class ChartBar : public QWidget {
   explicit ChartBar(QWidget* parent = nullptr);
 
   void set_span(TimeView::Span span);
-  /// Whether the charts follow the run, so that nothing leads back to it.
+  /// Whether the charts follow the run; the button that returns to it is then not needed.
   void set_live(bool live);
   void apply_look(const QFont& font);
 
   QSize sizeHint() const override;
-  /// Which times are shown and the way back to the run stay in sight; the rest can be in the menu.
+  /// The time span buttons and the live button are always visible; the others may be in the menu.
   QSize minimumSizeHint() const override;
 
  Q_SIGNALS:

@@ -1,4 +1,5 @@
-// The charts' small flat buttons, painted by hand so that they follow the theme without style sheets.
+// The charts' small flat buttons, with paint events of their own so that they follow the theme without style
+// sheets.
 #pragma once
 
 #include <QAbstractButton>
@@ -7,7 +8,7 @@
 
 namespace clothlab {
 
-/// A word that can be pressed or, when checkable, switched.
+/// A text button, optionally checkable.
 class FlatButton : public QAbstractButton {
   Q_OBJECT
  public:

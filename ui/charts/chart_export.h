@@ -1,5 +1,5 @@
-// The charts as files. Each function returns an empty string, or a sentence that says what went wrong; a file
-// that could not be written whole is not left behind, and one that was there before stays as it was.
+// The charts as files. Each function returns an empty string, or a sentence that says what went wrong; after
+// an error no partial file remains, and an existing file is unchanged.
 #pragma once
 
 #include <QByteArray>

@@ -1,4 +1,4 @@
-// What the charts have recorded, and which curves each chart makes of it.
+// The recorded samples of the charts, and the definition of each chart's curves.
 #pragma once
 
 #include <QString>
@@ -18,12 +18,12 @@ enum SampleColumn : std::size_t { kinetic, elastic, gravity, total, strain, step
 
 struct ChartRecord {
   SampleSeries samples{sample_columns};
-  SampleSeries draws{
-      1};  ///< time per drawing (ms), at times of its own: drawing and simulation do not march in step
+  SampleSeries draws{1};  ///< time per drawing (ms), at its own simulated times, because drawing and
+                          ///< simulation are not synchronised
   std::optional<double> deformation_rate;  ///< a fraction
 
-  /// A time before the last one starts a new record: the simulation was reset. A cut only takes out what is
-  /// later.
+  /// A time before the last one starts a new record: the simulation was reset. A cut deletes only the later
+  /// samples.
   void append(std::span<const ChartSample> batch);
   void append_draw_time(double time_s, double milliseconds);
   void clear();

@@ -1,5 +1,5 @@
-// Charts one above the other over the same times: what a hand does to one of them, their equal heights, and
-// the one left edge of their plots.
+// Stacked charts with a common time axis: connects their zoom and pan signals, and gives their plots equal
+// heights and one left edge.
 #pragma once
 
 #include <QObject>
@@ -21,7 +21,7 @@ class ChartStack : public QObject {
   /// Charts of this record, which outlives the stack.
   ChartStack(const ChartRecord& record, TimeView::Span span, QObject* parent = nullptr);
 
-  /// Below those that there are. Whoever made a chart deletes it, after `clear`.
+  /// Adds a chart below the others. The caller owns the chart and deletes it after `clear`.
   void add(LiveChart* chart);
   void clear() { charts_.clear(); }
   const std::vector<LiveChart*>& charts() const { return charts_; }
@@ -33,14 +33,14 @@ class ChartStack : public QObject {
   bool is_live() const;
   void follow();
 
-  /// Equal plots in what is left of the height.
+  /// Lays the charts out in `room` with plots of equal height.
   void lay_out(const QRect& room);
   void draw();
-  /// Shows the values at a time, or none.
+  /// Shows the values at a time; nullopt: hides them.
   void read(std::optional<double> time_s);
 
  Q_SIGNALS:
-  void changed();  ///< there is something else to draw
+  void changed();  ///< the charts must be drawn again
   void hovered(clothlab::LiveChart* chart, std::optional<double> time_s);
 
  private:

@@ -1,5 +1,5 @@
-// One of the stacked charts: its title and legend above its plot, its y axis' range, and what the cursor
-// reads.
+// One of the stacked charts: title and legend above its plot, the range of its y axis, and the values under
+// the cursor.
 #pragma once
 
 #include <QWidget>

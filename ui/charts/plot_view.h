@@ -1,4 +1,4 @@
-// The window onto a chart's picture: turns wheel, drags and double-clicks into wishes in the axes' own
+// The widget that shows a chart's scene: turns wheel, drags and double-clicks into signals in axis
 // coordinates.
 //
 // It paints the scene like any widget paints itself. A QGraphicsView would flush the whole window at once for

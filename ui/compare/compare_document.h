@@ -20,7 +20,7 @@ class CompareDocument : public Document {
   std::size_t paneCount() const { return comparison_.panes.size(); }
   QString title() const override;
 
-  /// Takes another comparison over and forgets the history. `unsaved`: it lies in no file yet.
+  /// Replaces the comparison and clears the undo history. `unsaved`: no file contains it yet.
   void load(cloth::Comparison comparison, const QString& path = {}, bool unsaved = false);
 
   /// The scene that the form edits, and whose it is: a pane's index, or nothing for what all share.
@@ -28,9 +28,9 @@ class CompareDocument : public Document {
   std::optional<std::size_t> scope() const { return scope_; }
   void setScope(std::optional<std::size_t> pane);
 
-  /// The rule that the value breaks, or an empty string when done.
+  /// Sets the pane's own value. On error returns the rule that the value breaks; an empty string on success.
   QString setOwn(std::size_t pane, const std::string& path, const cloth::ParameterValue& value);
-  /// The pane has the shared value again.
+  /// Removes the pane's own value, so that it has the shared one.
   void useShared(std::size_t pane, const std::string& path);
   void duplicatePane(std::size_t pane);  ///< nothing if there are most_panes
   void removePane(std::size_t pane);     ///< nothing if there are least_panes
@@ -52,7 +52,7 @@ class CompareDocument : public Document {
   cloth::Comparison comparison_;
   LabDocument form_;
   std::optional<std::size_t> scope_;
-  bool following_form_ = false;  ///< the form has the edit already
+  bool following_form_ = false;  ///< the form's scene already has the edit
 };
 
 }  // namespace clothlab

@@ -43,11 +43,11 @@ class PaneGrid : public QWidget {
  public:
   explicit PaneGrid(QWidget* parent = nullptr);
 
-  /// As many panes as the comparison has, each with what it is.
+  /// Shows the comparison's panes with their names, methods and steps.
   void showComparison(const cloth::Comparison& comparison);
   void showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame);
   void showResults(const CompareStatus& status);
-  /// The next frames are framed, as for another scene.
+  /// The cameras frame the next frames, as after opening another scene.
   void resetCamera();
 
   std::size_t paneCount() const { return panes_.size(); }
@@ -88,7 +88,7 @@ class PaneGrid : public QWidget {
   ViewMode mode_ = ViewMode::textured;
   StrainRange strains_;
   StrainRange differences_;
-  QTimer colour_timer_;         ///< while the range glides
+  QTimer colour_timer_;         ///< runs while the colour range changes
   QElapsedTimer colour_clock_;  ///< since the range was followed last
 };
 

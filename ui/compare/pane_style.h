@@ -1,4 +1,4 @@
-// How a pane looks wherever it appears: badge, frame, curves, table.
+// The colour and marker of a pane in its badge, frame, curves and table row.
 #pragma once
 
 #include <QIcon>

@@ -31,7 +31,7 @@ class PaneView : public QFrame {
 
   /// What the pane is. `can_grow`, `can_shrink`: whether there may be another pane, or one less.
   void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow, bool can_shrink);
-  /// How it goes.
+  /// Shows the pane's measurements and its state.
   void showResult(const cloth::PaneResult& result, bool has_reference);
   /// Why the last step typed is not in force; empty: it is.
   void showStepRule(const QString& rule);

@@ -1,5 +1,4 @@
-// The form of one parameter: label, control, a way back to the default, and room for a broken rule and a
-// note.
+// The form of one parameter: label, control, reset button, and lines for the error message and a note.
 #pragma once
 
 #include <QList>
@@ -27,17 +26,17 @@ class ParameterEditor : public QWidget {
  public:
   const std::string& path() const { return parameter_.path; }
 
-  /// Shows the document's value. What was typed and not accepted is gone then.
+  /// Shows the document's value and discards text that was not accepted.
   void refresh();
-  /// Asks again what the default is: an obstacle's goes with the size of the cloth.
+  /// Reads the default again; an obstacle's default depends on the size of the cloth.
   void refreshDefault();
   void setNote(const QString& note, const QString& button = {});
-  /// For a parameter alone in its section, whose head then says label and unit.
+  /// For the only parameter of a section, whose header shows label and unit.
   void hideTitle() { title_->hide(); }
 
-  /// What the Tab key visits, in order.
+  /// The widgets of the tab order.
   virtual QList<QWidget*> tabStops() const = 0;
-  /// Forgets what is being typed; the editor is about to go.
+  /// Discards text being typed, because the editor is about to be deleted.
   virtual void abandonEdits() {}
 
  Q_SIGNALS:
@@ -50,7 +49,7 @@ class ParameterEditor : public QWidget {
   virtual void showDefault(const std::optional<cloth::ParameterValue>&) {}
   virtual void markInvalid(bool) {}
 
-  /// Hands a value to the document. False if it breaks a rule, which then stands below the control.
+  /// Sets the value in the document. If it breaks a rule, shows the rule below the control and returns false.
   bool commit(const cloth::ParameterValue& value);
   void showRule(const QString& rule);  ///< empty: none
 
@@ -64,7 +63,7 @@ class ParameterEditor : public QWidget {
   /// A drag of the slider, and a run of steps by key in the field, are one undo step each.
   void connectParts(ValueSlider* slider, ExactField* field, std::function<void(double position)> move,
                     std::function<void(int steps)> step);
-  /// Says why what was typed is no number.
+  /// Shows why the text is not a number.
   void refuseNumber(const QString& text);
   /// Sets the names by which screen readers and tests know a part; its tooltip follows with the default.
   void name(QWidget& part, const QString& object_name, const QString& suffix = {});

@@ -1,5 +1,5 @@
-// The form of a scene: one section for each block that it has, and a menu of those it could have. Made from
-// the declarations; it edits through the document and follows it.
+// The form of a scene: one section for each block, and a menu of blocks to add. Generated from the parameter
+// declarations; edits go to the document, and its signals update the form.
 #pragma once
 
 #include <QWidget>
@@ -32,7 +32,7 @@ class ParameterPanel : public QWidget {
   void setNote(const std::string& path, const QString& note, const QString& button = {});
   void clearNotes();
 
-  /// Whether blocks may come and go; they may unless told otherwise.
+  /// Whether blocks can be added and removed; true by default.
   void setBlocksEditable(bool editable);
 
   /// What "auto" comes to at present for a parameter that allows it, in its unit.

@@ -1,5 +1,5 @@
-// One block of a scene as a section of the form: a head that opens and closes it, a cross where the block may
-// go, and an editor for each of its parameters.
+// One block of a scene as a section of the form: a header that opens and closes it, a button that removes the
+// block if it can be removed, and an editor for each of its parameters.
 #pragma once
 
 #include <QWidget>

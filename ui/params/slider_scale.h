@@ -1,5 +1,4 @@
-// Where a value stands on its slider, and which value a place on the slider means. Pure arithmetic, no
-// widget.
+// Converts between a parameter's value and its slider's position. No widget.
 #pragma once
 
 #include "params/parameter.h"
@@ -15,7 +14,7 @@ class SliderScale {
   /// The value at a position: a round number (three digits or so) that the declaration accepts.
   double value_at(double position) const;
 
-  /// The position of a value; values beyond the slider's range stand at its ends.
+  /// The position of a value; values outside the slider's range are clamped to its ends.
   double position_of(double value) const;
 
   /// The value `steps` steps up or down: about a hundredth of a linear range, the second digit of a

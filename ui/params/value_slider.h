@@ -1,4 +1,4 @@
-// A slider that stands where it is pressed, is told about keys in steps of the value and leaves the wheel to
+// A slider that moves to where it is pressed, reports keys as steps of the value, and leaves wheel events to
 // the panel.
 #pragma once
 
@@ -12,7 +12,7 @@ class ValueSlider : public QSlider {
  public:
   explicit ValueSlider(QWidget* parent = nullptr);
 
-  void setPosition(double position);  ///< 0 (left) to 1; announces nothing
+  void setPosition(double position);  ///< 0 (left) to 1; emits no signal
   double position() const;
   /// A small tick where the default is, seen while the handle is elsewhere; negative: none.
   void setMark(double position);
@@ -20,7 +20,7 @@ class ValueSlider : public QSlider {
  Q_SIGNALS:
   void dragBegan();             ///< before the first change by mouse or key
   void dragEnded();             ///< after the last one
-  void moved(double position);  ///< by a person
+  void moved(double position);  ///< by mouse
   void stepped(int steps);      ///< by arrow or page keys
 
  protected:
@@ -42,7 +42,7 @@ class ValueSlider : public QSlider {
   void goTo(double position);
 
   bool dragging_ = false;
-  double grip_ = 0;  ///< px from the handle's centre to where the mouse took it
+  double grip_ = 0;  ///< px from the handle's centre to where the mouse pressed it
   double mark_ = -1;
 };
 

@@ -1,4 +1,5 @@
-// The Studies dock: choose, run in the background, watch the diagram fill, open a run in the view, save.
+// The Studies dock: choose a study, run it in the background, show its diagram as results arrive, open a run
+// in the view, save.
 #pragma once
 
 #include <QTimer>
@@ -31,7 +32,7 @@ class StudiesPanel : public QWidget {
   bool isRunning() const { return runner_.is_running(); }
   /// Cancels, and waits for one step and the writing of what is finished.
   void stop();
-  /// Shows a folder that the command line or the window wrote. What cannot be read is said in the panel.
+  /// Shows a folder that the command line or the window wrote. Errors are shown in the panel.
   void openFolder(const QString& folder);
   /// The diagram (.svg, .png, .pdf) or its table (.csv); empty, or what went wrong.
   QString save(const QString& name);
@@ -42,7 +43,7 @@ class StudiesPanel : public QWidget {
   QString folder() const { return folder_; }  ///< of what is shown
 
  Q_SIGNALS:
-  /// A run was asked for: its scene, and what the scene cannot say of it.
+  /// The user opened a run: its scene, and a note with what the scene does not contain.
   void runOpened(const cloth::Scene& scene, const QString& note);
   void finished();
 

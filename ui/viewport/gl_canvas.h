@@ -1,4 +1,4 @@
-// The surface inside the view that its OpenGL picture appears on. There are two, since what is cheap differs:
+// The widget inside the view that shows its OpenGL picture. There are two kinds, because their costs differ:
 //
 //   window  A graphics card draws into the window itself (QOpenGLWidget).
 //   memory  For a processor that draws. A window that contains a QOpenGLWidget is slow there as a whole: with
@@ -22,7 +22,7 @@ namespace clothlab {
 
 enum class CanvasKind { window, memory };
 
-/// What suits this machine. Needs a QGuiApplication.
+/// The kind that suits this machine's OpenGL. Needs a QGuiApplication.
 CanvasKind suitable_canvas();
 
 class GlCanvas {
@@ -30,9 +30,9 @@ class GlCanvas {
   struct Callbacks {
     std::function<void()> initialise;                    ///< with a current context, or none: it failed
     std::function<void(int width, int height)> resized;  ///< device-independent px
-    std::function<void(bool quick)> draw;                ///< into the framebuffer bound
+    std::function<void(bool quick)> draw;                ///< draws into the bound framebuffer
     std::function<void(QPainter& painter)> paint_over;   ///< what lies over the picture
-    std::function<void(double milliseconds)> shown;      ///< the picture is made, and how long that took
+    std::function<void(double milliseconds)> shown;      ///< the picture is complete; how long it took, ms
   };
 
   virtual ~GlCanvas() = default;

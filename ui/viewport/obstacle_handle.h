@@ -1,5 +1,5 @@
 // The handle by which an obstacle is moved: a ring for the plane of the screen, three arrows for the axes.
-// Plain mathematics without widgets or OpenGL.
+// Geometry only, without widgets or OpenGL.
 #pragma once
 
 #include <array>
@@ -15,20 +15,19 @@ struct ObstacleHandle {
 
   static constexpr double ring_radius = 11, arrow_length = 58;  ///< px
   static constexpr double nearness =
-      80;  ///< px: so far from its place it is shown without the obstacle under it
+      80;  ///< px; the handle is shown within this distance even if the cursor is not over the obstacle
 
   int obstacle = 0;
-  Eigen::Vector3d place{0, 0, 0};  ///< m, where the scene means the obstacle's centre or point to be
+  Eigen::Vector3d place{0, 0, 0};  ///< m; the obstacle's centre or point, as the scene defines it
 
   std::array<Eigen::Vector3d, 3> tips(const Camera& camera) const;  ///< m, of the arrows
   Part part_at(const Camera& camera, const Eigen::Vector2d& cursor) const;
 };
 
-/// The obstacle, moved by so many metres: its keyframes where it has some, for they say where it is; else its
-/// centre, point or position, from which it may move on.
+/// The obstacle moved by `by` (m): changes its keyframes if it has any, else its centre, point or position.
 cloth::Obstacle moved_by(const cloth::Obstacle& obstacle, const Eigen::Vector3d& by);
 
-/// Whether its place is another at another time, so that a drag moves a whole motion.
+/// Whether the obstacle's position changes with time, so that a drag moves its whole path.
 bool has_motion(const cloth::Obstacle& obstacle);
 
 /// The handle to be shown for a cursor, in px: of the obstacle whose handle is nearest, or which is under it.

@@ -1,4 +1,4 @@
-// Which particle lies under the cursor, and how many lie in the picture.
+// Finds the particle under the cursor and the part of the cloth inside the picture.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ inline constexpr double picking_tolerance = 12;  ///< px, around particles the r
 std::optional<int> pick_particle(const ClothFrame& frame, const Camera& camera,
                                  const Eigen::Vector2d& cursor);
 
-/// The share of the cloth's particles that lies in a picture of this size (px); of a large cloth every n-th
-/// is asked.
+/// The share of the cloth's particles that lies in a picture of this size (px); of a large cloth only every
+/// n-th particle is tested.
 double share_in_picture(const ClothFrame& frame, const Camera& camera, const Eigen::Vector2d& size);
 
 /// m along the ray to the triangle p q r, from either side; negative if it passes by (Moeller and Trumbore

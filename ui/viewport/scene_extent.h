@@ -1,4 +1,4 @@
-// How much room the things of a frame take: for framing the camera and for laying the ground.
+// Bounding boxes of a frame's cloth and obstacles, for framing the camera and for placing the ground.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,11 +7,11 @@
 
 namespace clothlab {
 
-/// m. Planes are endless and do not count.
+/// In m. Planes are infinite and are ignored.
 Eigen::AlignedBox3d bounds_of_cloth(const ClothFrame& frame);
 Eigen::AlignedBox3d bounds_of_obstacles(const ClothFrame& frame);
 
-/// Where obstacles start and wherever their keyframes lead them.
+/// Bounds of the obstacles at the start and at all their keyframes (m).
 Eigen::AlignedBox3d reach_of_obstacles(const std::vector<cloth::Obstacle>& obstacles);
 
 /// The cloth's bounds and, where it is pinned, how far down it can hang from its pins: every particle stays

@@ -1,5 +1,5 @@
-// Draws a frame into whichever framebuffer is bound. Knows OpenGL, the theme's colours and the frame; nothing
-// of widgets, mice or time.
+// Draws a frame into the bound framebuffer with OpenGL, in the theme's colours. Independent of widgets, input
+// and time.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace clothlab {
 
 struct Theme;
 
-/// From where and how a picture is drawn.
+/// Camera and options of one picture.
 struct Shot {
   Eigen::Matrix4d world_to_clip = Eigen::Matrix4d::Identity();
   Eigen::Vector3d eye{0, 0, 1}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< m; unit vectors
@@ -27,10 +27,10 @@ struct Shot {
   double pixel_ratio = 1;           ///< the picture's pixels per device-independent px
   ViewMode mode = ViewMode::textured;
   double strain_maximum = 0.1;  ///< of the colours' range
-  /// For a picture that is gone in a moment: where the cloth's cells are a few pixels, light is worked out
-  /// per particle instead of per pixel. Has an effect only with a frugal renderer.
+  /// Lower quality for a moving cloth: if the cells are only a few pixels large, light is computed per
+  /// particle instead of per pixel. Has an effect only with a frugal renderer.
   bool quick = false;
-  bool contact = false;  ///< what the frame tells of it is drawn
+  bool contact = false;  ///< draws the frame's contact data
   Ground ground;
   Eigen::AlignedBox3d extent;  ///< m: how large the grid of the ground is drawn, and about where
 };
@@ -43,10 +43,10 @@ class ClothRenderer : protected QOpenGLFunctions_3_3_Core {
   ClothRenderer& operator=(const ClothRenderer&) = delete;
 
   /// Shaders, meshes, textures. On failure false, and why in `problem`; nothing else may be called then.
-  /// `frugal`: the processor draws, so leave out what costs it much and shows little.
+  /// `frugal`: for software rendering; leaves out expensive details.
   bool initialise(bool frugal, QString* problem);
 
-  /// Takes the frame's geometry over into graphics memory. Rows, columns and array sizes must agree.
+  /// Uploads the frame's geometry to graphics memory. Rows, columns and array sizes must agree.
   void set_frame(const ClothFrame& frame);
 
   /// The whole picture, without overlays. Sets all the state it needs and leaves depth test and blending off.

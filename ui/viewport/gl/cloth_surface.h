@@ -1,4 +1,4 @@
-// The cloth in the graphics memory: uploaded when a new frame comes, drawn as often as wanted.
+// The cloth in the graphics memory: uploaded once for each frame, drawn any number of times.
 #pragma once
 
 #include <QOpenGLFunctions_3_3_Core>

@@ -1,4 +1,5 @@
-// Contact over the picture: touches as dots with their normals, boxes of hierarchies.
+// Draws contact over the picture: contact points as dots with their normals, and boxes of bounding volume
+// hierarchies.
 #pragma once
 
 #include <Eigen/Core>

@@ -18,8 +18,8 @@ class MeshBodies {
   MeshBodies(const MeshBodies&) = delete;
   MeshBodies& operator=(const MeshBodies&) = delete;
 
-  /// Uploads the meshes of these obstacles that are not there yet, and lets go of those that none of them
-  /// has.
+  /// Uploads the meshes of these obstacles that are not there yet, and deletes those that no obstacle uses
+  /// any more.
   void keep(const std::vector<cloth::Obstacle>& obstacles);
   void draw(const cloth::TriangleMesh& mesh);  ///< before it is placed; one of those that are kept
 

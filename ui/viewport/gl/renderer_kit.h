@@ -9,7 +9,7 @@
 
 namespace clothlab {
 
-/// The context must be current whenever one is made or the last holder lets go of it.
+/// The context must be current when a kit is made and when its last owner releases it.
 class RendererKit : protected QOpenGLFunctions_3_3_Core {
  public:
   enum Texture { weave, palette, stored_weave, stored_palette, texture_count };

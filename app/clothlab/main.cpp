@@ -17,8 +17,8 @@
 
 namespace {
 
-/// What goes wrong in an event, for want of memory as a rule, is said, and the window stays: there may be
-/// work in it that is not saved.
+/// Catches exceptions from event handlers, usually std::bad_alloc, and shows a message. The window stays
+/// open, because it may contain unsaved work.
 class Application : public QApplication {
  public:
   using QApplication::QApplication;

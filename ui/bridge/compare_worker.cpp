@@ -23,7 +23,8 @@ bool acts_on_the_panes(const CompareCommand& command) {
                             command::StartRecording, command::StopRecording>(command);
 }
 
-/// Of several of one kind only the newest counts: a slider or a hand moves faster than panes do.
+/// Only the newest of several waiting commands of one kind is carried out, because mouse input is faster than
+/// the panes.
 bool is_overtaken_by(const CompareCommand& command, const CompareCommand& next) {
   return command.index() == next.index() &&
          command::is_one_of<LoadComparison, EditComparison, command::Brush, command::Pull>(command);

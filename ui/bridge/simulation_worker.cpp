@@ -137,7 +137,7 @@ std::vector<cloth::Problem> SimulationWorker::perform(const cloth::SessionAction
   return {};
 }
 
-/// From here on something new happens: what the history has of later times is over.
+/// Begins a new branch: deletes the history after the present step.
 void SimulationWorker::begin_branch() {
   playing_again_ = false;
   status_.session_agrees.reset();

@@ -1,4 +1,4 @@
-// The worker's way through its history: back and forth, played again, saved and opened as a session.
+// SimulationWorker: moving in the history, replaying it, and saving and opening sessions.
 #include <fmt/format.h>
 
 #include "bridge/simulation_worker.h"
@@ -23,7 +23,7 @@ void SimulationWorker::handle(const command::GoTo& go) {
   end_recording();
   playing_again_ = false;
   status_.divergence.reset();
-  status_.refusal.clear();  // what was refused is left behind
+  status_.refusal.clear();  // an earlier refusal no longer applies
   status_.session_error.clear();
   ++status_.jumps;
   settle(history_.go_to(*simulation_, go.target, [this] { return may_go_on(); }));
@@ -45,7 +45,7 @@ bool SimulationWorker::may_go_on() {
   return true;
 }
 
-/// Where a way through the history has ended, for better or worse.
+/// Handles the end of a move in the history, whether it succeeded or failed.
 void SimulationWorker::settle(const cloth::HistoryArrival& arrival) {
   if (arrival.divergence) return diverge(*arrival.divergence);
   if (!arrival.problems.empty()) {

@@ -115,7 +115,7 @@ void PlotView::mouseReleaseEvent(QMouseEvent* event) {
 void PlotView::finish_box(QPointF at) {
   const PlotMap& map = scene_->map();
   const QRectF box = QRectF(pressed_at_, at).normalized() & map.plot;
-  if (box.width() < smallest_box_px || box.height() < smallest_box_px) return;  // a slip, not a wish
+  if (box.width() < smallest_box_px || box.height() < smallest_box_px) return;  // too small to be intended
   Q_EMIT box_chosen({map.time_at(box.left()), map.time_at(box.right())},
                     {map.axis_at(box.bottom()), map.axis_at(box.top())});
 }

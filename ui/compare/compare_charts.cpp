@@ -65,7 +65,7 @@ void CompareCharts::setPanes(const cloth::Comparison& comparison) {
   makeCharts();
 }
 
-/// A pane that went leaves nothing to one that takes its name.
+/// Deletes the samples of removed panes, so that a new pane of the same letter starts empty.
 void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
   ChartRecord record = empty_record();
   std::array<double, quantities * cloth::most_panes> row;

@@ -106,7 +106,7 @@ void PaneGrid::showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> fra
   if (pane < panes_.size()) panes_[pane]->view().showFrame(std::move(frame));
 }
 
-/// Between two pictures of one pane the others have theirs: that is no rest.
+/// While the run plays, no smooth pictures are drawn between the frames of different panes.
 void PaneGrid::followPlaying(bool playing) {
   if (playing == playing_) return;
   playing_ = playing;

@@ -112,7 +112,7 @@ class LabDocument::EditCommand : public QUndoCommand {
 
   void undo() override { document_.apply(before_, change_); }
   void redo() override {
-    // The run that is followed has its scene already; whoever redoes it later wants it put in force.
+    // The run already has this scene now; a later redo must apply it to the run.
     const bool is_in_force = std::exchange(is_new_, false) && drag_ == following;
     document_.apply(after_, is_in_force ? SceneChange{Effect::none, change_.path} : change_);
   }

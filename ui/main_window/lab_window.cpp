@@ -204,7 +204,7 @@ void LabWindow::updateTitle() {
   setWindowModified(any_document_->isModified());
 }
 
-/// Save, discard or cancel: whether to go on.
+/// Asks to save, discard or cancel. Returns false if the user cancelled or saving failed.
 bool LabWindow::mayLoseChanges() {
   if (!asks_to_save_ || !any_document_->isModified()) return true;
   const auto answer = QMessageBox::question(

@@ -1,4 +1,4 @@
-// What the window shows of the worker's status.
+// MainWindow: updates the window from the worker's status.
 #include <QAction>
 #include <QStringList>
 #include <algorithm>
@@ -84,7 +84,7 @@ void MainWindow::followDivergence(const WorkerStatus& status) {
     notice_->show("divergence", NoticeBar::Level::error, text);
 }
 
-/// No divergence: whatever is undone or moved, the run goes on from where it stands.
+/// A pinch is not a divergence: after any undo or move the run continues from its present state.
 void MainWindow::sayPinched(const cloth::Divergence& stop) {
   const QString text = tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.")
                            .arg(QString::fromStdString(cloth::describe(stop)));

@@ -15,8 +15,8 @@ constexpr std::array signals_to_stop{SIGINT, SIGTERM, SIGHUP};
 
 std::atomic<int> write_end{-1};
 
-/// A handler may do next to nothing: it writes a byte to a pipe, and the event loop reads it (D. J.
-/// Bernstein's self-pipe).
+/// A signal handler may call only async-signal-safe functions: it writes a byte to a pipe, and the event loop
+/// reads it (D. J. Bernstein's self-pipe).
 extern "C" void tell_event_loop(int) {
   const int saved = errno;
   const char byte = 0;

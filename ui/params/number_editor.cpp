@@ -67,7 +67,7 @@ void NumberEditor::showValue(const cloth::ParameterValue& value) {
   if (!number) return showAuto();
   last_number_ = number;
   field_->showValue(*number);
-  // The hand is on the handle: rounding the value must not make it jump.
+  // During a drag, rounding the value must not move the handle.
   if (!slider_->isSliderDown()) slider_->setPosition(scale_.position_of(*number));
 }
 

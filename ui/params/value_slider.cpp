@@ -132,7 +132,8 @@ void ValueSlider::hideEvent(QHideEvent* event) {
 }
 
 void ValueSlider::wheelEvent(QWheelEvent* event) {
-  // Always the panel's, focus or not: who scrolls past a slider just used does not mean to use it again.
+  // The panel always gets wheel events, even if the slider has the focus, so that scrolling the form changes
+  // no value.
   event->ignore();
 }
 

@@ -12,7 +12,7 @@
 namespace clothlab {
 namespace {
 
-/// Icons that speak of a state keep its colour; all others take the text's.
+/// Icons of a state have its colour; all others have the text colour.
 QColor resting_colour(const QString& name, const Theme& t) {
   if (name == "warning") return t.warning;
   if (name == "info") return t.accent;

@@ -170,7 +170,7 @@ void ClothView::flyTo(const CameraPose& pose) {
     Q_EMIT cameraMoved(pose);
     return;
   }
-  clock_.restart();  // the flight begins now, however long ago the last picture was
+  clock_.restart();  // the animation starts now, not at the time of the last picture
   flight_.start(camera_.pose(), pose);
   redraw();
 }
@@ -201,7 +201,8 @@ void ClothView::resetCamera() {
 void ClothView::initialiseGl() {
   if (!hasOpenGl()) return;  // it has been tried
   if (!canvas_->context()) return fail(tr("This display offers no OpenGL."));
-  // A view that moves to another window gets a new context; what lives in the old one goes with it.
+  // A view that moves to another window gets a new context; the resources of the old context are deleted with
+  // it.
   connect(canvas_->context(), &QOpenGLContext::aboutToBeDestroyed, this, &ClothView::releaseRenderer,
           Qt::UniqueConnection);
   QString reason;

@@ -1,4 +1,4 @@
-// ClothView's other half: what mouse and keys do.
+// ClothView: mouse and keyboard input.
 #include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>

@@ -1,4 +1,4 @@
-// ClothView's third part: obstacles that a hand moves, and contact that is shown.
+// ClothView: moving obstacles by mouse, and showing contact.
 #include <QPainter>
 
 #include "theme/theme.h"
@@ -60,7 +60,7 @@ void ClothView::cancelObstacleMove() {
   updateHover();
 }
 
-/// While it is dragged the handle follows the hand, however far behind the obstacle is.
+/// During a drag the handle follows the cursor; the obstacle may lag behind.
 void ClothView::paintHandle(QPainter& painter) {
   const bool moving = gesture_ == Gesture::obstacle;
   if (!handle_ || (!moving && (gesture_ != Gesture::none || brushShown()))) return;
@@ -79,7 +79,7 @@ void ClothView::paintHandle(QPainter& painter) {
                   static_cast<int>(handle_part_) - 1);
 }
 
-/// What the marks say, in a number.
+/// The number of contact marks.
 void ClothView::paintContactNote(QPainter& painter) {
   if (!contact_.marks || !frame_->contact.has_marks) return;
   constexpr std::size_t floats_of_mark = 7;

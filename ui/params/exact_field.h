@@ -15,12 +15,12 @@ class ExactField : public QLineEdit {
   void setUnit(const QString& unit);    ///< after the number, muted
   void setPrefix(const QString& text);  ///< before the number, muted: an axis
 
-  /// Shows a value and forgets what was typed.
+  /// Shows a value and discards text being typed.
   void showValue(double value);
   /// Shows that there is no number; `hint` stands in its place, muted.
   void showNothing(const QString& hint);
 
-  /// Whether the text is a person's and not yet the document's: being typed, or refused.
+  /// Whether the text is not in the document: it is being typed, or was refused.
   bool hasPendingText() const { return isModified() || invalid_; }
   void setInvalid(bool invalid);
   void abandonEdit();  ///< back to the value that was shown
@@ -32,7 +32,7 @@ class ExactField : public QLineEdit {
   void committed(const QString& text);  ///< Enter, or the focus leaves, after an edit
   void abandoned();                     ///< Escape, after an edit
   void stepped(int steps);              ///< arrow and page keys
-  void stepsEnded();                    ///< the key is up again
+  void stepsEnded();                    ///< the key was released
 
  protected:
   bool event(QEvent* event) override;

@@ -1,5 +1,5 @@
-// A button with the meshes that a scene can name, those of our own making and any OBJ file; and the row of a
-// grid cloth with it.
+// A button with a menu of meshes: the built-in ones and any OBJ file; and the form row of a grid cloth that
+// contains it.
 #pragma once
 
 #include <QToolButton>

@@ -20,7 +20,7 @@ class ValueSlider : public QSlider {
  Q_SIGNALS:
   void dragBegan();             ///< before the first change by mouse or key
   void dragEnded();             ///< after the last one
-  void moved(double position);  ///< by mouse
+  void moved(double position);  ///< by mouse, or by the Home and End keys
   void stepped(int steps);      ///< by arrow or page keys
 
  protected:

@@ -1,5 +1,5 @@
-// The declarations' ASCII in the words and signs of a window; and numbers as text and back, the same under
-// every locale: the decimal sign is a point, thousands have no sign.
+// Converts the declarations' ASCII to displayed text, and numbers to text and back, independent of the
+// locale: decimal point, no thousands separator.
 #pragma once
 
 #include <QString>
@@ -23,7 +23,7 @@ QString choice_text(const std::string& word);
 /// {"structural", "shear"} -> "Structural and shear"; none -> "None"
 QString words_text(const cloth::Words& words);
 
-/// What a person sees of a value, with its unit.
+/// The displayed text of a value, with its unit.
 QString value_in_words(const cloth::ParameterInfo& info, const cloth::ParameterValue& value);
 
 /// Meaning, formula, range, default, unit, cost and path of a parameter, as rich text.

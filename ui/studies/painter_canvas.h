@@ -1,5 +1,5 @@
-// The engine's plots on a QPainter: the same drawing as its SVG, in the theme's colours, with what the
-// pointer finds where.
+// The engine's plots on a QPainter: the same drawing as its SVG, in the theme's colours, with a list of the
+// shapes that have a tooltip.
 #pragma once
 
 #include <QColor>
@@ -12,7 +12,7 @@
 
 namespace clothlab {
 
-/// A shape that answers to the pointer, in the drawing's own px.
+/// A shape with a tooltip, in px of the drawing.
 struct PlotTouch {
   QRectF box;
   QString text;

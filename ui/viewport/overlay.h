@@ -1,4 +1,4 @@
-// What lies over the picture: colour bar, mode, brush circle, rings, lines, messages. Painted smoothly into
+// Overlays of the picture: colour bar, mode, brush circle, rings, lines, messages. Painted smoothly into
 // small images by the processor, which are then laid over the view: so they are as crisp without
 // multisampling as with it, and those that do not change are painted once.
 #pragma once
@@ -45,7 +45,7 @@ class Overlay {
   };
   enum class Ring { highlight, add, remove };
 
-  /// Everything is painted anew, as after a change of theme.
+  /// Discards all cached images, so that they are painted again, as after a change of theme.
   void forget();
 
   /// What colours stand for: strains, pure numbers, or differences from a reference, m.

@@ -118,7 +118,7 @@ TEST(BothReferenceSolvers, SayWhereTheyFail) {
   const Derivative blow_up = [](double, const Eigen::VectorXd& y, Eigen::VectorXd& dy) {
     dy = y.cwiseAbs2();
   };
-  Eigen::VectorXd y = Eigen::VectorXd::Ones(1), z = y;  // 1/(1 - t)
+  Eigen::VectorXd y = Eigen::VectorXd::Ones(1), z = Eigen::VectorXd::Ones(1);  // 1/(1 - t)
   EXPECT_TRUE(Extrapolation(1e-13, y).advance(blow_up, 0, 2, y));
   EXPECT_TRUE(Collocation(z).advance(blow_up, 0, 2, 10, z));
 }

@@ -16,7 +16,8 @@
 
 namespace cloth {
 
-/// Whether the scene uses continuous contact; otherwise obstacles are tested particle by particle.
+/// Whether the scene uses continuous contact: it has the block `contact` or `self_contact`, a moving obstacle
+/// or one whose shape is a surface. Otherwise obstacles are tested particle by particle.
 bool has_continuous_contact(const Scene& scene);
 
 /// m/s, upper bound of the speed of any point of an obstacle that can touch the cloth; 0 where all are at

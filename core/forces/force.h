@@ -4,7 +4,8 @@
 //
 // so a force is written once as p, D, its energy and its power, and each integrator decides how it treats
 // D v. Of the air's force (forces/air.h) the wind's part is in p, the resistance to the particle's own
-// velocity in D. Verlet, for example, takes D v implicitly at the end of a step (integrators/verlet.h).
+// velocity in D. Verlet, for example, takes one half of D v at the begin of a step and the other, implicitly,
+// at its end (integrators/verlet.h).
 // Forces are made from a scene by forces/registry.h and summed by ForceModel (forces/force_model.h).
 #pragma once
 

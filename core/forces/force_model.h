@@ -1,7 +1,8 @@
 // The sum of a scene's forces, f(x, v, t) = p(x, t) - D(x) v: all that integrators know of forces.
 //
-// The kernels (kernels/spring_sweep.h) compute springs, their damping and gravity where they support the
-// cloth; every other force is added through the interface of Force.
+// The kernels (kernels/spring_sweep.h) compute springs and gravity, and where a stepper does the whole step,
+// damping and drag too (SweepTerms), for the cloths that they support; every other force is added through the
+// interface of Force.
 //
 //     forces.update(position, time);               // one force evaluation: p, and what D needs
 //     forces.force(position, velocity, force);     // p - D v, in N

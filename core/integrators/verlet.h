@@ -5,11 +5,12 @@
 //     x'     = x + h v_half
 //     v'     = v_half + h/2 a(x', v', t+h)      solved for v', a is affine in it
 //
-// The accelerations hold every force of the scene, a = (p - D v) / m (forces/force.h). Air drag enters twice:
-// in the opening kick with the velocity v at t, and in the closing kick, where its D (AirForce in
-// forces/air.cpp) is part of the linear system that VelocitySolver solves for v'. Wind is part of p at both
-// times. After continuous contact has moved the positions, the closing kick is repeated at the new ones:
-// follow_positions() and follow_velocities(), which contact/velocity_response.cpp calls.
+// The accelerations hold every force of the scene, a = (p - D v) / m (forces/force.h). Every D v, of air drag
+// as of viscous and spring damping, enters twice: in the opening kick with the velocity v at t, and in the
+// closing kick, where D is part of the linear system that VelocitySolver solves for v' (with known = v_half
+// and weight = h/2). Wind is part of p at both times. After continuous contact has moved the positions, the
+// closing kick is repeated at the new ones (follow_positions()), and once more with the damping at the
+// velocities that contact has set (follow_velocities()).
 //
 // A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
 // v_half.

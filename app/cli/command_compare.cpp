@@ -66,9 +66,9 @@ LoadedComparison load_file(const CompareArguments& arguments) {
 
 /// `--scene S --methods a,b`: a pane for each method, nothing else differs.
 LoadedComparison from_methods(const CompareArguments& arguments) {
-  if (arguments.methods.size() < cloth::least_panes || arguments.methods.size() > cloth::most_panes) {
+  if (arguments.methods.size() < cloth::least_panes || arguments.methods.size() > cloth::max_panes) {
     say(fmt::format("--methods: {} given; a comparison has {} to {}", arguments.methods.size(),
-                    cloth::least_panes, cloth::most_panes));
+                    cloth::least_panes, cloth::max_panes));
     return {std::nullopt, bad_input};
   }
   const LoadedScene loaded = load_scene(arguments.scene, settings_of(arguments));

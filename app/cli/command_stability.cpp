@@ -52,8 +52,8 @@ std::string command_text(const StabilityArguments& arguments) {
     text += fmt::format(" --methods {}", fmt::join(arguments.options.methods, ","));
   if (arguments.options.criterion.periods != cloth::StabilityCriterion{}.periods)
     text += fmt::format(" --periods {}", arguments.options.criterion.periods);
-  if (arguments.options.criterion.most_steps != cloth::StabilityCriterion{}.most_steps)
-    text += fmt::format(" --most-steps {}", arguments.options.criterion.most_steps);
+  if (arguments.options.criterion.max_steps != cloth::StabilityCriterion{}.max_steps)
+    text += fmt::format(" --most-steps {}", arguments.options.criterion.max_steps);
   if (arguments.options.full_size) text += " --full-size";
   return text + " --out DIR";
 }
@@ -104,7 +104,7 @@ void add_stability(Program& program) {
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   command
-      .add_option("--most-steps", arguments.options.criterion.most_steps,
+      .add_option("--most-steps", arguments.options.criterion.max_steps,
                   "After so many steps a run ends, however long it should last")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();

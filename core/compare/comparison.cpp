@@ -50,11 +50,11 @@ std::string place_of(std::size_t pane, const std::string& key) {
 /// The rules of the comparison itself.
 void check_panes(const Comparison& comparison, std::vector<Problem>& problems) {
   const std::size_t count = comparison.panes.size();
-  if (count < least_panes || count > most_panes)
+  if (count < least_panes || count > max_panes)
     problems.push_back({"panes", fmt::format("{} panes", count),
-                        fmt::format("must be {} to {}", least_panes, most_panes), "", 0, 0});
+                        fmt::format("must be {} to {}", least_panes, max_panes), "", 0, 0});
   std::set<std::string> names;
-  for (std::size_t i = 0; i < count && count <= most_panes; ++i) {  // of too many, some have no name
+  for (std::size_t i = 0; i < count && count <= max_panes; ++i) {  // of too many, some have no name
     const std::string& name = comparison.panes[i].name;
     const std::string shown = fmt::format("\"{}\"", name);
     if (std::find(std::begin(pane_names), std::end(pane_names), name) == std::end(pane_names))
@@ -114,7 +114,7 @@ bool is_copy(const Comparison& before, const Comparison& after, std::size_t pane
 }  // namespace
 
 std::vector<Pane> panes_for(const std::vector<std::string>& methods) {
-  assert(methods.size() <= most_panes);
+  assert(methods.size() <= max_panes);
   std::vector<Pane> panes;
   for (const std::string& method : methods)
     panes.push_back({.name = pane_names[panes.size()], .title = {}, .own = {{method_path, method}}});
@@ -215,7 +215,7 @@ void set_shared_value(Comparison& comparison, const std::string& path, const Par
 }
 
 std::size_t duplicate_pane(Comparison& comparison, std::size_t pane) {
-  assert(comparison.panes.size() < most_panes);
+  assert(comparison.panes.size() < max_panes);
   Pane copy = comparison.panes[pane];
   copy.name = first_free_name(comparison);
   comparison.panes.insert(comparison.panes.begin() + static_cast<std::ptrdiff_t>(pane) + 1, std::move(copy));

@@ -15,11 +15,11 @@
 
 namespace cloth {
 
-inline constexpr std::size_t least_panes = 2, most_panes = 4;
+inline constexpr std::size_t least_panes = 2, max_panes = 4;
 
 /// The names that panes have, in the order in which they are given. A pane keeps its name, and with it its
 /// colour and marker, when others go.
-inline constexpr const char* pane_names[most_panes] = {"A", "B", "C", "D"};
+inline constexpr const char* pane_names[max_panes] = {"A", "B", "C", "D"};
 
 /// The value that one parameter has in one pane.
 struct OwnValue {

@@ -68,7 +68,7 @@ class ComparisonReader : public JsonReader<json> {
     for (std::size_t i = 0; i < value.size(); ++i) {
       const std::string path = fmt::format("panes.{}", i);
       Pane& pane = comparison.panes.emplace_back();
-      if (i < most_panes) pane.name = pane_names[i];
+      if (i < max_panes) pane.name = pane_names[i];
       if (!object(value[i], path)) continue;
       known_keys(value[i], path, pane_keys);
       text(value[i], path, "name", pane.name);

@@ -15,7 +15,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr std::size_t most_marks = 50;  // of a curve
+constexpr std::size_t max_marks = 50;  // of a curve
 
 std::string title_of(const ComparisonRun& run) {
   return run.comparison.title.empty() ? run.comparison.scene.title : run.comparison.title;
@@ -98,13 +98,13 @@ json pane_json(const PaneResult& pane) {
   return entry;
 }
 
-/// At most most_marks points, every nth of them and the last one.
+/// At most max_marks points, every nth of them and the last one.
 PlotSeries series_of(const PaneResult& pane, const std::vector<double>& time,
                      const std::vector<double>& value) {
   PlotSeries series{.name = fmt::format("{}: {}", pane.name, pane.title),
                     .detail = fmt::format("step {:.4g} s", pane.time_step),
                     .style = pane.style};
-  const std::size_t stride = std::max<std::size_t>(1, (time.size() + most_marks - 1) / most_marks);
+  const std::size_t stride = std::max<std::size_t>(1, (time.size() + max_marks - 1) / max_marks);
   for (std::size_t k = 0; k < time.size(); ++k)
     if ((time.size() - 1 - k) % stride == 0) series.points.push_back({.x = time[k], .y = value[k]});
   if (pane.divergence) series.failed.push_back({pane.divergence->time, describe(*pane.divergence)});
@@ -118,7 +118,7 @@ LinePlot plot_over_time(const ComparisonRun& run, const std::string& title) {
   plot.x = {.label = "simulated time", .unit = "s"};
   std::size_t longest = 0;
   for (const PaneSeries& series : run.series) longest = std::max(longest, series.time.size());
-  if (longest > most_marks)
+  if (longest > max_marks)
     plot.caption.push_back("Marks at some of the common times; compare.csv has them all.");
   return plot;
 }
@@ -257,7 +257,7 @@ LinePlot difference_plot(const ComparisonRun& run) {
   if (run.floor_series.rms.size() > 1) {
     PlotSeries floor{.name = "Reference from its check",
                      .detail = "differences below are not told apart",
-                     .style = static_cast<int>(most_panes),
+                     .style = static_cast<int>(max_panes),
                      .markers = false};
     for (std::size_t k = 1; k < run.floor_series.rms.size(); ++k)
       floor.points.push_back({.x = run.floor_series.difference_time[k], .y = run.floor_series.rms[k]});

@@ -81,7 +81,7 @@ std::string comparison_schema() {
       {"format", {{"const", comparison_format}}},
       {"title", {{"type", "string"}}},
       {"scene", scene_or_name()},
-      {"panes", {{"type", "array"}, {"items", pane}, {"minItems", least_panes}, {"maxItems", most_panes}}},
+      {"panes", {{"type", "array"}, {"items", pane}, {"minItems", least_panes}, {"maxItems", max_panes}}},
       {"reference",
        {{"enum", references},
         {"description",

@@ -8,15 +8,15 @@
 namespace cloth {
 namespace {
 
-constexpr int most_rounds_at_rest = 100, most_rounds_stuck = 15;
+constexpr int max_rounds_at_rest = 100, max_rounds_stuck = 15;
 /// Rounds in which the longest remaining displacement does not decrease, after which the remaining particles
 /// are held back.
-constexpr int most_rounds_idle = 6;
+constexpr int max_rounds_idle = 6;
 constexpr double progress_part = 0.7;
 
 /// Bound on the pairs and particles that the rounds of one step may visit: some seconds of work. Counted
 /// instead of timed, so that a run does not depend on the machine.
-double most_work_of(std::size_t particles) {
+double max_operations(std::size_t particles) {
   constexpr double least = 1e7, for_a_particle = 2e3;
   return least + for_a_particle * static_cast<double>(particles);
 }
@@ -140,24 +140,25 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
     const Vec3Field before = position_;
     const double left = move_cloth();
     has_moved_ = has_moved_ || left > 0;
-    const bool is_exhausted = work_count_ > most_work_of(position_.size());
+    const bool is_exhausted = work_count_ > max_operations(position_.size());
     if (part_ < 1) {
       const double advance = advance_obstacles();
       if (part_ < 1) free_position_ = target_position_, was_rebased_ = true;
       stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
-      if (stuck > most_rounds_stuck) return RoundsEnd::pinched;
+      if (stuck > max_rounds_stuck) return RoundsEnd::pinched;
       if (part_ < 1 && is_exhausted) return RoundsEnd::exhausted;
     }
     if (part_ == 1) {
-      if (left <= arrived || ++rounds_at_rest > most_rounds_at_rest || is_exhausted) break;
+      if (left <= arrived || ++rounds_at_rest > max_rounds_at_rest || is_exhausted) break;
       idle = left < progress_part * least_left ? 0 : idle + 1;
       least_left = std::min(least_left, left);
-      if (idle > most_rounds_idle) break;
+      if (idle > max_rounds_idle) break;
     }
     if (reached_bounds_) find_pairs();
   }
   const bool is_last = substeps_ == 1 || substep_ + 1 == substeps_;
-  return work_count_ > most_work_of(position_.size()) && !is_last ? RoundsEnd::exhausted : RoundsEnd::arrived;
+  return work_count_ > max_operations(position_.size()) && !is_last ? RoundsEnd::exhausted
+                                                                    : RoundsEnd::arrived;
 }
 
 /// With several substeps a particle's velocity follows from its last substep with a contact impulse, and from

@@ -20,7 +20,7 @@ constexpr int solver_sweeps = 20;
 /// Stacks of layers need more: sweeps continue while some pair misses more than `missing_part` of its
 /// thickness and that decreases.
 constexpr double missing_part = 0.03, less_missing = 0.9;
-constexpr int more_solver_sweeps = 100, most_solver_sweeps = 1000;
+constexpr int more_solver_sweeps = 100, max_solver_sweeps = 1000;
 
 std::vector<ObstacleBody> bodies_of(const Scene& scene) {
   std::vector<ObstacleBody> bodies;
@@ -195,11 +195,11 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   }
   double last_missing = infinity;
   int sweeps = solver_sweeps;
-  for (int all = 0; all < most_solver_sweeps; all += sweeps, sweeps = more_solver_sweeps) {
+  for (int all = 0; all < max_solver_sweeps; all += sweeps, sweeps = more_solver_sweeps) {
     const int taken = solve_contacts(constraints_, system.inverse_mass, sweeps,
                                      solver_tolerance_part * thickness_, target_position_);
     if (taken < sweeps) return;
-    const double missing = most_missing();
+    const double missing = largest_violation();
     if (missing <= missing_part || missing > less_missing * last_missing) return;
     last_missing = missing;
     work_count_ += static_cast<double>(constraints_.size()) * more_solver_sweeps / solver_sweeps;
@@ -207,7 +207,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
 }
 
 /// The largest violation of a constraint by the target positions, as a part of the thickness.
-double ContinuousContact::most_missing() const {
+double ContinuousContact::largest_violation() const {
   double most = 0;
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const ContactConstraint& contact = constraints_[c];

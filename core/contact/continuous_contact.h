@@ -81,7 +81,7 @@ class ContinuousContact : public ContactStage {
   void separate_all();
   void solve_target(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
-  double most_missing() const;
+  double largest_violation() const;
   void keep_touches(double step);
   double move_cloth();
   void bound_by_planes();

@@ -6,11 +6,11 @@
 namespace cloth {
 namespace {
 
-constexpr double most_rotation = 0.2;  ///< rad, of an obstacle in a substep
+constexpr double max_rotation = 0.2;  ///< rad, of an obstacle in a substep
 /// Largest displacement of a point of a mesh in a substep, in mean edges of the cloth: with longer ones the
 /// pairs of features that may collide become too many.
-constexpr double most_displacement = 0.5;
-constexpr double most_substeps = 1e6;
+constexpr double max_displacement = 0.5;
+constexpr double max_substeps = 1e6;
 
 void add_box(const Obstacle& obstacle, ObstacleBody& body) {
   body.box.center = obstacle.center;
@@ -58,11 +58,11 @@ std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies,
                           const std::vector<PoseInterpolation>& paths, double edge) {
   double substeps = 1;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (bodies[k].kind != BodyKind::ball) substeps = std::max(substeps, paths[k].angle() / most_rotation);
+    if (bodies[k].kind != BodyKind::ball) substeps = std::max(substeps, paths[k].angle() / max_rotation);
     if (bodies[k].kind == BodyKind::surface)
-      substeps = std::max(substeps, longest_path(bodies[k], paths[k]) / (most_displacement * edge));
+      substeps = std::max(substeps, longest_path(bodies[k], paths[k]) / (max_displacement * edge));
   }
-  return static_cast<std::int64_t>(std::ceil(std::min(substeps, most_substeps)));
+  return static_cast<std::int64_t>(std::ceil(std::min(substeps, max_substeps)));
 }
 
 bool comes_near(const ObstacleBody& body, const PoseInterpolation& path, const Bounds& cloth, double reach) {

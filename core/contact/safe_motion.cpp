@@ -14,7 +14,7 @@ constexpr double least_part = 1e-3;
 constexpr double used_part = 0.5;
 /// Factor by which the radius of a capsule grows each time that it stopped its particle, and the factor's
 /// bound.
-constexpr double more_room = 2, most_room = 8;
+constexpr double more_room = 2, max_room = 8;
 constexpr double least_advance = 1e-9;  ///< of a step; less counts as none
 /// The gap that must remain after a round.
 double kept_gap(double gap, double thickness) {
@@ -90,7 +90,7 @@ void ContinuousContact::bound_by_swept_volumes() {
     const double part = part_inside(swept_.particles[i], position_[i], target_position_[i]);
     if (fraction_[i] <= part) continue;
     fraction_[i] = part;
-    radius_scale_[i] = std::min(most_room, more_room * radius_scale_[i]);
+    radius_scale_[i] = std::min(max_room, more_room * radius_scale_[i]);
     reached_bounds_ = true;
   }
 }
@@ -244,7 +244,7 @@ Pinch ContinuousContact::pinch(const ClothSystem& system) const {
     pinch.holder = Pinch::Holder::pin;
     return pinch;
   }
-  double most_against = 0;
+  double largest_opposition = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Separation& other = separations_[k];
     const bool holds = other.distance < near_factor * memory_[k].thickness &&
@@ -255,8 +255,8 @@ Pinch ContinuousContact::pinch(const ClothSystem& system) const {
     const double against = -other.normal.dot(s.normal);
     if (!holds || pairs_[k].obstacle == pinch.obstacle) continue;
     const bool is_own = pairs_[k].obstacle == FeaturePair::cloth_itself;
-    if ((is_own ? std::abs(against) : against) <= most_against) continue;
-    most_against = against;
+    if ((is_own ? std::abs(against) : against) <= largest_opposition) continue;
+    largest_opposition = against;
     pinch.holder = is_own ? Pinch::Holder::itself : Pinch::Holder::obstacle;
     pinch.holding_obstacle = pairs_[k].obstacle;
   }

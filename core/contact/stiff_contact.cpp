@@ -12,8 +12,8 @@
 namespace cloth {
 namespace {
 
-constexpr int most_iterations = 12;
-constexpr int most_trials = 6;         // of a length
+constexpr int max_iterations = 12;
+constexpr int max_trials = 6;          // of a length
 constexpr double accepted_work = 0.5;  // of the residual along a step that is short enough
 constexpr double least_work = 1e-3;    // of the first iteration's work: stops below
 constexpr double on_surface = 1e-9;    // m, above rounding
@@ -106,7 +106,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
   hold(system, obstacles, position);
   find_residual(system, forces, weight, time, position);
   double first = 0;  // J, negative
-  for (int n = 0; n < most_iterations; ++n) {
+  for (int n = 0; n < max_iterations; ++n) {
     release();
     if (!find_direction(system, forces, weight, position)) break;
     start_ = position;
@@ -120,7 +120,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
       hold(system, obstacles, position);
       find_residual(system, forces, weight, time, position);
       const double after = dot(direction_.flat(), residual_.flat());
-      if (trial == most_trials || after <= -accepted_work * before) break;
+      if (trial == max_trials || after <= -accepted_work * before) break;
       length *= 0.5;
     }
   }

@@ -68,8 +68,8 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
       add_spring(blocks, spring++, from, to, run.first, run.first + run.offset);
       continue;
     }
-    for (int begin = 0; begin < run.count; begin += VectorKernels::most_springs) {
-      const int count = std::min(VectorKernels::most_springs, run.count - begin);
+    for (int begin = 0; begin < run.count; begin += VectorKernels::max_springs) {
+      const int count = std::min(VectorKernels::max_springs, run.count - begin);
       const auto first = static_cast<std::size_t>(run.first + begin);
       kernels.add_springs(rows_of(springs, spring), rows_of(direction, first), rows_of(product, first),
                           run.offset, count);

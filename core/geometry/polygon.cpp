@@ -46,7 +46,7 @@ class EarCutter {
         next_(polygon.size()),
         previous_(polygon.size()),
         blocks_(polygon.size()),
-        looks_left_(std::clamp(looks_for_a_corner * polygon.size(), least_looks, most_looks)) {
+        looks_left_(std::clamp(looks_for_a_corner * polygon.size(), least_looks, max_looks)) {
     const auto count = static_cast<int>(polygon.size());
     for (int k = 0; k < count; ++k) {
       next_[at(k)] = (k + 1) % count;
@@ -83,7 +83,7 @@ class EarCutter {
   }
 
  private:
-  static constexpr std::size_t looks_for_a_corner = 60, least_looks = 100'000, most_looks = 20'000'000;
+  static constexpr std::size_t looks_for_a_corner = 60, least_looks = 100'000, max_looks = 20'000'000;
 
   bool turns_left(int corner) const {
     return polygon_.turn(previous_[at(corner)], corner, next_[at(corner)]) > 0;

@@ -35,7 +35,7 @@ constexpr double history_exponent = 0.04;
 constexpr double error_exponent = 0.2 - 0.75 * history_exponent;
 constexpr double least_remembered_error = 1e-4;
 
-constexpr int most_attempts = 100000;    // of inner steps in one outer step
+constexpr int max_attempts = 100000;     // of inner steps in one outer step
 constexpr double smallest_step = 1e-14;  // of the outer step
 constexpr double stretch_to_end = 1.01;  // rather than leave a sliver for one more step
 
@@ -144,7 +144,7 @@ void DormandPrince::control(ForceModel& forces, const StepTimes& times, ClothSta
   report.inner_steps = 0;
   double elapsed = 0;
   LargestError error;
-  for (int attempts = 0; attempts < most_attempts; ++attempts) {
+  for (int attempts = 0; attempts < max_attempts; ++attempts) {
     const double left = times.step - elapsed;
     const bool ends = stretch_to_end * control_.size() >= left;
     const double h = ends ? left : control_.size();

@@ -9,7 +9,7 @@ namespace cloth {
 class ImplicitEuler : public Integrator {
  public:
   static constexpr double stage_weight = 1;  ///< ImplicitStage's weight divided by the step
-  ImplicitEuler(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
+  ImplicitEuler(double tolerance, int max_iterations) : stage_(tolerance, max_iterations) {}
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
 
@@ -22,7 +22,7 @@ class ImplicitEuler : public Integrator {
 class ImplicitMidpoint : public Integrator {
  public:
   static constexpr double stage_weight = 0.5;
-  ImplicitMidpoint(double tolerance, int most_iterations) : stage_(tolerance, most_iterations) {}
+  ImplicitMidpoint(double tolerance, int max_iterations) : stage_(tolerance, max_iterations) {}
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
 
  private:
@@ -37,10 +37,10 @@ class ImplicitMidpoint : public Integrator {
 class Bdf2 : public Integrator {
  public:
   static constexpr double stage_weight = 2.0 / 3;
-  Bdf2(double tolerance, int most_iterations)
-      : stage_(tolerance, most_iterations),
-        midpoint_(tolerance, most_iterations),
-        euler_(tolerance, most_iterations) {}
+  Bdf2(double tolerance, int max_iterations)
+      : stage_(tolerance, max_iterations),
+        midpoint_(tolerance, max_iterations),
+        euler_(tolerance, max_iterations) {}
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   /// After the limiter has acted, as a step of implicit Euler does.
   bool drifts_with_end_velocity() const override { return true; }

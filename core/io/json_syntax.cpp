@@ -15,7 +15,7 @@ using json = nlohmann::json;
 /// be a file of this program. Reads without recursion, and without keeping what it reads.
 struct SyntaxCheck : nlohmann::json_sax<json> {
   static constexpr int deepest = 64;
-  static constexpr std::size_t most_values = 10'000'000;
+  static constexpr std::size_t max_values = 10'000'000;
   const std::size_t length;  // of the text
   const char* const begin;
   const char* reached;  // behind the last character that was read
@@ -31,9 +31,9 @@ struct SyntaxCheck : nlohmann::json_sax<json> {
   void note_place() { offset = reached > begin ? static_cast<std::size_t>(reached - begin) - 1 : 0; }
 
   bool count() {
-    if (++values <= most_values) return true;
+    if (++values <= max_values) return true;
     note_place();
-    message = "has too many values: " + std::to_string(most_values) + " are allowed";
+    message = "has too many values: " + std::to_string(max_values) + " are allowed";
     return false;
   }
   bool enter() {

@@ -16,8 +16,8 @@ namespace cloth {
 namespace {
 
 constexpr double largest_coordinate = 1e9;
-constexpr std::size_t most_vertices = 10'000'000;
-constexpr std::size_t most_corners_at_once = 64;  // tiny_obj's time for a face grows with a power of them
+constexpr std::size_t max_vertices = 10'000'000;
+constexpr std::size_t max_corners_at_once = 64;  // tiny_obj's time for a face grows with a power of them
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
@@ -68,8 +68,8 @@ class Scan {
 
  private:
   void read_vertex(std::string_view line) {
-    if (vertices.size() == most_vertices) {
-      problem = fmt::format("there may be at most {} vertices", most_vertices);
+    if (vertices.size() == max_vertices) {
+      problem = fmt::format("there may be at most {} vertices", max_vertices);
       return;
     }
     Vec3 vertex;
@@ -109,7 +109,7 @@ class Scan {
     }
     if (corners_.size() < 3)
       problem = "a face needs three corners";
-    else if (corners_.size() <= most_corners_at_once)
+    else if (corners_.size() <= max_corners_at_once)
       add_face(corners_);
     else
       cut_face();

@@ -10,12 +10,12 @@
 namespace cloth {
 namespace {
 
-constexpr int most_links = 40;  // that Linux follows
+constexpr int max_links = 40;  // that Linux follows
 
 /// Where a path leads, the last name included, whether or not something is there.
 std::variant<std::filesystem::path, IoError> target_of(const std::filesystem::path& path) {
   std::filesystem::path at = path;
-  for (int links = 0; links < most_links; ++links) {
+  for (int links = 0; links < max_links; ++links) {
     std::error_code error;
     const auto next = std::filesystem::read_symlink(at, error);
     if (error == std::errc::too_many_symbolic_link_levels) break;

@@ -72,7 +72,7 @@ class KindTable {
     return static_cast<unsigned char>(size_++);
   }
 
-  std::array<double, kernels::most_kinds> stiffness{}, tension{};
+  std::array<double, kernels::max_kinds> stiffness{}, tension{};
 
  private:
   bool with_tension_;

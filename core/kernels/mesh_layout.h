@@ -31,7 +31,7 @@ struct MeshLayout {
   std::vector<Indices> neighbour;           ///< as in kernels::MeshSlots, and so are all of these
   std::vector<Kinds> kind;                  ///< empty where no table is used
   std::vector<Numbers> stiffness, tension;  ///< empty where a table is used
-  std::array<double, kernels::most_kinds> stiffness_of_kind{}, tension_of_kind{};
+  std::array<double, kernels::max_kinds> stiffness_of_kind{}, tension_of_kind{};
   std::vector<int> load_until;  ///< by block
 
   kernels::MeshSlots slots() const;

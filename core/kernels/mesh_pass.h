@@ -10,7 +10,7 @@ namespace cloth::kernels {
 inline constexpr int slice_width = 8, block_slices = 16, block_width = slice_width * block_slices;
 
 /// So many kinds fit into a register.
-inline constexpr int most_kinds = 8;
+inline constexpr int max_kinds = 8;
 
 /// All springs at both their ends: slot after slot, each with one spring of every particle of a slice. A lane
 /// without a spring left has padding_index() for its neighbour, with stiffness 0. F_i = (k - k L / |d|) d, d
@@ -22,7 +22,7 @@ struct MeshSlots {
   const int* slot_begin = nullptr;      ///< slice s has the slots slot_begin[s] to slot_begin[s + 1]
   const int* neighbour = nullptr;       ///< [slot][lane]: 4 times the number of the other end
   const unsigned char* kind = nullptr;  ///< [slot][lane]
-  double stiffness_of_kind[most_kinds]{}, tension_of_kind[most_kinds]{};
+  double stiffness_of_kind[max_kinds]{}, tension_of_kind[max_kinds]{};
   const double* stiffness = nullptr;  ///< [slot][lane]: k, N/m; null: of the kind
   const double* tension = nullptr;    ///< [slot][lane]: k L, N; null: of the kind
 };

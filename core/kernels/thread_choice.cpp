@@ -14,20 +14,20 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-int ThreadChoice::next(int most) {
-  if (most != most_) *this = ThreadChoice{}, most_ = most;
-  if (most_ <= 1) return 1;
+int ThreadChoice::next(int max_threads) {
+  if (max_threads != max_threads_) *this = ThreadChoice{}, max_threads_ = max_threads;
+  if (max_threads_ <= 1) return 1;
   if (at_ >= trial + hold_) {
     at_ = 0;
     hold_ = std::min(2 * hold_, longest_hold);
   }
-  if (trying()) return tries_all() ? most_ : 1;
+  if (trying()) return tries_all() ? max_threads_ : 1;
   return chosen_;
 }
 
 void ThreadChoice::took(double seconds, int jobs) {
   assert(jobs <= at_once());
-  if (most_ <= 1) return;
+  if (max_threads_ <= 1) return;
   if (!trying()) {
     if (chosen_ > 1) watch_over(seconds, jobs);
     at_ += jobs;
@@ -39,7 +39,7 @@ void ThreadChoice::took(double seconds, int jobs) {
 
 void ThreadChoice::decide() {
   alone_median_ = median(alone_);
-  chosen_ = median(together_) < worthwhile * alone_median_ ? most_ : 1;
+  chosen_ = median(together_) < worthwhile * alone_median_ ? max_threads_ : 1;
   alone_.clear();
   together_.clear();
   watched_ = 0, watched_jobs_ = 0;

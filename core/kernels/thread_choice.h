@@ -1,7 +1,7 @@
 // Decides whether a job that is repeated many times runs on one thread or on several. It times both while the
 // program runs, since the answer depends on the size of the job, the machine and its other load.
 //
-//     const int threads = choice.next(most);   // before the job
+//     const int threads = choice.next(max_threads);   // before the job
 //     choice.took(seconds);                    // after it, where choice.wants_time()
 //
 // Jobs that follow each other may be done as one, up to at_once() of them: took(seconds, jobs).
@@ -19,12 +19,12 @@ enum class ThreadUse { where_they_gain, always };
 
 class ThreadChoice {
  public:
-  /// How many threads the next job gets: 1 or `most`.
-  int next(int most);
+  /// How many threads the next job gets: 1 or `max_threads`.
+  int next(int max_threads);
   /// How many jobs may follow the last call of next() as one: a trial tells them apart.
-  int at_once() const { return most_ > 1 && trying() ? 1 : std::numeric_limits<int>::max(); }
+  int at_once() const { return max_threads_ > 1 && trying() ? 1 : std::numeric_limits<int>::max(); }
   /// Whether took() wants to know how long the jobs lasted.
-  bool wants_time() const { return most_ > 1 && (trying() || chosen_ > 1); }
+  bool wants_time() const { return max_threads_ > 1 && (trying() || chosen_ > 1); }
   /// Wall time in s of the jobs that followed the last call of next(), at most at_once() of them.
   void took(double seconds, int jobs = 1);
 
@@ -48,7 +48,7 @@ class ThreadChoice {
   void decide();
   void watch_over(double seconds, int jobs);
 
-  int most_ = 1;
+  int max_threads_ = 1;
   int at_ = 0;  ///< jobs since the trial began
   int hold_ = first_hold;
   int chosen_ = 1;

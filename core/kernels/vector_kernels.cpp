@@ -16,8 +16,8 @@ void multiply_blocks(BlockRows b, ConstVectorRows d, VectorRows p, std::size_t c
 }
 
 void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, std::ptrdiff_t offset, int count) {
-  alignas(64) double gx[VectorKernels::most_springs], gy[VectorKernels::most_springs],
-      gz[VectorKernels::most_springs];
+  alignas(64) double gx[VectorKernels::max_springs], gy[VectorKernels::max_springs],
+      gz[VectorKernels::max_springs];
   for (int s = 0; s < count; ++s) {
     const double dx = d.x[s] - d.x[s + offset], dy = d.y[s] - d.y[s + offset], dz = d.z[s] - d.z[s + offset];
     gx[s] = b.xx[s] * dx + b.xy[s] * dy + b.xz[s] * dz;

@@ -21,7 +21,7 @@ struct ConstVectorRows {
 
 struct VectorKernels {
   /// Springs that add_springs() takes at once, at most.
-  static constexpr int most_springs = 128;
+  static constexpr int max_springs = 128;
 
   /// product = B direction, block by block
   void (*multiply_blocks)(BlockRows blocks, ConstVectorRows direction, VectorRows product, std::size_t count);

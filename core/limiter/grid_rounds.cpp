@@ -10,7 +10,7 @@ namespace cloth {
 namespace {
 
 constexpr int lines_in_lanes = 128;  ///< columns or diagonals at most: what the cache holds
-constexpr int most_terms = 16;       ///< springs of a particle, in twelve directions
+constexpr int max_terms = 16;        ///< springs of a particle, in twelve directions
 
 GridEquations equations_of(const GridPlan& plan) {
   GridEquations equations{
@@ -291,7 +291,7 @@ double GridRounds::multiply(Values value, double ridge) {
   double dot = 0;
   const int end = std::min(plan_.rows, equations_.active.end + plan_.reach);
   for (int row = equations_.active.begin; row < end; ++row) {
-    SpringTerm terms[most_terms];
+    SpringTerm terms[max_terms];
     const std::ptrdiff_t r = plan_.index(row, 0);
     if (const int count = springs_at(row, value, terms); count > 0)
       kernels_.transpose_row(terms, count, equations_.weight.data() + r, sx_.data() + r, sy_.data() + r,
@@ -342,7 +342,7 @@ int GridRounds::conjugate_gradients() {
       std::max(enough_of_residual * largest, enough_of_tolerance * task_.tolerance * shortest_);
   double product = preconditioner_.substitute(), share = 0;
   int iterations = 0;
-  while (iterations < most_cg_iterations && product > 0) {
+  while (iterations < max_cg_iterations && product > 0) {
     for (int row = equations_.active.begin; row < equations_.active.end; ++row)
       for (FamilyEquations& family : equations_.families) {
         if (row >= family.plan.rows) continue;
@@ -406,7 +406,7 @@ void GridRounds::take_step() {
 void GridRounds::move_particles(double length) {
   const int end = std::min(plan_.rows, equations_.active.end + plan_.reach);
   for (int row = equations_.active.begin; row < end; ++row) {
-    SpringTerm terms[most_terms];
+    SpringTerm terms[max_terms];
     const int count = springs_at(row, &FamilyEquations::change, terms);
     const std::ptrdiff_t i = plan_.index(row, 0);
     kernels_.move_row(terms, count, length, weight_.data() + i, x_.data() + i, y_.data() + i, z_.data() + i,

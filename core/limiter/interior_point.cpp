@@ -198,11 +198,11 @@ NearestShapeReport InteriorPoint::solve(double tolerance, bool reachable) {
   NearestShapeReport report;
   if (reachable) {
     rho_ = exact_penalty;
-    report = iterate(tolerance, NearestShape::most_iterations);
+    report = iterate(tolerance, NearestShape::max_iterations);
     if (report.converged || !is_infeasible(tolerance)) return report;
   }
   rho_ = compromise_penalty;
-  const NearestShapeReport compromise = iterate(tolerance, NearestShape::most_iterations - report.iterations);
+  const NearestShapeReport compromise = iterate(tolerance, NearestShape::max_iterations - report.iterations);
   return {report.iterations + compromise.iterations, compromise.excess, compromise.converged};
 }
 

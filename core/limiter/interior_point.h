@@ -10,7 +10,7 @@ class InteriorPoint {
  public:
   InteriorPoint(const ClothSystem& system, std::vector<TensionSpring> springs, const Vec3Field& start);
 
-  /// Iterates to the minimum, at most NearestShape::most_iterations times. With `reachable` the penalty of an
+  /// Iterates to the minimum, at most NearestShape::max_iterations times. With `reachable` the penalty of an
   /// excess is so high that none is left; without, or where the multipliers exceed what a reachable rate can
   /// need, it is lower, and the shape is a compromise.
   NearestShapeReport solve(double tolerance, bool reachable);

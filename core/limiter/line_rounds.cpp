@@ -211,7 +211,7 @@ int LineRounds::conjugate_gradients() {
   direction_ = solved_;
   double product = dot(residual_, solved_);
   int iterations = 0;
-  while (iterations < most_cg_iterations && product > 0) {
+  while (iterations < max_cg_iterations && product > 0) {
     pull(direction_);
     const double length = product / multiply(direction_, ridge, product_);
     ++iterations;

@@ -32,12 +32,12 @@ NearestShapeReport NearestShape::find(const ClothSystem& system, double toleranc
   Vec3Field found = position;
   std::vector<std::uint8_t> working(springs_.size(), 0);
   report.excess = before;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     std::vector<TensionSpring> chosen;
     std::vector<std::size_t> which;
     for (std::size_t s = 0; s < springs_.size(); ++s) {
       // The last round takes every spring.
-      if (round + 1 == most_rounds || springs_[s].excess(found) > -nearness * before) working[s] = 1;
+      if (round + 1 == max_rounds || springs_[s].excess(found) > -nearness * before) working[s] = 1;
       if (!working[s]) continue;
       chosen.push_back(springs_[s]);
       which.push_back(s);

@@ -24,8 +24,8 @@ struct NearestShapeReport {
 
 class NearestShape {
  public:
-  static constexpr int most_iterations = 60;  ///< in each of at most `most_rounds` rounds
-  static constexpr int most_rounds = 4;
+  static constexpr int max_iterations = 60;  ///< in each of at most `max_rounds` rounds
+  static constexpr int max_rounds = 4;
 
   NearestShape(const Deformation& deformation, const ClothSystem& system);
 

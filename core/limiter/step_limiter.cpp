@@ -192,8 +192,8 @@ void StepLimiter::limit_energy_gain(double potential, ClothState& state) {
   if (!(square > 0) || square + linear + potential <= 0) return;
   const double least = -linear / (2 * square), radicand = linear * linear - 4 * square * potential;
   const double aside = radicand > 0 ? std::sqrt(radicand) / (2 * square) : 0;
-  constexpr double most_share = 2;  // stops a load: dx/h removes half of its speed
-  const double share = std::clamp(least + std::copysign(aside, 1 - least), 0.0, most_share);
+  constexpr double max_share = 2;  // stops a load: dx/h removes half of its speed
+  const double share = std::clamp(least + std::copysign(aside, 1 - least), 0.0, max_share);
   add_scaled(share - 1, change_, state.velocity);
 }
 

@@ -41,7 +41,7 @@ inline double ridge_of(const TensionTask& task) {
 
 /// Conjugate gradients end at this share of the first residual, or of the tolerance.
 inline constexpr double enough_of_residual = 0.5, enough_of_tolerance = 0.3;
-inline constexpr int most_cg_iterations = 6;
+inline constexpr int max_cg_iterations = 6;
 
 /// Where the clipped step does not reduce C, this share of C over the diagonal is taken.
 inline constexpr double steepest_share = 0.25;

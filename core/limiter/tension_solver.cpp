@@ -10,8 +10,8 @@
 namespace cloth {
 namespace {
 
-constexpr int most_tension_rounds = 100;
-constexpr int most_rounds_to_aim = 10;  ///< within the tolerance already
+constexpr int max_tension_rounds = 100;
+constexpr int max_rounds_to_aim = 10;  ///< within the tolerance already
 
 /// Share of m l/h^2, the tension that rotates its spring by 1 rad within a step.
 constexpr double held_share = 0.5;
@@ -90,8 +90,8 @@ void TensionSolver::run_rounds(const TensionTask& task, const ClothSystem& syste
   rounds_->begin(task, system.inverse_mass, tension, position);
   TensionResidual residual = rounds_->evaluate();
   int rounds = 0, rounds_to_aim = 0;
-  while (!residual.within(task.tolerance) && rounds < most_tension_rounds) {
-    if (residual.within(deformation_.tolerance) && ++rounds_to_aim > most_rounds_to_aim) break;
+  while (!residual.within(task.tolerance) && rounds < max_tension_rounds) {
+    if (residual.within(deformation_.tolerance) && ++rounds_to_aim > max_rounds_to_aim) break;
     rounds_->sweep_lines(rounds % 2 == 1);
     ++rounds, ++report.line_sweeps;
     residual = rounds_->evaluate();

@@ -13,7 +13,7 @@
 namespace cloth {
 namespace {
 
-constexpr int most_pixels = 8192;         // either way
+constexpr int max_pixels = 8192;          // either way
 constexpr double bands_along_cloth = 12;  // of the pattern, over the longer side
 constexpr double edge_cut = 0.6;          // of a cell, off a box's size
 constexpr Rgb warp{0xea, 0xd6, 0xc8}, weft{0xd0, 0x9f, 0x8e};
@@ -38,8 +38,8 @@ class Painter {
         position_(position),
         options_(options),
         theme_(*options.theme),
-        width_(std::clamp(options.width, 1, most_pixels)),
-        height_(std::clamp(options.height, 1, most_pixels)),
+        width_(std::clamp(options.width, 1, max_pixels)),
+        height_(std::clamp(options.height, 1, max_pixels)),
         frame_(camera, width_, height_),
         light_(frame_, theme_.exposure),
         canvas_(frame_, light_, width_, height_),
@@ -276,11 +276,11 @@ Image Painter::paint() {
 }  // namespace
 
 std::vector<PictureArrow> wind_arrows(const Scene& scene, const Vec3Field& position) {
-  constexpr double most_distance = 1e4;  // m
+  constexpr double max_distance = 1e4;  // m
   if (!scene.air || !scene.air->wind.allFinite() || !(scene.air->wind.norm() > 0)) return {};
   Eigen::AlignedBox3d cloth;
   for (std::size_t i = 0; i < position.size(); ++i)
-    if (position[i].allFinite() && position[i].norm() < most_distance) cloth.extend(position[i]);
+    if (position[i].allFinite() && position[i].norm() < max_distance) cloth.extend(position[i]);
   if (cloth.isEmpty()) return {};
   const Vec3 along = scene.air->wind.normalized();
   const Vec3 level = along.cross(Vec3::UnitY());

@@ -10,8 +10,8 @@
 namespace cloth {
 namespace {
 
-constexpr double air = 1.08;           // kept around what is framed
-constexpr double most_distance = 1e6;  // m
+constexpr double air = 1.08;          // kept around what is framed
+constexpr double max_distance = 1e6;  // m
 
 /// A unit vector along `v`, or `otherwise` where v has no direction.
 Vec3 direction_of(const Vec3& v, const Vec3& otherwise) {
@@ -63,10 +63,10 @@ PictureCamera camera_showing(const Scene& scene, const Vec3Field& position, cons
   PictureCamera camera;
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < position.size(); ++i)
-    if (position[i].allFinite() && position[i].norm() < most_distance) points.push_back(position[i]);
+    if (position[i].allFinite() && position[i].norm() < max_distance) points.push_back(position[i]);
   for (const PictureArrow& arrow : arrows)
     for (const Vec3& end : {arrow.from, arrow.to})
-      if (end.allFinite() && end.norm() < most_distance) points.push_back(end);
+      if (end.allFinite() && end.norm() < max_distance) points.push_back(end);
   for (const Obstacle& obstacle : scene.obstacles) {
     const Eigen::AlignedBox3d box = shape_of(obstacle).bounds_at(obstacle, pose_of(obstacle, time));
     if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) continue;

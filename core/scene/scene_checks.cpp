@@ -116,23 +116,23 @@ void check_steps(const Scene& scene, std::vector<Problem>& problems) {
 
 /// What is made of a list for each of its entries takes time and messages: no real scene has so many.
 void check_counts(const Scene& scene, std::vector<Problem>& problems) {
-  constexpr std::size_t most_obstacles = 1000, most_keyframes = 100'000;
+  constexpr std::size_t max_obstacles = 1000, max_keyframes = 100'000;
   const auto check = [&](const std::string& path, std::size_t count, std::size_t most) {
     if (count > most)
       problems.push_back({path, "", fmt::format("has {} entries; there may be at most {}", count, most)});
   };
-  check("obstacles", scene.obstacles.size(), most_obstacles);
-  for (std::size_t k = 0; k < scene.obstacles.size() && k <= most_obstacles; ++k)
-    check(fmt::format("obstacles.{}.keyframes", k), scene.obstacles[k].keyframes.size(), most_keyframes);
+  check("obstacles", scene.obstacles.size(), max_obstacles);
+  for (std::size_t k = 0; k < scene.obstacles.size() && k <= max_obstacles; ++k)
+    check(fmt::format("obstacles.{}.keyframes", k), scene.obstacles[k].keyframes.size(), max_keyframes);
 }
 
 }  // namespace
 
 std::optional<std::string> too_many_steps(double duration, double time_step) {
   const double steps = duration / time_step;
-  if (steps <= most_steps_of_run) return std::nullopt;
+  if (steps <= max_steps_of_run) return std::nullopt;
   return fmt::format("takes {:.3g} steps of {:.6g} s; a run may have at most {:g}", steps, time_step,
-                     most_steps_of_run);
+                     max_steps_of_run);
 }
 
 std::vector<Problem> find_problems(const Scene& scene) {

@@ -17,10 +17,10 @@ std::vector<Problem> find_problems(const Scene& scene);
 std::vector<std::string> scene_notices(const Scene& scene);
 
 /// A run of more steps is refused: at 10 ns a step it would take hours for a single particle.
-inline constexpr double most_steps_of_run = 1e12;
+inline constexpr double max_steps_of_run = 1e12;
 
 /// The rule that a run of `duration` in steps of `time_step` breaks, in words; nothing if it has at most
-/// most_steps_of_run. Reckoned in doubles, in which no quotient is too large.
+/// max_steps_of_run. Reckoned in doubles, in which no quotient is too large.
 std::optional<std::string> too_many_steps(double duration, double time_step);
 
 }  // namespace cloth

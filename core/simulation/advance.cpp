@@ -11,14 +11,14 @@ namespace cloth {
 namespace {
 
 /// Fewer are not worth the copy of the state; more would keep whoever waits for an answer.
-constexpr std::int64_t fewest = 8, most_at_once = 32;
+constexpr std::int64_t fewest = 8, max_at_once = 32;
 
 }  // namespace
 
 std::optional<Divergence> Simulation::advance(std::int64_t steps) {
   while (steps > 0) {
     begin_step_length();
-    std::int64_t part = std::min(steps, most_at_once);
+    std::int64_t part = std::min(steps, max_at_once);
     if (watches_step_) part = std::min(part, ledger_interval - run_.state.step % ledger_interval);
     if (run_.automatic.next_change >= 0) part = std::min(part, run_.automatic.next_change - run_.state.step);
     const std::int64_t taken = advance_batch(part);
@@ -37,7 +37,7 @@ std::optional<Divergence> Simulation::advance(std::int64_t steps) {
 std::int64_t Simulation::advance_batch(std::int64_t count) {
   if (count < fewest || limiter_ || contact_ || !was_finite_ || !integrator_->gains_from_batches(*forces_))
     return 0;
-  std::array<double, most_at_once> squares{};
+  std::array<double, max_at_once> squares{};
   const std::span<double> of_steps(squares.data(), static_cast<std::size_t>(count));
   forces_->sweep()->copy(run_.state, before_batch_);
   const Work work = run_.ledger.forces;

@@ -9,8 +9,8 @@
 namespace cloth {
 namespace {
 
-constexpr double most_heating = 0.1;  // in energy scales, since the last change
-constexpr int most_shortenings = 4;
+constexpr double max_heating = 0.1;  // in energy scales, since the last change
+constexpr int max_shortenings = 4;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ bool is_step_watched(const Scene& scene) {
 }
 
 bool asks_for_shorter(AutomaticStep& automatic, double error) {
-  if (error - automatic.least_error > most_heating && automatic.shortened < most_shortenings) {
+  if (error - automatic.least_error > max_heating && automatic.shortened < max_shortenings) {
     automatic.least_error = error;
     ++automatic.shortened;
     return true;

@@ -88,7 +88,7 @@ void History::keep(const Simulation& simulation) {
 /// Doubles the interval until the states fit; the first and the newest stay. States come every so many steps:
 /// the interval is then the one that they really have, so that later ones stand as far apart.
 void History::thin_out() {
-  while (state_bytes_ > most_bytes_ && states_.size() > 2) {
+  while (state_bytes_ > max_bytes_ && states_.size() > 2) {
     interval_ *= 2;
     std::vector<State> kept;
     for (std::size_t n = 0; n < states_.size(); ++n) {

@@ -29,9 +29,9 @@ struct HistoryArrival {
 
 class History {
  public:
-  static constexpr std::size_t default_most_bytes = std::size_t{256} << 20;
+  static constexpr std::size_t default_max_bytes = std::size_t{256} << 20;
 
-  explicit History(std::size_t most_bytes = default_most_bytes) : most_bytes_(most_bytes) {}
+  explicit History(std::size_t max_bytes = default_max_bytes) : max_bytes_(max_bytes) {}
 
   /// Starts the history of a new run; `simulation` is at its start.
   void begin(const Simulation& simulation);
@@ -76,8 +76,8 @@ class History {
     return expected_hash_;
   }  ///< of a session's end, if it is the end
 
-  std::size_t most_bytes() const { return most_bytes_; }
-  /// Memory of the checkpoints, at most most_bytes() unless the first and the newest alone need more, and of
+  std::size_t max_bytes() const { return max_bytes_; }
+  /// Memory of the checkpoints, at most max_bytes() unless the first and the newest alone need more, and of
   /// the log, which is kept whole.
   std::size_t bytes() const { return state_bytes_ + command_bytes_; }
 
@@ -97,7 +97,7 @@ class History {
   void pop_state();
   void thin_out();
 
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   Scene scene_;                ///< as started
   std::vector<State> states_;  ///< steps ascend; the first is the start
   std::int64_t interval_ = 1;  ///< steps between two states, at least

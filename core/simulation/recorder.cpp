@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// So that whoever wants to stop a run need not wait.
-constexpr std::int64_t most_steps_of_batch = 32, steps_between_looks = 16;
+constexpr std::int64_t max_steps_of_batch = 32, steps_between_looks = 16;
 constexpr double look_interval = 0.1;  ///< s
 
 struct Column {
@@ -160,7 +160,7 @@ class Run {
   std::int64_t steps_until_seen() const {
     if (script_.commands) return 1;
     const std::int64_t step = simulation_.state().step;
-    return std::min({most_steps_of_batch, clock_.until_due(step), script_.steps - step});
+    return std::min({max_steps_of_batch, clock_.until_due(step), script_.steps - step});
   }
 
   /// A scene runs to its duration, a session for its steps.

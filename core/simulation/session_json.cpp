@@ -15,7 +15,7 @@ namespace cloth {
 namespace {
 
 using json = nlohmann::ordered_json;
-constexpr double largest_step = most_steps_of_run;
+constexpr double largest_step = max_steps_of_run;
 
 json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};

@@ -107,16 +107,16 @@ PullStrength Simulation::find_strongest_pull() const {
 }
 
 void Simulation::limit_pull(const std::optional<PullStrength>& most) {
-  if (most == most_pull_) return;
-  most_pull_ = most;
+  if (most == max_pull_) return;
+  max_pull_ = most;
   apply_hand();
 }
 
 void Simulation::apply_hand() {
   pull_strength_ = strongest_pull_;
-  if (most_pull_) {
-    pull_strength_.stiffness = std::min(pull_strength_.stiffness, most_pull_->stiffness);
-    pull_strength_.damping = std::min(pull_strength_.damping, most_pull_->damping);
+  if (max_pull_) {
+    pull_strength_.stiffness = std::min(pull_strength_.stiffness, max_pull_->stiffness);
+    pull_strength_.damping = std::min(pull_strength_.damping, max_pull_->damping);
   }
   forces_->set_brush(run_.brush);
   forces_->set_pull(run_.pull, pull_strength_.stiffness, pull_strength_.damping);

@@ -223,7 +223,7 @@ class Simulation {
   std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
   std::optional<UnreachableRate> unreachable_;
   PullStrength strongest_pull_, pull_strength_;
-  std::optional<PullStrength> most_pull_;
+  std::optional<PullStrength> max_pull_;
   double elastic_scale_ = 0;                  ///< J, all springs at twice their length
   double total_mass_ = 0, largest_mass_ = 0;  ///< kg
   bool was_finite_ = false;                   ///< every position was finite after the last step

@@ -15,10 +15,10 @@ namespace {
 // 0.1 / 0.001 is not quite 100: quotients this close to a whole number are that number.
 constexpr double whole_number_slack = 1e-9;
 
-/// At least 1. Beyond most_steps_of_run nothing is counted any more, and no double is cast that a whole
+/// At least 1. Beyond max_steps_of_run nothing is counted any more, and no double is cast that a whole
 /// number could not hold.
 std::int64_t whole_steps(double steps) {
-  return static_cast<std::int64_t>(std::clamp(steps, 1.0, most_steps_of_run));
+  return static_cast<std::int64_t>(std::clamp(steps, 1.0, max_steps_of_run));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::int64_t steps_to_cover(double duration, double time_step) {
 
 std::string uneven_duration_text(double duration, double time_step) {
   const double parts = duration / time_step, whole = std::max(1.0, std::round(parts));
-  if (std::abs(parts - whole) <= whole_number_slack * whole || parts > most_steps_of_run) return "";
+  if (std::abs(parts - whole) <= whole_number_slack * whole || parts > max_steps_of_run) return "";
   const std::int64_t steps = steps_to_cover(duration, time_step);
   return fmt::format("duration = {:.6g} s is no whole number of steps of {:.6g} s: it takes {} {}, {:.6g} s",
                      duration, time_step, steps, steps == 1 ? "step" : "steps",

@@ -27,7 +27,7 @@ std::string no_stable_step_text(const Scene& scene);
 /// Steps between two rows of a recording: the interval in steps, rounded, at least 1.
 std::int64_t steps_per_row(double record_interval, double time_step);
 
-/// Steps that cover `duration`, most_steps_of_run at most.
+/// Steps that cover `duration`, max_steps_of_run at most.
 std::int64_t steps_to_cover(double duration, double time_step);
 
 /// A message where the duration is not a whole number of steps, so that the last step goes beyond it; else

@@ -93,11 +93,11 @@ std::vector<int> post_order(const std::vector<int>& parent) {
 /// Whether a front with the columns of `child` and `parent`, which follow one another, is worth its zeros.
 bool worth_merging(const Front& child, const Front& parent, long zeros) {
   constexpr int always_below = 4;  // columns
-  constexpr double most_zeros = 0.12;
+  constexpr double max_zeros = 0.12;
   const long width = child.width + parent.width, height = child.width + parent.height();
   const auto entries = static_cast<double>(width * height - width * (width - 1) / 2);
   return (child.width <= always_below && width <= 2 * always_below) ||
-         static_cast<double>(zeros) <= most_zeros * entries;
+         static_cast<double>(zeros) <= max_zeros * entries;
 }
 
 std::vector<Front> make_fronts(const Columns& columns) {

@@ -11,7 +11,7 @@ namespace cloth {
 struct StabilityCriterion {
   double periods = 200;            ///< of the fastest motion, that a run lasts
   int least_steps = 200;           ///< that it lasts at any rate
-  int most_steps = 20000;          ///< after which it ends even if it should last longer
+  int max_steps = 20000;           ///< after which it ends even if it should last longer
   double perturbation = 1e-4;      ///< of the start, in lengths of a cell
   unsigned perturbation_seed = 1;  ///< of its random numbers
   double growth = 1e-3;            ///< energy that a method may create, of the energy scale

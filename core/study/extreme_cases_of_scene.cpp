@@ -11,7 +11,7 @@
 namespace cloth {
 namespace {
 
-constexpr std::int64_t most_steps = 300;
+constexpr std::int64_t max_steps = 300;
 constexpr double fallback_step = 1.0 / 60;  // s
 
 class CaseMaker {
@@ -19,7 +19,7 @@ class CaseMaker {
   explicit CaseMaker(const Scene& scene) : scene_(scene) {
     const double step = resolved_time_step(scene).value_or(fallback_step);
     scene_.integrator.time_step = step;  // one step for all methods: what differs is the method
-    most_ = std::clamp<std::int64_t>(steps_to_cover(scene.duration / 2, step), 1, most_steps);
+    max_steps_ = std::clamp<std::int64_t>(steps_to_cover(scene.duration / 2, step), 1, max_steps);
     scene_.duration = std::min(1e9, 1e9 * step);  // the bound is on steps
   }
 
@@ -28,7 +28,7 @@ class CaseMaker {
   void add(const std::string& name, const std::string& what, Edit edit) {
     ExtremeCase extreme{name, what,
                         "The scene itself is the first case: what differs from it is due to this.", scene_,
-                        most_};
+                        max_steps_};
     edit(extreme.scene);
     if (find_problems(extreme.scene).empty()) cases_.push_back(std::move(extreme));
   }
@@ -38,7 +38,7 @@ class CaseMaker {
 
  private:
   Scene scene_;
-  std::int64_t most_ = 0;
+  std::int64_t max_steps_ = 0;
   std::vector<ExtremeCase> cases_;
 };
 

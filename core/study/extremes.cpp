@@ -26,15 +26,15 @@ class CellRun {
  public:
   CellRun(const ExtremeCase& extreme, const Scene& scene, double time_step)
       : simulation_(scene, extreme.prepare),
-        last_(std::min(extreme.most_steps, steps_to_cover(scene.duration, time_step))),
+        last_(std::min(extreme.max_steps, steps_to_cover(scene.duration, time_step))),
         stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)),
-        most_evaluations_(extreme.most_evaluations) {}
+        max_evaluations_(extreme.max_evaluations) {}
 
   ExtremeCell to_end(ExtremeCell cell, const StopTest& stop) {
     record();
     simulation_.set_stop_test(stop);
     while (!divergence_ && simulation_.state().step < last_ &&
-           simulation_.count().force_evaluations < most_evaluations_) {
+           simulation_.count().force_evaluations < max_evaluations_) {
       look_for_tunnelling();
       divergence_ = simulation_.step();
       if (divergence_ || simulation_.interrupted()) break;
@@ -109,9 +109,9 @@ class CellRun {
   }
 
   std::string why_short() const {
-    if (simulation_.count().force_evaluations < most_evaluations_) return "interrupted";
+    if (simulation_.count().force_evaluations < max_evaluations_) return "interrupted";
     return fmt::format("ended after {} of {} steps: a cell has {} force evaluations",
-                       simulation_.count().steps, last_, most_evaluations_);
+                       simulation_.count().steps, last_, max_evaluations_);
   }
 
   void add_costs(std::vector<std::string>& facts) const {
@@ -127,7 +127,7 @@ class CellRun {
   }
 
   Simulation simulation_;
-  std::int64_t last_, stride_, most_evaluations_;
+  std::int64_t last_, stride_, max_evaluations_;
   std::optional<Divergence> divergence_;
   std::optional<TunnellingRisk> tunnelling_;
   std::int64_t tunnelling_step_ = 0;

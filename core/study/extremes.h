@@ -38,10 +38,10 @@ struct ExtremeCase {
   std::string what;     ///< the scene and how it is started
   std::string reading;  ///< what a cell that is not stable means here
   Scene scene;          ///< of any method; without a time step: each method's own
-  std::int64_t most_steps = 300;
+  std::int64_t max_steps = 300;
   Preparation prepare = {};  ///< what a scene file cannot say
   /// Of the force, after which a cell ends whatever its steps: error control may need any number.
-  std::int64_t most_evaluations = 100'000;
+  std::int64_t max_evaluations = 100'000;
 };
 
 /// In the order of the table.
@@ -73,7 +73,7 @@ struct ExtremeCell {
   double wall = 0;           ///< s, of the run
 };
 
-/// Runs one cell: at most `most_steps` and `most_evaluations`. Energy growth: at the records of the second
+/// Runs one cell: at most `max_steps` and `max_evaluations`. Energy growth: at the records of the second
 /// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
 /// the start and all works into the cloth by more than the threshold, losses by damping not counted.
 /// `stop` is asked after every step, and within one that takes long; true ends the run.

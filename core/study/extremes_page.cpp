@@ -93,7 +93,7 @@ std::vector<std::pair<std::string, HtmlText>> conditions(const std::string& comm
   rows.emplace_back("bounds",
                     HtmlText(fmt::format("each cell has a fixed number of steps (its case says how many) "
                                          "and at most {} force evaluations; nothing depends on time",
-                                         ExtremeCase{}.most_evaluations)));
+                                         ExtremeCase{}.max_evaluations)));
   rows.emplace_back("random starts", HtmlText(fmt::format("seed {}", extreme_seed)));
   for (const auto& [name, value] : fact_rows(machine_facts())) rows.emplace_back(name, HtmlText(value));
   return rows;

@@ -212,7 +212,7 @@ std::string study_text(const ExtremesTable& table) {
   if (std::any_of(table.cells.begin(), table.cells.end(),
                   [](const ExtremeCell& cell) { return cell.ended_early; }))
     text += fmt::format("{}* ended early, its {} force evaluations used up\n", any ? "\n" : "",
-                        ExtremeCase{}.most_evaluations);
+                        ExtremeCase{}.max_evaluations);
   return text + fmt::format("{}{} cells: {}; seed of random starts {}\n", any ? "\n" : "", table.cells.size(),
                             count_of_statuses(table), extreme_seed);
 }

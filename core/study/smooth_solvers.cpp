@@ -7,7 +7,7 @@
 namespace cloth {
 namespace {
 
-constexpr int most_columns = 12;
+constexpr int max_columns = 12;
 constexpr int usual_columns = 8;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
@@ -56,9 +56,9 @@ void Extrapolation::midpoint_rule(const Derivative& f, double begin, double step
 /// table_.front().
 double Extrapolation::try_step(const Derivative& f, double begin, double step, const Eigen::VectorXd& y,
                                int& columns) {
-  table_.resize(most_columns);  // table_[k] after row j: the entry of j - k extrapolations
+  table_.resize(max_columns);  // table_[k] after row j: the entry of j - k extrapolations
   double error = std::numeric_limits<double>::infinity();
-  for (int j = 0; j < most_columns; ++j) {
+  for (int j = 0; j < max_columns; ++j) {
     const auto row = static_cast<std::size_t>(j);
     midpoint_rule(f, begin, step, 2 * (j + 1), y, table_[row]);
     Eigen::VectorXd change;
@@ -125,9 +125,9 @@ Collocation::Collocation(Eigen::VectorXd scale) : scale_(std::move(scale)) {
 }
 
 bool Collocation::solve_stages(const Derivative& f, double begin, double step, const Eigen::VectorXd& y) {
-  constexpr int most_iterations = 100;
+  constexpr int max_iterations = 100;
   double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     double change = 0;
     for (int i = 0; i < stages; ++i) {
       stage_ = y;

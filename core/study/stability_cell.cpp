@@ -122,7 +122,7 @@ StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion, 
   }
   cell.time_step = *time_step;
   cell.wanted_steps = wanted_steps(scene, *time_step, criterion);
-  const std::int64_t steps = std::min<std::int64_t>(cell.wanted_steps, criterion.most_steps);
+  const std::int64_t steps = std::min<std::int64_t>(cell.wanted_steps, criterion.max_steps);
   const std::int64_t stride = std::max<std::int64_t>(1, steps / samples_of_a_run);
 
   Simulation run(scene, perturbation(scene, criterion));

@@ -18,7 +18,7 @@ constexpr int limit_halvings = 5;            // of the bracket between two cells
 
 /// Work of a cell, in steps: a run beyond the limit soon ends.
 double expected_work(const StabilityCell& cell, const StabilityCriterion& criterion) {
-  const double steps = static_cast<double>(std::min<std::int64_t>(cell.wanted_steps, criterion.most_steps));
+  const double steps = static_cast<double>(std::min<std::int64_t>(cell.wanted_steps, criterion.max_steps));
   return cell.time_step > 1.05 * cell.limits.spectrum ? 0.2 * steps : steps;
 }
 

@@ -117,7 +117,7 @@ std::ptrdiff_t cells_cut_short(const StabilityMap& map) {
   std::ptrdiff_t count = 0;
   for (const MethodMap& method : map.methods)
     count += std::count_if(method.cells.begin(), method.cells.end(), [&](const StabilityCell& cell) {
-      return cell.status == CellStatus::run && cell.steps >= map.options.criterion.most_steps &&
+      return cell.status == CellStatus::run && cell.steps >= map.options.criterion.max_steps &&
              cell.wanted_steps > cell.steps;
     });
   return count;
@@ -195,7 +195,7 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   text.push_back(fmt::format(
       "Each cell is a run of {:g} periods of the fastest motion, at least {} steps and at most {}, from the "
       "scene's start with every free particle moved at random by up to {:g} of a cell's length (seed {}).",
-      c.periods, c.least_steps, c.most_steps, c.perturbation, c.perturbation_seed));
+      c.periods, c.least_steps, c.max_steps, c.perturbation, c.perturbation_seed));
   text.push_back(fmt::format(
       "Diverged: not finite, or ten times the kinetic energy that the scene could give. Energy growth: the "
       "method created more than {:g} of the energy scale and what it created still grew steadily, {:g} times "
@@ -220,7 +220,7 @@ std::vector<std::string> criterion_text(const StabilityMap& map) {
   if (map.options.x.path != time_step_path && map.options.y.path != time_step_path)
     text.push_back("Neither axis is the time step: a curve is where the step of the run equals the limit.");
   if (const auto cut = cells_cut_short(map); cut > 0)
-    text.push_back(fmt::format("{} cells were cut short at {} steps.", cut, c.most_steps));
+    text.push_back(fmt::format("{} cells were cut short at {} steps.", cut, c.max_steps));
   for (const MethodMap& method : map.methods)
     if (std::string outside = limits_outside(map, method); !outside.empty())
       text.push_back(std::move(outside));

@@ -23,11 +23,11 @@ std::int64_t round_up(std::int64_t value, std::int64_t to) {
 }
 
 /// Far more than anybody can wait for; the finest rung's are still a 64-bit number.
-constexpr double most_ladder_steps = 1e14;
+constexpr double max_ladder_steps = 1e14;
 
 std::int64_t steps_for(double horizon, double step) {
   return static_cast<std::int64_t>(
-      std::clamp(std::ceil(horizon / step * (1 - 1e-12)), 1.0, most_ladder_steps));
+      std::clamp(std::ceil(horizon / step * (1 - 1e-12)), 1.0, max_ladder_steps));
 }
 
 /// The step of rung 0 before the horizon is divided by it, in s.
@@ -88,7 +88,7 @@ Ladders make_ladders(const Scene& scene, const std::vector<std::string>& methods
     ladder.first_steps = ladder.by_tolerance ? ladders.samples : round_up(wanted[k++], ladders.samples);
     if (ladder.by_tolerance || !ladder.limit || !std::isfinite(*ladder.limit)) continue;
     const auto longest =
-        static_cast<std::int64_t>(std::min(horizon / (beyond * *ladder.limit), most_ladder_steps));
+        static_cast<std::int64_t>(std::min(horizon / (beyond * *ladder.limit), max_ladder_steps));
     const std::int64_t steps = longest / ladders.samples * ladders.samples;
     if (steps > 0 && steps < ladder.first_steps) ladder.beyond_steps = steps;
   }

@@ -34,8 +34,8 @@ std::string broken_axis_rule(const StudyAxis& axis) {
   if (!(axis.low < axis.high)) return "must begin below its end";
   if (axis.scale == AxisScale::logarithmic && !(axis.low > 0))
     return "must begin above 0 where it is logarithmic";
-  if (axis.count < 2 || axis.count > most_axis_values)
-    return fmt::format("must have 2 to {} values", most_axis_values);
+  if (axis.count < 2 || axis.count > max_axis_values)
+    return fmt::format("must have 2 to {} values", max_axis_values);
   return {};
 }
 

@@ -25,7 +25,7 @@ struct StudyAxis {
   AxisScale scale = AxisScale::linear;
 };
 
-inline constexpr int most_axis_values = 1000;
+inline constexpr int max_axis_values = 1000;
 
 /// "springs.structural=10:1000:12:log"; the scale may be left out: linear. `option` is the place of a
 /// problem.

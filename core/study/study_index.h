@@ -90,7 +90,7 @@ void visit_stability(JsonFields fields, Options& options) {
   auto& criterion = options.criterion;
   of_criterion("periods", criterion.periods);
   of_criterion("least_steps", criterion.least_steps);
-  of_criterion("most_steps", criterion.most_steps);
+  of_criterion("most_steps", criterion.max_steps);
   of_criterion("perturbation", criterion.perturbation);
   of_criterion("perturbation_seed", criterion.perturbation_seed);
   of_criterion("growth", criterion.growth);

@@ -58,7 +58,7 @@ std::optional<StudyRun> run_at(const ExtremesTable& table, std::size_t number) {
                  .note = {}};
   found.scene.integrator.method = cell.method;
   found.scene.integrator.time_step = cell.time_step;
-  found.scene.duration = static_cast<double>(extreme.most_steps) * cell.time_step;
+  found.scene.duration = static_cast<double>(extreme.max_steps) * cell.time_step;
   if (extreme.prepare) found.note = "A scene cannot say how this case is started: " + extreme.what;
   return found;
 }

@@ -16,7 +16,7 @@
 namespace cloth {
 namespace {
 
-constexpr int most_rungs = 12;
+constexpr int max_rungs = 12;
 constexpr int promised_rungs = 5;
 constexpr double worth_timing = 0.2;        // s, all repeats of a run together
 constexpr double limiter_tolerance = 1e-6;  // the default of 1e-4 would stop errors at some 1e-3 m
@@ -131,7 +131,7 @@ class Measuring {
 
   /// False if it was stopped.
   bool all() {
-    for (int rung = -1; rung < most_rungs; ++rung)
+    for (int rung = -1; rung < max_rungs; ++rung)
       for (std::size_t m = 0; m < study_.methods.size(); ++m)
         if (active_[m] && !one(m, rung)) return false;
     return true;

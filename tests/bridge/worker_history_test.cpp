@@ -80,7 +80,7 @@ TEST_F(WorkerHistory, IsShownWithItsEndsAndItsMemory) {
   EXPECT_EQ(history.last_time, status().time);
   EXPECT_GT(history.states, 1u);
   EXPECT_GT(history.bytes, 3 * 2 * 81 * sizeof(double));
-  EXPECT_LT(history.bytes, history.most_bytes);
+  EXPECT_LT(history.bytes, history.max_bytes);
 }
 
 TEST_F(WorkerHistory, ShowsAStepOfThePastAndPauses) {

@@ -17,9 +17,9 @@ namespace cloth::test::extremes_test {
 namespace {
 
 /// A case with fewer steps, so that slow methods are tested too.
-ExtremeCase shortened(ExtremeCase extreme, std::int64_t most_steps) {
-  extreme.most_steps = std::min(extreme.most_steps, most_steps);
-  extreme.most_evaluations = 5000;
+ExtremeCase shortened(ExtremeCase extreme, std::int64_t max_steps) {
+  extreme.max_steps = std::min(extreme.max_steps, max_steps);
+  extreme.max_evaluations = 5000;
   return extreme;
 }
 
@@ -35,12 +35,12 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 template <class Visit>  // visit(extreme, method)
-void for_each_cell(std::int64_t most_steps, Visit visit) {
+void for_each_cell(std::int64_t max_steps, Visit visit) {
   // One step of error control takes seconds at these; their neighbours are as telling.
   const std::set<std::string> slow{"stiffness-1e7", "stiffness-1e8", "stiffness-1e9-own-step"};
   for (const ExtremeCase& extreme : extreme_cases())
     if (!slow.count(extreme.name))
-      for (const std::string& method : integrator_names()) visit(shortened(extreme, most_steps), method);
+      for (const std::string& method : integrator_names()) visit(shortened(extreme, max_steps), method);
 }
 
 TEST(ExtremeCases, HaveNamesOfTheirOwnAndScenesWithoutProblems) {
@@ -62,7 +62,7 @@ TEST(EveryCell, IsAFiniteResultOrAStopThatNamesStepParticleAndCause) {
     const std::string where = extreme.name + ", " + method + ": " + cell.detail;
     EXPECT_TRUE(std::isfinite(cell.max_strain) && std::isfinite(cell.energy_ratio)) << where;
     EXPECT_GE(cell.energy_ratio, 0) << where;
-    EXPECT_LE(cell.steps, extreme.most_steps) << where;
+    EXPECT_LE(cell.steps, extreme.max_steps) << where;
     EXPECT_FALSE(contains(cell.detail, "nan")) << where;
     EXPECT_LT(static_cast<std::size_t>(cell.status), std::size(extreme_status_names)) << where;
     if (cell.status == ExtremeStatus::diverged || cell.status == ExtremeStatus::solver_failed)
@@ -174,7 +174,7 @@ TEST(PinnedParticles, AllOfThemStayWhateverTheMethod) {
 
 TEST(EnergyGrowth, IsSeenInARunThatStaysFinite) {
   ExtremeCase growing = case_named("no-damping");  // explicit Euler grows from the first step on
-  growing.most_steps = 110;
+  growing.max_steps = 110;
   const ExtremeCell cell = run_extreme(growing, "explicit-euler");
   EXPECT_EQ(cell.status, ExtremeStatus::energy_growth) << cell.detail;
   EXPECT_TRUE(contains(cell.detail, "of the energy scale was added")) << cell.detail;
@@ -184,7 +184,7 @@ TEST(EnergyGrowth, OfACollapsedClothIsMadeByTheStep) {
   ExtremeCase collapsed = case_named("collapsed-to-a-point");
   EXPECT_EQ(run_extreme(collapsed, "verlet").status, ExtremeStatus::energy_growth);
   collapsed.scene.integrator.time_step = 2e-5;  // a hundredth
-  collapsed.most_steps *= 100;
+  collapsed.max_steps *= 100;
   EXPECT_EQ(run_extreme(collapsed, "verlet").status, ExtremeStatus::stable);
 }
 

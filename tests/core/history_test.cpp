@@ -34,8 +34,8 @@ BrushGust gust(double strength) {
 /// A run with a history, and what the state was at every step of it.
 class RecordedRun {
  public:
-  explicit RecordedRun(std::size_t most_bytes, const Scene& scene = swinging())
-      : simulation(scene), history(most_bytes) {
+  explicit RecordedRun(std::size_t max_bytes, const Scene& scene = swinging())
+      : simulation(scene), history(max_bytes) {
     history.begin(simulation);
     note();
   }
@@ -93,8 +93,8 @@ constexpr std::size_t few_states = 30000;
 
 TEST(AHistory, LeadsBackToEveryStepToTheBit) {
   Random random;
-  for (const std::size_t most_bytes : {few_states, std::size_t{1}, History::default_most_bytes}) {
-    RecordedRun run(most_bytes);
+  for (const std::size_t max_bytes : {few_states, std::size_t{1}, History::default_max_bytes}) {
+    RecordedRun run(max_bytes);
     do_everything(run);
     std::vector<std::int64_t> steps(static_cast<std::size_t>(run.history.last_step() + 1));
     std::iota(steps.begin(), steps.end(), 0);
@@ -135,7 +135,7 @@ TEST(AHistory, HasInForceWhatWasLoggedUpToTheStep) {
 }
 
 TEST(AHistory, ThatIsCutForgetsWhatCameLater) {
-  RecordedRun run(History::default_most_bytes);
+  RecordedRun run(History::default_max_bytes);
   run.advance(10);
   run.edit([](Scene& scene) { scene.springs->shear = 5; });
   run.advance(20);

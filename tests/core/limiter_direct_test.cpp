@@ -144,7 +144,7 @@ TEST(DirectSolver, KeepsRatesDownToZero) {
     ClothState state = overstretched(system, random);
     const LimiterReport report = DeformationLimiter(*scene.deformation, system).apply(system, step, state);
     EXPECT_LE(report.excess, 1e-6) << rate;
-    EXPECT_LE(report.direct_iterations, NearestShape::most_iterations) << rate;
+    EXPECT_LE(report.direct_iterations, NearestShape::max_iterations) << rate;
   }
 }
 
@@ -209,7 +209,7 @@ TEST(DirectSolver, MeetsHalfwayBetweenPinsOutOfReach) {
   state.position.add(2, {0.1, 0, 0});
   state.position.add(1, {0.05, 0.02, 0.01});
   const LimiterReport report = DeformationLimiter(*scene.deformation, system).apply(system, step, state);
-  EXPECT_LE(report.direct_iterations, NearestShape::most_iterations * NearestShape::most_rounds);
+  EXPECT_LE(report.direct_iterations, NearestShape::max_iterations * NearestShape::max_rounds);
   EXPECT_LE((state.position[1] - middle).norm(), 1e-4);
   EXPECT_NEAR(report.excess, 0.9, 1e-3);
   EXPECT_TRUE(all_finite(state));

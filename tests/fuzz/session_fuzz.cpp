@@ -17,9 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!reading.session) return 0;
   const cloth::Session& session = *reading.session;
   if (!cloth::read_session(cloth::write_session(session), "x.session.json").session) std::abort();
-  constexpr int most_particles = 100, most_steps = 20;
+  constexpr int max_particles = 100, max_steps = 20;
   const cloth::Scene& scene = session.scene;
-  const bool is_short = scene.cloth.rows * scene.cloth.columns <= most_particles && session.steps <= most_steps;
+  const bool is_short = scene.cloth.rows * scene.cloth.columns <= max_particles && session.steps <= max_steps;
   if (is_short && !scene.contact && !scene.self_contact && scene.integrator.time_step)
     cloth::replay(session, {});
   return 0;

@@ -22,8 +22,8 @@ double number_in(const json& object, const char* key, double otherwise) {
 /// Of the cloth of a scene, or of a scene within.
 bool is_small(const json& value) {
   if (!value.is_structured()) return true;
-  constexpr double most_particles = 3000;
-  if (value.is_object() && number_in(value, "rows", 33) * number_in(value, "columns", 33) > most_particles)
+  constexpr double max_particles = 3000;
+  if (value.is_object() && number_in(value, "rows", 33) * number_in(value, "columns", 33) > max_particles)
     return false;
   return std::all_of(value.begin(), value.end(), is_small);
 }
@@ -35,8 +35,8 @@ bool stays_small(const std::string& json_text) {
 }
 
 void take_few_steps(const Scene& scene) {
-  constexpr int most_particles = 100, steps = 3;
-  if (scene.cloth.rows * scene.cloth.columns > most_particles) return;
+  constexpr int max_particles = 100, steps = 3;
+  if (scene.cloth.rows * scene.cloth.columns > max_particles) return;
   explain_stages(scene);
   const auto time_step = resolved_time_step(scene);
   if (!time_step || scene.contact || scene.self_contact || too_many_steps(scene.duration, *time_step)) return;

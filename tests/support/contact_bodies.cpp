@@ -28,9 +28,9 @@ void set_mesh(ObstacleBody& body, Random& random) {
   body.surface = make_surface(vertices, std::move(mesh.triangles));
 }
 
-Pose random_pose(const ObstacleBody& body, double most_angle, Random& random) {
+Pose random_pose(const ObstacleBody& body, double max_angle, Random& random) {
   const Vec3 axis = random.vector(1).normalized();
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(random.uniform(0, most_angle), axis).toRotationMatrix();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(random.uniform(0, max_angle), axis).toRotationMatrix();
   return {turn, random.vector(0.1) + body.pivot - turn * body.pivot};
 }
 
@@ -84,15 +84,15 @@ ObstacleBody random_body(Shape shape, Random& random) {
 }
 
 PoseInterpolation random_interpolation(const ObstacleBody& body, Random& random) {
-  constexpr double most_angle = 3;  // rad
+  constexpr double max_angle = 3;  // rad
   if (random.coin() && random.coin()) return {body.pivot, Pose{}, Pose{}};
-  const Pose from = random_pose(body, most_angle, random);
+  const Pose from = random_pose(body, max_angle, random);
   if (random.coin() && random.coin()) return {body.pivot, from, from};
   Pose to = from;
   to.shift += random.vector(0.2);
   if (random.coin()) return {body.pivot, from, to};
   const Vec3 pivot = to.at(body.pivot);
-  const Vec3 rotation = random.uniform(0, most_angle) * random.vector(1).normalized();
+  const Vec3 rotation = random.uniform(0, max_angle) * random.vector(1).normalized();
   const Eigen::Matrix3d turn = random.coin() ? from.turn : turn_by(rotation) * from.turn;
   Vec3 stretch = Vec3::Ones();
   if (random.coin() && body.kind != BodyKind::half_space) stretch = Vec3::Constant(random.uniform(0.3, 2));

@@ -36,7 +36,7 @@ class Drawings {
                        });
   }
 
-  int most_in_an_event() const {
+  int max_in_an_event() const {
     int most = 0;
     for (const auto& [event, count] : in_event_) most = std::max(most, count);
     return most;
@@ -110,7 +110,7 @@ class CompareDrawingTest : public QObject {
     QTest::qWait(500);
     bench.action("play")->trigger();
     QTest::qWait(500);
-    QCOMPARE(drawings.most_in_an_event(), 1);
+    QCOMPARE(drawings.max_in_an_event(), 1);
     for (std::size_t i = 0; i < 4; ++i) QVERIFY2(drawings.of_pane(i) > 2, "every pane has its turns");
   }
 

@@ -32,7 +32,7 @@ struct PaneSample {
 struct CompareSample {
   double time_s = 0;
   bool is_start = false;  ///< the first sample of a new run
-  std::array<PaneSample, cloth::most_panes>
+  std::array<PaneSample, cloth::max_panes>
       panes;  ///< indexed by style_of(pane): A, B, C, D, independent of the panes' order
 };
 

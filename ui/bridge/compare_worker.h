@@ -56,7 +56,7 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   void publish_frame(std::size_t pane);
   void publish_status();
 
-  std::array<FrameExchange, cloth::most_panes> frames_;  ///< shared with the window
+  std::array<FrameExchange, cloth::max_panes> frames_;  ///< shared with the window
   int threads_;
   std::deque<CompareCommand> waiting_;
   bool handling_ = false;  ///< a command is being carried out and not counted in handled_ yet

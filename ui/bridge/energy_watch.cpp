@@ -3,14 +3,14 @@
 namespace clothlab {
 namespace {
 
-constexpr std::size_t most_kept = 4096;
+constexpr std::size_t max_kept = 4096;
 
 }  // namespace
 
 void EnergyWatch::add(const cloth::Measurement& measurement) {
   account_.add(measurement);
   if (rows_++ % stride_ == 0) kept_.push_back({measurement.step, account_});
-  if (kept_.size() > most_kept) {
+  if (kept_.size() > max_kept) {
     for (std::size_t k = 0; 2 * k < kept_.size(); ++k) kept_[k] = kept_[2 * k];
     kept_.resize((kept_.size() + 1) / 2);
     stride_ *= 2;

@@ -29,8 +29,8 @@ bool is_overtaken_by(const SceneCommand& command, const SceneCommand& next) {
 
 }  // namespace
 
-SimulationWorker::SimulationWorker(std::size_t most_history)
-    : history_(most_history), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+SimulationWorker::SimulationWorker(std::size_t max_history)
+    : history_(max_history), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
@@ -315,7 +315,7 @@ void SimulationWorker::publish_status() {
                        .last_time = history_.last_time(),
                        .states = history_.state_count(),
                        .bytes = history_.bytes(),
-                       .most_bytes = history_.most_bytes()};
+                       .max_bytes = history_.max_bytes()};
   }
   status_.playing_again = status_.playing && playing_again_;
   status_.steps_per_second = status_.playing ? meter_.steps_per_second() : 0;

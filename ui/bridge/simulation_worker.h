@@ -18,8 +18,8 @@ namespace clothlab {
 
 class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerStatus> {
  public:
-  /// `most_history`: limit of the history's memory, bytes.
-  explicit SimulationWorker(std::size_t most_history = cloth::History::default_most_bytes);
+  /// `max_history`: limit of the history's memory, bytes.
+  explicit SimulationWorker(std::size_t max_history = cloth::History::default_max_bytes);
 
   /// The newest frame that was not fetched yet, or nullptr. Called by the window's thread.
   std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }

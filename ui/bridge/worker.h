@@ -26,7 +26,7 @@ class Worker {
   using Command = CommandType;
   using Sample = SampleType;
   using Status = StatusType;
-  static constexpr std::size_t most_samples = 1 << 18;  ///< more than an hour at 60 samples a second
+  static constexpr std::size_t max_samples = 1 << 18;  ///< more than an hour at 60 samples a second
 
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -96,10 +96,10 @@ class Worker {
     return !inbox_.empty() && is(inbox_.front());
   }
 
-  /// Queues a sample. When the queue is full (most_samples), the sample is lost and counted in the status.
+  /// Queues a sample. When the queue is full (max_samples), the sample is lost and counted in the status.
   void deliver(const Sample& sample) {
     const std::lock_guard lock(mutex_);
-    if (samples_.size() < most_samples)
+    if (samples_.size() < max_samples)
       samples_.push_back(sample);
     else
       ++status_.lost_samples;

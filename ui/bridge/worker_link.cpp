@@ -20,7 +20,7 @@ void SimulationLink::tellFrames(SimulationWorker& worker) {
 }
 
 void CompareLink::tellFrames(CompareWorker& worker) {
-  for (std::size_t pane = 0; pane < cloth::most_panes; ++pane)
+  for (std::size_t pane = 0; pane < cloth::max_panes; ++pane)
     if (const auto frame = worker.take_frame(pane)) Q_EMIT frameReady(pane, frame);
 }
 

@@ -33,7 +33,7 @@ struct HistoryStatus {
   std::int64_t first_step = 0, last_step = 0;
   double first_time = 0, last_time = 0;  ///< s
   std::size_t states = 0;                ///< stored states; steps between them are computed again
-  std::size_t bytes = 0, most_bytes = 0;
+  std::size_t bytes = 0, max_bytes = 0;
 };
 
 struct WorkerStatus : RunStatus {

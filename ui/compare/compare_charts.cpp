@@ -29,12 +29,12 @@ std::array<Quantity, quantities> chart_quantities() {
 }
 
 std::size_t column_of(std::size_t quantity, int style) {
-  return quantity * cloth::most_panes + static_cast<std::size_t>(style);
+  return quantity * cloth::max_panes + static_cast<std::size_t>(style);
 }
 
 ChartRecord empty_record() {
   ChartRecord record;
-  record.samples = SampleSeries(quantities * cloth::most_panes);
+  record.samples = SampleSeries(quantities * cloth::max_panes);
   return record;
 }
 
@@ -68,7 +68,7 @@ void CompareCharts::setPanes(const cloth::Comparison& comparison) {
 /// Deletes the samples of removed panes, so that a new pane of the same letter starts empty.
 void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
   ChartRecord record = empty_record();
-  std::array<double, quantities * cloth::most_panes> row;
+  std::array<double, quantities * cloth::max_panes> row;
   for (std::size_t i = 0; i < record_.samples.size(); ++i) {
     row.fill(no_value);
     for (std::size_t q = 0; q < quantities; ++q)
@@ -119,8 +119,8 @@ void CompareCharts::append(const std::vector<CompareSample>& samples) {
       record_ = empty_record();
       stack_.follow();
     }
-    std::array<double, quantities * cloth::most_panes> row;
-    for (int style = 0; style < static_cast<int>(cloth::most_panes); ++style) {
+    std::array<double, quantities * cloth::max_panes> row;
+    for (int style = 0; style < static_cast<int>(cloth::max_panes); ++style) {
       const PaneSample& pane = sample.panes[static_cast<std::size_t>(style)];
       const double values[quantities] = {pane.total_J, pane.max_strain, pane.step_ms, pane.rms_m};
       for (std::size_t q = 0; q < quantities; ++q) row[column_of(q, style)] = values[q];

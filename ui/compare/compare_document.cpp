@@ -128,7 +128,7 @@ void CompareDocument::useShared(std::size_t pane, const std::string& path) {
 }
 
 void CompareDocument::duplicatePane(std::size_t pane) {
-  if (paneCount() >= cloth::most_panes) return;
+  if (paneCount() >= cloth::max_panes) return;
   Comparison after = comparison_;
   duplicate_pane(after, pane);
   push(tr("Duplicate pane %1").arg(QString::fromStdString(comparison_.panes[pane].name)), std::move(after));

@@ -32,7 +32,7 @@ class CompareDocument : public Document {
   QString setOwn(std::size_t pane, const std::string& path, const cloth::ParameterValue& value);
   /// Removes the pane's own value, so that it has the shared one.
   void useShared(std::size_t pane, const std::string& path);
-  void duplicatePane(std::size_t pane);  ///< nothing if there are most_panes
+  void duplicatePane(std::size_t pane);  ///< nothing if there are max_panes
   void removePane(std::size_t pane);     ///< nothing if there are least_panes
   void setReference(const std::string& reference);
   void togglePin(int row, int column);

@@ -51,7 +51,7 @@ void PaneGrid::showComparison(const cloth::Comparison& comparison) {
   }
   if (count != before) layOut();
   for (std::size_t i = 0; i < count; ++i)
-    panes_[i]->showPane(comparison, i, count<cloth::most_panes, count> cloth::least_panes);
+    panes_[i]->showPane(comparison, i, count<cloth::max_panes, count> cloth::least_panes);
 }
 
 void PaneGrid::addPane() {

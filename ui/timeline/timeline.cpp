@@ -17,7 +17,7 @@ QString size_text(std::size_t bytes) {
 /// "12 MB of 256 MB, 96 states".
 QString memory_text(const HistoryStatus& history) {
   return Timeline::tr("%1 of %2, %n state(s)", nullptr, static_cast<int>(history.states))
-      .arg(size_text(history.bytes), Timeline::tr("%1 MB").arg(history.most_bytes >> 20))
+      .arg(size_text(history.bytes), Timeline::tr("%1 MB").arg(history.max_bytes >> 20))
       .replace("(s)", history.states == 1 ? "" : "s");
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double radians_per_pixel = 0.006;
-constexpr double least_distance = 1e-3, most_distance = 1e4;  // m
-constexpr double air = 1.12;                                  // of a framed box's size
+constexpr double least_distance = 1e-3, max_distance = 1e4;  // m
+constexpr double air = 1.12;                                 // of a framed box's size
 
 /// The eye's axes for a yaw and pitch, as columns: right, up, backward. Written out rather than found by a
 /// cross product with y, so that straight down is an orientation like any other.
@@ -37,7 +37,7 @@ void Camera::set_viewport(double width, double height) {
 
 void Camera::set_pose(const CameraPose& pose) {
   pose_ = pose;
-  pose_.distance = std::clamp(pose.distance, least_distance, most_distance);
+  pose_.distance = std::clamp(pose.distance, least_distance, max_distance);
   pose_.pitch = std::clamp(pose.pitch, -pi / 2, pi / 2);
 }
 
@@ -55,7 +55,7 @@ void Camera::pan(double pixels_right, double pixels_down) {
 void Camera::zoom(double factor, const Eigen::Vector2d& cursor) {
   const Eigen::Vector3d under_cursor = on_screen_plane(cursor, pose_.target);
   CameraPose pose = pose_;
-  pose.distance = std::clamp(pose_.distance / factor, least_distance, most_distance);
+  pose.distance = std::clamp(pose_.distance / factor, least_distance, max_distance);
   const double shrink = pose.distance / pose_.distance;
   pose.target = under_cursor + shrink * (pose_.target - under_cursor);
   set_pose(pose);
@@ -73,7 +73,7 @@ CameraPose Camera::framed(const Eigen::AlignedBox3d& box, const CameraPose& from
     const Eigen::Vector3d d = air * (to_eye * (box.corner(type) - pose.target));
     distance = std::max({distance, d.z() + std::abs(d.x()) / slope_x, d.z() + std::abs(d.y()) / slope_y});
   }
-  pose.distance = std::clamp(distance, 0.05, most_distance);
+  pose.distance = std::clamp(distance, 0.05, max_distance);
   return pose;
 }
 

@@ -11,7 +11,7 @@
 namespace clothlab {
 namespace {
 
-constexpr double least_brush_radius = 8, most_brush_radius = 1000;  // px
+constexpr double least_brush_radius = 8, max_brush_radius = 1000;  // px
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void ClothView::setTool(Tool tool) {
 }
 
 void ClothView::setBrushRadius(double pixels) {
-  const double radius = std::clamp(pixels, least_brush_radius, most_brush_radius);
+  const double radius = std::clamp(pixels, least_brush_radius, max_brush_radius);
   if (radius == brush_radius_) return;
   brush_radius_ = radius;
   repaintOver();

@@ -9,7 +9,7 @@
 namespace clothlab {
 namespace {
 
-constexpr double most_range = 1e3;
+constexpr double max_range = 1e3;
 constexpr double glide_time = 0.12;    // s, to come 1/e nearer
 constexpr double patience = 1.5;       // s, of low strain before the range shrinks
 constexpr double low_enough = 0.4;     // of the range
@@ -33,7 +33,7 @@ QColor strain_colour(double fraction) {
 }
 
 double round_maximum(double value, double least) {
-  const double clamped = std::isfinite(value) ? std::clamp(value, least, most_range) : most_range;
+  const double clamped = std::isfinite(value) ? std::clamp(value, least, max_range) : max_range;
   constexpr double slack = 1e-6;  // strains come in single precision
   return cloth::rounded_up(clamped, {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}, slack);
 }

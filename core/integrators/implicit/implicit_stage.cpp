@@ -14,7 +14,7 @@ namespace {
 
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;  // of the residual along a step that is long enough
-constexpr int most_trials = 13;        // of a length
+constexpr int max_trials = 13;         // of a length
 constexpr double good_enough = 1e-3;   // relative change after the last iteration that is still taken
 
 double largest_component(const Vec3Field& field) {
@@ -167,7 +167,7 @@ double ImplicitStage::take_step(const StageEquation& e) {
     add_scaled(length, direction_, e.velocity);
     evaluate(e);
     const double after = work_along(direction_, residual_);
-    if (std::abs(after) <= accepted_work * std::abs(before) || trial == most_trials) break;
+    if (std::abs(after) <= accepted_work * std::abs(before) || trial == max_trials) break;
     if (after < 0) {
       near = length, near_work = after;
     } else {
@@ -194,7 +194,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   double scale = std::max(largest_component(e.velocity), largest_component(e.start_velocity));
   double relative = 0;
   residual_norm_ = 0;
-  for (int n = 0; n < most_iterations_; ++n) {
+  for (int n = 0; n < max_iterations_; ++n) {
     choose_forcing();
     find_direction(e);
     const double change = take_step(e);
@@ -217,7 +217,7 @@ void ImplicitStage::solve(const StageEquation& e) {
       place_of_largest(residual_),
       fmt::format("Newton's method did not converge: after {} iterations the velocities still "
                   "change by {:.2g} of the largest",
-                  most_iterations_, relative)};
+                  max_iterations_, relative)};
 }
 
 }  // namespace cloth

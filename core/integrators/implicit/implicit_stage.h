@@ -30,8 +30,8 @@ struct StageEquation {
 class ImplicitStage {
  public:
   /// `tolerance`: change of the velocities at which iterations end, relative to the largest speed.
-  ImplicitStage(double tolerance, int most_iterations)
-      : tolerance_(tolerance), most_iterations_(most_iterations) {}
+  ImplicitStage(double tolerance, int max_iterations)
+      : tolerance_(tolerance), max_iterations_(max_iterations) {}
 
   void solve(const StageEquation& equation);
 
@@ -45,7 +45,7 @@ class ImplicitStage {
   double take_step(const StageEquation& e);
 
   double tolerance_;
-  int most_iterations_;
+  int max_iterations_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;
   ConjugateGradients gradients_;

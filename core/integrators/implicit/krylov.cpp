@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-constexpr int most_iterations = 2000;
+constexpr int max_iterations = 2000;
 constexpr int basis_size = 40;  // of minimal residuals, before a restart
 
 double inner_product(std::span<const double> a, std::span<const double> b) {
@@ -68,7 +68,7 @@ KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearis
   double slope = advance(0, preconditioner, solution);
   direction_ = conditioned_;
   const double goal = tolerance * tolerance * slope;
-  while (slope > goal && report.iterations < most_iterations) {
+  while (slope > goal && report.iterations < max_iterations) {
     matrix.multiply_free(system, direction_, image_);
     const double curvature = dot(direction_, image_);
     if (!(curvature > 0)) {
@@ -165,14 +165,14 @@ class ResidualCycle {
 
 KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& preconditioner,
                                const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution) {
-  constexpr int most_cycles = 5;
+  constexpr int max_cycles = 5;
   KrylovReport report;
   const double goal = tolerance * std::sqrt(dot(right_hand_side, right_hand_side));
   Vec3Field residual = right_hand_side, image(residual.size());
   matrix(solution, image);
   add_multiple(-1, image, residual);
   ResidualCycle cycle(matrix, preconditioner);
-  for (int n = 0; n < most_cycles && std::sqrt(dot(residual, residual)) > goal; ++n) {
+  for (int n = 0; n < max_cycles && std::sqrt(dot(residual, residual)) > goal; ++n) {
     report.iterations += cycle.run(residual, goal, solution);
     matrix(solution, image);
     residual = right_hand_side;

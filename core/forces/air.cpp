@@ -46,10 +46,10 @@ class AirForce : public Force {
   explicit AirForce(const Air& air) : air_(air) {}
 
   void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
-  SweptIn join(SweepTerms& terms) const override {
-    if (brush_) return SweptIn::nothing;
+  KernelCoverage join(SweepTerms& terms) const override {
+    if (brush_) return KernelCoverage::none;
     terms.air = &air_;
-    return SweptIn::whole_steps;
+    return KernelCoverage::whole_steps;
   }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());

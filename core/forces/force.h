@@ -61,14 +61,14 @@ struct SweepTerms {
 
 /// Which passes of the kernels compute a force: none; those that do a whole explicit step; or also those that
 /// only evaluate the force.
-enum class SweptIn { nothing, whole_steps, every_pass };
+enum class KernelCoverage { none, whole_steps, every_pass };
 
 class Force {
  public:
   virtual ~Force() = default;
 
   /// Adds this force to what the kernels compute, and says in which passes they do; see SweepTerms.
-  virtual SweptIn join(SweepTerms&) const { return SweptIn::nothing; }
+  virtual KernelCoverage join(SweepTerms&) const { return KernelCoverage::none; }
 
   /// Sets the wind brush, or removes it; only air drag uses it.
   virtual void set_brush(const std::optional<BrushGust>&) {}

@@ -56,9 +56,10 @@ void ForceModel::sort_forces() {
   apart_from_steps_.clear();
   has_damping_ = has_power_ = pull_ != nullptr;
   for (const auto& force : forces_) {
-    const SweptIn swept = force->join(swept_);
-    if (swept != SweptIn::every_pass) apart_.push_back(force.get());
-    const bool in_steps = swept == SweptIn::every_pass || (swept == SweptIn::whole_steps && takes_air);
+    const KernelCoverage coverage = force->join(swept_);
+    if (coverage != KernelCoverage::every_pass) apart_.push_back(force.get());
+    const bool in_steps =
+        coverage == KernelCoverage::every_pass || (coverage == KernelCoverage::whole_steps && takes_air);
     if (!in_steps) apart_from_steps_.push_back(force.get());
     NodeDamping damping;
     const bool coupled = !force->add_node_damping(damping);

@@ -13,10 +13,10 @@ class Gravity : public Force {
  public:
   explicit Gravity(const Vec3& acceleration) : acceleration_(acceleration) {}
 
-  SweptIn join(SweepTerms& terms) const override {
-    if (!terms.uniform_mass) return SweptIn::nothing;
+  KernelCoverage join(SweepTerms& terms) const override {
+    if (!terms.uniform_mass) return KernelCoverage::none;
     terms.gravity = acceleration_;
-    return SweptIn::every_pass;
+    return KernelCoverage::every_pass;
   }
   void update(const ClothSystem& system, const Vec3Field&, double, Vec3Field& force) override {
     const double* mass = system.mass.data();

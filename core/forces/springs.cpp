@@ -97,7 +97,7 @@ double squared_rates(const SpringRun& run, const Vec3Field& position, const Vec3
 
 class SpringForce : public Force {
  public:
-  SweptIn join(SweepTerms&) const override { return SweptIn::every_pass; }
+  KernelCoverage join(SweepTerms&) const override { return KernelCoverage::every_pass; }
   bool is_internal() const override { return true; }
   void update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) override {
     Chunk g;
@@ -132,9 +132,9 @@ class SpringDamping : public Force {
   /// `damping` in N s/m; `system` must outlive the force.
   SpringDamping(const ClothSystem& system, double damping) : system_(&system), damping_(damping) {}
 
-  SweptIn join(SweepTerms& terms) const override {
+  KernelCoverage join(SweepTerms& terms) const override {
     terms.spring_damping = damping_;
-    return SweptIn::every_pass;
+    return KernelCoverage::every_pass;
   }
   bool is_damper_of_springs() const override { return true; }
   bool is_internal() const override { return true; }

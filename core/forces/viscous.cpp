@@ -9,9 +9,9 @@ class ViscousDamping : public Force {
  public:
   explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
 
-  SweptIn join(SweepTerms& terms) const override {
+  KernelCoverage join(SweepTerms& terms) const override {
     terms.damping = coefficient_;
-    return SweptIn::every_pass;
+    return KernelCoverage::every_pass;
   }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
     const auto v = velocity.flat();

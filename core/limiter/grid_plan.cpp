@@ -34,7 +34,7 @@ std::optional<GridPlan> plan_grid(const std::vector<TensionSpring>& springs, con
     family.first_spring = s;
     const int far = std::max(std::abs(family.down), std::abs(family.across));
     if (far > furthest || family.down < 0 || (family.down == 0 && family.across <= 0)) return std::nullopt;
-    plan.reach = std::max(plan.reach, far);
+    plan.padding = std::max(plan.padding, far);
     for (int row = 0; row < family.rows; ++row)
       for (int column = family.begin; column < family.end; ++column, ++s) {
         const TensionSpring expected{
@@ -45,7 +45,7 @@ std::optional<GridPlan> plan_grid(const std::vector<TensionSpring>& springs, con
       }
     plan.families.push_back(family);
   }
-  plan.stride = plan.columns + 2 * plan.reach;
+  plan.stride = plan.columns + 2 * plan.padding;
   return plan;
 }
 

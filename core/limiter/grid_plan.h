@@ -21,15 +21,15 @@ struct GridFamily {
 
 struct GridPlan {
   int rows = 0, columns = 0;
-  int reach = 0;   ///< rows and columns of padding on every side
-  int stride = 0;  ///< array elements per row, padding included
+  int padding = 0;  ///< rows and columns of padding on every side
+  int stride = 0;   ///< array elements per row, padding included
   std::vector<GridFamily> families;
 
   std::ptrdiff_t index(int row, int column) const {
-    return static_cast<std::ptrdiff_t>(row + reach) * stride + column + reach;
+    return static_cast<std::ptrdiff_t>(row + padding) * stride + column + padding;
   }
   std::size_t size() const {
-    return static_cast<std::size_t>(rows + 2 * reach) * static_cast<std::size_t>(stride);
+    return static_cast<std::size_t>(rows + 2 * padding) * static_cast<std::size_t>(stride);
   }
   std::ptrdiff_t offset(const GridFamily& family) const {
     return static_cast<std::ptrdiff_t>(family.down) * stride + family.across;

@@ -191,7 +191,7 @@ void GridRounds::sweep_lines(bool backwards) {
       sweep_columns(family);
   }
   moved_ = {std::min(moved_.begin, equations_.active.begin - 1),
-            std::max(moved_.end, equations_.active.end + 1 + plan_.reach)};
+            std::max(moved_.end, equations_.active.end + 1 + plan_.padding)};
 }
 
 void GridRounds::sweep(const LineBlock& block, const FamilyEquations& family) {
@@ -289,7 +289,7 @@ int GridRounds::springs_at(int row, Values value, SpringTerm* terms) const {
 /// value . product.
 double GridRounds::multiply(Values value, double ridge) {
   double dot = 0;
-  const int end = std::min(plan_.rows, equations_.active.end + plan_.reach);
+  const int end = std::min(plan_.rows, equations_.active.end + plan_.padding);
   for (int row = equations_.active.begin; row < end; ++row) {
     SpringTerm terms[max_terms];
     const std::ptrdiff_t r = plan_.index(row, 0);
@@ -404,7 +404,7 @@ void GridRounds::take_step() {
 }
 
 void GridRounds::move_particles(double length) {
-  const int end = std::min(plan_.rows, equations_.active.end + plan_.reach);
+  const int end = std::min(plan_.rows, equations_.active.end + plan_.padding);
   for (int row = equations_.active.begin; row < end; ++row) {
     SpringTerm terms[max_terms];
     const int count = springs_at(row, &FamilyEquations::change, terms);

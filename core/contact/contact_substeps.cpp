@@ -43,10 +43,10 @@ void ContinuousContact::begin(const StepTimes& times) {
   }
   starts_ = end_poses_;
   part_ = all_rest ? 1 : 0;
-  was_rebased_ = false;
+  free_contains_contacts_ = false;
   radius_scale_.assign(position_.size(), 1.0);
   touches_.clear();
-  substep_ = 0, work_count_ = 0, has_moved_ = false;
+  substep_ = 0, operation_count_ = 0, has_moved_ = false;
   substeps_ = substeps_for(bodies_, paths_, mean_edge_);
   if (substeps_ > 1) whole_paths_ = paths_;
 }
@@ -71,7 +71,7 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
   for (std::size_t i = 0; i < position_.size(); ++i)
     target_position_.add(i, share * (integrated[i] - from[i]));
   free_position_ = target_position_;
-  was_rebased_ = was_rebased_ || substep > 0;
+  free_contains_contacts_ = free_contains_contacts_ || substep > 0;
   substep_from_ = position_;
   radius_scale_.assign(position_.size(), 1.0);
   bool all_rest = true;
@@ -112,7 +112,7 @@ ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& st
   }
   if (end != RoundsEnd::arrived) report.pinch = pinch(step.system);
   report.exhausted = end == RoundsEnd::exhausted;
-  if (substeps_ > 1) forget_overtaken_touches(step.position_before, duration);
+  if (substeps_ > 1) drop_superseded_touches(step.position_before, duration);
   if (!has_moved_ && touches_.empty()) return report;
   report.acted = true;
   report.pairs = pairs_.size();
@@ -132,7 +132,7 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
   while (true) {
     if (stop_test_ && stop_test_()) return RoundsEnd::interrupted;
     ++report.rounds;
-    work_count_ += static_cast<double>(pairs_.size() + position_.size());
+    operation_count_ += static_cast<double>(pairs_.size() + position_.size());
     if (!is_separated_) separate_all();
     is_separated_ = false;
     solve_target(system, from);
@@ -140,10 +140,10 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
     const Vec3Field before = position_;
     const double left = move_cloth();
     has_moved_ = has_moved_ || left > 0;
-    const bool is_exhausted = work_count_ > max_operations(position_.size());
+    const bool is_exhausted = operation_count_ > max_operations(position_.size());
     if (part_ < 1) {
       const double advance = advance_obstacles();
-      if (part_ < 1) free_position_ = target_position_, was_rebased_ = true;
+      if (part_ < 1) free_position_ = target_position_, free_contains_contacts_ = true;
       stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
       if (stuck > max_rounds_stuck) return RoundsEnd::pinched;
       if (part_ < 1 && is_exhausted) return RoundsEnd::exhausted;
@@ -157,13 +157,13 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
     if (reached_bounds_) find_pairs();
   }
   const bool is_last = substeps_ == 1 || substep_ + 1 == substeps_;
-  return work_count_ > max_operations(position_.size()) && !is_last ? RoundsEnd::exhausted
-                                                                    : RoundsEnd::arrived;
+  return operation_count_ > max_operations(position_.size()) && !is_last ? RoundsEnd::exhausted
+                                                                         : RoundsEnd::arrived;
 }
 
 /// With several substeps a particle's velocity follows from its last substep with a contact impulse, and from
 /// the obstacle's velocity in that substep.
-void ContinuousContact::forget_overtaken_touches(const Vec3Field& from, double step) {
+void ContinuousContact::drop_superseded_touches(const Vec3Field& from, double step) {
   std::vector<std::int64_t> last(position_.size(), -1);
   for (const Touch& touch : touches_)
     if (touch.contact.normal_impulse > 0)

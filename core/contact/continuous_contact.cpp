@@ -202,7 +202,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
     const double missing = largest_violation();
     if (missing <= missing_part || missing > less_missing * last_missing) return;
     last_missing = missing;
-    work_count_ += static_cast<double>(constraints_.size()) * more_solver_sweeps / solver_sweeps;
+    operation_count_ += static_cast<double>(constraints_.size()) * more_solver_sweeps / solver_sweeps;
   }
 }
 
@@ -224,7 +224,8 @@ void ContinuousContact::keep_touches(double step) {
     const ContactConstraint& contact = constraints_[c];
     memory.normal_impulse = contact.normal_impulse, memory.friction_impulse = contact.friction_impulse;
     if (!(contact.normal_impulse > 0)) {
-      if (memory.touch >= 0 && !was_rebased_) touches_[at(memory.touch)].contact.normal_impulse = 0;
+      if (memory.touch >= 0 && !free_contains_contacts_)
+        touches_[at(memory.touch)].contact.normal_impulse = 0;
       continue;
     }
     if (memory.touch < 0) {

@@ -77,7 +77,7 @@ class ContinuousContact : public ContactStage {
   bool may_come_near() const;
   void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& integrated);
   RoundsEnd go_rounds(const ClothSystem& system, const Vec3Field& from, double step, ContactReport& report);
-  void forget_overtaken_touches(const Vec3Field& from, double step);
+  void drop_superseded_touches(const Vec3Field& from, double step);
   void separate_all();
   void solve_target(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
@@ -112,7 +112,7 @@ class ContinuousContact : public ContactStage {
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
   void bounce(const ContactStep& step, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
-  int note_held_back(const ContactStep& step, ClothState& state);
+  int limit_held_back(const ContactStep& step, ClothState& state);
 
   Surface surface_;
   std::vector<ObstacleBody> bodies_;
@@ -135,7 +135,8 @@ class ContinuousContact : public ContactStage {
   std::vector<PoseInterpolation> whole_paths_;
   std::vector<Pose> starts_before_;
   std::int64_t substeps_ = 1, substep_ = 0;
-  double work_count_ = 0;  ///< pairs and particles, of all rounds so far
+  double operation_count_ =
+      0;  ///< cost of all rounds so far: pairs and particles of each, and the solver's extra sweeps
   bool has_moved_ = false;
   Vec3Field substep_from_;
   // of the substep in progress
@@ -159,7 +160,7 @@ class ContinuousContact : public ContactStage {
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round
   bool reached_bounds_ = false;               ///< a capsule stopped its particle in this round
   bool is_separated_ = false;                 ///< the separations are those of the present positions
-  bool was_rebased_ = false;                  ///< free_position_ contains contacts of earlier rounds
+  bool free_contains_contacts_ = false;       ///< free_position_ contains contacts of earlier rounds
 
   // of the velocity solve
   Vec3Field motion_;                   ///< m/s, mean of the step, without the recovery of too near pairs

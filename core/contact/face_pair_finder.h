@@ -25,12 +25,12 @@ class FacePairFinder {
         far_vertices_(far_vertices),
         far_faces_(far_faces) {}
 
-  /// Appends the pairs of `face` and `foreign`; fastest where consecutive calls have the same `face`.
-  void find(int face, int foreign, std::vector<FeaturePair>& pairs) {
+  /// Appends the pairs of `face` and `far_face`; fastest where consecutive calls have the same `face`.
+  void find(int face, int far_face, std::vector<FeaturePair>& pairs) {
     if (face != face_) take(face);
-    const Slab& far = far_faces_[at(foreign)];
+    const Slab& far = far_faces_[at(far_face)];
     if (!overlap(slab_.box, far.box)) return;
-    foreign_ = foreign, other_ = far_.triangles[at(foreign)];
+    far_face_ = far_face, other_ = far_.triangles[at(far_face)];
     for (std::size_t k = 0; k < 3; ++k)
       near_sides_[k] = far.side_of(along(far.normal, near_vertices_[at(own_[k])]));
     if (all_beyond(near_sides_)) return;
@@ -58,8 +58,8 @@ class FacePairFinder {
     for (std::size_t k = 0; k < 3; ++k) {
       if (near_sides_[k] == 0 && near_.represents_vertex(face_, static_cast<int>(k)) &&
           !(is_own() && has(other_, own_[k])) && overlap(boxes_[k], far.box))
-        pairs.push_back({obstacle_, PairKind::vertex_face, own_[k], foreign_});
-      if (far_sides_[k] != 0 || !far_.represents_vertex(foreign_, static_cast<int>(k))) continue;
+        pairs.push_back({obstacle_, PairKind::vertex_face, own_[k], far_face_});
+      if (far_sides_[k] != 0 || !far_.represents_vertex(far_face_, static_cast<int>(k))) continue;
       if ((is_own() && has(own_, other_[k])) || !overlap(slab_.box, box_of(other_vertex(k)))) continue;
       if (is_own())
         pairs.push_back({obstacle_, PairKind::vertex_face, other_[k], face_});
@@ -73,12 +73,12 @@ class FacePairFinder {
       if (edge_beyond(near_sides_, k) || !near_.represents_edge(face_, static_cast<int>(k))) continue;
       if (!overlap(edge_boxes_[k], far.box)) continue;
       for (std::size_t j = 0; j < 3; ++j) {
-        if (edge_beyond(far_sides_, j) || !far_.represents_edge(foreign_, static_cast<int>(j))) continue;
+        if (edge_beyond(far_sides_, j) || !far_.represents_edge(far_face_, static_cast<int>(j))) continue;
         if (is_own() && edges_share(k, j)) continue;
         const Bounds box = bounds_of(box_of(other_vertex(j)), box_of(other_vertex((j + 1) % 3)));
         if (overlap(edge_boxes_[k], box))
-          pairs.push_back(
-              {obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k], far_.edges_of[at(foreign_)][j]});
+          pairs.push_back({obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k],
+                           far_.edges_of[at(far_face_)][j]});
       }
     }
   }
@@ -94,7 +94,7 @@ class FacePairFinder {
   std::span<const FarRegion> far_vertices_;
   std::span<const Slab> far_faces_;
 
-  int face_ = -1, foreign_ = -1;
+  int face_ = -1, far_face_ = -1;
   Triangle own_{}, other_{};
   Slab slab_;
   std::array<Bounds, 3> boxes_, edge_boxes_;  ///< of vertices and edges of `face_`

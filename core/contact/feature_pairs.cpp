@@ -97,7 +97,7 @@ void set_near_level(Separation& s, const ClothSide& cloth) {
 template <class Far>
 Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
                        double within) {
-  const auto& [a, b, c] = far.surface.triangles[at(pair.foreign)];
+  const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
   const Vec3 p = cloth(pair.feature), pa = far(a), pb = far(b), pc = far(c);
   const PointTriangle closest = closest_on_triangle(p, pa, pb, pc);
   Separation s{particles_of(pair, cloth.surface)};
@@ -109,9 +109,10 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
   if (is_own(pair)) add_weights(s, closest.weights, -1);
   if (s.distance >= within) return s;
 
-  const Side side = side_of_triangle(far.surface, pair.foreign, closest.weights);
-  const bool in_charge = side.vertex >= 0 ? far.surface.triangle_of_vertex[at(side.vertex)] == pair.foreign
-                         : side.edge >= 0 ? far.surface.triangle_of_edge[at(side.edge)] == pair.foreign
+  const Side side = side_of_triangle(far.surface, pair.far_feature, closest.weights);
+  const bool in_charge = side.vertex >= 0
+                             ? far.surface.triangle_of_vertex[at(side.vertex)] == pair.far_feature
+                         : side.edge >= 0 ? far.surface.triangle_of_edge[at(side.edge)] == pair.far_feature
                                           : true;
   s.nearest = in_charge && bends_away(far.surface, side, s.far_point, s.normal, slack, far);
   return s;
@@ -122,7 +123,7 @@ template <class Far, class BendsAway>
 Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double within,
                      const BendsAway& far_bends_away) {
   const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
-  const auto& [c, d] = far.surface.edges[at(pair.foreign)];
+  const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
   const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
   const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
   Separation s{particles_of(pair, cloth.surface)};
@@ -147,16 +148,16 @@ template <class Far>
 Separation edge_surface_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
                              double within) {
   return edge_edge(pair, cloth, far, within, [&](const Vec3& point, const Vec3& normal) {
-    return bends_away(far.surface, {-1, pair.foreign}, point, normal, slack, far);
+    return bends_away(far.surface, {-1, pair.far_feature}, point, normal, slack, far);
   });
 }
 
 /// With an edge of a box: nearest only where the normal lies between those of the box's two sides.
 Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
                          const Pose& pose, double within) {
-  const auto& [c, d] = body.surface.edges[at(pair.foreign)];
+  const auto& [c, d] = body.surface.edges[at(pair.far_feature)];
   const auto lies_between = [&, c = c, d = d](const Vec3&, const Vec3& normal) {
-    const Vec3 local = body.box.axes.transpose() * (pose.turn.transpose() * normal);
+    const Vec3 local = body.box.axes.transpose() * (pose.rotation.transpose() * normal);
     for (int axis = 0; axis < 3; ++axis) {
       if ((c ^ d) >> axis & 1) continue;  // along the edge
       const double outward = (c >> axis & 1) ? local[axis] : -local[axis];
@@ -190,7 +191,7 @@ Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const O
                         const Pose& pose) {
   const Vec3 p = cloth(pair.feature);
   Separation s{particles_of(pair, cloth.surface)};
-  s.normal = pose.turn * plane.normal;
+  s.normal = pose.rotation * plane.normal;
   s.weight[0] = 1;
   s.near_level = s.normal.dot(p);
   s.far_level = s.normal.dot(pose.at(plane.point));
@@ -203,12 +204,12 @@ Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const O
 Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
                       const Pose& pose) {
   const Vec3 p = cloth(pair.feature);
-  const Pose placed{pose.turn, pose.shift};
+  const Pose placed{pose.rotation, pose.translation};
   const PointBox closest = closest_on_box(
       placed.inverse(p),
       {body.box.center.cwiseProduct(pose.stretch), body.box.axes, body.box.half.cwiseProduct(pose.stretch)});
   Separation s{particles_of(pair, cloth.surface)};
-  s.normal = pose.turn * closest.normal;
+  s.normal = pose.rotation * closest.normal;
   s.distance = closest.distance;
   s.weight[0] = 1;
   s.far_point = placed.at(closest.point);
@@ -260,9 +261,9 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
   all.near_count = all.count;
   if (!is_own(pair)) return all;
   if (pair.kind == PairKind::edge_edge)
-    append(all, cloth.edges[at(pair.foreign)]);
+    append(all, cloth.edges[at(pair.far_feature)]);
   else
-    append(all, cloth.triangles[at(pair.foreign)]);
+    append(all, cloth.triangles[at(pair.far_feature)]);
   return all;
 }
 
@@ -288,7 +289,7 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
       return body.kind == BodyKind::box ? edge_box_edge(pair, cloth, body, pose, within)
                                         : edge_surface_edge(pair, cloth, far, slack_of_obstacle, within);
     case PairKind::face_vertex:
-      return face_vertex(pair, cloth, far(pair.foreign), within);
+      return face_vertex(pair, cloth, far(pair.far_feature), within);
   }
   return {};
 }

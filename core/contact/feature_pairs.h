@@ -28,8 +28,8 @@ struct FeaturePair {
 
   int obstacle = cloth_itself;
   PairKind kind = PairKind::vertex_plane;
-  int feature = 0;  ///< vertex, edge or face of the cloth, as `kind` says
-  int foreign = 0;  ///< feature of the obstacle's mesh or box, or the second one of the cloth itself
+  int feature = 0;      ///< vertex, edge or face of the cloth, as `kind` says
+  int far_feature = 0;  ///< feature of the obstacle's mesh or box, or the second one of the cloth itself
   auto operator<=>(const FeaturePair&) const = default;
 };
 

@@ -38,7 +38,7 @@ Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& p
 /// A bounding box in the coordinates of an obstacle.
 Bounds seen_from(const Pose& pose, const Bounds& box) {
   const Vec3 middle = pose.inverse(0.5 * (box.lower + box.upper));
-  const Vec3 half = pose.turn.cwiseAbs().transpose() * (0.5 * (box.upper - box.lower));
+  const Vec3 half = pose.rotation.cwiseAbs().transpose() * (0.5 * (box.upper - box.lower));
   return {middle - half.cwiseQuotient(pose.stretch), middle + half.cwiseQuotient(pose.stretch)};
 }
 
@@ -127,7 +127,9 @@ class PairSearch::Step {
     const auto& [a, b, c] = cloth_.triangles[at(face)];
     return bounds_of(particles_[at(a)], particles_[at(b)], particles_[at(c)]);
   }
-  void add(PairKind kind, int feature, int foreign) { pairs_.push_back({obstacle_, kind, feature, foreign}); }
+  void add(PairKind kind, int feature, int far_feature) {
+    pairs_.push_back({obstacle_, kind, feature, far_feature});
+  }
 
   void find_plane(const ObstacleBody& body, const PoseInterpolation& path) {
     const Vec3 pivot = path.from().at(body.pivot);
@@ -136,7 +138,7 @@ class PairSearch::Step {
       const Vec3 half = 0.5 * (particles_[i].upper - particles_[i].lower);
       double lowest = infinity;
       for (const Pose* pose : {&path.from(), &path.to()}) {
-        const Vec3 normal = pose->turn * body.normal;
+        const Vec3 normal = pose->rotation * body.normal;
         lowest = std::min(lowest, normal.dot(middle - pose->at(body.point)) - normal.cwiseAbs().dot(half));
       }
       if (path.angle() > 0) lowest -= seen_bulge(path, (middle - pivot).norm() + half.norm());

@@ -105,7 +105,7 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
     while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
       particle.held = held.first(particle.held.size() + 1);
     held = held.subspan(particle.held.size());
-    if (begin.constrained) give_way(particle, *begin.constrained, state);
+    if (begin.constrained) move_to_constrained(particle, *begin.constrained, state);
     const bool touched = touch(system, particle, begin, state, report);
     if (!touched) begin.memory.held[i] = 0;
   }
@@ -115,8 +115,8 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
 
 /// Moves a particle to its constrained position. Its velocity changes by the displacement along the surfaces
 /// that hold it; the normal velocity stays.
-void ObstacleContact::give_way(const Particle& particle, const ConstrainedStep& constrained,
-                               ClothState& state) {
+void ObstacleContact::move_to_constrained(const Particle& particle, const ConstrainedStep& constrained,
+                                          ClothState& state) {
   const std::size_t i = particle.index;
   Vec3 moved = constrained.position[i] - particle.integrated_position;
   for (const HeldParticle& held : particle.held) moved -= held.normal.dot(moved) * held.normal;

@@ -98,7 +98,8 @@ class ObstacleContact {
     SurfacePoint surface;
     double normal_load = 0;  ///< N s
   };
-  static void give_way(const Particle& particle, const ConstrainedStep& constrained, ClothState& state);
+  static void move_to_constrained(const Particle& particle, const ConstrainedStep& constrained,
+                                  ClothState& state);
   std::optional<Touched> touched(std::size_t obstacle, const Particle& particle, const Vec3& position,
                                  bool constrained) const;
   bool touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin, ClothState& state,

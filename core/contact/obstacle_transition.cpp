@@ -55,13 +55,13 @@ ObstacleTransition entry_of(const Obstacle& obstacle, const TriangleMesh& cloth,
   if (!touches(cloth, obstacle, pose)) return transition;
   const Vec3 pivot = pivot_of(obstacle), place = pose.at(pivot);
   if (shape_of(obstacle).body == BodyKind::half_space) {
-    const Vec3 normal = pose.turn * obstacle.normal.normalized();
+    const Vec3 normal = pose.rotation * obstacle.normal.normalized();
     transition.displacement = -depth_of(cloth, place, normal, thickness) * normal;
     return transition;
   }
   for (const double size : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02}) {
     transition.stretch = Vec3::Constant(size);
-    if (!touches(cloth, obstacle, about(pivot, pose.turn, place, transition.stretch))) return transition;
+    if (!touches(cloth, obstacle, about(pivot, pose.rotation, place, transition.stretch))) return transition;
   }
   // The pivot lies on the cloth or very near it: the obstacle starts on the pivot's side.
   const Nearest there = nearest_of(cloth, place);
@@ -96,8 +96,8 @@ ObstacleTransition transition_from(const Obstacle& then, const Pose& pose_then, 
                                 .begin = time};
   transition.stretch = pose_then.stretch.cwiseProduct(shape_of(now).stretch_between(now, then));
   if (shape_of(now).body != BodyKind::ball)  // whose rotation has no effect
-    transition.rotation =
-        rotation_of(pose_now.turn.transpose() * pose_then.turn * shape_of(now).turn_between(now, then));
+    transition.rotation = rotation_vector(pose_now.rotation.transpose() * pose_then.rotation *
+                                          shape_of(now).rotation_between(now, then));
   return transition;
 }
 
@@ -124,10 +124,10 @@ Pose pose_in_transition(const std::vector<Obstacle>& obstacles, const ObstacleTr
   const ObstacleTransition& transition = transitions[obstacle];
   const double remaining = transition.is_active() ? transition.remaining(time) : 0;
   if (remaining == 0) return pose;
-  pose.shift += remaining * transition.displacement;
+  pose.translation += remaining * transition.displacement;
   if (!transition.reshapes()) return pose;
   const Vec3 pivot = pivot_of(obstacles[obstacle]);
-  return about(pivot, pose.turn * turn_by(remaining * transition.rotation), pose.at(pivot),
+  return about(pivot, pose.rotation * rotation_matrix(remaining * transition.rotation), pose.at(pivot),
                Vec3::Ones() + remaining * (transition.stretch - Vec3::Ones()));
 }
 

@@ -125,7 +125,7 @@ ContinuousContact::Plane ContinuousContact::moved_plane(int obstacle, const Plan
     const double growth = end.stretch.x() / from.stretch.x();
     return {end.at(body.center) + growth * (plane.point - from.at(body.center)), plane.normal};
   }
-  return {end.at(from.inverse(plane.point)), end.turn * (from.turn.transpose() * plane.normal)};
+  return {end.at(from.inverse(plane.point)), end.rotation * (from.rotation.transpose() * plane.normal)};
 }
 
 /// The part of the step in which the points of a rotating obstacle leave the chords of their paths by less
@@ -163,13 +163,14 @@ double ContinuousContact::reach_along(const Vec3& normal, const FeaturePair& pai
   double furthest = -infinity;
   if (pair.kind == PairKind::face_sphere)
     return normal.dot(pose.at(body.center)) + pose.stretch.x() * body.radius;
-  if (pair.kind == PairKind::face_vertex) return vertex(pair.foreign);
+  if (pair.kind == PairKind::face_vertex) return vertex(pair.far_feature);
   if (pair.kind == PairKind::vertex_box)
     for (int corner = 0; corner < 8; ++corner) furthest = std::max(furthest, vertex(corner));
   if (pair.kind == PairKind::edge_edge)
-    for (const int end : body.surface.edges[at(pair.foreign)]) furthest = std::max(furthest, vertex(end));
+    for (const int end : body.surface.edges[at(pair.far_feature)]) furthest = std::max(furthest, vertex(end));
   if (pair.kind == PairKind::vertex_face)
-    for (const int end : body.surface.triangles[at(pair.foreign)]) furthest = std::max(furthest, vertex(end));
+    for (const int end : body.surface.triangles[at(pair.far_feature)])
+      furthest = std::max(furthest, vertex(end));
   return furthest;
 }
 

@@ -165,7 +165,7 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   if (follows)
     for (std::size_t i = 0; i < position_.size(); ++i)
       if (!system.pinned[i]) report.impulse += system.mass[i] * start_change_of(i, step);
-  report.held_back = note_held_back(step, state);
+  report.held_back = limit_held_back(step, state);
   remember(system, state, follows, step.memory);
   for (const double work : work_) report.work += work;
 }
@@ -287,7 +287,7 @@ void ContinuousContact::remember(const ClothSystem& system, const ClothState& st
   }
 }
 
-int ContinuousContact::note_held_back(const ContactStep& step, ClothState& state) {
+int ContinuousContact::limit_held_back(const ContactStep& step, ClothState& state) {
   int held = 0;
   for (std::size_t i = 0; i < position_.size(); ++i) {
     if ((target_position_[i] - position_[i]).norm() <= arrived_length()) continue;

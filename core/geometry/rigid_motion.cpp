@@ -9,13 +9,13 @@ Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now
   return {turn, pivot_now - turn * pivot.cwiseProduct(stretch), stretch};
 }
 
-Eigen::Matrix3d turn_by(const Vec3& rotation) {
+Eigen::Matrix3d rotation_matrix(const Vec3& rotation) {
   const double angle = rotation.norm();
   if (!(angle > 0)) return Eigen::Matrix3d::Identity();
   return Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
 }
 
-Vec3 rotation_of(const Eigen::Matrix3d& turn) {
+Vec3 rotation_vector(const Eigen::Matrix3d& turn) {
   if (turn.isIdentity(0)) return Vec3::Zero();
   const Eigen::AngleAxisd rotation(turn);
   return rotation.angle() * rotation.axis();
@@ -23,8 +23,8 @@ Vec3 rotation_of(const Eigen::Matrix3d& turn) {
 
 PoseInterpolation::PoseInterpolation(const Vec3& pivot, const Pose& from, const Pose& to, const Vec3& spun)
     : from_(from), to_(to), pivot_(pivot), pivot_from_(from.at(pivot)), pivot_to_(to.at(pivot)) {
-  if (from.turn != to.turn) {
-    const Eigen::AngleAxisd turn(to.turn * from.turn.transpose());
+  if (from.rotation != to.rotation) {
+    const Eigen::AngleAxisd turn(to.rotation * from.rotation.transpose());
     angle_ = turn.angle();
     axis_ = turn.axis();
   }
@@ -44,9 +44,10 @@ Pose PoseInterpolation::at(double part) const {
   if (part <= 0) return from_;
   if (part >= 1) return to_;
   const Vec3 stretch = from_.stretch + part * (to_.stretch - from_.stretch);
-  if (angle_ == 0) return {from_.turn, from_.shift + part * (to_.shift - from_.shift), stretch};
-  return about(pivot_, Eigen::AngleAxisd(part * angle_, axis_).toRotationMatrix() * from_.turn, pivot(part),
-               stretch);
+  if (angle_ == 0)
+    return {from_.rotation, from_.translation + part * (to_.translation - from_.translation), stretch};
+  return about(pivot_, Eigen::AngleAxisd(part * angle_, axis_).toRotationMatrix() * from_.rotation,
+               pivot(part), stretch);
 }
 
 }  // namespace cloth

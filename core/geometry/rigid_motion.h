@@ -8,28 +8,28 @@
 
 namespace cloth {
 
-/// The map x -> turn (stretch x) + shift from the coordinates in which the scene describes an obstacle to the
-/// world.
+/// The map x -> rotation (stretch x) + translation from the coordinates in which the scene describes an
+/// obstacle to the world.
 struct Pose {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< rotation matrix
-  Vec3 shift{0, 0, 0};                                 ///< m, translation
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< a rotation matrix
+  Vec3 translation{0, 0, 0};                               ///< m
   Vec3 stretch{1, 1, 1};  ///< factor along each axis, > 0; only a box's may differ
 
-  Vec3 at(const Vec3& point) const { return turn * point.cwiseProduct(stretch) + shift; }
+  Vec3 at(const Vec3& point) const { return rotation * point.cwiseProduct(stretch) + translation; }
   Vec3 inverse(const Vec3& point) const {
-    return (turn.transpose() * (point - shift)).cwiseQuotient(stretch);
+    return (rotation.transpose() * (point - translation)).cwiseQuotient(stretch);
   }
   bool operator==(const Pose&) const = default;
 };
 
 /// The pose with this rotation and stretch that maps `pivot` to `pivot_now` (m).
-Pose about(const Vec3& pivot, const Eigen::Matrix3d& turn, const Vec3& pivot_now,
+Pose about(const Vec3& pivot, const Eigen::Matrix3d& rotation, const Vec3& pivot_now,
            const Vec3& stretch = Vec3::Ones());
 
 /// The rotation matrix of a rotation vector (rad along the axis), and the rotation vector, of at most pi, of
 /// a matrix.
-Eigen::Matrix3d turn_by(const Vec3& rotation);
-Vec3 rotation_of(const Eigen::Matrix3d& turn);
+Eigen::Matrix3d rotation_matrix(const Vec3& rotation);
+Vec3 rotation_vector(const Eigen::Matrix3d& rotation);
 
 /// Interpolates between two poses: the pivot moves along a straight line, the rotation angle about a fixed
 /// axis and the stretch change linearly.

@@ -21,7 +21,7 @@ const Colour back_tint(0.56F, 0.70F, 0.86F);  // the back of the cloth is duller
 
 void move(PictureMesh& mesh, const Pose& pose) {
   if (pose == Pose{}) return;
-  const Eigen::Matrix3f turn = pose.turn.cast<float>();
+  const Eigen::Matrix3f turn = pose.rotation.cast<float>();
   for (PictureVertex& vertex : mesh.vertices) {
     vertex.position = pose.at(vertex.position);
     vertex.normal = turn * vertex.normal;
@@ -226,7 +226,7 @@ void Painter::add_floors() {
         !(length > 0))
       continue;
     const Pose pose = pose_of(o, options_.time);
-    const Vec3 point = pose.at(o.point), normal = pose.turn * (o.normal / length);
+    const Vec3 point = pose.at(o.point), normal = pose.rotation * (o.normal / length);
     floors_.emplace_back(point, normal, extent_, theme_);
     if (floors_.back().is_level()) level = std::max(level.value_or(point.y()), point.y());
   }

@@ -10,7 +10,7 @@ namespace {
 
 Pose pose_between(const Vec3& pivot, const std::vector<Keyframe>& keys, double time) {
   const auto pose_at_key = [&](const Keyframe& key) {
-    return about(pivot, turn_by(key.rotation), key.position);
+    return about(pivot, rotation_matrix(key.rotation), key.position);
   };
   const auto next =
       std::find_if(keys.begin(), keys.end(), [&](const Keyframe& key) { return key.time > time; });
@@ -35,7 +35,7 @@ Pose pose_of(const Obstacle& obstacle, double time) {
   if (!moves(obstacle)) return {};
   const Vec3 pivot = pivot_of(obstacle);
   if (!obstacle.keyframes.empty()) return pose_between(pivot, obstacle.keyframes, time);
-  return about(pivot, turn_by(time * obstacle.spin), pivot + time * obstacle.velocity);
+  return about(pivot, rotation_matrix(time * obstacle.spin), pivot + time * obstacle.velocity);
 }
 
 double highest_speed(const Obstacle& obstacle, double reach) {
@@ -44,7 +44,7 @@ double highest_speed(const Obstacle& obstacle, double reach) {
   highest = 0;
   for (std::size_t k = 1; k < obstacle.keyframes.size(); ++k) {
     const Keyframe &a = obstacle.keyframes[k - 1], &b = obstacle.keyframes[k];
-    const Eigen::AngleAxisd turn(turn_by(b.rotation) * turn_by(a.rotation).transpose());
+    const Eigen::AngleAxisd turn(rotation_matrix(b.rotation) * rotation_matrix(a.rotation).transpose());
     highest = std::max(
         highest, ((b.position - a.position).norm() + reach * std::abs(turn.angle())) / (b.time - a.time));
   }

@@ -34,7 +34,7 @@ bool ObstacleShape::touches(const Obstacle&, const Pose&, const Corners&) const 
 TriangleMesh placed_mesh(const Obstacle& obstacle) {
   const PlacedSurface surface = shape_of(obstacle).surface(obstacle);
   TriangleMesh mesh = *surface.mesh;
-  const Eigen::Matrix3d turn = surface.turn * surface.scale.asDiagonal();
+  const Eigen::Matrix3d turn = surface.rotation * surface.scale.asDiagonal();
   for (Vec3& vertex : mesh.vertices) vertex = surface.place + turn * vertex;
   return mesh;
 }

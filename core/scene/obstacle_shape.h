@@ -28,11 +28,11 @@ struct ShapeFacts {
   bool is_from_file = false;  ///< its triangles come from the obstacle's mesh file, which must be given
 };
 
-/// Triangles and where they are put: x -> place + turn (scale x), in m.
+/// Triangles and where they are put: x -> place + rotation (scale x), in m.
 struct PlacedSurface {
   std::shared_ptr<const TriangleMesh> mesh;  ///< none: it has not been read
   Vec3 place{0, 0, 0};
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Vec3 scale{1, 1, 1};
 };
 
@@ -65,10 +65,10 @@ class ObstacleShape : public ShapeFacts {
   /// m, of its thinnest part; infinite where a particle cannot pass to a far side.
   virtual double thickness(const Obstacle&) const { return infinity; }
 
-  /// The stretch and the turn that lead from one to the other, about their places. Stretches of other bodies
-  /// than boxes are the same along all axes.
+  /// The stretch and the rotation that lead from one to the other, about their places. Stretches of other
+  /// bodies than boxes are the same along all axes.
   virtual Vec3 stretch_between(const Obstacle& from, const Obstacle& to) const = 0;
-  virtual Eigen::Matrix3d turn_between(const Obstacle&, const Obstacle&) const {
+  virtual Eigen::Matrix3d rotation_between(const Obstacle&, const Obstacle&) const {
     return Eigen::Matrix3d::Identity();
   }
 

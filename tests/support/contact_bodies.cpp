@@ -42,10 +42,10 @@ std::vector<int> corners_of(const Triangle& triangle) {
   return {triangle[0], triangle[1], triangle[2]};
 }
 
-void add_all(int obstacle, PairKind kind, std::size_t features, std::size_t foreign,
+void add_all(int obstacle, PairKind kind, std::size_t features, std::size_t far_features,
              std::vector<FeaturePair>& pairs) {
   for (std::size_t i = 0; i < features; ++i)
-    for (std::size_t j = 0; j < foreign; ++j)
+    for (std::size_t j = 0; j < far_features; ++j)
       pairs.push_back({obstacle, kind, static_cast<int>(i), static_cast<int>(j)});
 }
 
@@ -57,11 +57,11 @@ void add_own(const Surface& cloth, std::vector<FeaturePair>& pairs) {
     for (std::size_t g = e + 1; g < cloth.edges.size(); ++g)
       all.push_back({none, PairKind::edge_edge, static_cast<int>(e), static_cast<int>(g)});
   for (const FeaturePair& pair : all) {
-    const auto& far = cloth.edges[pair.kind == PairKind::edge_edge ? at(pair.foreign) : 0];
-    const std::vector<int> foreign = pair.kind == PairKind::edge_edge
-                                         ? std::vector<int>{far[0], far[1]}
-                                         : corners_of(cloth.triangles[at(pair.foreign)]);
-    if (!share_a_particle(near_particles(pair, cloth), foreign)) pairs.push_back(pair);
+    const auto& far = cloth.edges[pair.kind == PairKind::edge_edge ? at(pair.far_feature) : 0];
+    const std::vector<int> far_ends = pair.kind == PairKind::edge_edge
+                                          ? std::vector<int>{far[0], far[1]}
+                                          : corners_of(cloth.triangles[at(pair.far_feature)]);
+    if (!share_a_particle(near_particles(pair, cloth), far_ends)) pairs.push_back(pair);
   }
 }
 
@@ -89,15 +89,15 @@ PoseInterpolation random_interpolation(const ObstacleBody& body, Random& random)
   const Pose from = random_pose(body, max_angle, random);
   if (random.coin() && random.coin()) return {body.pivot, from, from};
   Pose to = from;
-  to.shift += random.vector(0.2);
+  to.translation += random.vector(0.2);
   if (random.coin()) return {body.pivot, from, to};
   const Vec3 pivot = to.at(body.pivot);
   const Vec3 rotation = random.uniform(0, max_angle) * random.vector(1).normalized();
-  const Eigen::Matrix3d turn = random.coin() ? from.turn : turn_by(rotation) * from.turn;
+  const Eigen::Matrix3d turn = random.coin() ? from.rotation : rotation_matrix(rotation) * from.rotation;
   Vec3 stretch = Vec3::Ones();
   if (random.coin() && body.kind != BodyKind::half_space) stretch = Vec3::Constant(random.uniform(0.3, 2));
   if (random.coin() && body.kind == BodyKind::box) stretch.y() = random.uniform(0.3, 2);
-  const Pose begin = about(body.pivot, from.turn, from.at(body.pivot), stretch);
+  const Pose begin = about(body.pivot, from.rotation, from.at(body.pivot), stretch);
   if (random.coin()) stretch.setOnes();
   return {body.pivot, begin, about(body.pivot, turn, pivot, stretch)};
 }
@@ -133,14 +133,14 @@ std::vector<int> near_particles(const FeaturePair& pair, const Surface& cloth) {
   return {};
 }
 
-std::vector<Vec3> foreign_points(const FeaturePair& pair, const ObstacleBody& body) {
+std::vector<Vec3> far_points(const FeaturePair& pair, const ObstacleBody& body) {
   const auto vertex = [&](int i) { return body.vertices[at(i)]; };
-  if (pair.kind == PairKind::face_vertex) return {vertex(pair.foreign)};
+  if (pair.kind == PairKind::face_vertex) return {vertex(pair.far_feature)};
   if (pair.kind == PairKind::edge_edge) {
-    const auto& [a, b] = body.surface.edges[at(pair.foreign)];
+    const auto& [a, b] = body.surface.edges[at(pair.far_feature)];
     return {vertex(a), vertex(b)};
   }
-  const auto& [a, b, c] = body.surface.triangles[at(pair.foreign)];
+  const auto& [a, b, c] = body.surface.triangles[at(pair.far_feature)];
   return {vertex(a), vertex(b), vertex(c)};
 }
 
@@ -152,8 +152,8 @@ std::vector<FeaturePair> all_pairs(const Surface& cloth, const std::vector<Obsta
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const ObstacleBody& body = bodies[k];
     const auto obstacle = static_cast<int>(k);
-    const auto add = [&](PairKind kind, std::size_t features, std::size_t foreign) {
-      add_all(obstacle, kind, features, foreign, pairs);
+    const auto add = [&](PairKind kind, std::size_t features, std::size_t far_features) {
+      add_all(obstacle, kind, features, far_features, pairs);
     };
     if (body.kind == BodyKind::half_space) add(PairKind::vertex_plane, vertices, 1);
     if (body.kind == BodyKind::ball) add(PairKind::face_sphere, faces, 1);

@@ -21,7 +21,7 @@ Sheet random_sheet(int rows, int columns, Random& random);
 
 /// The particles of a feature of the cloth, and the corners of one of a body's mesh or box.
 std::vector<int> near_particles(const FeaturePair& pair, const Surface& cloth);
-std::vector<Vec3> foreign_points(const FeaturePair& pair, const ObstacleBody& body);
+std::vector<Vec3> far_points(const FeaturePair& pair, const ObstacleBody& body);
 
 /// All pairs of features that there are; of the cloth and itself those that share no particle.
 std::vector<FeaturePair> all_pairs(const Surface& cloth, const std::vector<ObstacleBody>& bodies,

@@ -49,10 +49,10 @@ Count crossings_of(const TriangleMesh& cloth, const Obstacle& obstacle, const Po
     case BodyKind::ball:
       return triangles_in_sphere(cloth, pose.at(obstacle.center), pose.stretch.x() * obstacle.radius);
     case BodyKind::box:
-      return triangles_in_solid(cloth, box_triangles(pose.at(obstacle.center), pose.turn,
+      return triangles_in_solid(cloth, box_triangles(pose.at(obstacle.center), pose.rotation,
                                                      0.5 * pose.stretch.cwiseProduct(obstacle.size)));
     case BodyKind::half_space:
-      return vertices_below_plane(cloth, pose.at(obstacle.point), pose.turn * obstacle.normal);
+      return vertices_below_plane(cloth, pose.at(obstacle.point), pose.rotation * obstacle.normal);
     case BodyKind::surface:
       return crossings(cloth, moved(placed_mesh(obstacle), pose));
   }

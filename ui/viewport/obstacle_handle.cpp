@@ -46,8 +46,8 @@ double distance_to_mesh(const Ray& ray, const cloth::TriangleMesh& mesh) {
 /// m along the ray; planes are everywhere and are not hit.
 double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, const Ray& ray) {
   const Eigen::Vector3d pivot = cloth::pivot_of(o);
-  const cloth::Pose placed = cloth::about(pivot, pose.turn, pose.at(pivot));  // as large as it is to be
-  const Ray local{placed.inverse(ray.origin), placed.turn.transpose() * ray.direction};
+  const cloth::Pose placed = cloth::about(pivot, pose.rotation, pose.at(pivot));  // as large as it is to be
+  const Ray local{placed.inverse(ray.origin), placed.rotation.transpose() * ray.direction};
   switch (shape_of(o).body) {
     case cloth::BodyKind::ball:
       return distance_to_sphere(local, o.center, o.radius);
@@ -56,9 +56,10 @@ double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, c
     case cloth::BodyKind::surface: {
       const cloth::PlacedSurface surface = shape_of(o).surface(o);
       if (!surface.mesh || !(surface.scale.minCoeff() > 0)) return infinity;
-      const cloth::Pose put{surface.turn, surface.place, surface.scale};
+      const cloth::Pose put{surface.rotation, surface.place, surface.scale};
       // Along the unscaled way, so that it is a length in the world whatever the scale of each axis.
-      const Eigen::Vector3d along = (surface.turn.transpose() * local.direction).cwiseQuotient(surface.scale);
+      const Eigen::Vector3d along =
+          (surface.rotation.transpose() * local.direction).cwiseQuotient(surface.scale);
       const double length = along.norm();
       return distance_to_mesh({put.inverse(local.origin), along / length}, *surface.mesh) / length;
     }

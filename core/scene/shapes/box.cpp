@@ -92,7 +92,8 @@ class BoxShape final : public ObstacleShape {
   }
   void grow(Obstacle& box, double length) const override { box.size += Vec3::Constant(2 * length); }
   bool touches(const Obstacle& box, const Pose& pose, const Corners& triangle) const override {
-    return meets_box(triangle, {pose.at(box.center), pose.turn, (0.5 * box.size).cwiseProduct(pose.stretch)});
+    return meets_box(triangle,
+                     {pose.at(box.center), pose.rotation, (0.5 * box.size).cwiseProduct(pose.stretch)});
   }
 
  private:

@@ -7,7 +7,7 @@ namespace cloth {
 namespace {
 
 /// R_z R_y R_x.
-Eigen::Matrix3d turn_of(const Obstacle& mesh) {
+Eigen::Matrix3d rotation_of(const Obstacle& mesh) {
   const Vec3 angle = mesh.rotate * (std::numbers::pi / 180);
   using Turn = Eigen::AngleAxisd;
   return (Turn(angle.z(), Vec3::UnitZ()) * Turn(angle.y(), Vec3::UnitY()) * Turn(angle.x(), Vec3::UnitX()))
@@ -55,7 +55,7 @@ class MeshShape final : public ObstacleShape {
   Eigen::AlignedBox3d bounds(const Obstacle& mesh) const override {
     Eigen::AlignedBox3d bounds;
     if (!mesh.mesh.is_loaded()) return bounds;
-    const Eigen::Matrix3d turn = mesh.scale * turn_of(mesh);
+    const Eigen::Matrix3d turn = mesh.scale * rotation_of(mesh);
     for (int k = 0; k < 8; ++k) {
       const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(k);
       bounds.extend(Vec3(mesh.translate + turn * mesh.mesh.loaded->bounds.corner(corner)));
@@ -65,14 +65,14 @@ class MeshShape final : public ObstacleShape {
   Vec3 stretch_between(const Obstacle& from, const Obstacle& to) const override {
     return Vec3::Constant(to.scale / from.scale);
   }
-  Eigen::Matrix3d turn_between(const Obstacle& from, const Obstacle& to) const override {
+  Eigen::Matrix3d rotation_between(const Obstacle& from, const Obstacle& to) const override {
     if (from.rotate == to.rotate) return Eigen::Matrix3d::Identity();
-    return turn_of(to) * turn_of(from).transpose();
+    return rotation_of(to) * rotation_of(from).transpose();
   }
   PlacedSurface surface(const Obstacle& mesh) const override {
     PlacedSurface surface;
     surface.place = mesh.translate;
-    surface.turn = turn_of(mesh);
+    surface.rotation = rotation_of(mesh);
     surface.scale = Vec3::Constant(mesh.scale);
     if (mesh.mesh.loaded) surface.mesh = {mesh.mesh.loaded, &mesh.mesh.loaded->surface};
     return surface;

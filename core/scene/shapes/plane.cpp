@@ -24,7 +24,7 @@ class PlaneShape final : public ObstacleShape {
   }
   Eigen::AlignedBox3d bounds(const Obstacle&) const override { return {}; }
   Vec3 stretch_between(const Obstacle&, const Obstacle&) const override { return Vec3::Ones(); }
-  Eigen::Matrix3d turn_between(const Obstacle& from, const Obstacle& to) const override {
+  Eigen::Matrix3d rotation_between(const Obstacle& from, const Obstacle& to) const override {
     if (from.normal == to.normal) return Eigen::Matrix3d::Identity();
     return Eigen::Quaterniond::FromTwoVectors(from.normal, to.normal).toRotationMatrix();
   }
@@ -41,7 +41,7 @@ class PlaneShape final : public ObstacleShape {
     plane.point += length * plane.normal.normalized();
   }
   bool touches(const Obstacle& plane, const Pose& pose, const Corners& triangle) const override {
-    const Vec3 normal = pose.turn * plane.normal.normalized(), point = pose.at(plane.point);
+    const Vec3 normal = pose.rotation * plane.normal.normalized(), point = pose.at(plane.point);
     return std::any_of(triangle.begin(), triangle.end(),
                        [&](const Vec3& x) { return normal.dot(x - point) <= 0; });
   }

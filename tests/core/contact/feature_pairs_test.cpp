@@ -20,13 +20,13 @@ constexpr double rounding = 1e-12;
 
 /// Points of the far feature, among them all its corners; of a ball, a solid box and a half-space some of
 /// each.
-std::vector<Vec3> far_points(const FeaturePair& pair, const Sheet& sheet,
-                             const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses,
-                             Random& random) {
+std::vector<Vec3> sampled_far_points(const FeaturePair& pair, const Sheet& sheet,
+                                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses,
+                                     Random& random) {
   std::vector<Vec3> points;
   if (pair.obstacle == FeaturePair::cloth_itself) {
-    const auto& face = sheet.surface.triangles[pair.kind == PairKind::vertex_face ? at(pair.foreign) : 0];
-    const auto& edge = sheet.surface.edges[pair.kind == PairKind::edge_edge ? at(pair.foreign) : 0];
+    const auto& face = sheet.surface.triangles[pair.kind == PairKind::vertex_face ? at(pair.far_feature) : 0];
+    const auto& edge = sheet.surface.edges[pair.kind == PairKind::edge_edge ? at(pair.far_feature) : 0];
     if (pair.kind == PairKind::vertex_face)
       for (const int i : face) points.push_back(sheet.position[at(i)]);
     else
@@ -46,7 +46,7 @@ std::vector<Vec3> far_points(const FeaturePair& pair, const Sheet& sheet,
       points.push_back(body.point + along - random.uniform(0, 1) * body.normal);
     }
   else
-    points = foreign_points(pair, body);
+    points = far_points(pair, body);
   for (Vec3& point : points) point = poses[at(pair.obstacle)].at(point);
   return points;
 }
@@ -76,7 +76,7 @@ void for_random_pairs(const Look& look) {
     const Setting setting = random_setting(random);
     const Surface& surface = setting.sheet.surface;
     for (const FeaturePair& pair : all_pairs(surface, setting.bodies, true)) {
-      if (random.integer(0, 3) > 0 && pair.foreign > 0) continue;
+      if (random.integer(0, 3) > 0 && pair.far_feature > 0) continue;
       const Separation s =
           separate(pair, surface, setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
       if (!(s.distance > 1e-6)) continue;
@@ -93,7 +93,7 @@ TEST(ASeparation, PartsTheFeaturesByItsLevels) {
     ASSERT_NEAR(s.normal.norm(), 1, rounding);
     for (int k = 0; k < s.near_count; ++k)
       ASSERT_GE(s.normal.dot(setting.sheet.position[at(s.particle[at(k)])]), s.near_level - rounding);
-    for (const Vec3& point : far_points(pair, setting.sheet, setting.bodies, setting.poses, random))
+    for (const Vec3& point : sampled_far_points(pair, setting.sheet, setting.bodies, setting.poses, random))
       ASSERT_LE(s.normal.dot(point), s.far_level + rounding) << static_cast<int>(pair.kind);
     ASSERT_LE(s.gap(), s.distance + rounding);
     ASSERT_GE(s.gap(), s.distance - 1e-7) << static_cast<int>(pair.kind) << ": a plane as good as none";

@@ -88,12 +88,12 @@ TEST(Keyframes, AreReachedToTheBitAndPassedWithoutAJump) {
     const double angle = key.rotation.norm();
     const Eigen::Matrix3d turn = angle > 0 ? Eigen::AngleAxisd(angle, key.rotation / angle).toRotationMatrix()
                                            : Eigen::Matrix3d::Identity();
-    EXPECT_LE((pose.turn - turn).norm(), 1e-14);
+    EXPECT_LE((pose.rotation - turn).norm(), 1e-14);
     constexpr double moment = 1e-9;  // s
     for (const double side : {-moment, moment}) {
       const Pose beside = pose_of(box, key.time + side);
-      EXPECT_LE((beside.turn - pose.turn).norm(), 1e-7);
-      EXPECT_LE((beside.shift - pose.shift).norm(), 1e-7);
+      EXPECT_LE((beside.rotation - pose.rotation).norm(), 1e-7);
+      EXPECT_LE((beside.translation - pose.translation).norm(), 1e-7);
     }
   }
 }

@@ -48,22 +48,22 @@ double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 double distance_to_obstacle(const FeaturePair& pair, const std::vector<Vec3>& near, const ObstacleBody& body,
                             const Pose& pose) {
   if (pair.kind == PairKind::vertex_plane)
-    return (pose.turn * body.normal).dot(near[0] - pose.at(body.point));
+    return (pose.rotation * body.normal).dot(near[0] - pose.at(body.point));
   if (pair.kind == PairKind::vertex_box)
-    return closest_on_box(near[0], {pose.at(body.box.center), pose.turn * body.box.axes,
+    return closest_on_box(near[0], {pose.at(body.box.center), pose.rotation * body.box.axes,
                                     body.box.half.cwiseProduct(pose.stretch)})
         .distance;
   if (pair.kind == PairKind::face_sphere)
     return distance(near, {pose.at(body.center)}) - pose.stretch.x() * body.radius;
-  std::vector<Vec3> far = foreign_points(pair, body);
+  std::vector<Vec3> far = far_points(pair, body);
   for (Vec3& point : far) point = pose.at(point);
   return distance(near, far);
 }
 
-std::vector<int> foreign_particles(const FeaturePair& pair, const Surface& cloth) {
+std::vector<int> far_particles(const FeaturePair& pair, const Surface& cloth) {
   if (pair.kind == PairKind::edge_edge)
-    return {cloth.edges[at(pair.foreign)][0], cloth.edges[at(pair.foreign)][1]};
-  const auto& [a, b, c] = cloth.triangles[at(pair.foreign)];
+    return {cloth.edges[at(pair.far_feature)][0], cloth.edges[at(pair.far_feature)][1]};
+  const auto& [a, b, c] = cloth.triangles[at(pair.far_feature)];
   return {a, b, c};
 }
 
@@ -81,7 +81,7 @@ double least_distance(const FeaturePair& pair, const Surface& cloth, const Motio
     const double part = static_cast<double>(n) / moments;
     const std::vector<Vec3> near = points(near_particles(pair, cloth), part);
     least = std::min(least, pair.obstacle == FeaturePair::cloth_itself
-                                ? distance(near, points(foreign_particles(pair, cloth), part))
+                                ? distance(near, points(far_particles(pair, cloth), part))
                                 : distance_to_obstacle(pair, near, bodies[at(pair.obstacle)],
                                                        paths[at(pair.obstacle)].at(part)));
   }
@@ -91,8 +91,8 @@ double least_distance(const FeaturePair& pair, const Surface& cloth, const Motio
 /// Own edges are a pair either way round.
 FeaturePair told_one_way(FeaturePair pair) {
   if (pair.obstacle == FeaturePair::cloth_itself && pair.kind == PairKind::edge_edge &&
-      pair.foreign < pair.feature)
-    std::swap(pair.feature, pair.foreign);
+      pair.far_feature < pair.feature)
+    std::swap(pair.feature, pair.far_feature);
   return pair;
 }
 
@@ -141,7 +141,7 @@ void expect_none_missed(const std::vector<FeaturePair>& pairs, const Intersectio
     if (!near) continue;
     ASSERT_TRUE(found.contains(pair))
         << "obstacle " << pair.obstacle << ", kind " << static_cast<int>(pair.kind) << ", " << pair.feature
-        << " and " << pair.foreign << " come as near as " << distance << " m";
+        << " and " << pair.far_feature << " come as near as " << distance << " m";
   }
 }
 
@@ -168,7 +168,7 @@ TEST(NearPairs, MissNoneThatAnObstacleSweepsOverAsItTurnsAndShifts) {
     Intersection meeting;
     meeting.bodies = {random_body(random.coin() ? &mesh_shape() : &plane_shape(), random)};
     const ObstacleBody& body = meeting.bodies[0];
-    const Pose to = about(body.pivot, turn_by(random.uniform(0.5, 2) * random.vector(1).normalized()),
+    const Pose to = about(body.pivot, rotation_matrix(random.uniform(0.5, 2) * random.vector(1).normalized()),
                           body.pivot + random.vector(0.3));
     meeting.paths = {{body.pivot, Pose{}, to}};
     // a small cloth at rest where something of the obstacle comes by

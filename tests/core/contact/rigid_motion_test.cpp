@@ -57,8 +57,8 @@ TEST(APoseInterpolation, EndsAtItsPosesToTheBit) {
   EXPECT_FALSE(path.is_still());
   EXPECT_NEAR(path.angle(), 0.1 * std::sqrt(14.0), 1e-12);
   const Pose there = pose_of(obstacle, 0.15), between = path.at(0.5);
-  EXPECT_LE((there.turn - between.turn).norm(), 1e-13);
-  EXPECT_LE((there.shift - between.shift).norm(), 1e-13);
+  EXPECT_LE((there.rotation - between.rotation).norm(), 1e-13);
+  EXPECT_LE((there.translation - between.translation).norm(), 1e-13);
 }
 
 TEST(APoseInterpolation, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
@@ -72,8 +72,8 @@ TEST(APoseInterpolation, MakesAsManyWholeTurnsAsTheObstacleHasMade) {
     EXPECT_FALSE(path.is_still());
     for (const double part : {0.1, 0.25, 0.5, 0.9}) {
       const Pose there = pose_of(obstacle, begin + part * step), between = path.at(part);
-      EXPECT_LE((there.turn - between.turn).norm(), 1e-12) << spin.transpose() << ", part " << part;
-      EXPECT_LE((there.shift - between.shift).norm(), 1e-12);
+      EXPECT_LE((there.rotation - between.rotation).norm(), 1e-12) << spin.transpose() << ", part " << part;
+      EXPECT_LE((there.translation - between.translation).norm(), 1e-12);
     }
   }
 }

@@ -199,7 +199,7 @@ void ClothRenderer::draw_obstacle(QOpenGLShaderProgram& program, const cloth::Ob
   const cloth::PlacedSurface surface = shape_of(o).surface(o);
   if (kind == BodyKind::half_space || (kind == BodyKind::surface && !surface.mesh)) return;
   program.setUniformValue("center", uniform_vector(pose.at(cloth::pivot_of(o))));
-  program.setUniformValue("turn", uniform_matrix(Eigen::Matrix3d(pose.turn * surface.turn)));
+  program.setUniformValue("turn", uniform_matrix(Eigen::Matrix3d(pose.rotation * surface.rotation)));
   if (kind == BodyKind::surface) {
     program.setUniformValue("scale", uniform_vector(surface.scale.cwiseProduct(pose.stretch)));
     bodies_->draw(*surface.mesh);
@@ -277,7 +277,7 @@ void ClothRenderer::find_floors(const Shot& shot) {
       const cloth::Obstacle& o = obstacles_[k];
       if (shape_of(o).body != cloth::BodyKind::half_space) continue;
       const cloth::Pose pose = k < poses_.size() ? poses_[k] : cloth::Pose{};
-      const Eigen::Vector3d normal = pose.turn * o.normal.normalized();
+      const Eigen::Vector3d normal = pose.rotation * o.normal.normalized();
       const bool is_level = std::abs(normal.y()) > 0.999;
       if (normal.allFinite() && is_level == level_ones)
         floors_.push_back({pose.at(o.point), normal, is_level});

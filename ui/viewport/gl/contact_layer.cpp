@@ -119,8 +119,9 @@ void ContactLayer::draw_boxes(QOpenGLShaderProgram& program, const View& view, c
     const auto k = static_cast<std::size_t>(group.obstacle);
     const bool of_cloth = group.obstacle < 0;
     const cloth::Pose pose = of_cloth || k >= poses_.size() ? cloth::Pose{} : poses_[k];
-    program.setUniformValue("turn", uniform_matrix(Eigen::Matrix3d(pose.turn * pose.stretch.asDiagonal())));
-    program.setUniformValue("shift", uniform_vector(pose.shift));
+    program.setUniformValue("turn",
+                            uniform_matrix(Eigen::Matrix3d(pose.rotation * pose.stretch.asDiagonal())));
+    program.setUniformValue("shift", uniform_vector(pose.translation));
     program.setUniformValue("line_colour",
                             as_srgb(of_cloth ? cloth_box_colour(theme) : obstacle_box_colour(theme)));
     use_box_buffer(first);

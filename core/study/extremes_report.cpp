@@ -100,8 +100,7 @@ const ExtremeWords& words_of(ExtremeStatus status) {
   static const std::array<ExtremeWords, std::size(extreme_status_names)> words{{
       {"stable", Verdict::good, accurate,
        "Finite to the end, and no energy appeared from nowhere. It does not say accurate: a method that "
-       "damps "
-       "everything is stable."},
+       "damps everything is stable."},
       {"open", Verdict::warn, stable_but_inaccurate,
        "Finite, and no energy appeared from nowhere, but the last iteration of some step still changed more "
        "than a tenth of the largest speed: the step's equations were not solved, and the motion is another "
@@ -115,8 +114,7 @@ const ExtremeWords& words_of(ExtremeStatus status) {
        "ten times all that the scene can give. The stop names step, particle and cause."},
       {"unreach.", Verdict::warn, stable_but_inaccurate,
        "The pins make the deformation rate unreachable, which their distance shows before the first step. "
-       "The "
-       "run is finite, with the excess that is left."},
+       "The run is finite, with the excess that is left."},
       {"refused", Verdict::warn, stable_but_inaccurate,
        "No step is stable for this method and scene, so none was taken."},
       {"failed", Verdict::bad, solver_failed,

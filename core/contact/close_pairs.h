@@ -1,8 +1,10 @@
-// The pairs of features that can come within the thickness of each other in a round, and their separations.
+// Narrow phase of continuous contact: the pairs of features that can come within their reach of each other in
+// a round of contact, with their separations.
 //
-// The result depends on the present positions and swept bounds only. Candidates are cached for some rounds: a
-// pair whose distance was computed cannot have become nearer by more than its particles have moved since
-// (neighbour lists with a skin; Verlet 1967).
+// The result depends on the present positions and swept bounds only. While the obstacles are at rest,
+// candidates from PairSearch are cached for several rounds, as in neighbour lists with a skin (Verlet 1967):
+// the distance of a pair decreases by at most the displacements of its particles, so that a pair whose cached
+// distance exceeds them is skipped without computing its separation.
 #pragma once
 
 #include "contact/near_pairs.h"
@@ -13,32 +15,33 @@ namespace cloth {
 inline constexpr double near_factor = 1.5;
 
 struct PairQuery {
-  const Vec3Field& position;  ///< m, of the particles
-  const SweptBounds& swept;
+  const Vec3Field& position;                    ///< m, of the particles
+  const SweptBounds& swept;                     ///< of the particles in this round, and the reaches
   const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this substep
   const std::vector<Pose>& poses;               ///< of the obstacles now
 };
 
 class ClosePairs {
  public:
-  /// See PairSearch.
+  /// The arguments are those of PairSearch.
   ClosePairs(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin)
       : cloth_(cloth), bodies_(bodies), search_(cloth, bodies, with_itself, skin) {}
 
   /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
 
-  /// All pairs that can come within the reach of each other while everything stays in its swept bounds.
+  /// Replaces `pairs` and `separations` (one for each pair) by those of all pairs that can come within their
+  /// reach (SweptBounds) while particles and obstacles stay in their swept bounds.
   void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
 
-  /// Drops the cached candidates: the reaches have changed.
+  /// Drops the cached candidates. Call it after the reaches have changed.
   void forget() { cached_range_.clear(), search_.forget(); }
 
   PairSearch& search() { return search_; }
   const PairSearch& search() const { return search_; }
 
  private:
-  struct Part {
+  struct Part {  ///< the result of one thread
     std::vector<FeaturePair> pairs;
     std::vector<Separation> separations;
   };
@@ -60,16 +63,17 @@ class ClosePairs {
   WorkerTeam* team_ = nullptr;
   std::vector<Part> parts_{1};  ///< of each thread
 
-  std::vector<double> range_;           ///< m, furthest displacement of each particle in this round
-  std::vector<double> obstacle_paths_;  ///< m, furthest displacement of any point of each in this substep
-  std::vector<double> moved_;           ///< m, of each particle since the candidates were found
+  std::vector<double> range_;           ///< m, bound of each particle's displacement in this round
+  std::vector<double> obstacle_paths_;  ///< m, of each: bound of its points' displacement in this substep
+  std::vector<double> moved_;           ///< m, displacement of each particle since the candidates were found
   double longest_ = 0;                  ///< m, longest of the particles' displacements
-  std::vector<FeaturePair> found_;
+  std::vector<FeaturePair> found_;      ///< candidates that are not cached
 
-  std::vector<FeaturePair> cached_;
-  std::vector<double> cached_distance_;  ///< m, of each
+  std::vector<FeaturePair> cached_;      ///< candidates
+  std::vector<double> cached_distance_;  ///< m, of each, at cached_position_
   Vec3Field cached_position_;
-  std::vector<double> cached_range_;  ///< m, displacements for which the candidates hold
+  std::vector<double>
+      cached_range_;  ///< m, displacement of each particle up to which the candidates are complete
   std::vector<Pose> cached_poses_;
 };
 

@@ -1,6 +1,6 @@
-// What one pass of a kernel over the rows of a grid works on. Plain data only: the kernels are compiled with
-// flags of their own, and whatever they include must not hold inline functions, which the linker might use
-// for files compiled without those flags.
+// The interface of the kernels for grids: the input and output of one pass over rows of a grid. Plain data
+// only: kernels are compiled for a given instruction set, and what they include must not contain inline
+// functions, which the linker might use for files compiled for another one.
 #pragma once
 
 #include "kernels/kernel_table.h"
@@ -29,52 +29,53 @@ struct SpringKind {
 
 struct Grid {
   int rows = 0, columns = 0;
-  unsigned springs = 0;             ///< the directions that exist; families are whole
+  unsigned springs = 0;             ///< SpringBits of the directions that exist, each with all its springs
   SpringKind kind[spring_kinds]{};  ///< in the order of the bits
 };
 
-/// Some rows of a field, one after the other; each component is a run of its own.
+/// Consecutive rows of a field; each component is a contiguous array.
 struct RowBlock {
   double *x = nullptr, *y = nullptr, *z = nullptr;
-  int first = 0;  ///< the row that the pointers stand at
+  int first = 0;  ///< the row to which the pointers point
 };
 
-/// A field as a band of rows sees it: its own rows, and copies of the rows around them.
+/// A field as a band of rows (one thread's part of the grid) reads it: its own rows, and copies of the rows
+/// above and below them.
 struct BandField {
   RowBlock own, above, below;
 };
 
-/// How many rows beyond its own a band reads on either side, at most.
+/// The largest number of rows beyond its own that a band reads on either side.
 inline constexpr int step_halo = 2, runge_kutta_halo = 8;
 
-/// A row of scratch: room for whole vectors beyond the last column.
+/// Doubles in a row of scratch memory, with padding for whole registers beyond the last column.
 constexpr int pitch_of(int columns) {
   return (columns + 7) / 8 * 8 + 8;
 }
-/// Doubles of scratch that a pass needs, for each double of pitch.
+/// Rows of scratch memory, of pitch_of(columns) doubles each, that a pass needs.
 inline constexpr int step_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2),
-                     air_scratch_rows = 6;  ///< more, for each evaluation of the force
+                     air_scratch_rows = 6;  ///< in addition, for each evaluation of the force
 
-/// One pass over a band of rows [first, last) of the grid. Everything beyond those is only read.
+/// One pass over a band of rows [first, last) of the grid. Other rows are only read.
 struct Pass {
   Grid grid;
   int first = 0, last = 0;
   BandField position, velocity;
   BandField force;                                      ///< of Verlet, evaluate and damp
   const double* inverse_mass = nullptr;                 ///< 1/kg; 0 where pinned
-  const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, of every particle, in addition; may be null
-  double weight[3] = {0, 0, 0};                         ///< N, of every particle
+  const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, additional force on each particle; may be null
+  double weight[3] = {0, 0, 0};                         ///< N, the same for all particles
   double damping = 0;                                   ///< N s/m, viscous
-  double spring_damping = 0;                            ///< N s/m, along every spring
-  double air_drag = 0;                                  ///< N s/m, of every particle along its normal
-  double wind[4][3] = {};                               ///< m/s, at every evaluation of the force in a step
+  double spring_damping = 0;                            ///< N s/m, dampers along springs
+  double air_drag = 0;                                  ///< N s/m per particle, along the normal
+  double wind[4][3] = {};                               ///< m/s, for each evaluation of the force in a step
   double mass_of_free = 1;                              ///< kg
   double step = 0;                                      ///< s
   bool drift_first = false;   ///< explicit Euler: the position follows the old velocity
   double* scratch = nullptr;  ///< 64-byte aligned
-  /// Sums over each row, one array of `rows` after the other: |v|^2 before the step and after it, and what
-  /// the dampers along the springs take before it and the air gives, in W; of Runge-Kutta |v|^2 at its four
-  /// stages and after the step, and the powers at the stages.
+  /// Output: sums over each row, in consecutive arrays of grid.rows numbers, indexed by StepSum or, of
+  /// Runge-Kutta, StageSum (+ stage): |v|^2 in (m/s)^2, the power dissipated by dampers along springs and the
+  /// power given by the air, in W.
   double* sums = nullptr;
 };
 enum StepSum { squares_before, squares_after, dampers_before, air_before, step_sums };
@@ -92,9 +93,10 @@ struct GridKernels {
   void (*euler)(const Pass& pass);
   /// Velocity Verlet with centred damping: `force` holds p(x) before and p(x') after.
   void (*verlet)(const Pass& pass);
-  /// The same in parts, for batches of steps whose states in between are not needed. From the state at t to
-  /// v(t + h/2) and x(t + h); from those to v(t + 3h/2) and x(t + 2h), without `force`; and from those to
-  /// v(t + h) and `force`.
+  /// The same in parts, for batches of steps of which only the last state is needed. `open` computes
+  /// v(t + h/2) and x(t + h) from the state at t. `between` advances both by h: to v(t + 3h/2) and x(t + 2h);
+  /// it does not use `force`. `close` completes the last step from v(t + h/2) and x(t + h): v(t + h) and
+  /// `force` at x(t + h).
   void (*verlet_open)(const Pass& pass);
   void (*verlet_between)(const Pass& pass);
   void (*verlet_close)(const Pass& pass);
@@ -102,14 +104,14 @@ struct GridKernels {
   void (*runge_kutta)(const Pass& pass);
   /// force = springs + weight + load. `load` may be `force` itself. No sums.
   void (*evaluate)(const Pass& pass);
-  /// force = D v of the dampers along the springs, and what they take.
+  /// force = D v of the dampers along springs (SweepLoads), and the power that they dissipate.
   void (*damp)(const Pass& pass);
-  /// The sums of |v|^2 as the steps make them, into the place after the step.
+  /// The sums of |v|^2, added in the same order as in a step, into `squares_after`.
   void (*sum_squares)(const Pass& pass);
-  /// What the springs make of the squares of their lengths: result[i] = k - k L / sqrt(s[i]), k where s[i] is
-  /// zero; the two ways in which the kernels do it.
+  /// For tests. From squared lengths: result[i] = k - k L / sqrt(s[i]), and k where s[i] is 0; by a refined
+  /// estimate [0] and by division [1].
   void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);
-  /// result[i] = 1 / sqrt(s[i]), 0 where s[i] is zero; the two ways as well.
+  /// For tests. result[i] = 1 / sqrt(s[i]), and 0 where s[i] is 0; likewise.
   void (*inverse_roots[2])(const double* squares, double* result, int count);
 
   CLOTHLAB_KERNEL_TABLE(GridKernels)

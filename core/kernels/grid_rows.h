@@ -1,16 +1,15 @@
-// The springs of a grid, row by row, in one pass and in place. Included once for every instruction set, after
-// its Lanes; everything here has internal linkage.
+// The spring forces of a grid, row by row, in one pass that may update the state in place. Included once for
+// every instruction set, after its Lanes; everything here has internal linkage.
 //
-// Every particle is the first end of at most six springs, to columns and rows ahead of it. A row is taken in
-// blocks of as many columns as there are lanes. What a block's springs do to the next columns moves on within
-// registers, by lanes; what they do to the next two rows waits in two row buffers:
+// Every particle is the first end of at most six springs, to columns and rows ahead of it. A row is
+// processed in blocks of as many columns as there are lanes. The forces of a block's springs on later columns
+// are passed on in registers, shifted by lanes; those on the next two rows are stored in two row buffers:
 //
 //     A  the force so far on the row below: from springs of this row and the one above
 //     B  the force so far on the row below that: from springs of this row
 //
-// so that a row's force is complete as soon as the row is done, and whatever the method does with it can be
-// done on the spot: nothing later in the pass looks back at this row. Both begin with the load that is no
-// spring's.
+// A row's force is therefore complete when the row has been processed, and the method can update the row's
+// particles at once: nothing later in the pass reads them. Both buffers begin with weight and load.
 #pragma once
 
 #include "kernels/grid_pass.h"
@@ -26,8 +25,8 @@ struct Springs {
     for (int k = 0; k < spring_kinds; ++k)
       kind[k] = Lanes::spring(pass.grid.kind[k].stiffness, pass.grid.kind[k].rest_tension);
   }
-  /// The force on `from` is this times d, which becomes the way from there to `to`. What the damper takes is
-  /// added to `loss`.
+  /// Sets d = to - from and returns s, so that the force on `from` is s d. Adds the power dissipated by the
+  /// damper, in W, to `loss`.
   template <Law law, unsigned Bit>
   CLOTHLAB_INLINE V pull(const Particles& from, const Particles& to, Vector& d, V& loss) const {
     constexpr bool divided = (Bit & Lanes::divided) != 0;
@@ -42,17 +41,17 @@ struct Springs {
   }
 };
 
-/// Where a row's particles are.
+/// The positions (m) and velocities (m/s) of a row's particles.
 struct ParticleRow {
   ConstRow position, velocity;
 };
 
-/// What a row's springs need beside the method.
+/// The input of one row's spring forces.
 struct RowWork {
   int columns;
-  ParticleRow here, below, second;   ///< only those that exist are looked at
-  ConstRow load_below, load_second;  ///< null: `weight`
-  Row a, b;                          ///< the buffers
+  ParticleRow here, below, second;   ///< only those that exist are read
+  ConstRow load_below, load_second;  ///< null: only `weight`
+  Row a, b;                          ///< the row buffers A and B, see above
   Vector weight;
   const Springs* springs;
   unsigned present = 0;  ///< this row's directions of springs
@@ -60,7 +59,8 @@ struct RowWork {
   bool uses_b = true;  ///< the grid has springs that reach two rows down
 };
 
-/// What springs of earlier columns do to the columns of the next block.
+/// Forces of the present block's springs on the columns of the next block: one and two columns ahead in this
+/// row, and one column ahead in the row below.
 struct Carry {
   Vector one, two, one_below;
 };
@@ -78,7 +78,7 @@ CLOTHLAB_INLINE Particles particles_at(const ParticleRow& row, int j, int count,
   return {x, load(row.velocity, j, count, otherwise.velocity)};
 }
 
-/// What springs of the rows above do to the block below.
+/// The force so far on the block in the row below.
 template <bool Full, bool Edge>
 CLOTHLAB_INLINE Vector force_below(const RowWork& work, int j, int count) {
   if (Full || (work.has_below && work.uses_b)) return load(work.b, j);
@@ -86,10 +86,10 @@ CLOTHLAB_INLINE Vector force_below(const RowWork& work, int j, int count) {
   return {Lanes::zero(), Lanes::zero(), Lanes::zero()};
 }
 
-/// The force on the particles of one block. `Full`: all springs of all six directions are there, which is so
-/// in all but the last two rows of a cloth with all families; else it asks which are. An `Edge` block may
-/// lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives no
-/// force.
+/// The force on the particles of one block. `Full`: all springs of all six directions are there, which holds
+/// in all but the last two rows of a cloth with all families; otherwise it tests `present`. An `Edge` block
+/// may lack columns: a missing neighbour is replaced by the particle itself, whose distance to itself gives
+/// no force.
 template <Law law, bool Full, bool Edge>
 CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const Particles& here, Carry& carry,
                                    V& loss) {
@@ -102,7 +102,7 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
   const Vector nothing{Lanes::zero(), Lanes::zero(), Lanes::zero()};
   Vector force = load(work.a, j);
   Vector below_force = force_below<Full, Edge>(work, j, count);
-  Vector one = nothing, two = nothing, one_below = nothing;  // what moves on to later columns
+  Vector one = nothing, two = nothing, one_below = nothing;  // forces on later columns
   Vector d;
 
   Particles right = here;
@@ -150,8 +150,8 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
 }
 
 /// One row: its force, and `update(j, count, here, force)` for every block; an update<Edge> is a call
-/// operator with that template argument. A row of another band has no update. Returns what the row's dampers
-/// take.
+/// operator with that template argument. A row of another band has no update. Returns the power that the
+/// row's dampers dissipate, in W.
 template <Law law, bool Full, class Update>
 CLOTHLAB_INLINE V row_pass(const RowWork& work, bool own, Update& update) {
   const V zero = Lanes::zero();

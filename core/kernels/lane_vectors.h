@@ -1,5 +1,5 @@
-// Vectors of lanes: so many particles side by side, and how they come from fields and go back. Included once
-// for every instruction set, after its Lanes; everything here has internal linkage.
+// 3-vectors of SIMD registers: each lane holds one particle. Loads, stores and arithmetic. Included once for
+// every instruction set, after its Lanes (lanes_*.h); everything here has internal linkage.
 #pragma once
 
 namespace cloth::kernels {
@@ -11,7 +11,7 @@ struct Vector {
   V x, y, z;
 };
 
-/// Where a row's three components begin.
+/// Pointers to the three components of a row of particles.
 struct Row {
   double *x, *y, *z;
 };
@@ -40,7 +40,7 @@ CLOTHLAB_INLINE void store(const Row& row, int j, int count, const Vector& a) {
   else
     store(row, j, a);
 }
-/// The first `count` lanes, zero in the others.
+/// At an Edge the first `count` lanes, and zero in the others.
 template <bool Edge>
 CLOTHLAB_INLINE Vector load_part(const ConstRow& row, int j, int count) {
   const V zero = Lanes::zero();
@@ -74,7 +74,7 @@ CLOTHLAB_INLINE V squared(const Vector& a) {
 CLOTHLAB_INLINE V plus_square(V sum, const Vector& a) {
   return Lanes::fma(a.z, a.z, Lanes::fma(a.y, a.y, Lanes::fma(a.x, a.x, sum)));
 }
-/// Every lane one or two columns to the right; the last ones of `before` come in first.
+/// Moves every lane one or two columns to the right; the first lanes are filled with the last of `before`.
 CLOTHLAB_INLINE Vector moved_one(const Vector& before, const Vector& now) {
   return {Lanes::shift_one(before.x, now.x), Lanes::shift_one(before.y, now.y),
           Lanes::shift_one(before.z, now.z)};
@@ -87,25 +87,26 @@ CLOTHLAB_INLINE Vector vector_of(const double* a) {
   return {Lanes::set(a[0]), Lanes::set(a[1]), Lanes::set(a[2])};
 }
 
-/// What acts along a spring: its elastic force, that and a damper, or the damper alone.
+/// Which force along a spring is computed: elastic, elastic and damping, or damping alone.
 enum class Law { elastic, damped, damper };
 
-/// Of some particles side by side. The velocity only where the law asks for it.
+/// The particles of one block of lanes. `velocity` is set only for laws with a damper.
 struct Particles {
   Vector position, velocity;
 };
 
-/// Along a spring from `from` to `to`, whose force is this times d: the damper, and what it takes is added to
-/// `loss`. `inverse` is 1/|d|, or 0.
+/// The damper of a spring, with d = to - from: returns s, so that the damping force on `from` is s d, in N/m,
+/// and adds the dissipated power in W to `loss`. `inverse` is 1/|d|, or 0 where |d| = 0.
 CLOTHLAB_INLINE V damper_scale(const Particles& from, const Particles& to, const Vector& d, V inverse,
                                V damping, V& loss) {
-  const V opening = Lanes::mul(product(to.velocity - from.velocity, d), inverse);  // how fast the ends part
+  const V opening =
+      Lanes::mul(product(to.velocity - from.velocity, d), inverse);  // m/s, rate of change of length
   const V along = Lanes::mul(damping, opening);
   loss = Lanes::fma(along, opening, loss);
   return Lanes::mul(along, inverse);
 }
 
-/// A force before any spring: the weight and, where there is a load, that of the particles.
+/// The force before any spring is added: weight, plus the load (N) of each particle where there is one.
 template <bool Edge>
 CLOTHLAB_INLINE Vector initial(const ConstRow& load_row, const Vector& weight, int j, int count) {
   return load_row.x ? weight + load_part<Edge>(load_row, j, count) : weight;

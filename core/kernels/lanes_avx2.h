@@ -10,7 +10,8 @@ namespace {
 
 struct Lanes {
   static constexpr int width = 4;
-  /// Springs whose roots go through the divider while the others are refined: the two work side by side.
+  /// Directions whose roots are computed by division; the others are refined from an estimate, so that the
+  /// divider and the multipliers are busy at the same time.
   static constexpr unsigned divided = right_one | down_one | diagonal;
   using V = __m256d;
   struct Spring {
@@ -49,8 +50,8 @@ struct Lanes {
   [[gnu::noinline]] static V rarely_divided_root(V s) { return divided_root(s); }
   /// 1/sqrt(s) from the 12-bit seed y of single precision: with e = 1 - s y^2,
   ///     1/sqrt(s) = y (1 - e)^(-1/2) = y (1 + e/2 + 3/8 e^2 + 5/16 e^3 + 35/128 e^4 + ...),
-  /// whose rest is below 2^-53. Numbers beyond the range of single precision have no seed; they show in e^2
-  /// and are computed exactly.
+  /// whose rest is below 2^-53. Numbers beyond the range of single precision have no seed; e^2 then is not
+  /// finite or too large, and they are computed by division.
   static V refined_root(V s) {
     const V y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(s)));
     const V e = fnma(mul(s, y), y, set(1));
@@ -73,7 +74,7 @@ struct Lanes {
     return scale_at(inverse_root<Divide>(s), spring);
   }
 
-  // Of general meshes. A table is read number by number: there is no register for eight of them.
+  // Only for general meshes. Tables are read from memory: no register holds eight doubles.
 
   static V where_positive(V k, V value) { return _mm256_and_pd(_mm256_cmp_pd(k, zero(), _CMP_GT_OQ), value); }
   static V scale(V s, V stiffness, V tension) {

@@ -76,7 +76,7 @@ struct Lanes {
     return fnma(spring.rest_tension, inverse_root, spring.stiffness);
   }
 
-  // Of general meshes.
+  // Only for general meshes.
 
   static V where_positive(V k, V value) {
     return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(k, zero(), _CMP_GT_OQ), value);

@@ -1,16 +1,18 @@
-// Two lanes by the compiler's vectors, on any processor: what every other Lanes type must do.
+// Two lanes with the vector types of GCC and Clang, for any processor. This is the reference for the other
+// Lanes types, which have the same functions:
 //
-// load(p, count, otherwise): lanes from `count` on come from `otherwise`, and memory behind is not touched.
-// shift_one(before, now): every lane moves one column to the right, the last one of `before` comes in first.
-// spring_scale(s, k): k - k L / sqrt(s), and k where s is 0. inverse_root(s): 1 / sqrt(s), and 0 where s is
-// 0.
-// scale_at(inverse_root(s), k): as spring_scale.
+// load(p, count, otherwise): lanes from `count` on come from `otherwise`, and memory beyond the first `count`
+// is not read. shift_one(before, now): every lane moves one column to the right, and the first lane is the
+// last one of `before`. spring_scale(s, k): k - k L / sqrt(s), and k where s is 0. inverse_root(s): 1 /
+// sqrt(s), and 0 where s is 0. scale_at(inverse_root(s), k): as spring_scale.
 //
-// Of general meshes: where_positive(k, a): a, and 0 where k is not positive. exact_scale(s, k, kL), the same
-// for springs that all differ; scale(s, k, kL), the same in haste, which need not be a number where s is 0 or
-// not finite. is_in_doubt(f): some lane is no number. pick(table, kinds): of a table of eight numbers those
-// of the lanes' kinds. gather(vectors, at, x, y, z), put(to, x, y, z): 4-vectors x y z 0 at vectors +
-// at[lane], or one after the other.
+// Only for general meshes:
+// where_positive(k, a): a, and 0 where k is not positive.
+// exact_scale(s, k, kL): as spring_scale, with another spring in each lane. scale(s, k, kL): the same but
+// faster; it may be NaN where s is 0 or not finite. is_in_doubt(f): some lane is NaN.
+// pick(table, kinds): looks up each lane's kind in a table of eight numbers.
+// gather(vectors, at, x, y, z): loads the 4-vector x y z 0 at vectors + at[lane] into each lane.
+// put(to, x, y, z): stores the lanes' 4-vectors one after the other.
 #pragma once
 
 namespace cloth::kernels {
@@ -18,7 +20,8 @@ namespace {
 
 struct Lanes {
   static constexpr int width = 2;
-  static constexpr unsigned divided = 63;  ///< the springs whose roots are divided, here all
+  static constexpr unsigned divided =
+      63;  ///< bits of the directions whose roots are computed by division: all
   typedef double V __attribute__((vector_size(16)));
   struct Spring {
     double stiffness, rest_tension;

@@ -8,7 +8,8 @@ namespace {
 
 struct Lanes {
   static constexpr int width = 2;
-  static constexpr unsigned divided = 63;  ///< the springs whose roots are divided, here all
+  static constexpr unsigned divided =
+      63;  ///< bits of the directions whose roots are computed by division: all
   using V = __m128d;
   struct Spring {
     V stiffness, rest_tension;
@@ -51,7 +52,7 @@ struct Lanes {
     return fnma(spring.rest_tension, inverse_root, spring.stiffness);
   }
 
-  // Of general meshes.
+  // Only for general meshes.
 
   static V where_positive(V k, V value) { return _mm_and_pd(_mm_cmpgt_pd(k, zero()), value); }
   static V scale(V s, V stiffness, V tension) {

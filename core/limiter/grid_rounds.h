@@ -1,5 +1,6 @@
-// TensionRounds for grids: whole families of lines side by side. Rows above the first and below the last
-// spring that is over its limit or has a tension are left out.
+// TensionRounds for grids: SIMD lanes process neighbouring lines of springs of one direction together. Only
+// the active rows are computed: from the first to the last row that has a spring over its limit or under
+// tension.
 #pragma once
 
 #include <array>
@@ -48,15 +49,15 @@ class GridRounds : public TensionRounds {
   const TensionKernels& kernels_;
   LinePreconditioner preconditioner_;
   TensionTask task_;
-  double unit_ = 0;                   ///< m/N, h^2 times the largest inverse mass
+  double unit_ = 0;                   ///< m/N: (time step)^2 times the largest inverse mass
   std::vector<double> inverse_mass_;  ///< 1/kg, of the present weights
   AlignedDoubles x_, y_, z_, weight_;
-  AlignedFloats sx_, sy_, sz_;  ///< W J^T of what conjugate gradients look at
+  AlignedFloats sx_, sy_, sz_;  ///< W J^T d for the search direction d of conjugate gradients
   RowInterval moved_;           ///< rows of particles that have moved since the last evaluation
-  double shortest_ = 0;         ///< m, rest length
+  double shortest_ = 0;         ///< m, smallest rest length
   std::array<AlignedFloats, 6> line_scratch_;
-  AlignedDoubles lanes_weight_;                         ///< of all rows in lanes, block after block
-  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_;  ///< rows in lanes
+  AlignedDoubles lanes_weight_;  ///< weight_, transposed: one row in each lane, block after block
+  AlignedDoubles lanes_x_, lanes_y_, lanes_z_, lanes_;  ///< positions and tensions, transposed
 };
 
 }  // namespace cloth

@@ -1,5 +1,6 @@
-// The order in which a sweep visits the limited springs: batches (a graph colouring) in which no two springs
-// share a particle, so that a batch can be processed in parallel with the same result.
+// The order in which a sweep of the deformation limiter visits the limited springs: in batches (a graph
+// colouring). No two springs of a batch share a particle, so that its springs can be processed in SIMD lanes
+// and on several threads with the same result as one by one.
 #pragma once
 
 #include <vector>
@@ -9,14 +10,16 @@
 
 namespace cloth {
 
+/// Which ends of a spring are not pinned.
 enum class FreeEnds { both, first, second };
 
+/// Springs with common ends, limit and rest length.
 struct SpringBatch {
   SpringRow row;
   FreeEnds ends = FreeEnds::both;
   double limit = 0;        ///< m, (1 + rate) times the rest length
   double rest_length = 0;  ///< m
-  int low = 0, high = 0;   ///< first and last row of particles that the springs touch
+  int low = 0, high = 0;   ///< first and last row of the springs' particles
 };
 
 /// The runs of springs (cloth/spring_runs.h) in their order, divided into pieces at the ends of rows and

@@ -144,12 +144,12 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   const bool follows = step.integrator.velocity_follows_positions();
   step.memory.resize(position_.size());
   if (find_motion(step)) report.work += recovering_work(step);
-  if (follows) step.integrator.follow_positions(step.forces, step.times, motion_, state);
+  if (follows) step.integrator.update_velocity_for_positions(step.forces, step.times, motion_, state);
   take_touches(step);
   free_velocity_ = state.velocity;
   solve_constraints(system, state.velocity);
   if (follows && step.forces.has_damping()) {
-    step.integrator.follow_velocities(step.forces, step.times, motion_, state);
+    step.integrator.update_velocity_for_damping(step.forces, step.times, motion_, state);
     free_velocity_ = state.velocity;
     for (const ContactConstraint& contact : constraints_)
       apply_impulses(contact, system.inverse_mass, state.velocity);

@@ -109,17 +109,17 @@ class Integrator {
 
   /// Recomputes the velocity at the end of the last step for the positions in `state`. `half_velocity` in m/s
   /// is the displacement of the step divided by its length. Precondition: velocity_follows_positions().
-  virtual void follow_positions(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
-                                ClothState&) {}
+  virtual void update_velocity_for_positions(ForceModel&, const StepTimes&,
+                                             const Vec3Field& /*half_velocity*/, ClothState&) {}
 
-  /// Recomputes it once more, with the damping forces at the velocities in `state`, which contact has
-  /// changed. Precondition: follow_positions() was the last call.
-  virtual void follow_velocities(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
-                                 ClothState&) {}
+  /// Recomputes that velocity with the damping forces at the velocities in `state`, which contact has
+  /// changed. Precondition: update_velocity_for_positions() was the last call.
+  virtual void update_velocity_for_damping(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
+                                           ClothState&) {}
 
-  /// Called after contact has changed the state at the end of the last step. Returns the correction of the
-  /// work that the step added, since it was computed with the velocities before contact.
-  virtual Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  /// Called after contact has changed the state at the end of the last step. step() computed its work with
+  /// the velocities before contact; this returns the difference to be added.
+  virtual Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
     forget(Change::state);
     if (end_weight_ == 0 || !forces.has_power()) return {};
     forces.update(state.position, times.end);

@@ -71,8 +71,8 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, ClothState& st
 
 /// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
 /// keep a speed of some omega^2 h^3 g that no position follows.
-void Verlet::follow_positions(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
-                              ClothState& state) {
+void Verlet::update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
+                                           const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
   forces.update(state.position, times.end);
@@ -82,8 +82,8 @@ void Verlet::follow_positions(ForceModel& forces, const StepTimes& times, const 
 
 /// Without it the cloth beside a contact would be damped by the speed that it would have had without contact,
 /// and at rest keep a speed of some h^2 g times damping over mass.
-void Verlet::follow_velocities(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
-                               ClothState& state) {
+void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& times,
+                                         const Vec3Field& half_velocity, ClothState& state) {
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   holds_force_ = false;
   state.velocity = half_velocity;
@@ -92,7 +92,7 @@ void Verlet::follow_velocities(ForceModel& forces, const StepTimes& times, const
 }
 
 /// The next step would begin with this evaluation.
-Work Verlet::follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+Work Verlet::correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
   forget(Change::state);
   if (!forces.has_power()) return {};
   Work correction = -0.5 * times.step * power_;

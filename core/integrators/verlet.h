@@ -9,8 +9,8 @@
 // as of viscous and spring damping, enters twice: in the opening kick with the velocity v at t, and in the
 // closing kick, where D is part of the linear system that VelocitySolver solves for v' (with known = v_half
 // and weight = h/2). Wind is part of p at both times. After continuous contact has moved the positions, the
-// closing kick is repeated at the new ones (follow_positions()), and once more with the damping at the
-// velocities that contact has set (follow_velocities()).
+// closing kick is repeated at the new ones (update_velocity_for_positions()), and once more with the damping
+// at the velocities that contact has set (update_velocity_for_damping()).
 //
 // A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
 // v_half.
@@ -32,11 +32,11 @@ class Verlet : public Integrator {
     return true;
   }
   bool velocity_follows_positions() const override { return true; }
-  void follow_velocities(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
-                         ClothState& state) override;
-  void follow_positions(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
-                        ClothState& state) override;
-  Work follow_contact(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
+  void update_velocity_for_damping(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
+                                   ClothState& state) override;
+  void update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
+                                     const Vec3Field& half_velocity, ClothState& state) override;
+  Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
 
  protected:

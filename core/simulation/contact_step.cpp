@@ -29,7 +29,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
 void Simulation::book_contact(const StepTimes& times) {
   run_.ledger.contact += run_.last_contact.work;
   run_.contact_impulse += run_.last_contact.impulse;
-  run_.ledger.forces += integrator_->follow_contact(*forces_, times, run_.state);
+  run_.ledger.forces += integrator_->correct_work(*forces_, times, run_.state);
 }
 
 /// What was lent to impulses of which none came back.

@@ -1,10 +1,8 @@
-// The springs of a grid in one pass over its rows, together with what an explicit method does with the force:
-// see spring_sweep.h. Chooses the instruction set, shares the rows among threads and adds up what the rows
-// report.
+// SpringSweep for grids. It chooses the instruction set, divides the rows into bands, one for each thread,
+// and adds up the sums of the rows.
 //
-// The same bits for any number of threads: every band of rows makes its sums in the order in which one
-// thread makes them, from copies of the rows at its neighbours' edges that these leave for it between two
-// passes.
+// Results are bitwise the same for any number of threads: each band adds its forces in the order in which one
+// thread does, using copies of the neighbouring bands' edge rows, which these store between two passes.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +33,7 @@ class GridSweep : public SpringSweep {
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
   bool takes_air() const override { return true; }
-  /// Threads that step on need not be called for every step.
+  /// Several steps at once start the threads only once.
   bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
   double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
@@ -45,8 +43,8 @@ class GridSweep : public SpringSweep {
  private:
   using Kernel = void (*)(const kernels::Pass&);
 
-  /// A field of a pass. Where `halo_rows` are asked for, the pass steps the field in place and reads so many
-  /// of the rows around a band's own; else a band keeps to its own rows, or the field is only read.
+  /// A field of a pass. With `halo_rows` > 0 the pass changes the field in place and reads so many rows on
+  /// either side of a band; with 0 a band reads only its own rows, or no band changes the field.
   struct Attached {
     kernels::BandField kernels::Pass::*field;
     Vec3Field* values;
@@ -54,11 +52,11 @@ class GridSweep : public SpringSweep {
   };
   struct Plan {
     Kernel kernel;
-    Kernel opening = nullptr, closing = nullptr;  ///< the first and the last pass, where they are others
+    Kernel opening = nullptr, closing = nullptr;  ///< of the first and the last pass, if different
     const SweepLoads& loads;
     double step = 0;  ///< s
     bool drift_first = false;
-    std::array<Attached, 3> fields{};  ///< those without values are none
+    std::array<Attached, 3> fields{};  ///< entries without `values` are unused
     int sums = kernels::step_sums;
     int scratch_rows = kernels::step_scratch_rows;
     int evaluations = 1;  ///< of the force, in a step

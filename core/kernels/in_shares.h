@@ -1,4 +1,4 @@
-// A loop whose turns do not depend on each other, in even shares for a team of threads.
+// A parallel loop over independent items, divided evenly among the threads of a team.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,9 @@
 
 namespace cloth {
 
-/// job(share, begin, end) for shares of [0, count) in their order, of at least `least` items each; without a
-/// team for one. Returns the shares. Jobs must not throw.
+/// Divides [0, count) into consecutive shares of at least `least` items, one for each thread at most, and
+/// calls job(share, begin, end) for each. Without a team (null) there is one share. Returns the number of
+/// shares. `job` must not throw.
 template <class Job>
 int in_shares(WorkerTeam* team, std::size_t count, std::size_t least, const Job& job) {
   const std::size_t most = team ? static_cast<std::size_t>(team->size()) : 1;

@@ -3,8 +3,8 @@
 
 namespace cloth {
 
-/// Stage s stands `node` h after the begin of the step, along the slope of stage s - 1, and its slope counts
-/// with `weight`.
+/// Stage s is at the time t + node h: the state plus node h times the slope of stage s - 1. The step adds
+/// weight h times its slope.
 struct KuttaStage {
   double node, weight;
 };

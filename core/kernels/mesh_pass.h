@@ -1,33 +1,34 @@
-// What one pass of a kernel over the particles of a general mesh works on. Plain data only, as in
-// grid_pass.h.
+// The interface of the kernels for general meshes: the input and output of one pass over particles. Plain
+// data only, for the reason given in grid_pass.h. kernels/mesh_layout.h makes the arrays.
 #pragma once
 
 #include "kernels/kernel_table.h"
 
 namespace cloth::kernels {
 
-/// Eight particles in a row make a slice, whatever the width of the registers; some slices make a block.
+/// Eight consecutive particles are a slice, for registers of any width; a block is 16 slices.
 inline constexpr int slice_width = 8, block_slices = 16, block_width = slice_width * block_slices;
 
-/// So many kinds fit into a register.
+/// Springs of equal stiffness (or tension) are a kind; a table of so many fits into an AVX-512 register.
 inline constexpr int max_kinds = 8;
 
-/// All springs at both their ends: slot after slot, each with one spring of every particle of a slice. A lane
-/// without a spring left has padding_index() for its neighbour, with stiffness 0. F_i = (k - k L / |d|) d, d
-/// = x_j - x_i.
+/// All springs, stored once at each of their ends, in slots: a slot holds one spring of each particle of a
+/// slice. Lanes whose particle has no further spring have the neighbour padding_index() and stiffness 0.
+/// F_i = (k - k L / |d|) d, d = x_j - x_i.
 ///
-/// Stiffness and tension stand in full, or are looked up by kind where few different ones occur: `kind` is
-/// null where neither is.
+/// Stiffness and tension are stored for each spring, or looked up by kind where they take few different
+/// values. `kind` is null where neither is looked up.
 struct MeshSlots {
-  const int* slot_begin = nullptr;      ///< slice s has the slots slot_begin[s] to slot_begin[s + 1]
-  const int* neighbour = nullptr;       ///< [slot][lane]: 4 times the number of the other end
+  const int* slot_begin = nullptr;      ///< slice s has the slots slot_begin[s] to slot_begin[s + 1] - 1
+  const int* neighbour = nullptr;       ///< [slot][lane]: 4 times the particle at the other end
   const unsigned char* kind = nullptr;  ///< [slot][lane]
   double stiffness_of_kind[max_kinds]{}, tension_of_kind[max_kinds]{};
   const double* stiffness = nullptr;  ///< [slot][lane]: k, N/m; null: of the kind
   const double* tension = nullptr;    ///< [slot][lane]: k L, N; null: of the kind
 };
 
-/// The vector behind those of all slices: a place where no particle is.
+/// The index of the vector after those of all slices, which holds the position `nowhere`: far from any
+/// particle, so that padding lanes have a finite length.
 constexpr int padding_index(int slices) {
   return slices * slice_width;
 }
@@ -37,7 +38,8 @@ struct FieldPointers {
   double *x = nullptr, *y = nullptr, *z = nullptr;
 };
 
-/// One stage of Runge-Kutta, as step_updates.h has it: `position` and `velocity` of the pass are the stage's.
+/// The data of one stage of Runge-Kutta, see StageUpdate in step_updates.h. The pass's `position` and
+/// `velocity` are those of the stage.
 struct MeshStage {
   double weight = 0, ahead = 0;  ///< s
   bool is_last = false;
@@ -51,35 +53,36 @@ struct MeshPass {
   MeshSlots slots;
   int particles = 0;
   int begin = 0, end = 0;
-  /// By block: the particles up to this one are loaded into `vectors` before it, in whole slices; null: all
-  /// are.
+  /// For each block: before it, particles below this number, a multiple of slice_width, are copied to
+  /// `vectors`; null: all have been copied already.
   const int* load_until = nullptr;
-  bool kicks = false;  ///< Verlet's first half comes before loading
+  bool kicks = false;  ///< do Verlet's kick and drift before copying to `vectors`
   double* vectors =
-      nullptr;  ///< m: x y z 0 of every particle, for whole slices, and nowhere; 64-byte aligned
+      nullptr;  ///< m: x y z 0 of each particle, padded to whole slices, then `nowhere`; 64-byte aligned
   double* velocities = nullptr;  ///< m/s, as `vectors`; only where springs are damped
   FieldPointers position, velocity, force;
   const double* inverse_mass = nullptr;  ///< 1/kg; 0 where pinned
-  FieldPointers load;                    ///< N, of every particle, in addition; may be null
-  double weight[3] = {0, 0, 0};          ///< N, of every particle
+  FieldPointers load;                    ///< N, additional force on each particle; may be null
+  double weight[3] = {0, 0, 0};          ///< N, the same for all particles
   double damping = 0;                    ///< N s/m, viscous
-  double spring_damping = 0;             ///< N s/m, along every spring
+  double spring_damping = 0;             ///< N s/m, dampers along springs
   double mass_of_free = 1;               ///< kg
   double step = 0;                       ///< s
   bool drift_first = false;              ///< explicit Euler: the position follows the old velocity
   MeshStage stage;                       ///< of runge_kutta
-  /// Sums of |v|^2 of each block: those before the step (Runge-Kutta: at the stage), then those after it.
+  /// Output, for each block: sum of |v|^2 in (m/s)^2 before the step (Runge-Kutta: at the stage) and after
+  /// it.
   double* squares[2] = {nullptr, nullptr};
-  double* dampers = nullptr;  ///< W, of each block: what the dampers along the springs take
+  double* dampers = nullptr;  ///< output, for each block: W dissipated by dampers along springs
 };
 
 /// The passes of one instruction set; what they compute is in grid_pass.h.
 struct MeshKernels {
-  /// Takes the positions of the particles [begin, end), whole slices, into `vectors`; after Verlet's first
-  /// half where the pass `kicks`. With damped springs their velocities too.
+  /// Copies the positions of the particles [begin, end), whole slices, to `vectors`, and with damped springs
+  /// the velocities to `velocities`. Where the pass `kicks`, Verlet's kick and drift come first.
   void (*load)(const MeshPass& pass, int begin, int end);
   void (*euler)(const MeshPass& pass);
-  void (*verlet)(const MeshPass& pass);  ///< the half after the force
+  void (*verlet)(const MeshPass& pass);  ///< the closing kick
   void (*verlet_between)(const MeshPass& pass);
   void (*runge_kutta)(const MeshPass& pass);  ///< one stage
   void (*evaluate)(const MeshPass& pass);

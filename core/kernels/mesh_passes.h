@@ -1,9 +1,9 @@
 // The passes of the explicit methods over the particles of a general mesh. Included once for every
 // instruction set, after its Lanes; everything here has internal linkage.
 //
-// A particle's force is summed in registers over all its springs, each of which is computed at both of its
-// ends: that is less work than to bring the force to the other end through memory, and the order of the sum
-// is that of the list, whoever computes what else at the same time.
+// A particle's force is summed in registers over all its springs. Each spring is therefore computed twice,
+// once for each end: this is faster than adding the force to the other end in memory, and the order of the
+// sum does not depend on the number of threads.
 #pragma once
 
 #include "kernels/mesh_pass.h"
@@ -12,7 +12,8 @@
 namespace cloth::kernels {
 namespace {
 
-/// The three ways to come by the springs at a place in a slot: scale(k, kL).
+/// Access to stiffness and tension, for the three ways in which MeshSlots stores them: at() calls
+/// scale(k, kL) with the lanes from index `place` on.
 struct SpringsOfKinds {
   Lanes::Table stiffness, tension;
   const unsigned char* kind;
@@ -74,7 +75,7 @@ void load_vectors(const MeshPass& pass, int begin, int end) {
   for (; j < end; j += Lanes::width) load_block<true>(pass, j, pass.particles - j);
 }
 
-/// `initial` and the springs' forces on the particles of a slice from its lane `part` on.
+/// Adds to `force` the springs' forces on the particles of a slice from its lane `part` on.
 template <class Springs, class Scale>
 CLOTHLAB_INLINE Vector plus_springs(Vector force, const MeshPass& pass, const Springs& springs,
                                     const Vector& here, int slice, int part, const Scale& scale) {
@@ -89,7 +90,7 @@ CLOTHLAB_INLINE Vector plus_springs(Vector force, const MeshPass& pass, const Sp
   return force;
 }
 
-/// The same once more, where a spring may have no length or one whose square is no number.
+/// The same with exact_scale, for springs of length 0 or whose squared length is not finite.
 template <class Springs>
 [[gnu::noinline]] Vector plus_springs_exactly(const Vector& force, const MeshPass& pass,
                                               const Springs& springs, const Vector& here, int slice,
@@ -110,8 +111,8 @@ CLOTHLAB_INLINE Vector mesh_force(const MeshPass& pass, const Springs& springs, 
   return force;
 }
 
-/// The same with dampers along the springs, or these alone. Each of them is met at both its ends: half of
-/// what it takes is added to `loss`.
+/// The same with dampers along the springs, or these alone. Adds half of the power that each damper
+/// dissipates, in W, to `loss`, because every spring is computed at both its ends.
 template <Law law, bool Edge, class Springs>
 CLOTHLAB_INLINE Vector damped_force(const MeshPass& pass, const Springs& springs, const Particles& here,
                                     int slice, int part, int count, V& loss) {
@@ -138,8 +139,8 @@ CLOTHLAB_INLINE Vector damped_force(const MeshPass& pass, const Springs& springs
   return force;
 }
 
-/// before(), then for every slice of the block its force and `update`, then after(block, what the dampers
-/// take).
+/// For each block: before(), then force and `update` for each slice, then after(block, power dissipated by
+/// dampers in W).
 template <Law law, class Update, class Before, class After>
 void mesh_pass(const MeshPass& pass, Update& update, const Before& before, const After& after) {
   with_springs(pass.slots, [&](const auto& springs) {

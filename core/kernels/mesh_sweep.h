@@ -1,4 +1,4 @@
-// The springs of a general mesh in one pass over its particles; see spring_sweep.h and mesh_layout.h.
+// SpringSweep for general meshes; the springs are stored as in mesh_layout.h.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace cloth {
 
 class MeshSweep : public SpringSweep {
  public:
-  /// `system` is not referred to afterwards. For springs without constant offset, F_i = k (|d| - L) d/|d|
-  /// with d = x_j - x_i; 0 where |d| = 0.
+  /// Copies what it needs of `system`. `mass`: see SpringSweep. Springs may join any particles:
+  /// F_i = k (|d| - L) d/|d| with d = x_j - x_i, and 0 where |d| = 0.
   MeshSweep(const ClothSystem& system, std::optional<double> mass);
 
   int threads() const override;
@@ -22,7 +22,7 @@ class MeshSweep : public SpringSweep {
                     ClothState& state) override;
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
-  /// The state need not go into the layout's order and back for every step.
+  /// Several steps at once reorder the state to the layout's order and back only once.
   bool gains_steps_at_once() const override { return !layout_.order.empty(); }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
   double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
@@ -58,15 +58,15 @@ class MeshSweep : public SpringSweep {
                         const kernels::FieldPointers& v);
 
   MeshLayout layout_;
-  ParticleOrder number_;  ///< that undoes the layout's order
+  ParticleOrder number_;  ///< inverse of the layout's order
   const kernels::MeshKernels* kernels_;
   std::vector<double> inverse_mass_;
   AlignedDoubles vectors_;
   AlignedDoubles velocities_;    ///< sized when springs are damped
-  std::vector<double> squares_;  ///< see kernels::MeshPass; five sums, and four of dampers
+  std::vector<double> squares_;  ///< see kernels::MeshPass: five arrays of |v|^2 and four of dampers
   Fields inner_;
   ClothState stage_, sum_;  ///< of Runge-Kutta
-  int sharing_ = 1;         ///< threads of the job that is being done
+  int sharing_ = 1;         ///< threads of the present job
 };
 
 }  // namespace cloth

@@ -1,5 +1,5 @@
-// Computes the springs of a cloth in one pass over its particles, together with the update of an explicit
-// method, so that a whole step reads and writes every particle once. Two implementations: grids
+// Computes the spring forces of a cloth and the update of an explicit method in one pass over the particles,
+// so that a whole step reads and writes every particle once. Two implementations: grids
 // (grid_sweep.h) and general meshes (mesh_sweep.h). Results are bitwise the same for any number of threads.
 #pragma once
 
@@ -31,17 +31,17 @@ struct SweepLoads {
   double damping = 0;               ///< N s/m
   const Vec3Field* load = nullptr;  ///< N, or none
   double spring_damping = 0;        ///< N s/m
-  SweptAir air{};                   ///< only in steps of Euler's and Kutta's, where takes_air()
+  SweptAir air{};                   ///< only for euler() and runge_kutta(), and only if takes_air()
 };
 
-/// What a whole step of an explicit method adds up on its way, over all particles and all springs.
+/// Sums over all particles and springs that a step computes in the same pass.
 struct StepSums {
   double before = 0, after = 0;  ///< of |v|^2, in (m/s)^2
-  double dampers = 0;            ///< W, taken by the dampers along springs before the step
-  double air = 0;                ///< W, given by the air before the step
+  double dampers = 0;            ///< W, dissipated by dampers along springs in the state before the step
+  double air = 0;                ///< W, given by the air in the state before the step
 };
 
-/// Of Runge-Kutta at its four stages.
+/// The same at the four stages of a Runge-Kutta step.
 struct StageSums {
   std::array<double, 4> squares{};  ///< of |v|^2, in (m/s)^2
   std::array<double, 4> dampers{};  ///< W
@@ -51,7 +51,7 @@ struct StageSums {
 
 class SpringSweep {
  public:
-  /// `mass` in kg is that of every particle, if all have the same; the steps below need it.
+  /// `mass` (kg): see common_mass(). euler(), verlet() and runge_kutta() require it.
   explicit SpringSweep(std::optional<double> mass) : mass_(mass) {}
   virtual ~SpringSweep() = default;
 
@@ -64,28 +64,31 @@ class SpringSweep {
   virtual int threads() const = 0;
 
   /// v' = v + h a(x, v), x' = x + h v' (or, drift_first, x + h v). Takes as many steps as there are `sums`,
-  /// with bitwise the same result as single ones. A load is allowed for one step only.
+  /// with bitwise the same result as single steps. With a load only one step is allowed.
   virtual void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                      ClothState& state) = 0;
-  /// Velocity Verlet with centred damping; `force` holds springs + weight at the state's position, before and
-  /// after. No load, no dampers. The sum of |v|^2 after the step.
+  /// One step of velocity Verlet with centred damping. `force` (N) must hold springs + weight at the state's
+  /// position and holds it again afterwards. No load, no dampers along springs. Returns the sum of |v|^2
+  /// after the step, (m/s)^2.
   virtual double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) = 0;
-  /// As many steps of verlet() as there are `squares`, to the bit, but `force` is left alone in between.
+  /// As many steps as there are `squares`, with bitwise the same result as that many calls of verlet().
+  /// Stores the sum of |v|^2 after each step in `squares`.
   virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                             ClothState& state) = 0;
-  /// Kutta's method of order four; as many steps as there are `sums`. No load.
+  /// Kutta's method of order four (kutta.h). Takes as many steps as there are `sums`. No load.
   virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                            ClothState& state) = 0;
+  /// Whether SweepLoads::air is supported.
   virtual bool takes_air() const { return false; }
-  /// Whether several steps of euler() or runge_kutta() in one call cost less than one by one.
+  /// Whether several steps of euler() or runge_kutta() in one call cost less than single steps.
   virtual bool gains_steps_at_once() const = 0;
 
   /// force = springs + weight + load; `load` may be `force`.
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
-  /// to = from; each thread copies the part that it will step.
+  /// to = from. Each thread copies the particles that it will update, so that they are in its cache.
   void copy(const ClothState& from, ClothState& to);
   /// product = D v for dampers of `damping`, in N s/m, along the springs at `position`. Returns the power in
-  /// W that they take from the cloth.
+  /// W that they dissipate.
   virtual double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
   /// The sum of |v|^2, in the order in which the steps add it up.
@@ -96,11 +99,11 @@ class SpringSweep {
   enum class PassKind { step, several_steps, evaluation, dampers, sums, copies };
   static constexpr std::size_t pass_kinds = 6;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
-  /// With fewer particles per thread several threads are not tried: waking them takes as long as the pass.
+  /// Smallest number of particles per thread. With fewer, waking the threads takes as long as the pass.
   static constexpr int fewest_particles = 1000;
 
-  /// job(first, count, threads) for one run of passes after the other, until `passes` are done: as many at
-  /// once as the choice of threads allows.
+  /// Calls job(first, count, threads) until `passes` passes are done; each call does the passes first to
+  /// first + count - 1, as many as ThreadChoice::at_once() allows.
   template <class Job>
   void in_jobs(PassKind kind, std::size_t passes, const Job& job) {
     for (std::size_t done = 0; done < passes;) {
@@ -118,7 +121,7 @@ class SpringSweep {
   struct Begun {
     std::size_t passes = 0;
     int threads = 1;
-    std::chrono::steady_clock::time_point at = {};  ///< where the time is wanted
+    std::chrono::steady_clock::time_point at = {};  ///< start time, if ThreadChoice wants it
   };
   Begun begin_job(PassKind kind, std::size_t passes);
   void end_job(PassKind kind, const Begun& begun);

@@ -1,6 +1,8 @@
-// What the explicit methods do with a force as soon as it is complete: update(j, count, here, force) for the
-// particles from j on, of which there are `count` at an Edge and a whole Lanes elsewhere. Included once for
-// every instruction set, after its Lanes.
+// The updates of the explicit methods, called by the passes of grids and meshes as soon as a force is
+// complete: update(j, count, here, force) for the particles from j on, with their positions `here` (m) and
+// the force (N) of springs, weight and load. There are `count` particles at an Edge and Lanes::width
+// elsewhere. Damping is added here. The sums are of |v|^2, lane by lane. Included once for every instruction
+// set, after its Lanes.
 #pragma once
 
 #include "kernels/kutta.h"
@@ -65,7 +67,8 @@ CLOTHLAB_INLINE void kick_drift_block(const Row& x, const Row& v, const ConstRow
   store<Edge>(x, j, count, plus(load_part<Edge>(x, j, count), step, half));
 }
 
-/// The end of one step of Verlet and the beginning of the next, by the same operations as in two passes.
+/// The closing kick of one step of Verlet, then kick and drift of the next, with the same operations in the
+/// same order as VerletUpdate and kick_drift_block.
 struct VerletBetweenUpdate {
   V half_step, step, centred, damping;
   Row position, velocity;
@@ -94,7 +97,7 @@ struct EvaluateUpdate {
   }
 };
 
-/// D v, from the force of the dampers alone.
+/// product = D v = minus the force of the dampers along springs.
 struct DampUpdate {
   Row product;
 
@@ -105,8 +108,8 @@ struct DampUpdate {
   }
 };
 
-/// One stage of Runge-Kutta: the sums so far move on by `weight` h, the next stage stands `ahead` h from the
-/// state along this one's slope.
+/// One stage of Runge-Kutta: adds `weight` (s) times the stage's slope to the sums, and computes the next
+/// stage, which is `ahead` (s) along this slope from the state at the beginning of the step.
 struct StageUpdate {
   V weight, ahead, damping;
   bool is_last;

@@ -1,5 +1,5 @@
-// A team of threads that run one job together, many times. Between jobs they spin for a moment, since the
-// next step of a simulation follows within microseconds, and then sleep.
+// A team of threads for parallel loops that are repeated many times. Between two jobs the threads spin for a
+// short time, because the next step of a simulation usually follows within microseconds, and then sleep.
 #pragma once
 
 #include <atomic>
@@ -9,12 +9,13 @@
 
 namespace cloth {
 
-/// The progress of one thread of a job, for others that need its results.
+/// A counter of the progress of one thread, on which other threads wait for its results.
 class alignas(64) Milestone {
  public:
-  /// Before the job.
+  /// Resets the counter to 0. Call it before the job.
   void begin() { reached_.store(0, std::memory_order_relaxed); }
-  /// By the one thread whose milestone it is. Who awaits `number`, or one before, sees what came before this.
+  /// Called by the owning thread only. What it wrote before is visible to threads that have awaited `number`
+  /// or a smaller one (release and acquire).
   void reach(int number);
   /// Returns when `number` has been reached.
   void await(int number) const;
@@ -25,8 +26,8 @@ class alignas(64) Milestone {
 
 class WorkerTeam {
  public:
-  /// The caller of run() is one of the `size` threads. Where the system gives fewer threads, or has no
-  /// address space for their stacks, the team is smaller. Precondition: size >= 1.
+  /// The caller of run() counts as one of the `size` threads. The team is smaller if the system cannot start
+  /// so many threads. Precondition: size >= 1.
   explicit WorkerTeam(int size);
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;
@@ -34,8 +35,8 @@ class WorkerTeam {
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// job(share) for every share in [0, shares), each on a thread of its own, and returns when all are done.
-  /// Precondition: shares <= size(), and no two threads call it at once. Jobs must not throw.
+  /// Calls job(share) for each share in [0, shares), each on its own thread, and returns when all are done.
+  /// Preconditions: shares <= size(); only one thread calls it at a time; job does not throw.
   template <class Job>
   void run(int shares, const Job& job) {
     start(

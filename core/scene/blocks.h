@@ -20,12 +20,13 @@ struct OptionalBlock {
 };
 
 struct BlockRow {
-  std::string path;     ///< its identity; its parameters have it before their keys, but for "run" and "title"
-  int file_place = 0;   ///< the rows' ascending order in a file; in the table it is that of a form
-  std::string title{};  ///< of its section in a form; empty: it has none of its own
-  std::string doc{};    ///< one sentence
+  std::string path;  ///< identifies the block; prefix of its parameters' paths, except for "run" and "title"
+  int file_place = 0;      ///< ascending order in a file; the order of the table is that of forms
+  std::string title{};     ///< of its section in a form; empty: no section
+  std::string doc{};       ///< one sentence
   std::string mesh_doc{};  ///< in place of `doc` where the cloth is a mesh
-  /// Bound to a scene like this one, which need not have the block. Empty for "obstacles", a list.
+  /// The parameters for scenes of this kind (grid or mesh, method); the scene need not have the block. Empty
+  /// for "obstacles", a list.
   std::function<std::vector<Parameter>(const Scene&)> parameters{};
   std::function<bool(const Scene&)> is_present{};
   std::optional<OptionalBlock> optional{};  ///< none: every scene has it
@@ -37,7 +38,7 @@ const std::vector<BlockRow>& block_rows();
 /// In the order of a file.
 const std::vector<const BlockRow*>& block_rows_of_file();
 
-/// One stage of a step, as `explain` tells it.
+/// One stage of a step, for the command `explain`.
 struct StageInfo {
   std::string name;
   bool present = false;
@@ -47,10 +48,12 @@ struct StageInfo {
 /// The text of `explain` for a stage whose block the scene does not have; none where it has the block.
 std::optional<StageInfo> absent_stage(const std::string& stage, const Scene& scene, const std::string& block);
 
-/// "springs" of "springs.shear", "" of "damping": the object of a file in which a parameter or block stands.
+/// The path of the JSON object that contains a parameter or block: "springs" for "springs.shear", "" for
+/// "damping".
 std::string parent_path(const std::string& path);
 
-/// Binds the fields of the Owner that `owner_of` finds in a scene.
+/// Turns fields of an Owner (such as Air) into parameters of a scene: `owner_of` returns the scene's Owner,
+/// and `prefix` is the path before the fields' keys.
 template <class Owner, class OwnerOf>
 std::vector<Parameter> bound(const std::string& prefix, const Fields<Owner>& fields, OwnerOf owner_of) {
   std::vector<Parameter> parameters;

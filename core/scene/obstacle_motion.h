@@ -1,4 +1,4 @@
-// The motion that the scene gives to an obstacle: constant velocity and spin, or keyframes.
+// The motion of an obstacle as the scene describes it: constant velocity and spin, or keyframes.
 #pragma once
 
 #include "geometry/rigid_motion.h"

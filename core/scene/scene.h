@@ -1,5 +1,6 @@
-// A scene is a value: everything that decides a run, and nothing else. Window, command line, tests and
-// benchmarks start from the same scenes. An absent block is absent physics. SI units throughout.
+// A scene is a value that determines a run completely: cloth, forces, obstacles, method, duration. The
+// window, the command line, tests and benchmarks all start from scenes. An optional block that is absent
+// leaves out that force or constraint. SI units throughout. docs/parameters.md describes every value.
 #pragma once
 
 #include <optional>
@@ -12,9 +13,9 @@
 
 namespace cloth {
 
-/// wind * (1 + amplitude * sin(2 pi frequency t))
+/// The wind at time t: wind * (1 + amplitude * sin(2 pi frequency t)).
 struct Gust {
-  double amplitude = 0.5;
+  double amplitude = 0.5;  ///< relative to the wind
   double frequency = 0.7;  ///< Hz
   bool operator==(const Gust&) const = default;
 };
@@ -27,7 +28,8 @@ struct Air {
   bool operator==(const Air&) const = default;
 };
 
-/// Provot's deformation rate: the largest elongation (|d| - L)/L that limited springs may keep.
+/// The deformation limiter (Provot 1995): after each step the strain (|d| - L)/L of limited springs is at
+/// most `rate`.
 struct Deformation {
   double rate = 0.1;
   Words springs{"structural", "shear"};
@@ -37,17 +39,17 @@ struct Deformation {
   bool operator==(const Deformation&) const = default;
 };
 
-/// A shape of obstacles is a class (scene/obstacle_shape.h), of which there is one instance.
+/// Each shape of obstacle is a class with one instance (scene/obstacle_shape.h); pointers to it identify it.
 class ObstacleShape;
 using Shape = const ObstacleShape*;
 const ObstacleShape& sphere_shape();
 
-/// Where a moving obstacle is at a time: its pivot (center or point) and its turn from how the scene
-/// describes it.
+/// The position of a moving obstacle's pivot (center or point) at a time, and its rotation relative to the
+/// orientation that the scene describes.
 struct Keyframe {
   double time = 0;         ///< s
   Vec3 position{0, 0, 0};  ///< m
-  Vec3 rotation{0, 0, 0};  ///< rad, along the axis
+  Vec3 rotation{0, 0, 0};  ///< rotation vector, rad
   bool operator==(const Keyframe&) const = default;
 };
 
@@ -63,23 +65,23 @@ struct Obstacle {
   MeshChoice mesh = {};
   double scale = 1;
   Vec3 rotate{0, 0, 0};     ///< degrees about x, then y, then z
-  Vec3 translate{0, 0, 0};  ///< m, after scaling and turning
+  Vec3 translate{0, 0, 0};  ///< m, after scaling and rotation
   std::string response = "coulomb";
   double friction = 0.3;
   double restitution = 0;
   Vec3 velocity{0, 0, 0};                ///< m/s
-  Vec3 spin{0, 0, 0};                    ///< rad/s along the axis, about the pivot
+  Vec3 spin{0, 0, 0};                    ///< angular velocity about the pivot, rad/s
   std::vector<Keyframe> keyframes = {};  ///< ascending in time; with any, velocity and spin are ignored
   bool operator==(const Obstacle&) const = default;
 };
 
-/// Makes contact continuous: nothing comes through.
+/// Turns on continuous contact with obstacles (contact/continuous_contact.h).
 struct ContactSettings {
   double thickness = 0.005;  ///< m, kept between cloth and obstacles
   bool operator==(const ContactSettings&) const = default;
 };
 
-/// The cloth does not pass through itself.
+/// Turns on continuous contact of the cloth with itself.
 struct SelfContact {
   double thickness = 0.004;  ///< m
   double friction = 0.3;
@@ -91,9 +93,9 @@ struct IntegratorChoice {
   std::string method = "verlet";
   std::optional<double> time_step = {};  ///< s; absent: "auto", 80 % of the method's stability limit
   double tolerance = 1e-6;  ///< dormand-prince: of a step's error; Newton's method: of its last change
-  std::int64_t newton_iterations = 500;     ///< most of a step
-  std::int64_t projective_iterations = 10;  ///< local and global, of a step
-  std::int64_t xpbd_iterations = 1;         ///< over all springs, of a substep
+  std::int64_t newton_iterations = 500;     ///< largest number in a step
+  std::int64_t projective_iterations = 10;  ///< local and global solves in each step
+  std::int64_t xpbd_iterations = 1;         ///< passes over all springs in each substep
   std::int64_t substeps = 10;               ///< xpbd
   bool operator==(const IntegratorChoice&) const = default;
 };
@@ -117,7 +119,7 @@ struct Scene {
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;
-  SceneFolder folder;  ///< no part of the file
+  SceneFolder folder;  ///< for relative paths of mesh files; not written to the file
   bool operator==(const Scene&) const = default;
 };
 

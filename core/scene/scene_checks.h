@@ -1,4 +1,4 @@
-// The rules that a scene must keep, whatever it was made from.
+// The rules for valid scenes, for scenes from files, forms and code alike.
 #pragma once
 
 #include <optional>
@@ -9,18 +9,18 @@
 
 namespace cloth {
 
-/// Every broken rule, without places. Empty: the scene can be assembled.
+/// All broken rules, without places in a file. If there are none, the scene can be assembled.
 std::vector<Problem> find_problems(const Scene& scene);
 
-/// What is unusual about a scene that can be assembled all the same, a sentence each: of its meshes
-/// (mesh_notices), and thicknesses that are next to nothing beside the cloth's cells.
+/// Warnings about a valid scene, a sentence each: about its meshes (mesh_notices), and about thicknesses that
+/// are very small compared to the cloth's cells.
 std::vector<std::string> scene_notices(const Scene& scene);
 
 /// A run of more steps is refused: at 10 ns a step it would take hours for a single particle.
 inline constexpr double max_steps_of_run = 1e12;
 
-/// The rule that a run of `duration` in steps of `time_step` breaks, in words; nothing if it has at most
-/// max_steps_of_run. Reckoned in doubles, in which no quotient is too large.
+/// A message if a run of `duration` (s) in steps of `time_step` (s) has more than max_steps_of_run steps;
+/// otherwise nullopt.
 std::optional<std::string> too_many_steps(double duration, double time_step);
 
 }  // namespace cloth

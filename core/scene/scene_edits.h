@@ -1,4 +1,5 @@
-// What changed between two scenes, parameter by parameter, for logs; and such changes put in again.
+// The differences between two scenes, parameter by parameter, for the log of edits, and their application to
+// a scene.
 #pragma once
 
 #include <string>
@@ -9,15 +10,16 @@
 namespace cloth {
 
 struct SceneEdit {
-  std::string path;   ///< of a parameter, a block that came or went, or "cloth.pins"
-  std::string value;  ///< JSON: the new value; "null" for a block that went
+  std::string path;   ///< of a parameter, of a block that was added or removed, or "cloth.pins"
+  std::string value;  ///< JSON: the new value; "null" for a removed block
 };
 
 /// The edits that lead from `before` to `after`.
 std::vector<SceneEdit> edits_between(const Scene& before, const Scene& after);
 
-/// The way back: `scene` with all of `edits`, checked as a file is. Edits found between two scenes that can
-/// be run lead from the one to what write_scene writes of the other. Problems have the scene's paths.
+/// Applies `edits` to `scene` and checks the result like a scene file. For two valid scenes,
+/// edited_scene(before, edits_between(before, after)) is the scene that write_scene(after) describes.
+/// Problems name the scene's paths.
 SceneReading edited_scene(const Scene& scene, const std::vector<SceneEdit>& edits);
 
 }  // namespace cloth

@@ -23,19 +23,19 @@ struct Override {
 /// "springs.structural=500" as an override; nullopt without "=".
 std::optional<Override> parse_override(const std::string& text);
 
-/// A scene, or why there is none. Exactly one of the two is there.
+/// A scene, or the problems because of which there is none: exactly one of the two.
 struct SceneReading {
   std::optional<Scene> scene;
   std::vector<Problem> problems;
 };
 
-/// Where the mesh files of a scene are found.
+/// Where read_scene finds the mesh files of a scene.
 struct MeshSource {
   std::optional<SceneFolder> folder = {};  ///< none: that of `place`
-  const Scene* known = nullptr;            ///< whose meshes need not be read again where they are the same
+  const Scene* known = nullptr;            ///< meshes that this scene has already are not read again
 };
 
-/// What must hold of a scene beside the reader's own rules.
+/// An additional check of a scene; returns its problems.
 using SceneCheck = std::function<std::vector<Problem>(const Scene&)>;
 
 /// `place` names the text in messages. `further` looks at a scene that has no other problem; its problems get

@@ -37,8 +37,8 @@ struct SceneFolder {
 /// it. Returns a problem for each mesh that cannot be used.
 std::vector<Problem> load_meshes(Scene& scene, const Scene* known = nullptr);
 
-/// What is unusual about the scene's meshes (a cloth may have a border), a sentence each: `obstacles.0.file =
-/// "bunny.obj": ...`
+/// Warnings about the scene's meshes, a sentence each (a border is unusual only for obstacles):
+/// `obstacles.0.file = "bunny.obj": ...`
 std::vector<std::string> mesh_notices(const Scene& scene);
 
 /// The files that the scene's meshes were read from; built-in ones have none.

@@ -77,6 +77,7 @@ class ContinuousContact : public ContactStage {
   bool may_come_near() const;
   void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& integrated);
   RoundsEnd go_rounds(const ClothSystem& system, const Vec3Field& from, double step, ContactReport& report);
+  /// Keeps of each particle only the contacts of the last substep in which it had an impulse.
   void drop_superseded_touches(const Vec3Field& from, double step);
   void separate_all();
   void solve_target(const ClothSystem& system, const Vec3Field& from);
@@ -112,6 +113,8 @@ class ContinuousContact : public ContactStage {
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
   void bounce(const ContactStep& step, bool follows, ClothState& state);
   void remember(const ClothSystem& system, const ClothState& state, bool follows, ContactMemory& memory);
+  /// Limits the speed of particles that did not reach their target position to their actual displacement in
+  /// the step, and returns their number.
   int limit_held_back(const ContactStep& step, ClothState& state);
 
   Surface surface_;

@@ -39,7 +39,7 @@ bool can_be_compressed(const std::vector<Obstacle>& obstacles) {
 }
 
 /// In [0, 1), evenly distributed over the particles (Knuth's multiplicative hash).
-double stagger_of(int particle) {
+double perturbation_of(int particle) {
   return static_cast<double>(static_cast<std::uint32_t>(particle) * 2654435761u) * 0x1p-32;
 }
 
@@ -51,7 +51,7 @@ bool needs_stagger(const std::vector<Obstacle>& obstacles, const Surface& surfac
 
 double staggered(double thickness, int particle) {
   constexpr double most = 0.005;  // of the thickness
-  return thickness * (1 + most * stagger_of(particle));
+  return thickness * (1 + most * perturbation_of(particle));
 }
 
 }  // namespace cloth

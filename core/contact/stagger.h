@@ -1,6 +1,6 @@
-// Small differences between the distances that an obstacle keeps to the particles of a cloth that started
-// flat. A cloth that lies exactly flat never buckles, however it is compressed, because no force leads out of
-// its plane.
+// Perturbs the contact thickness from particle to particle for a cloth that starts flat. A cloth that lies
+// exactly in a plane does not buckle under compression, because no force has a component out of the plane;
+// the perturbation breaks this symmetry.
 #pragma once
 
 #include <vector>
@@ -10,12 +10,12 @@
 
 namespace cloth {
 
-/// Whether a cloth with these initial positions, in m, is flat and can be compressed: between an obstacle at
-/// rest and one that moves.
+/// Whether a cloth with the initial positions `start` (m) is flat and can be compressed between an obstacle
+/// at rest and one that moves.
 bool needs_stagger(const std::vector<Obstacle>& obstacles, const Surface& surface, const Vec3Field& start);
 
-/// The distance that an obstacle at rest keeps to a particle: up to half a per cent more than `thickness`, in
-/// m.
+/// The thickness (m) that an obstacle at rest keeps to this particle: `thickness` increased by a
+/// pseudo-random part of up to 0.5 %.
 double staggered(double thickness, int particle);
 
 }  // namespace cloth

@@ -24,7 +24,7 @@ std::vector<std::string> comparison_row(const LockStep& lockstep);
 
 class ComparisonRecorder {
  public:
-  /// Claims the folder, writes comparison.json and begins the files; `lockstep` stands at a common time.
+  /// Claims the folder, writes comparison.json and begins the files; `lockstep` is at a common time.
   std::optional<IoError> open(const std::filesystem::path& folder, const LockStep& lockstep);
 
   /// In a folder that is claimed and outlives the recorder.

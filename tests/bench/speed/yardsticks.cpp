@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "bench/speed/scalar_roots.h"
+#include "kernels/kernel_table.h"
 #include "kernels/worker_team.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define CLOTHLAB_FOR_TARGET(name) __attribute__((target(name)))
-#define CLOTHLAB_INLINE inline __attribute__((always_inline))
-#else
-#define CLOTHLAB_INLINE inline
 #endif
 
 namespace cloth::speed {

@@ -214,6 +214,29 @@ void set_shared_value(Comparison& comparison, const std::string& path, const Par
   load_meshes(comparison.scene);
 }
 
+Comparison moved_to_folder(const Comparison& comparison, const std::string& folder) {
+  Comparison moved = comparison;
+  moved.scene = moved_to_folder(comparison.scene, folder);
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i) {
+    const Scene from = scene_of(comparison, i), to = moved_to_folder(from, folder);
+    for (OwnValue& own : moved.panes[i].own) {
+      const auto parameter = find_parameter(from, own.path);
+      if (parameter && parameter->get(from) != parameter->get(to)) own.value = parameter->get(to);
+    }
+  }
+  return moved;
+}
+
+std::vector<std::string> mesh_files(const Comparison& comparison) {
+  std::set<std::string> files;
+  const auto add = [&](const Scene& scene) {
+    for (const std::string& file : mesh_files(scene)) files.insert(file);
+  };
+  add(comparison.scene);
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i) add(scene_of(comparison, i));
+  return {files.begin(), files.end()};
+}
+
 std::size_t duplicate_pane(Comparison& comparison, std::size_t pane) {
   assert(comparison.panes.size() < max_panes);
   Pane copy = comparison.panes[pane];

@@ -94,6 +94,12 @@ void set_shared(Pane& pane, const std::string& path);
 /// Sets the shared value; panes that have their own keep it. A parameter that the shared scene has.
 void set_shared_value(Comparison& comparison, const std::string& path, const ParameterValue& value);
 
+/// The same comparison for a file in another folder: files, own ones too, are named as seen from there.
+Comparison moved_to_folder(const Comparison& comparison, const std::string& folder);
+
+/// The files that meshes of the shared scene and of the panes were read from, each once.
+std::vector<std::string> mesh_files(const Comparison& comparison);
+
 // --- Panes ---
 
 /// A copy of the pane under the first free name, after it; its index. Precondition: less than four panes.

@@ -23,11 +23,14 @@ struct ComparisonReading {
   std::vector<Problem> problems;
 };
 
-/// `place` names the text in messages; `overrides` set parameters of the shared scene.
+/// `place` names the text in messages; its folder is that of meshes, if no other is given. `overrides` set
+/// parameters of the shared scene.
 ComparisonReading read_comparison(const std::string& text, const std::string& place,
-                                  const std::vector<Override>& overrides = {});
+                                  const std::vector<Override>& overrides = {},
+                                  const std::optional<SceneFolder>& folder = {});
 
-/// Writes every value, the scene in full, with numbers that read back to the same bits.
+/// Writes every value, the scene in full, with numbers that read back to the same bits. A comparison for a
+/// file goes through moved_to_folder() first.
 std::string write_comparison(const Comparison& comparison);
 
 /// JSON Schema (draft 7) of the file.

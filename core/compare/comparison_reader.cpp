@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "compare/comparison_json.h"
@@ -22,8 +23,8 @@ const std::vector<std::string> pane_keys{"name", "title", "own"};
 /// Reads own values through the reader of scenes: a pane's scene is the shared one with its values set.
 class ComparisonReader : public JsonReader<json> {
  public:
-  ComparisonReader(std::string place, const std::vector<Override>& overrides)
-      : place_(std::move(place)), overrides_(overrides) {}
+  ComparisonReader(std::string place, const std::vector<Override>& overrides, SceneFolder folder)
+      : place_(std::move(place)), overrides_(overrides), meshes_{.folder = std::move(folder)} {}
 
   Comparison read(const json& root) {
     Comparison comparison;
@@ -51,7 +52,7 @@ class ComparisonReader : public JsonReader<json> {
                                    fmt::join(names, ", ")));
       }
       scene_text_ = builtin->text;
-      meshes_.folder = SceneFolder{.path = "", .built_in = true};
+      meshes_.folder->built_in = true;
     } else if (value.is_object()) {
       scene_text_ = value.dump(-1, ' ', false, json::error_handler_t::replace);
     } else {
@@ -130,10 +131,12 @@ class ComparisonReader : public JsonReader<json> {
 }  // namespace
 
 ComparisonReading read_comparison(const std::string& text, const std::string& place,
-                                  const std::vector<Override>& overrides) {
+                                  const std::vector<Override>& overrides,
+                                  const std::optional<SceneFolder>& folder) {
   if (auto problem = syntax_problem(text, place)) return {std::nullopt, {std::move(*problem)}};
   const JsonLocations locations = locate_json(text);
-  ComparisonReader reader(place, overrides);
+  const std::string beside = std::filesystem::path(place).parent_path().string();
+  ComparisonReader reader(place, overrides, folder.value_or(SceneFolder{beside}));
   reader.problems = locations.repetitions();
   Comparison comparison = reader.read(json::parse(text));
   if (reader.problems.empty()) reader.problems = find_problems(comparison);

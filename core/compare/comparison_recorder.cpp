@@ -6,7 +6,6 @@
 
 #include "compare/comparison_json.h"
 #include "io/machine.h"
-#include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 
 namespace cloth {
@@ -89,7 +88,7 @@ FolderUse comparison_use(const Comparison& comparison) {
   FolderUse use{.kind = "comparison",
                 .files = {"comparison.json", "compare.csv", "compare.svg", "report.html", "summary.json"}};
   for (const std::string& name : names_of(comparison)) use.files.push_back(name + ".csv");
-  for (const std::string& mesh : mesh_files(comparison.scene)) use.inputs.emplace_back(mesh);
+  for (const std::string& mesh : mesh_files(comparison)) use.inputs.emplace_back(mesh);
   return use;
 }
 
@@ -102,7 +101,8 @@ std::optional<IoError> ComparisonRecorder::open(const std::filesystem::path& fol
 std::optional<IoError> ComparisonRecorder::open(ResultFolder& folder, const LockStep& lockstep) {
   folder_ = &folder;
   part_ = 0;
-  if (auto error = folder.write("comparison.json", write_comparison(as_run(lockstep)))) return error;
+  const Comparison moved = moved_to_folder(as_run(lockstep), folder.path().string());
+  if (auto error = folder.write("comparison.json", write_comparison(moved))) return error;
   return open_part(lockstep);
 }
 

@@ -187,13 +187,17 @@ Scene moved_to_folder(const Scene& scene, const std::string& folder) {
   Scene moved = scene;
   moved.folder = {folder};
   std::error_code error;
-  const fs::path from = fs::absolute(fs::path(scene.folder.path), error),
-                 to = fs::absolute(fs::path(folder), error);
+  // ".." leads up from where a link points to, not from where it lies.
+  const auto whole = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::current_path(error) / path, error);
+  };
+  const fs::path from(scene.folder.path), to = whole(folder);
   for_each_mesh(moved, [&](const std::string&, MeshChoice& mesh) {
     if (!mesh.is_loaded() || mesh.loaded->built_in || fs::path(mesh.file).is_absolute()) return;
-    const fs::path seen = (from / mesh.file).lexically_normal().lexically_relative(to.lexically_normal());
+    const fs::path file = from / mesh.file;
+    const fs::path seen = (whole(file.parent_path()) / file.filename()).lexically_relative(to);
     auto renamed = std::make_shared<LoadedMesh>(*mesh.loaded);
-    mesh.file = renamed->file = (seen.empty() ? from / mesh.file : seen).generic_string();
+    mesh.file = renamed->file = (seen.empty() ? file : seen).generic_string();
     mesh.loaded = std::move(renamed);
   });
   return moved;

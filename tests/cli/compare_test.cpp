@@ -50,6 +50,21 @@ TEST(Compare, PrintsTheRankedTable) {
   EXPECT_TRUE(has(result.output, "tolerance 1e-11")) << result.output;
 }
 
+TEST(Compare, RecordsWhereItsMeshesAre) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "in");
+  ASSERT_FALSE(
+      write_text_file(folder / "in/sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n"));
+  ASSERT_FALSE(write_text_file(folder / "in/x.compare.json",
+                               R"({"scene": {"cloth": {"mesh": "sheet.obj"}, "duration": 0.1},
+                                   "panes": [{}, {"own": {"integrator.method": "rk4"}}]})"));
+  const CommandResult first = shell("cd '" + (folder / "in").string() +
+                                    "' && \"$CLI\" compare x.compare.json " + out(folder, "a/results"));
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  const CommandResult again = cli("compare '" + (folder / "a/results/comparison.json").string() + "'");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
 TEST(Compare, RunsItsOwnFolderAgain) {
   const TemporaryFolder folder;
   ASSERT_EQ(cli(quick + out(folder)).exit_code, 0);

@@ -36,6 +36,20 @@ TEST(Run, LeavesItsFourFilesInTheFolder) {
   EXPECT_TRUE(has(result.output, "finished"));
 }
 
+TEST(Run, OfAFileInTheCurrentFolderRecordsWhereItsMeshIs) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "in");
+  ASSERT_FALSE(
+      write_text_file(folder / "in/sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n"));
+  ASSERT_FALSE(
+      write_text_file(folder / "in/x.scene.json", R"({"cloth": {"mesh": "sheet.obj"}, "duration": 0.1})"));
+  const CommandResult first =
+      shell("cd '" + (folder / "in").string() + "' && \"$CLI\" run x.scene.json " + out(folder, "a/result"));
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  const CommandResult again = cli("run '" + (folder / "a/result/scene.json").string() + "'");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
 TEST(Run, SaysProgressOnStandardErrorAndTheResultOnStandardOutput) {
   const CommandResult result = cli(short_run);
   EXPECT_EQ(result.exit_code, 0);

@@ -8,9 +8,11 @@
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
 #include "compare/comparison_log.h"
+#include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/time_step.h"
 #include "study/reference_solution.h"
+#include "support/files.h"
 #include "support/scenes.h"
 
 namespace cloth::test::comparison_test {
@@ -247,6 +249,32 @@ TEST(AComparisonFile, NamesItsPanesInOrderWhereItDoesNot) {
   EXPECT_EQ(reading.comparison->panes[1].name, "B");
   EXPECT_EQ(reading.comparison->reference, controlled_reference);
   EXPECT_EQ(reading.comparison->scene, builtin_scene("flag"));
+}
+
+TEST(AComparisonFile, NamesItsMeshesAsSeenFromWhereItIsWritten) {
+  const TemporaryFolder folder;
+  for (const char* name : {"meshes", "elsewhere/deep"}) std::filesystem::create_directories(folder / name);
+  const std::string faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  ASSERT_FALSE(write_text_file(folder / "meshes/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces));
+  ASSERT_FALSE(write_text_file(folder / "meshes/b.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\n" + faces));
+  const ComparisonReading reading = read_comparison(
+      R"({"scene": {"cloth": {}, "obstacles": [
+                     {"shape": "mesh", "file": "meshes/a.obj", "translate": [0, -9, 0]}]},
+          "panes": [{}, {"own": {"obstacles.0.file": "meshes/b.obj"}}]})",
+      "x.compare.json", {}, SceneFolder{folder.path().string()});
+  ASSERT_TRUE(reading.comparison) << reading.problems.front().text();
+  EXPECT_EQ(mesh_files(*reading.comparison), Texts({folder / "meshes/a.obj", folder / "meshes/b.obj"}));
+
+  const std::filesystem::path file = folder / "elsewhere/deep/y.compare.json";
+  const Comparison moved = moved_to_folder(*reading.comparison, file.parent_path().string());
+  EXPECT_EQ(moved.scene.obstacles.front().mesh.file, "../../meshes/a.obj");
+  EXPECT_EQ(std::get<std::string>(*own_value(moved.panes[1], "obstacles.0.file")), "../../meshes/b.obj");
+  const ComparisonReading again = read_comparison(write_comparison(moved), file.string());
+  ASSERT_TRUE(again.comparison) << again.problems.front().text();
+  EXPECT_EQ(*again.comparison, moved);
+  for (std::size_t pane = 0; pane < 2; ++pane)
+    EXPECT_EQ(scene_of(*again.comparison, pane).obstacles.front().mesh.loaded->hash,
+              scene_of(*reading.comparison, pane).obstacles.front().mesh.loaded->hash);
 }
 
 TEST(AComparisonFile, TakesOverridesOfTheSharedSceneAlone) {

@@ -7,11 +7,8 @@
 
 #include "io/machine.h"
 #include "io/process.h"
-#include "main_window/compare_window.h"
-#include "main_window/lab_files.h"
 #include "main_window/main_window.h"
 #include "main_window/stop_signals.h"
-#include "scene/builtin_scenes.h"
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
 
@@ -55,8 +52,10 @@ int run(int argc, char** argv) {
   QCommandLineParser parser;
   parser.setApplicationDescription("A desktop lab for cloth simulation.");
   parser.addPositionalArgument(
-      "file", "A scene, session or comparison (.compare.json), or the name of a built-in one.",
-      "[SCENE|SESSION|COMPARISON]");
+      "file",
+      "A scene, session, comparison, mesh (.obj) or study's folder, or the name of a built-in scene or "
+      "comparison.",
+      "[FILE]");
   parser.addHelpOption();
   parser.addVersionOption();
   parser.process(application);
@@ -65,20 +64,12 @@ int run(int argc, char** argv) {
   clothlab::apply_theme(application);
   application.setWindowIcon(clothlab::icon("clothlab"));
 
-  // Leaving the event loop destroys the window, and that finishes recordings and studies.
   const clothlab::StopSignals stop_signals([] { QApplication::exit(130); });
-  const QString wanted = parser.positionalArguments().value(0);
-  if (clothlab::is_comparison_name(wanted)) {
-    clothlab::CompareWindow window;
-    window.show();
-    window.openComparison(wanted);
-    return QApplication::exec();
-  }
-  clothlab::MainWindow window;
-  window.show();
-  window.openScene(cloth::default_scene_name);
-  if (!wanted.isEmpty()) window.openScene(wanted);
-  return QApplication::exec();
+  clothlab::open_first_window(parser.positionalArguments().value(0));
+  const int exit_code = QApplication::exec();
+  // A signal leaves windows open: they finish recordings and studies.
+  for (const clothlab::LabWindow* window : clothlab::LabWindow::all()) delete window;
+  return exit_code;
 }
 
 }  // namespace

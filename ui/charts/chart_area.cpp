@@ -43,10 +43,13 @@ QString ChartArea::exportCsv(const QString& path) const {
   return save_csv(path, record_, csv_columns(), stack_.shown_times());
 }
 
-void ChartArea::saveAs() {
-  save_charts_by_dialog(this, [this](const QString& path, const QString& ending) {
-    return ending == "png" ? exportPng(path) : ending == "svg" ? exportSvg(path) : exportCsv(path);
-  });
+QString ChartArea::save(const QString& path) {
+  const QString suffix = suffix_of(path);
+  return suffix == ".png" ? exportPng(path) : suffix == ".svg" ? exportSvg(path) : exportCsv(path);
+}
+
+std::vector<FileKind> ChartArea::kinds() {
+  return {{tr("Picture"), {".png"}}, {tr("Drawing"), {".svg"}}, {tr("Points"), {".csv"}}};
 }
 
 void ChartArea::data_changed() {

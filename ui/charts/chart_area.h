@@ -11,6 +11,7 @@
 
 #include "charts/chart_export.h"
 #include "charts/chart_stack.h"
+#include "document/save_dialog.h"
 
 namespace clothlab {
 
@@ -29,13 +30,15 @@ class ChartArea : public QWidget {
   /// The recorded points of the times shown, 17 significant digits, one header row with units (see
   /// chart_export.h).
   QString exportCsv(const QString& path) const;
-  /// Asks for a file name; the ending chooses PNG, SVG or CSV.
-  void saveAs();
+  /// Saves as PNG, SVG or CSV, by the path's suffix; empty, or what went wrong.
+  QString save(const QString& path);
+  static std::vector<FileKind> kinds();  ///< those three
 
   const ChartRecord& record() const { return record_; }
 
  Q_SIGNALS:
   void liveChanged(bool live);
+  void saveWanted();  ///< the panel's Save button was clicked
 
  protected:
   ChartArea(ChartRecord record, TimeView::Span span, QSize export_size, QWidget* parent);

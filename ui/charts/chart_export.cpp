@@ -2,10 +2,7 @@
 
 #include <QBuffer>
 #include <QCoreApplication>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QImage>
-#include <QMessageBox>
 #include <QPainter>
 #include <QSvgGenerator>
 #include <charconv>
@@ -179,22 +176,6 @@ QString save_csv(const QString& path, const ChartRecord& record, const std::vect
                draw_first ? std::optional(d++) : std::nullopt);
   }
   return written(path, csv);
-}
-
-void save_charts_by_dialog(QWidget* parent,
-                           const std::function<QString(const QString& path, const QString& ending)>& save) {
-  const QString png = tr("Picture (*.png)"), svg = tr("Drawing (*.svg)"), csv = tr("Points (*.csv)");
-  QString filter = png;
-  QString path = QFileDialog::getSaveFileName(parent, tr("Save charts"), QStringLiteral("charts"),
-                                              QStringList{png, svg, csv}.join(";;"), &filter);
-  if (path.isEmpty()) return;
-  QString ending = QFileInfo(path).suffix().toLower();
-  if (ending != "png" && ending != "svg" && ending != "csv") {
-    ending = filter == png ? "png" : filter == svg ? "svg" : "csv";
-    path += "." + ending;
-  }
-  const QString problem = save(path, ending);
-  if (!problem.isEmpty()) QMessageBox::warning(parent, tr("Save charts"), problem);
 }
 
 }  // namespace clothlab

@@ -6,12 +6,9 @@
 #include <QFont>
 #include <QSize>
 #include <QString>
-#include <functional>
 #include <vector>
 
 #include "charts/chart_record.h"
-
-class QWidget;
 
 namespace clothlab {
 
@@ -43,10 +40,5 @@ std::vector<CsvColumn> run_columns();
 /// that this point does not have. A drawing that falls on no sample's time has a row of its own.
 QString save_csv(const QString& path, const ChartRecord& record, const std::vector<CsvColumn>& columns,
                  Range time);
-
-/// Asks for a file name, whose ending chooses "png", "svg" or "csv", has `save` write it, and shows what
-/// `save` says went wrong.
-void save_charts_by_dialog(QWidget* parent,
-                           const std::function<QString(const QString& path, const QString& ending)>& save);
 
 }  // namespace clothlab

@@ -31,7 +31,7 @@ void ChartPanel::make_bar() {
   bar_->apply_look(chart_font(font()));
   connect(bar_, &ChartBar::span_chosen, this, &ChartPanel::setTimeSpan);
   connect(bar_, &ChartBar::live_wanted, this, &ChartPanel::goLive);
-  connect(bar_, &ChartBar::save_wanted, this, &ChartPanel::saveAs);
+  connect(bar_, &ChartBar::save_wanted, this, &ChartPanel::saveWanted);
   connect(bar_, &ChartBar::box_mode_changed, this, [this](bool on) {
     for (LiveChart* chart : stack_.charts()) chart->view().set_box_mode(on);
   });

@@ -12,8 +12,10 @@
 
 #include "compare/pane_style.h"
 #include "main_window/lab_files.h"
+#include "main_window/main_window.h"
 #include "main_window/view_bar.h"
 #include "params/wording.h"
+#include "scene/builtin_scenes.h"
 #include "scene/scene_parameters.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
@@ -30,9 +32,7 @@ constexpr int ranking_interval = 200;  // ms between two fillings of the table w
 CompareWindow::CompareWindow(QWidget* parent)
     : LabWindow(std::make_unique<CompareDocument>(),
                 {.document = tr("comparison"),
-                 .open_title = tr("Open a comparison"),
-                 .filter = tr("Clothlab comparisons (*.compare.json);;All files (*)"),
-                 .ending = ".compare.json",
+                 .kind = comparison_kind(),
                  .title = tr("%1[*] – Comparison – Clothlab"),
                  .unsaved = tr("The comparison \"%1\" was changed. Save it?"),
                  .play_tip = tr("Play or pause all panes"),
@@ -57,7 +57,7 @@ CompareWindow::CompareWindow(QWidget* parent)
   connectPanes();
   connectSimulation();
   ranking_clock_.start();
-  grid_->setFocus();
+  grid_->setEnabled(false);  // until there is a comparison: its panes are empty
 }
 
 void CompareWindow::makeScopeTabs() {
@@ -78,13 +78,12 @@ void CompareWindow::makeScopeTabs() {
 
 void CompareWindow::makeMenus() {
   QMenu* file = addFileMenu();
-  addComparisons(*file, [this](const QString& name) { openComparison(name); });
+  addComparisons(*file);
   addSaveEntries(*file);
   file->addSeparator();
   file->addAction(save_plots_);
-  connect(save_plots_, &QAction::triggered, charts_, &CompareCharts::saveAs);
-  file->addSeparator();
-  file->addAction(tr("Close"), QKeySequence::Close, this, &QWidget::close);
+  connectCharts(charts_);
+  addCloseEntries(*file);
 
   QMenu* edit = addEditMenu();
   edit->addSeparator();
@@ -174,6 +173,10 @@ void CompareWindow::makeLayout() {
 
 void CompareWindow::connectDocument() {
   connect(&document_, &CompareDocument::loaded, this, [this] {
+    if (!grid_->isEnabled()) {
+      grid_->setEnabled(true);
+      grid_->setFocus();
+    }
     followDocument();
     grid_->resetCamera();
     notice_->withdraw("new-start");
@@ -216,16 +219,25 @@ void CompareWindow::connectSimulation() {
   connect(&link_, &CompareLink::statusChanged, this, &CompareWindow::followStatus);
 }
 
-void CompareWindow::openComparison(const QString& name) {
-  if (!mayLoseChanges()) return;
-  OpenedComparison opened = open_comparison(name);
-  if (!opened.comparison) {
-    notice_->show("open", NoticeBar::Level::error,
-                  tr("The comparison was not opened.\n%1").arg(opened.problems));
-    return;
-  }
-  notice_->withdraw("open");
-  document_.load(std::move(*opened.comparison), opened.path);
+void CompareWindow::load(const OpenedComparison& opened) {
+  if (mayLoseChanges()) document_.load(*opened.comparison, opened.path);
+}
+
+void CompareWindow::load(const OpenedScene& opened) {
+  new_window<MainWindow>()->load(opened);
+}
+
+/// Beside the scene that is open, or a built-in one.
+void CompareWindow::loadStudy(const QString& folder) {
+  auto* window = new_window<MainWindow>();
+  window->openScene(cloth::default_scene_name);
+  window->loadStudy(folder);
+}
+
+/// All panes share the cloth.
+void CompareWindow::loadMesh(const QString& file) {
+  document_.setScope(std::nullopt);
+  LabWindow::loadMesh(file);
 }
 
 void CompareWindow::compareScene(const cloth::Scene& scene) {

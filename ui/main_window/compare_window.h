@@ -22,9 +22,12 @@ class CompareWindow : public LabWindow {
   explicit CompareWindow(QWidget* parent = nullptr);
   ~CompareWindow() override { deleteWidgets(); }
 
-  /// Opens a file or a built-in comparison. On error the window shows a message and keeps the present
-  /// comparison.
-  void openComparison(const QString& name);
+  /// Opens the scene in a new window.
+  void load(const OpenedScene& opened) override;
+  /// Replaces the present comparison; asks first if that has unsaved changes.
+  void load(const OpenedComparison& opened) override;
+  /// Opens the study in a new window.
+  void loadStudy(const QString& folder) override;
   /// Compares the scene's own method with two others.
   void compareScene(const cloth::Scene& scene);
 
@@ -36,7 +39,7 @@ class CompareWindow : public LabWindow {
 
  private:
   void send(const RunCommand& command) override;
-  void open(const QString& path) override { openComparison(path); }
+  void loadMesh(const QString& file) override;
   QString write(const QString& path) override;
   const cloth::Scene& scene() override { return document_.comparison().scene; }
   void togglePin(int row, int column) override { document_.togglePin(row, column); }

@@ -1,5 +1,7 @@
 #include "main_window/lab_files.h"
 
+#include <QBuffer>
+#include <QDir>
 #include <QFileInfo>
 #include <QObject>
 
@@ -14,6 +16,7 @@
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/session_json.h"
+#include "study/study_folder.h"
 
 namespace clothlab {
 namespace {
@@ -37,7 +40,7 @@ OpenedScene read_text(const std::string& text, const std::string& place, const Q
 
 OpenedComparison read_comparison_text(const std::string& text, const std::string& place,
                                       const QString& path) {
-  cloth::ComparisonReading reading = cloth::read_comparison(text, place);
+  cloth::ComparisonReading reading = cloth::read_comparison(text, place, {}, folder_of(path));
   return {std::move(reading.comparison), path, lines_of(reading.problems)};
 }
 
@@ -45,9 +48,15 @@ QString text_of(const std::optional<cloth::IoError>& error) {
   return error ? QString::fromStdString(error->text()) : QString();
 }
 
+/// A format without its version, as it stands in a file.
+bool says(const std::string& text, std::string format) {
+  format.erase(format.rfind('/') + 1);
+  return text.find('"' + format) != std::string::npos;
+}
+
 /// By custom a session's name tells; where it does not, its first key does.
 bool is_session(const std::string& text, const QString& path) {
-  return path.endsWith(".session.json") || text.find("\"clothlab/session/") != std::string::npos;
+  return suffix_of(path) == ".session.json" || says(text, cloth::session_format);
 }
 
 OpenedScene read_session_text(const std::string& text, const std::string& place, const QString& path) {
@@ -65,10 +74,54 @@ std::vector<cloth::Triangle> triangles_of(const ClothFrame& frame) {
   return cloth::triangles_of(grid);
 }
 
+/// A missing file has the type that its name promises, so that the message names what was looked for.
+FileType type_by_text(const QString& name) {
+  if (!QFileInfo(name).isFile())
+    return cloth::find_builtin_comparison(name.toStdString()) ? FileType::comparison : FileType::scene;
+  std::string text;
+  cloth::read_text_file(name.toStdString(), text);  // whoever opens it says what is wrong
+  if (says(text, cloth::comparison_format)) return FileType::comparison;
+  return says(text, cloth::study_format) ? FileType::study : FileType::scene;
+}
+
 }  // namespace
 
+FileType type_of(const QString& name) {
+  if (QDir(name).exists("study.json")) return FileType::study;
+  const QString suffix = suffix_of(name);
+  if (suffix == ".obj") return FileType::mesh;
+  if (comparison_kind().suffixes.front() == suffix) return FileType::comparison;
+  if (scene_kind().suffixes.front() == suffix || session_kind().suffixes.front() == suffix)
+    return FileType::scene;
+  return type_by_text(name);
+}
+
+QString open_filter() {
+  const FileKind mesh{QObject::tr("Meshes"), {".obj"}};
+  FileKind all{QObject::tr("All that Clothlab opens"), {}};
+  QStringList filters;
+  for (const FileKind& kind : {scene_kind(), session_kind(), comparison_kind(), mesh}) {
+    all.suffixes << kind.suffixes;
+    filters << kind.filter();
+  }
+  all.suffixes.removeDuplicates();
+  return QStringList{all.filter(), filters.join(";;"), QObject::tr("All files (*)")}.join(";;");
+}
+
+FileKind scene_kind() {
+  return {QObject::tr("Clothlab scenes"), {".scene.json", ".json"}};
+}
+
+FileKind session_kind() {
+  return {QObject::tr("Clothlab sessions"), {".session.json"}};
+}
+
+FileKind comparison_kind() {
+  return {QObject::tr("Clothlab comparisons"), {".compare.json", ".json"}};
+}
+
 OpenedScene open_scene(const QString& name) {
-  if (const QFileInfo file(name); file.exists()) {
+  if (const QFileInfo file(name); file.isFile()) {
     std::string text;
     if (const auto error = cloth::read_text_file(name.toStdString(), text))
       return {{}, {}, name, QString::fromStdString(error->text())};
@@ -77,8 +130,10 @@ OpenedScene open_scene(const QString& name) {
   }
   if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name.toStdString()))
     return read_text(builtin->text, builtin->name, {});
-  return {
-      {}, {}, name, QObject::tr("%1: there is neither a file nor a built-in scene of this name").arg(name)};
+  const QString why = QFileInfo(name).isDir()
+                          ? QObject::tr("%1: is a folder without a study: there is no study.json in it")
+                          : QObject::tr("%1: there is neither a file nor a built-in scene of this name");
+  return {{}, {}, name, why.arg(name)};
 }
 
 QString save_scene_file(const cloth::Scene& scene, const QString& path) {
@@ -104,12 +159,8 @@ OpenedComparison open_comparison(const QString& name) {
 }
 
 QString save_comparison_file(const cloth::Comparison& comparison, const QString& path) {
-  return text_of(cloth::write_text_file(path.toStdString(), cloth::write_comparison(comparison)));
-}
-
-bool is_comparison_name(const QString& name) {
-  return name.endsWith(".compare.json") ||
-         (!QFileInfo::exists(name) && cloth::find_builtin_comparison(name.toStdString()));
+  return text_of(cloth::write_text_file(
+      path.toStdString(), cloth::write_comparison(moved_to_folder(comparison, folder_of(path).path))));
 }
 
 cloth::Comparison comparison_of_scene(const cloth::Scene& scene) {
@@ -137,7 +188,17 @@ QString save_cloth_file(const ClothFrame& frame, const QString& title, const QSt
   surface.triangles = triangles;
   const std::string text = cloth::obj_text(surface, cloth::title_at(title.toStdString(), frame.time));
   const auto error = cloth::write_user_file(path.toStdString(), text);
-  return error ? QString::fromStdString(error->text()) : QString();
+  return text_of(error);
+}
+
+QString save_picture_file(const QImage& picture, const QString& path) {
+  QByteArray bytes;
+  QBuffer buffer(&bytes);
+  buffer.open(QIODevice::WriteOnly);
+  if (!picture.save(&buffer, suffix_of(path) == ".png" ? "PNG" : "JPG"))
+    return QObject::tr("%1: the picture could not be encoded").arg(path);
+  const QString problem = write_file(path, bytes);
+  return problem.isEmpty() ? problem : QStringLiteral("%1: %2").arg(path, problem);
 }
 
 }  // namespace clothlab

@@ -1,15 +1,31 @@
-// Opens and saves scenes, sessions and comparisons: files, built-in ones and recent ones.
+// Opens and saves scenes, sessions, comparisons and pictures: files, built-in ones and recent ones.
 #pragma once
 
+#include <QImage>
 #include <QString>
 #include <optional>
 
 #include "bridge/frame.h"
 #include "compare/comparison.h"
 #include "document/result_files.h"
+#include "document/save_dialog.h"
 #include "simulation/session.h"
 
 namespace clothlab {
+
+/// The types of files that the program opens. A session opens as a scene.
+enum class FileType { scene, comparison, mesh, study };
+
+/// The type of a file, of a study's folder, or of a built-in scene or comparison with this name. The suffix
+/// decides; where it does not, as for `comparison.json` in a results folder, the content does.
+FileType type_of(const QString& name);
+
+/// The name filters of the Open dialog.
+QString open_filter();
+
+FileKind scene_kind();
+FileKind session_kind();
+FileKind comparison_kind();
 
 /// A scene, or the errors that prevented opening it.
 struct OpenedScene {
@@ -40,9 +56,6 @@ OpenedComparison open_comparison(const QString& name);
 /// Empty when done, else what went wrong.
 QString save_comparison_file(const cloth::Comparison& comparison, const QString& path);
 
-/// Whether a file of this name is opened as a comparison rather than as a scene.
-bool is_comparison_name(const QString& name);
-
 /// A comparison of the scene with two copies that use other methods. A copy uses the time step `auto` if the
 /// scene's step is not stable for its method.
 cloth::Comparison comparison_of_scene(const cloth::Scene& scene);
@@ -50,5 +63,8 @@ cloth::Comparison comparison_of_scene(const cloth::Scene& scene);
 /// Writes a frame's cloth as an OBJ file: vertices in m, single precision as the view has them, normals,
 /// triangles, and texture coordinates of a grid. Empty when done, else what went wrong.
 QString save_cloth_file(const ClothFrame& frame, const QString& title, const QString& path);
+
+/// Saves as PNG or JPEG, by the path's suffix. Empty when done, else what went wrong.
+QString save_picture_file(const QImage& picture, const QString& path);
 
 }  // namespace clothlab

@@ -1,20 +1,26 @@
 #include "main_window/lab_window.h"
 
 #include <QAction>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QDesktopServices>
 #include <QDockWidget>
+#include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QMimeData>
 #include <QScreen>
 #include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
+#include <utility>
 
 #include "compare/builtin_comparisons.h"
 #include "document/result_files.h"
+#include "main_window/lab_files.h"
+#include "params/mesh_button.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 
@@ -37,6 +43,7 @@ void dress(QAction& action, bool on, const QString& text, const char* icon_name)
 LabWindow::LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size,
                      QWidget* parent)
     : QMainWindow(parent), any_document_(std::move(document)), wording_(std::move(wording)) {
+  setAcceptDrops(true);
   resize(pleasant_size.boundedTo(screen()->availableSize() - QSize(0, title_bar_height)));
   play_ = makeAction("play", tr("Play"), wording_.play_tip, Qt::Key_Space, "play");
   play_->setCheckable(true);
@@ -56,7 +63,10 @@ LabWindow::LabWindow(std::unique_ptr<Document> document, Wording wording, QSize 
       send(command::StopRecording{});
   });
   connect(any_document_.get(), &Document::titleChanged, this, &LabWindow::updateTitle);
-  connect(any_document_.get(), &Document::modifiedChanged, this, &LabWindow::updateTitle);
+  connect(any_document_.get(), &Document::modifiedChanged, this, [this](bool modified) {
+    updateTitle();
+    if (modified) notice_->withdraw("save " + wording_.document);  // no longer what lies there
+  });
   updateTitle();
 }
 
@@ -123,7 +133,7 @@ void LabWindow::addTransport() {
 QMenu* LabWindow::addFileMenu() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   open_ = file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &LabWindow::openWithDialog);
-  open_->setToolTip(tr("%1 (Ctrl+O)").arg(wording_.open_title));
+  open_->setToolTip(tr("Open a scene, a session, a comparison, a mesh or a study (Ctrl+O)"));
   return file;
 }
 
@@ -131,15 +141,22 @@ void LabWindow::addSaveEntries(QMenu& file) {
   file.addSeparator();
   save_ = file.addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
   save_->setToolTip(tr("Save the %1 (Ctrl+S)").arg(wording_.document));
-  file.addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); });
+  file.addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); })
+      ->setObjectName("saveAs");
 }
 
-void LabWindow::addComparisons(QMenu& menu, const std::function<void(const QString& name)>& open_one) {
+void LabWindow::addCloseEntries(QMenu& file) {
+  file.addSeparator();
+  file.addAction(tr("Close"), QKeySequence::Close, this, &QWidget::close);
+  file.addAction(tr("Quit"), QKeySequence("Ctrl+Q"), this, [] { quit(); })->setObjectName("quit");
+}
+
+void LabWindow::addComparisons(QMenu& menu) {
   QMenu* builtin = menu.addMenu(tr("Built-in comparisons"));
   for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
     const QString name = QString::fromStdString(comparison.name);
     builtin->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
-                       [open_one, name] { open_one(name); });
+                       [this, name] { open(name); });
   }
 }
 
@@ -207,46 +224,130 @@ void LabWindow::updateTitle() {
 /// Asks to save, discard or cancel. Returns false if the user cancelled or saving failed.
 bool LabWindow::mayLoseChanges() {
   if (!asks_to_save_ || !any_document_->isModified()) return true;
+  comeForward();
   const auto answer = QMessageBox::question(
       this, tr("Unsaved changes"), wording_.unsaved.arg(any_document_->title()),
       QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
   return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
 }
 
+void LabWindow::comeForward() {
+  if (isMinimized()) showNormal();
+  raise();
+  activateWindow();
+}
+
 void LabWindow::closeEvent(QCloseEvent* event) {
-  if (!mayLoseChanges()) return event->ignore();
+  if (!std::exchange(may_close_, false) && !mayClose()) return event->ignore();
   send(command::Pause{});
   send(command::StopRecording{});
   event->accept();
 }
 
+std::vector<LabWindow*> LabWindow::all() {
+  std::vector<LabWindow*> windows;
+  for (QWidget* top : QApplication::topLevelWidgets())
+    if (auto* window = qobject_cast<LabWindow*>(top)) windows.push_back(window);
+  return windows;
+}
+
+void LabWindow::quit() {
+  std::vector<LabWindow*> windows = all();
+  std::erase_if(windows, [](const LabWindow* window) { return !window->isVisible(); });
+  for (LabWindow* window : windows)
+    if (!window->mayClose()) return;
+  for (LabWindow* window : windows) {
+    window->may_close_ = true;
+    window->close();
+  }
+}
+
+void LabWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const auto urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void LabWindow::dropEvent(QDropEvent* event) {
+  event->acceptProposedAction();
+  open(event->mimeData()->urls().front().toLocalFile());
+}
+
 void LabWindow::openWithDialog() {
-  const QString path =
-      QFileDialog::getOpenFileName(this, wording_.open_title, any_document_->path(), wording_.filter);
+  const QString path = QFileDialog::getOpenFileName(this, tr("Open"), any_document_->path(), open_filter());
   if (!path.isEmpty()) open(path);
 }
 
-QString LabWindow::askForPath(const QString& title, const QString& filter, const QString& ending,
-                              const QString& present) {
-  const QString path = QFileDialog::getSaveFileName(this, title, present, filter);
-  return path.isEmpty() || QFileInfo(path).fileName().contains('.') ? path : path + ending;
+void LabWindow::open(const QString& name) {
+  switch (type_of(name)) {
+    case FileType::scene:
+      return openScene(name);
+    case FileType::comparison:
+      return openComparison(name);
+    case FileType::mesh:
+      return loadMesh(name);
+    case FileType::study:
+      return loadStudy(QFileInfo(name).isDir() ? name : QFileInfo(name).absolutePath());
+  }
+}
+
+void LabWindow::openScene(const QString& name) {
+  if (const OpenedScene opened = open_scene(name); isSound(tr("scene"), opened.problems)) load(opened);
+}
+
+void LabWindow::openComparison(const QString& name) {
+  if (const OpenedComparison opened = open_comparison(name); isSound(tr("comparison"), opened.problems))
+    load(opened);
+}
+
+/// Whether what was read has no problems; says them.
+bool LabWindow::isSound(const QString& what, const QString& problems) {
+  say("open", NoticeBar::Level::error,
+      problems.isEmpty() ? QString() : tr("The %1 was not opened.\n%2").arg(what, problems));
+  return problems.isEmpty();
+}
+
+void LabWindow::loadMesh(const QString& file) {
+  LabDocument& form = any_document_->form();
+  const QString rule = form.setClothMesh(file_as_seen_from(form.scene().folder, file));
+  if (rule.isEmpty())
+    say("open", NoticeBar::Level::info, tr("The cloth is now made of the mesh %1.").arg(file));
+  else
+    say("open", NoticeBar::Level::error, tr("The mesh was not opened.\n%1 %2").arg(file, rule));
 }
 
 bool LabWindow::saveAs() {
-  const QString path = askForPath(tr("Save the %1").arg(wording_.document), wording_.filter, wording_.ending,
-                                  any_document_->path());
+  const QString path = ask_where_to_save(this, tr("Save the %1").arg(wording_.document), {wording_.kind},
+                                         any_document_->path());
   return !path.isEmpty() && saveTo(path);
 }
 
 bool LabWindow::saveTo(const QString& path) {
-  const QString problem = write(path);
-  if (!problem.isEmpty()) {
-    notice_->show("save", NoticeBar::Level::error,
-                  tr("The %1 was not saved. %2").arg(wording_.document, problem));
-    return false;
-  }
-  any_document_->markSaved(path);
-  return true;
+  const bool saved = saySaved(wording_.document, path, write(path));
+  if (saved) any_document_->markSaved(path);
+  return saved;
+}
+
+bool LabWindow::saveByDialog(const QString& what, const std::vector<FileKind>& kinds,
+                             const std::function<QString(const QString& path)>& write) {
+  const QString path = ask_where_to_save(this, tr("Save the %1").arg(what), kinds);
+  return !path.isEmpty() && saySaved(what, path, write(path));
+}
+
+bool LabWindow::saySaved(const QString& what, const QString& path, const QString& problem) {
+  if (problem.isEmpty())
+    say("save " + what, NoticeBar::Level::info, saved_in(what, path));
+  else
+    say("save " + what, NoticeBar::Level::error, tr("The %1 was not saved. %2").arg(what, problem));
+  return problem.isEmpty();
+}
+
+void LabWindow::connectCharts(ChartArea* charts) {
+  const auto save = [this, charts] {
+    saveByDialog(tr("charts"), ChartArea::kinds(),
+                 [charts](const QString& path) { return charts->save(path); });
+  };
+  connect(save_plots_, &QAction::triggered, this, save);
+  connect(charts, &ChartArea::saveWanted, this, save);
 }
 
 }  // namespace clothlab

@@ -1,5 +1,5 @@
-// The base of the windows of a scene and of a comparison: actions and menus for files, edits and runs, the
-// dialog about unsaved changes, messages, docks and recording.
+// The base of the windows of a scene and of a comparison: actions and menus for files, edits and runs,
+// opening and saving, the dialog about unsaved changes, messages, docks and recording.
 #pragma once
 
 #include <QMainWindow>
@@ -7,17 +7,34 @@
 
 #include "bridge/worker_commands.h"
 #include "bridge/worker_status.h"
+#include "charts/chart_area.h"
 #include "document/document.h"
+#include "document/save_dialog.h"
 #include "main_window/transport_bar.h"
 #include "params/parameter_panel.h"
 #include "widgets/notice_bar.h"
 
 namespace clothlab {
 
+struct OpenedComparison;
+struct OpenedScene;
+
 class LabWindow : public QMainWindow {
   Q_OBJECT
 
  public:
+  /// Opens a file of any FileType, a study's folder, or a built-in scene or comparison by its name; in a new
+  /// window if this one does not show that type. On error the window shows a message with place, value and
+  /// rule, and nothing else changes.
+  void open(const QString& name);
+  void openScene(const QString& name);  ///< or a session
+  void openComparison(const QString& name);
+
+  /// Closes all windows. Each with unsaved changes or a running study asks first; on Cancel none is closed.
+  static void quit();
+  /// All windows, visible or not.
+  static std::vector<LabWindow*> all();
+
   /// Whether closing or opening another document asks about unsaved changes.
   void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
@@ -32,11 +49,10 @@ class LabWindow : public QMainWindow {
  protected:
   /// The texts that differ between the windows.
   struct Wording {
-    QString document;            ///< "scene"
-    QString open_title, filter;  ///< of the dialogs for files
-    QString ending;              ///< suffix appended to a file name without one
-    QString title;               ///< of the window; %1 is the document's
-    QString unsaved;             ///< the question before changes of %1 are lost
+    QString document;  ///< "scene"
+    FileKind kind;     ///< of the document's file
+    QString title;     ///< of the window; %1 is the document's
+    QString unsaved;   ///< the question before changes of %1 are lost
     QString play_tip, step_tip, record_tip;
     QString widest_time, widest_rate;  ///< in the transport bar
   };
@@ -55,7 +71,12 @@ class LabWindow : public QMainWindow {
   void makeForm();
 
   virtual void send(const RunCommand& command) = 0;
-  virtual void open(const QString& path) = 0;
+  /// Shows what was read without problems, in this window or in a new one.
+  virtual void load(const OpenedScene& opened) = 0;
+  virtual void load(const OpenedComparison& opened) = 0;
+  virtual void loadStudy(const QString& folder) = 0;
+  /// Replaces the cloth by the mesh, as an undoable edit.
+  virtual void loadMesh(const QString& file);
   /// Empty when done, else what went wrong.
   virtual QString write(const QString& path) = 0;
   /// The edited scene; in a comparison the scene that all panes share.
@@ -66,7 +87,11 @@ class LabWindow : public QMainWindow {
   virtual void play(bool on);
   virtual void restart() { send(command::Restart{}); }
 
+  /// Asks about what closing the window would lose; false: the user cancelled.
+  virtual bool mayClose() { return mayLoseChanges(); }
   void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
 
   /// An action of this window; its tooltip contains the shortcut.
   QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
@@ -93,7 +118,8 @@ class LabWindow : public QMainWindow {
   /// With an entry to open a file; of the other menus all that both windows have.
   QMenu* addFileMenu();
   void addSaveEntries(QMenu& file);
-  void addComparisons(QMenu& menu, const std::function<void(const QString& name)>& open_one);
+  void addCloseEntries(QMenu& file);
+  void addComparisons(QMenu& menu);
   QMenu* addEditMenu();
   QMenu* addRunMenu(const QList<QAction*>& actions);
   void addDockEntries(QMenu& view);
@@ -107,10 +133,17 @@ class LabWindow : public QMainWindow {
   bool mayLoseChanges();
   bool save() { return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path()); }
   bool saveAs();
-  /// Asks for a path to save to and appends `ending` if it has no suffix; empty: the user cancelled.
-  QString askForPath(const QString& title, const QString& filter, const QString& ending,
-                     const QString& present = {});
+  /// Asks for a path, calls `write` and shows where it wrote, or the error that it returned. `what`:
+  /// "picture".
+  bool saveByDialog(const QString& what, const std::vector<FileKind>& kinds,
+                    const std::function<QString(const QString& path)>& write);
+  /// Shows that `what` was saved, or the problem; true if there is none.
+  bool saySaved(const QString& what, const QString& path, const QString& problem);
+  /// Connects the action and the charts' own button that save the charts.
+  void connectCharts(ChartArea* charts);
   void openWithDialog();
+  /// Brings the window to the front, so that its question is visible.
+  void comeForward();
 
   ParameterPanel* parameters_ = nullptr;
   NoticeBar* notice_ = nullptr;
@@ -119,9 +152,21 @@ class LabWindow : public QMainWindow {
   QAction *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
 
  private:
+  bool isSound(const QString& what, const QString& problems);
+
   std::unique_ptr<Document> any_document_;
   Wording wording_;
   bool asks_to_save_ = true;
+  bool may_close_ = false;  ///< quit() has asked already
 };
+
+/// Shows a new window, which is deleted when it is closed.
+template <class Window>
+Window* new_window() {
+  auto* window = new Window;
+  window->setAttribute(Qt::WA_DeleteOnClose);
+  window->show();
+  return window;
+}
 
 }  // namespace clothlab

@@ -3,14 +3,13 @@
 #include <QAction>
 #include <QCloseEvent>
 #include <QDockWidget>
-#include <QDragEnterEvent>
 #include <QMessageBox>
-#include <QMimeData>
-#include <QUrl>
 #include <utility>
 
+#include "main_window/compare_window.h"
 #include "main_window/lab_files.h"
 #include "main_window/view_bar.h"
+#include "scene/builtin_scenes.h"
 #include "simulation/time_step.h"
 #include "studies/studies_panel.h"
 #include "theme/theme.h"
@@ -26,23 +25,19 @@ constexpr int studies_height = 400;                        // px
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent)
-    : LabWindow(
-          std::make_unique<LabDocument>(),
-          {.document = tr("scene"),
-           .open_title = tr("Open a scene or a session"),
-           .filter = tr("Clothlab scenes and sessions (*.scene.json *.session.json *.json);;All files (*)"),
-           .ending = ".scene.json",
-           .title = QStringLiteral("%1[*] – Clothlab"),
-           .unsaved = tr("\"%1\" was changed. Save the changes?"),
-           .play_tip = tr("Play or pause"),
-           .step_tip = tr("One step of the method"),
-           .record_tip = tr("Record energy, strain and times to CSV while it runs"),
-           .widest_time = "000.000 s",
-           .widest_rate = "000 000 steps/s, 0.00x real time"},
-          pleasant_size, parent),
+    : LabWindow(std::make_unique<LabDocument>(),
+                {.document = tr("scene"),
+                 .kind = scene_kind(),
+                 .title = QStringLiteral("%1[*] – Clothlab"),
+                 .unsaved = tr("\"%1\" was changed. Save the changes?"),
+                 .play_tip = tr("Play or pause"),
+                 .step_tip = tr("One step of the method"),
+                 .record_tip = tr("Record energy, strain and times to CSV while it runs"),
+                 .widest_time = "000.000 s",
+                 .widest_rate = "000 000 steps/s, 0.00x real time"},
+                pleasant_size, parent),
       document_(anyDocument().form()) {
   setObjectName("mainWindow");
-  setAcceptDrops(true);
   setDockNestingEnabled(true);
   view_ = new ClothView(this);
   charts_ = new ChartPanel(this);
@@ -131,20 +126,21 @@ void MainWindow::send(const RunCommand& command) {
   std::visit([this](const auto& each) { link_.send(each); }, command);
 }
 
-void MainWindow::openScene(const QString& name) {
-  if (mayLoseChanges()) takeScene(open_scene(name));
-}
-
-void MainWindow::takeScene(const OpenedScene& opened) {
-  if (!opened.scene) {
-    notice_->show("open", NoticeBar::Level::error, tr("The scene was not opened.\n%1").arg(opened.problems));
-    return;
-  }
-  notice_->withdraw("open");
+void MainWindow::load(const OpenedScene& opened) {
+  if (!mayLoseChanges()) return;
   if (!opened.path.isEmpty()) recent_scenes.remember(opened.path);
   session_ = opened.session;
   transport_->suitDuration(opened.scene->duration);
   document_.load(*opened.scene, opened.session ? QString() : opened.path);
+}
+
+void MainWindow::load(const OpenedComparison& opened) {
+  new_window<CompareWindow>()->load(opened);
+}
+
+void MainWindow::loadStudy(const QString& folder) {
+  studies_->openFolder(folder);
+  showStudies();
 }
 
 void MainWindow::startSimulation() {
@@ -259,6 +255,7 @@ void MainWindow::addStillAir() {
 
 bool MainWindow::mayStopStudy() {
   if (!studies_->isRunning()) return true;
+  comeForward();
   return QMessageBox::question(this, tr("A study is running"),
                                tr("A study is running. Stop it and close? What is finished is kept."),
                                QMessageBox::Close | QMessageBox::Cancel,
@@ -266,19 +263,17 @@ bool MainWindow::mayStopStudy() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!mayStopStudy()) return event->ignore();
   LabWindow::closeEvent(event);
   if (event->isAccepted()) studies_->stop();
 }
 
-void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-  const auto urls = event->mimeData()->urls();
-  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
-}
-
-void MainWindow::dropEvent(QDropEvent* event) {
-  event->acceptProposedAction();
-  openScene(event->mimeData()->urls().front().toLocalFile());
+void open_first_window(const QString& name) {
+  if (!name.isEmpty() && type_of(name) == FileType::comparison)
+    if (const OpenedComparison opened = open_comparison(name); opened.comparison)
+      return new_window<CompareWindow>()->load(opened);
+  auto* window = new_window<MainWindow>();
+  window->openScene(cloth::default_scene_name);
+  if (!name.isEmpty()) window->open(name);
 }
 
 }  // namespace clothlab

@@ -11,7 +11,6 @@
 
 namespace clothlab {
 
-struct OpenedScene;
 class StudiesPanel;
 class ViewBar;
 
@@ -22,9 +21,11 @@ class MainWindow : public LabWindow {
   explicit MainWindow(QWidget* parent = nullptr);
   ~MainWindow() override { deleteWidgets(); }
 
-  /// Opens a scene file, a session file or a built-in scene; a session is replayed. On error the window shows
-  /// a message and keeps the present scene.
-  void openScene(const QString& name);
+  /// Replaces the present scene; asks first if that has unsaved changes. A session is replayed.
+  void load(const OpenedScene& opened) override;
+  /// Opens the comparison in a new window.
+  void load(const OpenedComparison& opened) override;
+  void loadStudy(const QString& folder) override;
 
   /// Saves the run so far with all its edits (docs/sessions.md).
   void saveSession(const QString& path);
@@ -39,13 +40,10 @@ class MainWindow : public LabWindow {
 
  protected:
   void closeEvent(QCloseEvent* event) override;
-  void dragEnterEvent(QDragEnterEvent* event) override;
-  void dropEvent(QDropEvent* event) override;
 
  private:
   // main_window.cpp
   void send(const RunCommand& command) override;
-  void open(const QString& path) override { openScene(path); }
   QString write(const QString& path) override;
   const cloth::Scene& scene() override { return document_.scene(); }
   void togglePin(int row, int column) override { document_.togglePin(row, column); }
@@ -56,7 +54,6 @@ class MainWindow : public LabWindow {
   void connectDocument();
   void connectView();
   void connectSimulation();
-  void takeScene(const OpenedScene& opened);
   void followChange(const SceneChange& change);
   void startSimulation();
   void readStability();
@@ -67,6 +64,7 @@ class MainWindow : public LabWindow {
   void noteKeyframes();
   void addStillAir();
   bool mayStopStudy();
+  bool mayClose() override { return mayStopStudy() && LabWindow::mayClose(); }
   void openRun(const cloth::Scene& scene, const QString& note);
 
   // main_window_follow.cpp
@@ -84,7 +82,6 @@ class MainWindow : public LabWindow {
   void fillRecentMenu();
   void saveSessionAs();
   void compareMethods();
-  void openComparison();
   void savePicture();
   void saveCloth();
   void showAbout();
@@ -110,5 +107,9 @@ class MainWindow : public LabWindow {
   bool paused_again_ = false;                     ///< paused while it was playing again: Play goes on so
   std::optional<cloth::Obstacle> dragged_;        ///< the dragged obstacle as it was before the drag
 };
+
+/// Opens the first window of the program: of a comparison if `name` is a valid one, else of a scene; of the
+/// default scene if `name` is empty or cannot be opened.
+void open_first_window(const QString& name);
 
 }  // namespace clothlab

@@ -1,7 +1,6 @@
 // The window's actions and menus, and the dialogs behind them.
 #include <QAction>
 #include <QDockWidget>
-#include <QFileDialog>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QToolBar>
@@ -17,17 +16,6 @@
 #include "widgets/building.h"
 
 namespace clothlab {
-namespace {
-
-/// A window of its own that outlives this one and goes when it is closed.
-CompareWindow* new_compare_window() {
-  auto* window = new CompareWindow;
-  window->setAttribute(Qt::WA_DeleteOnClose);
-  window->show();
-  return window;
-}
-
-}  // namespace
 
 void MainWindow::makeActions() {
   play_again_ =
@@ -40,7 +28,7 @@ void MainWindow::makeActions() {
                  QKeySequence("Ctrl+Shift+O"), "saveCloth");
   connect(save_picture_, &QAction::triggered, this, &MainWindow::savePicture);
   connect(save_cloth_, &QAction::triggered, this, &MainWindow::saveCloth);
-  connect(save_plots_, &QAction::triggered, this, [this] { charts_->saveAs(); });
+  connectCharts(charts_);
 }
 
 void MainWindow::makeMenus() {
@@ -60,8 +48,7 @@ void MainWindow::makeMenus() {
   save_session->setObjectName("saveSession");
   file->addSeparator();
   file->addActions({save_picture_, save_cloth_, save_plots_});
-  file->addSeparator();
-  file->addAction(tr("Quit"), QKeySequence::Quit, this, &QWidget::close);
+  addCloseEntries(*file);
 
   addEditMenu();
   QMenu* run = addRunMenu({play_, play_again_, step_, reset_});
@@ -74,8 +61,8 @@ void MainWindow::makeMenus() {
       compare->addAction(tr("Compare methods"), QKeySequence("Ctrl+M"), this, &MainWindow::compareMethods);
   methods->setObjectName("compareMethods");
   methods->setToolTip(tr("This scene by its method and by two others, side by side"));
-  compare->addAction(tr("Open comparison…"), this, &MainWindow::openComparison);
-  addComparisons(*compare, [](const QString& name) { new_compare_window()->openComparison(name); });
+  compare->addAction(tr("Open comparison…"), this, &MainWindow::openWithDialog);
+  addComparisons(*compare);
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);
@@ -110,7 +97,7 @@ void MainWindow::makeToolBar(QMenu* builtin) {
 void MainWindow::fillRecentMenu() {
   recent_menu_->clear();
   const QStringList recent = recent_scenes.list();
-  for (const QString& path : recent) recent_menu_->addAction(path, this, [this, path] { openScene(path); });
+  for (const QString& path : recent) recent_menu_->addAction(path, this, [this, path] { open(path); });
   if (recent.isEmpty()) recent_menu_->addAction(tr("No scene was opened yet"))->setEnabled(false);
 }
 
@@ -121,28 +108,19 @@ QString MainWindow::write(const QString& path) {
 }
 
 void MainWindow::saveSessionAs() {
-  const QString path =
-      askForPath(tr("Save the session"), tr("Clothlab sessions (*.session.json)"), ".session.json");
+  const QString path = ask_where_to_save(this, tr("Save the session"), {session_kind()});
   if (!path.isEmpty()) saveSession(path);
 }
 
 void MainWindow::compareMethods() {
   link_.send(command::Pause{});
-  new_compare_window()->compareScene(document_.scene());
-}
-
-void MainWindow::openComparison() {
-  const QString path = QFileDialog::getOpenFileName(this, tr("Open a comparison"), {},
-                                                    tr("Clothlab comparisons (*.compare.json)"));
-  if (!path.isEmpty()) new_compare_window()->openComparison(path);
+  new_window<CompareWindow>()->compareScene(document_.scene());
 }
 
 void MainWindow::savePicture() {
   const QImage picture = view_->grabPicture();
-  const QString path = askForPath(tr("Save a picture of the view"), tr("Pictures (*.png *.jpg)"), ".png");
-  if (path.isEmpty()) return;
-  if (!picture.save(path))
-    notice_->show("picture", NoticeBar::Level::error, tr("%1: the picture could not be written.").arg(path));
+  saveByDialog(tr("picture"), {{tr("Pictures"), {".png", ".jpg"}}},
+               [&](const QString& path) { return save_picture_file(picture, path); });
 }
 
 /// The frame that is shown when the dialog opens, however long it stays.
@@ -150,11 +128,8 @@ void MainWindow::saveCloth() {
   const auto shown = view_->frame();
   if (!shown || !shown->has_cloth()) return;
   const ClothFrame frame = *shown;
-  const QString path = askForPath(tr("Save the cloth"), tr("Meshes (*.obj)"), ".obj");
-  if (path.isEmpty()) return;
-  const QString problem = save_cloth_file(frame, document_.title(), path);
-  say("cloth", NoticeBar::Level::error,
-      problem.isEmpty() ? QString() : tr("The cloth was not saved. %1").arg(problem));
+  saveByDialog(tr("cloth"), {{tr("Meshes"), {".obj"}}},
+               [&](const QString& path) { return save_cloth_file(frame, document_.title(), path); });
 }
 
 void MainWindow::showAbout() {

@@ -15,6 +15,7 @@
 #include <algorithm>
 
 #include "document/result_files.h"
+#include "document/save_dialog.h"
 #include "studies/study_library.h"
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
@@ -292,11 +293,13 @@ QString StudiesPanel::save(const QString& name) {
 }
 
 void StudiesPanel::saveAs() {
-  QString name = QFileDialog::getSaveFileName(this, tr("Save the study"), QDir(folder_).filePath("study.svg"),
-                                              tr("Diagram or runs (*.svg *.png *.pdf *.csv)"));
+  const QString name = ask_where_to_save(
+      this, tr("Save the study"),
+      {{tr("Drawing"), {".svg"}}, {tr("Picture"), {".png"}}, {tr("Page"), {".pdf"}}, {tr("Runs"), {".csv"}}},
+      QDir(folder_).filePath("study.svg"));
   if (name.isEmpty()) return;
-  if (QFileInfo(name).suffix().isEmpty()) name += ".svg";
-  if (const QString problem = save(name); !problem.isEmpty()) say(problem, true);
+  const QString problem = save(name);
+  say(problem.isEmpty() ? saved_in(tr("study"), name) : problem, !problem.isEmpty());
 }
 
 void StudiesPanel::say(const QString& text, bool error) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "simulation/time_step.h"
+#include "support/slow_disk.h"
 #include "worker_helpers.h"
 
 namespace clothlab::test::simulation_worker_test {
@@ -169,6 +170,27 @@ TEST(SimulationWorker, AHandOutsideTheClothIsIgnored) {
   worker.send(command::SingleStep{});
   worker.wait_until_idle();
   EXPECT_EQ(worker.status().step, 1);
+}
+
+TEST(SimulationWorker, CarriesOutWhatWaitsWhenItEnds) {
+  const ScratchFolder folder;
+  SlowDisk disk("first.session.json");
+  std::thread letting_go;
+  {
+    SimulationWorker worker;
+    worker.send(command::Load{small_scene()});
+    worker.send(command::SaveSession{folder / "first.session.json"});
+    ASSERT_TRUE(eventually([&] { return disk.is_waited_for(); }));
+    worker.send(command::SingleStep{});
+    worker.send(command::SaveSession{folder / "second.session.json"});
+    letting_go = std::thread([&disk] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      disk.let_go();
+    });
+  }
+  letting_go.join();
+  EXPECT_FALSE(text_of(folder / "first.session.json").empty());
+  EXPECT_FALSE(text_of(folder / "second.session.json").empty());
 }
 
 }  // namespace

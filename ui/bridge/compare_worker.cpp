@@ -37,18 +37,18 @@ CompareWorker::CompareWorker(int threads)
 
 void CompareWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
-  while (!stop.stop_requested()) {
+  repeat(stop, [&] {
     wait_for_work(stop);
     try {
       handle_waiting();
-      if (status_.playing || under_way_) play_for_a_moment();
+      if ((status_.playing || under_way_) && !stop.stop_requested()) play_for_a_moment();
     } catch (...) {
       give_up(cloth::failure_in_hand().text);
     }
     publish_status();
     if (!under_way_) settled_ = handled_;
     report_done(settled_, has_work());
-  }
+  });
   end_recording();
 }
 

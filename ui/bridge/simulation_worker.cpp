@@ -34,11 +34,11 @@ SimulationWorker::SimulationWorker(std::size_t max_history)
 
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
-  while (!stop.stop_requested()) {
+  repeat(stop, [&] {
     const std::vector<SceneCommand> commands = wait_for_work(stop);
     try {
       carry_out(commands);
-      if (status_.playing) play_for_a_moment();
+      if (status_.playing && !stop.stop_requested()) play_for_a_moment();
       if (recording_.is_active()) note_record(recording_.keep_current(!status_.playing));
     } catch (...) {
       give_up(cloth::failure_in_hand().text);
@@ -46,7 +46,7 @@ void SimulationWorker::run(const std::stop_token& stop) {
     status_.commands += commands.size();
     publish_status();
     report_done(status_.commands, status_.playing);
-  }
+  });
   end_recording();
 }
 

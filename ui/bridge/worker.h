@@ -86,6 +86,16 @@ class Worker {
     return std::exchange(inbox_, {});
   }
 
+  /// Calls `round` again and again until the thread is to stop, and once more then: whatever was sent before
+  /// is carried out.
+  template <class Round>
+  void repeat(const std::stop_token& stop, Round round) {
+    for (bool last = false; !last;) {
+      last = stop.stop_requested();
+      round();
+    }
+  }
+
   /// Whether a command waits. Reads one atomic value, so it can be called before every step.
   bool has_mail() const { return has_mail_; }
 

@@ -6,6 +6,7 @@
 #include "scene/builtin_scenes.h"
 #include "study/study_runs.h"
 #include "support/files.h"
+#include "support/slow_disk.h"
 
 namespace clothlab::test::study_runner_test {
 namespace {
@@ -105,6 +106,29 @@ TEST(StudyRunner, RunsOneStudyAfterAnother) {
     EXPECT_TRUE(cloth::is_complete(*table)) << cloth::kind_of(*table);
     EXPECT_TRUE(cloth::read_study(order.folder).study) << cloth::read_study(order.folder).problem;
   }
+}
+
+TEST(StudyRunner, TheNextStudyDoesNotWaitForASlowDisk) {
+  const TemporaryFolder folder;
+  StudyOrder slow = small_map(folder, 2, 10), next = small_map(folder, 2, 10);
+  slow.folder = folder / "slow";
+  next.folder = folder / "next";
+  SlowDisk disk("slow/report.html");
+  StudyRunner runner;
+  runner.start(slow);
+  while (!disk.is_waited_for()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_TRUE(runner.status().writing);
+  const auto table = runner.take();
+  ASSERT_TRUE(table);
+  EXPECT_TRUE(cloth::is_complete(*table)) << "it is seen before it is written";
+  runner.start(next);
+  while (runner.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_TRUE(cloth::read_study(next.folder).study);
+  EXPECT_TRUE(disk.is_waited_for());
+  disk.let_go();
+  runner.wait();
+  EXPECT_TRUE(cloth::read_study(slow.folder).study);
+  EXPECT_EQ(runner.status().earlier_problem, "");
 }
 
 }  // namespace

@@ -60,16 +60,19 @@ StudyRunner::~StudyRunner() {
 }
 
 void StudyRunner::start(StudyOrder order) {
-  assert(!is_running());
-  wait();
+  assert(!is_running() || status().writing);
+  std::erase_if(jobs_, [](const std::unique_ptr<Job>& job) { return job->ended.load(); });
+  Job& job = *jobs_.emplace_back(std::make_unique<Job>());
+  job.order = std::move(order);
+  job.start = Clock::now();
   {
     const std::lock_guard lock(mutex_);
     status_ = {};
     status_.running = true;
-    start_ = Clock::now();
+    present_ = &job;
     newest_.reset();
   }
-  thread_ = std::jthread([this, order = std::move(order)](const std::stop_token& stop) { run(order, stop); });
+  job.thread = std::jthread([this, &job](const std::stop_token& stop) { run(job, stop); });
 }
 
 void StudyRunner::cancel() {
@@ -77,7 +80,12 @@ void StudyRunner::cancel() {
     const std::lock_guard lock(mutex_);
     status_.stopping = status_.running;
   }
-  thread_.request_stop();
+  if (!jobs_.empty()) jobs_.back()->thread.request_stop();
+}
+
+void StudyRunner::wait() {
+  for (const std::unique_ptr<Job>& job : jobs_)
+    if (job->thread.joinable()) job->thread.join();
 }
 
 StudyStatus StudyRunner::status() const {
@@ -95,87 +103,103 @@ std::shared_ptr<const cloth::StudyTable> StudyRunner::take() {
   return std::move(newest_);
 }
 
-bool StudyRunner::note(const cloth::StudyProgress& progress) {
+bool StudyRunner::note(const Job& job, const cloth::StudyProgress& progress) {
   const std::lock_guard lock(mutex_);
   status_.fraction = progress.fraction;
   status_.text = progress.text;
-  status_.elapsed = seconds(Clock::now() - start_);
+  status_.elapsed = seconds(Clock::now() - job.start);
   status_.left.reset();
   if (progress.fraction > 0.02) status_.left = status_.elapsed * (1 - progress.fraction) / progress.fraction;
   return !status_.stopping;
 }
 
-/// What is finished is on disk at once; the window sees it some ten times a second.
-template <class Table>
-void StudyRunner::offer(const Table& table, bool last) {
-  const auto now = Clock::now();
-  if (recorder_.is_open()) keep(table, last);
-  if (!last && now - offered_ < between_offers) return;
-  offered_ = now;
-  Table copy = copy_of(table);
-  if (!last) mark(copy);
-  const auto shared = std::make_shared<const cloth::StudyTable>(std::move(copy));
+void StudyRunner::note_problem(const Job& job, const std::string& problem) {
   const std::lock_guard lock(mutex_);
-  newest_ = shared;
+  if (&job == present_)
+    status_.problem = problem;
+  else if (!problem.empty())
+    status_.earlier_problem = problem;
 }
 
-/// A study goes on without its folder: its table is on the screen, and its end is written if that can be done
-/// by then.
+/// What is finished is on disk at once; the window sees it some ten times a second.
 template <class Table>
-void StudyRunner::keep(const Table& table, bool last) {
-  double elapsed = 0;
+void StudyRunner::offer(Job& job, const Table& table) {
+  const auto now = Clock::now();
+  if (job.recorder.is_open() && status().problem.empty())  // a study goes on without its folder
+    if (const auto error = job.recorder.keep(table)) note_problem(job, error->text());
+  if (now - job.offered < between_offers) return;
+  job.offered = now;
+  Table copy = copy_of(table);
+  mark(copy);
+  show(job, std::move(copy));
+}
+
+/// The whole table is seen before it is written, which may take long. It is written even where a finished
+/// run could not be.
+template <class Table>
+void StudyRunner::end(Job& job, const Table& table) {
+  show(job, copy_of(table));
+  if (!job.recorder.is_open()) return;
+  const double elapsed = seconds(Clock::now() - job.start);
   {
     const std::lock_guard lock(mutex_);
-    if (!last && !status_.problem.empty()) return;
-    elapsed = seconds(Clock::now() - start_);
+    status_.writing = true;
+    status_.text = "writing the results";
+    status_.left.reset();
   }
-  const auto error = last ? recorder_.end(table, elapsed) : recorder_.keep(table);
+  const auto error = job.recorder.end(table, elapsed);
+  note_problem(job, error ? error->text() : "");
+}
+
+template <class Table>
+void StudyRunner::show(const Job& job, Table table) {
+  auto shared = std::make_shared<const cloth::StudyTable>(std::move(table));
   const std::lock_guard lock(mutex_);
-  status_.problem = error ? error->text() : "";
+  if (&job == present_) newest_ = std::move(shared);
 }
 
 /// The unfinished study of the same kind and inputs that the folder holds, or null.
 template <class Table>
-const Table* StudyRunner::begin(const Table& plan, const StudyOrder& order) {
-  if (const auto error = recorder_.begin(order.folder, plan, {.command = order.command})) {
-    const std::lock_guard lock(mutex_);
-    status_.problem = error->text();
-  }
-  return recorder_.earlier() ? &std::get<Table>(*recorder_.earlier()) : nullptr;
+const Table* StudyRunner::begin(Job& job, const Table& plan) {
+  const auto error = job.recorder.begin(job.order.folder, plan, {.command = job.order.command});
+  if (error) note_problem(job, error->text());
+  return job.recorder.earlier() ? &std::get<Table>(*job.recorder.earlier()) : nullptr;
 }
 
-void StudyRunner::run(const StudyOrder& order, const std::stop_token& stop) {
+void StudyRunner::run(Job& job, const std::stop_token& stop) {
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), low_priority);
-  offered_ = Clock::now();
+  job.offered = Clock::now();
   std::string problem;
   try {
-    carry_out(order, stop);
+    carry_out(job, stop);
   } catch (...) {
     problem = cloth::failure_in_hand().text;
   }
+  if (!problem.empty()) note_problem(job, problem);
+  job.ended = true;
   const std::lock_guard lock(mutex_);
-  if (!problem.empty()) status_.problem = problem;
-  status_.running = false;
-  status_.stopping = false;
-  status_.elapsed = seconds(Clock::now() - start_);
+  if (&job != present_) return;
+  status_.running = status_.stopping = status_.writing = false;
+  status_.elapsed = seconds(Clock::now() - job.start);
   status_.left.reset();
   if (!stop.stop_requested() && problem.empty()) status_.fraction = 1;
 }
 
-void StudyRunner::carry_out(const StudyOrder& order, const std::stop_token& stop) {
+void StudyRunner::carry_out(Job& job, const std::stop_token& stop) {
+  const StudyOrder& order = job.order;
   const auto study = [&](auto options, const auto& plan, const auto& run) {
-    options.progress = [this](const cloth::StudyProgress& now) { return note(now); };
-    options.partial = [this](const auto& table) { offer(table, false); };
+    options.progress = [&](const cloth::StudyProgress& now) { return note(job, now); };
+    options.partial = [&](const auto& table) { offer(job, table); };
     options.stop = [&stop] { return stop.stop_requested(); };
-    options.earlier = begin(plan(options), order);
-    offer(run(options), true);
+    options.earlier = begin(job, plan(options));
+    end(job, run(options));
   };
   if (const auto* precision = std::get_if<cloth::WorkPrecisionOptions>(&order.options)) {
     study(
         *precision, [&](const auto& o) { return cloth::plan_work_precision(order.scene, o); },
         [&](const auto& o) { return cloth::study_work_precision(order.scene, o); });
   } else if (const auto* map = std::get_if<cloth::StabilityOptions>(&order.options)) {
-    note({0, "laying out the map"});
+    note(job, {0, "laying out the map"});
     study(
         *map, [&](const auto& o) { return cloth::plan_stability_map(order.scene, o); },
         [&](const auto& o) { return cloth::run_stability_map(order.scene, o); });

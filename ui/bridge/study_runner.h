@@ -2,6 +2,7 @@
 // status and tables; the newest table replaces older ones. Only `wait` and the destructor wait for the study.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
 #include "study/study_recorder.h"
 
@@ -28,11 +30,13 @@ struct StudyOrder {
 
 struct StudyStatus {
   bool running = false;
-  bool stopping = false;       ///< cancelled; the present step has not ended yet
-  double fraction = 0;         ///< part of the whole study that is done, 0 to 1
-  std::string text;            ///< what is being done
-  double elapsed = 0;          ///< s
-  std::optional<double> left;  ///< estimated time left, s; none: no estimate yet
+  bool stopping = false;        ///< cancelled; the present step has not ended yet
+  bool writing = false;         ///< computed; its folder is being completed, and the next study may start
+  double fraction = 0;          ///< part of the whole study that is done, 0 to 1
+  std::string text;             ///< what is being done
+  double elapsed = 0;           ///< s
+  std::optional<double> left;   ///< estimated time left, s; none: no estimate yet
+  std::string earlier_problem;  ///< why the study before, written meanwhile, could not be; empty: no error
   std::string problem;  ///< why the folder could not be written or the study did not finish; empty: no error
 };
 
@@ -43,7 +47,7 @@ class StudyRunner {
   StudyRunner(const StudyRunner&) = delete;
   StudyRunner& operator=(const StudyRunner&) = delete;
 
-  /// Precondition: nothing is running.
+  /// Precondition: nothing is running, or what is running is only being written, which then goes on.
   void start(StudyOrder order);
   void cancel();
   StudyStatus status() const;
@@ -53,30 +57,38 @@ class StudyRunner {
   std::shared_ptr<const cloth::StudyTable> take();
 
   /// Blocks until the study has ended and its folder is written. For tests and for closing.
-  void wait() {
-    if (thread_.joinable()) thread_.join();
-  }
+  void wait();
 
  private:
   using Clock = std::chrono::steady_clock;
-  void run(const StudyOrder& order, const std::stop_token& stop);
-  void carry_out(const StudyOrder& order, const std::stop_token& stop);
-  bool note(const cloth::StudyProgress& progress);
-  template <class Table>
-  const Table* begin(const Table& plan, const StudyOrder& order);
-  template <class Table>
-  void offer(const Table& table, bool last);
-  template <class Table>
-  void keep(const Table& table, bool last);
+  /// One study. All but `ended` belongs to its own thread.
+  struct Job {
+    StudyOrder order;
+    Clock::time_point start, offered;
+    cloth::StudyRecorder recorder;
+    std::atomic<bool> ended = false;
+    std::jthread thread;
+  };
 
-  mutable std::mutex mutex_;  // guards the members up to the blank line
+  void run(Job& job, const std::stop_token& stop);
+  void carry_out(Job& job, const std::stop_token& stop);
+  bool note(const Job& job, const cloth::StudyProgress& progress);
+  void note_problem(const Job& job, const std::string& problem);
+  template <class Table>
+  const Table* begin(Job& job, const Table& plan);
+  template <class Table>
+  void offer(Job& job, const Table& table);
+  template <class Table>
+  void end(Job& job, const Table& table);
+  template <class Table>
+  void show(const Job& job, Table table);
+
+  mutable std::mutex mutex_;  // of the members down to the blank line
   StudyStatus status_;
-  Clock::time_point start_;
+  const Job* present_ = nullptr;  ///< whose status it is
   std::shared_ptr<const cloth::StudyTable> newest_;
 
-  Clock::time_point offered_;  // used by the study's thread only, like recorder_
-  cloth::StudyRecorder recorder_;
-  std::jthread thread_;
+  std::vector<std::unique_ptr<Job>> jobs_;  ///< the last is the present one; those before are being written
 };
 
 }  // namespace clothlab

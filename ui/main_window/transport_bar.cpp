@@ -39,7 +39,7 @@ TransportBar::TransportBar(const QList<QAction*>& actions, const QString& widest
   auto* row = spaced(new QHBoxLayout(this), spacing / 2, {spacing, spacing / 2, spacing, spacing / 2});
   for (QAction* action : actions) {
     QToolButton* button = make_action_button(action, this);
-    if (action == actions.constFirst()) button->setIconSize({24, 24});
+    if (action == actions.constFirst()) makePrimary(*button);
     row->addWidget(button);
   }
   row->addSpacing(spacing);
@@ -55,6 +55,16 @@ TransportBar::TransportBar(const QList<QAction*>& actions, const QString& widest
 
   fillSpeeds();
   showStatus(WorkerStatus{});
+}
+
+void TransportBar::makePrimary(QToolButton& button) {
+  button.setProperty("primary", true);
+  button.setIconSize({24, 24});
+  const auto dress = [&button, action = button.defaultAction()] {
+    button.setIcon(icon_on_accent(action->icon().name()));
+  };
+  connect(button.defaultAction(), &QAction::changed, &button, dress);  // after the button took the action's
+  dress();
 }
 
 void TransportBar::fillSpeeds() {

@@ -10,6 +10,7 @@
 
 class QAction;
 class QComboBox;
+class QToolButton;
 
 namespace clothlab {
 
@@ -34,6 +35,7 @@ class TransportBar : public QFrame {
 
  private:
   void fillSpeeds();
+  void makePrimary(QToolButton& button);
 
   QComboBox* speed_;
   std::optional<int> speed_before_;  ///< the row that was selected before a short scene

@@ -28,7 +28,7 @@ QColor tint(const QString& name, QIcon::Mode mode, QIcon::State state, const The
 
 class ThemedIcon : public QIconEngine {
  public:
-  explicit ThemedIcon(const QString& name) : name_(name) {
+  explicit ThemedIcon(const QString& name, bool on_accent) : name_(name), on_accent_(on_accent) {
     QFile file(":/clothlab/icons/" + name + ".svg");
     if (file.open(QIODevice::ReadOnly))
       svg_ = file.readAll();
@@ -45,6 +45,7 @@ class ThemedIcon : public QIconEngine {
 
   /// `size` counts device pixels: QIcon multiplies by the screen's ratio before it asks.
   QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
+    if (on_accent_ && mode != QIcon::Disabled) mode = QIcon::Selected;
     const QColor colour = tint(name_, mode, state, theme());
     const QString key = QString("clothlab/%1/%2x%3/%4%5")
                             .arg(name_)
@@ -77,6 +78,7 @@ class ThemedIcon : public QIconEngine {
 
  private:
   QString name_;
+  bool on_accent_;
   QByteArray svg_;
 };
 
@@ -84,7 +86,12 @@ class ThemedIcon : public QIconEngine {
 
 QIcon icon(const QString& name) {
   ensure_resources();
-  return QIcon(new ThemedIcon(name));
+  return QIcon(new ThemedIcon(name, false));
+}
+
+QIcon icon_on_accent(const QString& name) {
+  ensure_resources();
+  return QIcon(new ThemedIcon(name, true));
 }
 
 }  // namespace clothlab

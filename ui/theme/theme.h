@@ -40,6 +40,9 @@ QPalette palette_for(const Theme& theme);
 /// (normal), accent (checked) and disabled colour.
 QIcon icon(const QString& name);
 
+/// The same for a button whose background is the accent.
+QIcon icon_on_accent(const QString& name);
+
 inline constexpr int spacing = 8;  ///< px: every margin and gap is a multiple of half of it
 
 /// The style sheet resources/themes/clothlab.qss with one theme's colours filled in.

@@ -200,10 +200,12 @@ class CompareTest : public QObject {
     cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
     CompareBench bench(comparison);
     bench.play_to_the_end();
-    auto* why = bench.part<QLabel>(1, "stopped");
-    QVERIFY(why->isVisible());
-    QVERIFY2(why->text().startsWith("Stopped: it "), qPrintable(why->text()));
-    QVERIFY(!bench.part<QLabel>(0, "stopped")->isVisible());
+    auto* why = bench.part<QWidget>(1, "notice:divergence");
+    QVERIFY(why && why->isVisible());
+    const QString text = why->findChild<QLabel*>("noticeText")->text();
+    QVERIFY2(text.startsWith("Diverged at ") && text.contains("energy"), qPrintable(text));
+    QVERIFY(bench.part<QLabel>(1, "difference")->text().startsWith("Stopped at "));
+    QVERIFY(!bench.part<QWidget>(0, "notice:divergence"));
     QCOMPARE(bench.status().panes[0].simulated, bench.status().duration);
     QCOMPARE(bench.window.ranking().item(1, 0)->text(), QString("B"));  // stopped ones come last
   }

@@ -129,6 +129,7 @@ void CompareWorker::start(const cloth::Comparison& comparison) {
   under_way_.reset();
   lockstep_ = std::make_unique<cloth::LockStep>(comparison);
   ++topology_;
+  ++status_.starts;
   restart_clock(0);
   drop_samples();  // of the run before
   take_sample(true);

@@ -267,6 +267,7 @@ void SimulationWorker::take_sample() {
 /// The view keeps the last good state, and so does the simulation: after an edit it can go on from there.
 void SimulationWorker::diverge(const cloth::Divergence& divergence) {
   status_.divergence = divergence;
+  ++status_.divergences;
   status_.playing = false;
   playing_again_ = false;
   history_.return_from(divergence, *simulation_);

@@ -41,6 +41,7 @@ struct WorkerStatus : RunStatus {
   double time_step = 0;  ///< s
   double steps_per_second = 0;
   std::optional<cloth::Divergence> divergence;
+  std::int64_t divergences = 0;  ///< how often a run has diverged
   std::string notice;  ///< e.g. a rate that the pins make unreachable, or an energy that is not accounted for
   std::uint64_t commands = 0;  ///< number of commands that were carried out or replaced by a later one
 
@@ -65,6 +66,7 @@ struct CompareStatus : RunStatus {
   std::string reference;                                ///< name of the reference, to be displayed
   std::string reference_failure;                        ///< why the reference stopped; empty: it did not
   std::optional<double> floor;                          ///< m, see cloth::LockStep::floor
+  std::int64_t starts = 0;                              ///< how often a run began
   std::int64_t new_starts = 0;                          ///< how often an edit made the run start again
 };
 

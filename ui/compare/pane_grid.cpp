@@ -74,6 +74,8 @@ void PaneGrid::addPane() {
   connect(pane, &PaneView::duplicateWanted, this, [this, i] { Q_EMIT duplicateWanted(i); });
   connect(pane, &PaneView::removeWanted, this, [this, i] { Q_EMIT removeWanted(i); });
   connect(pane, &PaneView::referenceWanted, this, [this, i] { Q_EMIT referenceWanted(i); });
+  connect(pane, &PaneView::remedyChosen, this,
+          [this, i](const Remedy& remedy) { Q_EMIT remedyChosen(i, remedy); });
   connect(view, &ClothView::pullChanged, this, &PaneGrid::pullChanged);
   connect(view, &ClothView::pullEnded, this, &PaneGrid::pullEnded);
   connect(view, &ClothView::brushChanged, this, &PaneGrid::brushChanged);
@@ -115,6 +117,8 @@ void PaneGrid::followPlaying(bool playing) {
 
 void PaneGrid::showResults(const CompareStatus& status) {
   const bool has_reference = status.comparison && status.comparison->reference != cloth::no_reference;
+  if (std::exchange(starts_, status.starts) != status.starts)
+    for (PaneView* pane : panes_) pane->forgetStop();
   for (std::size_t i = 0; i < std::min(panes_.size(), status.panes.size()); ++i)
     panes_[i]->showResult(status.panes[i], has_reference);
   followPlaying(status.playing);

@@ -47,6 +47,10 @@ class PaneGrid : public QWidget {
   void showComparison(const cloth::Comparison& comparison);
   void showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame);
   void showResults(const CompareStatus& status);
+  /// Says again why panes have stopped.
+  void sayStops() {
+    for (PaneView* pane : panes_) pane->sayStop();
+  }
   /// The cameras frame the next frames, as after opening another scene.
   void resetCamera();
 
@@ -67,6 +71,7 @@ class PaneGrid : public QWidget {
   void duplicateWanted(std::size_t pane);
   void removeWanted(std::size_t pane);
   void referenceWanted(std::size_t pane);
+  void remedyChosen(std::size_t pane, const clothlab::Remedy& remedy);
   void pullChanged(const cloth::Pull& pull);
   void pullEnded();
   void brushChanged(const cloth::BrushGust& gust);
@@ -84,6 +89,7 @@ class PaneGrid : public QWidget {
   ColourBar* colour_bar_;
   std::vector<PaneView*> panes_;
   bool playing_ = false;
+  std::int64_t starts_ = 0;  ///< of the comparison, that the results are from
   Tool tool_ = Tool::pull;
   ViewMode mode_ = ViewMode::textured;
   StrainRange strains_;

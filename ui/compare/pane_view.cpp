@@ -17,6 +17,7 @@
 #include "params/wording.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/notice_bar.h"
 #include "widgets/reading.h"
 #include "widgets/stability_gauge.h"
 
@@ -36,6 +37,7 @@ QString millimetres(double metres) {
 }
 
 QString difference_from_reference(const cloth::PaneResult& result, bool has_reference) {
+  if (result.divergence) return PaneView::tr("Stopped at %1 s").arg(result.simulated, 0, 'g', 4);
   if (result.is_reference) return PaneView::tr("Reference");
   if (!has_reference) return PaneView::tr("No reference");
   if (!result.rms) return PaneView::tr("No difference measured");
@@ -66,11 +68,12 @@ PaneView::PaneView(QWidget* parent)
       gauge_(new StabilityGauge(this)),
       cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
-      stopped_(new QLabel(this)) {
+      notice_(new NoticeBar(this)) {
   auto* column = spaced(new QVBoxLayout(this), 0, {frame_width, frame_width, frame_width, frame_width});
   column->addWidget(header_);
   column->addWidget(view_, 1);
   view_->setMinimumSize(160, 100);
+  notice_->layOver(view_, Qt::TopEdge);
   makeHeader();
 
   connect(method_, &QComboBox::activated, this,
@@ -114,11 +117,6 @@ void PaneView::makeHeader() {
 
   difference_->setObjectName("difference");
   column->addWidget(difference_);
-  stopped_->setObjectName("stopped");
-  stopped_->setProperty("state", "error");
-  stopped_->setWordWrap(true);
-  stopped_->hide();
-  column->addWidget(stopped_);
 }
 
 void PaneView::makeMenu(QToolButton& button) {
@@ -157,20 +155,23 @@ void PaneView::showStepRule(const QString& rule) {
 void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow,
                         bool can_shrink) {
   const cloth::Pane& shown = comparison.panes[pane];
-  const cloth::Scene scene = scene_of(comparison, pane);
+  scene_ = scene_of(comparison, pane);
   style_ = style_of(shown);
-  setObjectName("pane:" + QString::fromStdString(shown.name));
+  const QString name = "pane:" + QString::fromStdString(shown.name);
+  if (name != objectName()) forgetStop();
+  if (notice_->shows("divergence")) sayStop();
+  setObjectName(name);
   badge_->setPane(style_, QString::fromStdString(shown.name));
   badge_->setToolTip(QString::fromStdString(title_of(comparison, pane)));
   {
     const QSignalBlocker quiet(method_);
-    method_->setCurrentIndex(method_->findData(QString::fromStdString(scene.integrator.method)));
+    method_->setCurrentIndex(method_->findData(QString::fromStdString(scene_.integrator.method)));
   }
-  const StabilityReading reading = read_stability(scene);
+  const StabilityReading reading = read_stability(scene_);
   if (!step_->hasPendingText()) {
     showStepRule({});
-    if (scene.integrator.time_step)
-      step_->showValue(*scene.integrator.time_step);
+    if (scene_.integrator.time_step)
+      step_->showValue(*scene_.integrator.time_step);
     else
       step_->showNothing(tr("auto"));
   }
@@ -188,13 +189,27 @@ void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
   if (!result.notice.empty()) notices << QString::fromStdString(result.notice);
   if (result.energy.is_doubtful_so_far()) notices << QString::fromStdString(describe(result.energy));
   difference_->setToolTip(notices.isEmpty() ? difference_->text() : notices.join('\n'));
-  const QString why =
-      result.divergence
-          ? tr("Stopped: it %1.").arg(QString::fromStdString(cloth::describe(*result.divergence)))
-          : QString();
-  set_text(*stopped_, why);
-  stopped_->setVisible(result.divergence.has_value());
-  difference_->setVisible(!result.divergence);
+  if (result.divergence.has_value() == stop_.has_value()) return;
+  stop_ = result.divergence;
+  sayStop();
+}
+
+void PaneView::sayStop() {
+  if (!stop_) return notice_->withdraw("divergence");
+  const QString what = stop_->pinched         ? tr("Pinched at %1 s: %2.")
+                       : stop_->solver_failed ? tr("Stopped at %1 s: %2.")
+                                              : tr("Diverged at %1 s: %2.");
+  std::vector<NoticeAction> help;
+  for (const Remedy& remedy : remedies_for(scene_, *stop_))
+    help.push_back({remedy.text, [this, remedy] { Q_EMIT remedyChosen(remedy); }});
+  notice_->show("divergence", NoticeBar::Level::error,
+                what.arg(stop_->time, 0, 'g', 4).arg(QString::fromStdString(stop_->cause)), std::move(help),
+                tr("The pane %1.").arg(QString::fromStdString(cloth::describe(*stop_))));
+}
+
+void PaneView::forgetStop() {
+  stop_.reset();
+  sayStop();
 }
 
 void PaneView::dress() {

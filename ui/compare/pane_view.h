@@ -6,6 +6,7 @@
 
 #include "compare/comparison.h"
 #include "compare/ranking.h"
+#include "document/remedies.h"
 #include "viewport/cloth_view.h"
 
 class QAction;
@@ -16,6 +17,7 @@ class QToolButton;
 namespace clothlab {
 
 class ExactField;
+class NoticeBar;
 class PaneBadge;
 class QuietCombo;
 class Reading;
@@ -33,6 +35,10 @@ class PaneView : public QFrame {
   void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow, bool can_shrink);
   /// Shows the pane's measurements and its state.
   void showResult(const cloth::PaneResult& result, bool has_reference);
+  /// Says over the view why the pane stopped and what may help; if it was closed, again.
+  void sayStop();
+  /// A new run: a stop before is over.
+  void forgetStop();
   /// Why the last step typed is not in force; empty: it is.
   void showStepRule(const QString& rule);
 
@@ -44,6 +50,7 @@ class PaneView : public QFrame {
   void duplicateWanted();
   void removeWanted();
   void referenceWanted();
+  void remedyChosen(const clothlab::Remedy& remedy);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -59,6 +66,8 @@ class PaneView : public QFrame {
   void suitWidth();
 
   int style_ = 0;
+  cloth::Scene scene_;
+  std::optional<cloth::Divergence> stop_;
   ClothView* view_;
   QWidget* header_;
   PaneBadge* badge_;
@@ -68,7 +77,7 @@ class PaneView : public QFrame {
   StabilityGauge* gauge_;
   Reading* cost_;
   QLabel* difference_;
-  QLabel* stopped_;
+  NoticeBar* notice_;
   QHBoxLayout* first_row_ = nullptr;
   QHBoxLayout* second_row_ = nullptr;
   QAction* duplicate_;

@@ -155,7 +155,7 @@ void CompareWindow::makeViewBar() {
 }
 
 void CompareWindow::makeLayout() {
-  setMiddle({notice_, grid_}, grid_);
+  setMiddle({grid_}, grid_, Qt::BottomEdge);
   auto* form = new QWidget(this);
   auto* rows = spaced(new QVBoxLayout(form), 0);
   rows->addWidget(scopes_);
@@ -209,6 +209,11 @@ void CompareWindow::connectPanes() {
     const std::string& name = document_.comparison().panes[pane].name;
     document_.setReference(document_.comparison().reference == name ? cloth::controlled_reference : name);
     followDocument();  // the menu's check mark, also where nothing changed
+  });
+  connect(grid_, &PaneGrid::remedyChosen, this, [this](std::size_t pane, const Remedy& remedy) {
+    restartWith(remedy, [this, pane](const std::string& path, const cloth::ParameterValue& value) {
+      document_.setOwn(pane, path, value);
+    });
   });
   connectHand(grid_);
 }
@@ -332,7 +337,8 @@ void CompareWindow::followStatus(const CompareStatus& status) {
     ranking_clock_.restart();
   }
   followRun(status);
-  say("reference", NoticeBar::Level::warning,
+  notice_->showState(
+      "reference", NoticeBar::Level::warning,
       status.reference_failure.empty()
           ? QString()
           : tr("The reference stopped: it %1").arg(QString::fromStdString(status.reference_failure)));
@@ -344,13 +350,19 @@ void CompareWindow::followStatus(const CompareStatus& status) {
                       .arg(QString::fromStdString(pane.name),
                            QString::fromStdString(cloth::describe(*breach)));
     }
-  say("rate", NoticeBar::Level::warning, breaches.join('\n'));
+  notice_->showState("rate", NoticeBar::Level::warning, breaches.join('\n'));
   reference_->setToolTip(tr("Differences are from: %1").arg(QString::fromStdString(status.reference)));
   if (status.new_starts != shown_status_.new_starts)
     notice_->show("new-start", NoticeBar::Level::info,
                   tr("Started anew from 0 s: this change cannot be put in force in the middle of a run."));
   followRecording(shown_status_, status);
   shown_status_ = status;
+}
+
+/// Where all panes have stopped nothing moves: their messages tell why, also those that were closed.
+void CompareWindow::play(bool on) {
+  if (on) grid_->sayStops();
+  LabWindow::play(on);
 }
 
 void CompareWindow::send(const RunCommand& command) {

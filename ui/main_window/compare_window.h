@@ -44,6 +44,7 @@ class CompareWindow : public LabWindow {
   const cloth::Scene& scene() override { return document_.comparison().scene; }
   void togglePin(int row, int column) override { document_.togglePin(row, column); }
   void offerAir(const QString& text) override;
+  void play(bool on) override;
   void makeLayout();
   void makeScopeTabs();
   void connectDocument();

@@ -103,11 +103,12 @@ QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const
   return action;
 }
 
-void LabWindow::setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched) {
+void LabWindow::setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched, Qt::Edge messages) {
   auto* middle = new QWidget(this);
   auto* column = spaced(new QVBoxLayout(middle), 0);
   for (QWidget* part : parts) column->addWidget(part, part == stretched ? 1 : 0);
   setCentralWidget(middle);
+  notice_->layOver(stretched, messages);
 }
 
 QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
@@ -187,18 +188,18 @@ void LabWindow::addDockEntries(QMenu& view) {
   for (QDockWidget* dock : findChildren<QDockWidget*>()) view.addAction(dock->toggleViewAction());
 }
 
-void LabWindow::say(const QString& cause, NoticeBar::Level level, const QString& text) {
+void LabWindow::say(const QString& kind, NoticeBar::Level level, const QString& text) {
   if (text.isEmpty())
-    notice_->withdraw(cause);
+    notice_->withdraw(kind);
   else
-    notice_->show(cause, level, text);
+    notice_->show(kind, level, text);
 }
 
 void LabWindow::followRun(const RunStatus& now) {
   dress(*play_, now.playing, now.playing ? tr("Pause") : tr("Play"), now.playing ? "pause" : "play");
   play_->setEnabled(now.refusal.empty());
   step_->setEnabled(now.refusal.empty());
-  say("refusal", NoticeBar::Level::error, QString::fromStdString(now.refusal));
+  notice_->showState("refusal", NoticeBar::Level::error, QString::fromStdString(now.refusal));
 }
 
 void LabWindow::followRecording(const RunStatus& before, const RunStatus& now) {
@@ -214,6 +215,17 @@ void LabWindow::followRecording(const RunStatus& before, const RunStatus& now) {
                   tr("Recorded %1 rows in %2").arg(now.recorded_rows).arg(folder), tr("Open folder"),
                   [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
   }
+}
+
+void LabWindow::restartWith(
+    const Remedy& remedy,
+    const std::function<void(const std::string& path, const cloth::ParameterValue& value)>& set) {
+  if (!remedy.edits.empty()) {
+    any_document_->undoStack().beginMacro(remedy.text);
+    for (const auto& [path, value] : remedy.edits) set(path, value);
+    any_document_->undoStack().endMacro();
+  }
+  restart();
 }
 
 void LabWindow::updateTitle() {

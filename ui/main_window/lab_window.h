@@ -9,6 +9,7 @@
 #include "bridge/worker_status.h"
 #include "charts/chart_area.h"
 #include "document/document.h"
+#include "document/remedies.h"
 #include "document/save_dialog.h"
 #include "main_window/transport_bar.h"
 #include "params/parameter_panel.h"
@@ -110,8 +111,9 @@ class LabWindow : public QMainWindow {
       togglePin(particle / columns, particle % columns);
     });
   }
-  /// Sets the central widget: `parts` from top to bottom, of which `stretched` takes the free height.
-  void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched);
+  /// Sets the central widget: `parts` from top to bottom, of which `stretched` takes the free height and has
+  /// the messages over its edge.
+  void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched, Qt::Edge messages);
   QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
   void addTransport();
 
@@ -124,11 +126,15 @@ class LabWindow : public QMainWindow {
   QMenu* addRunMenu(const QList<QAction*>& actions);
   void addDockEntries(QMenu& view);
 
-  /// Shows a message, or withdraws the one of this cause if the text is empty.
-  void say(const QString& cause, NoticeBar::Level level, const QString& text);
+  /// Shows a message, or withdraws the one of this kind if the text is empty.
+  void say(const QString& kind, NoticeBar::Level level, const QString& text);
   /// Updates actions and messages from the state of a run and of its recording.
   void followRun(const RunStatus& now);
   void followRecording(const RunStatus& before, const RunStatus& now);
+  /// The edits as one undo step, and a restart.
+  void restartWith(
+      const Remedy& remedy,
+      const std::function<void(const std::string& path, const cloth::ParameterValue& value)>& set);
   void updateTitle();
   bool mayLoseChanges();
   bool save() { return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path()); }

@@ -57,7 +57,7 @@ void MainWindow::makeLayout() {
   view_bar_ = new ViewBar(*view_, save_picture_, this);
   view_->setMinimumSize(320, 240);
 
-  setMiddle({view_bar_, notice_, view_, timeline_}, view_);
+  setMiddle({view_bar_, view_, timeline_}, view_, Qt::TopEdge);
   QDockWidget* left = addDock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
   QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
@@ -117,6 +117,7 @@ void MainWindow::connectSimulation() {
   connect(&link_, &SimulationLink::statusChanged, this, &MainWindow::followStatus);
   connect(&timeline_->track(), &TimelineTrack::timeWanted, this, [this](double time) {
     paused_again_ = false;
+    forgetDivergence();
     link_.send(command::GoTo{{.step = {}, .time = time}});
   });
   connect(play_again_, &QAction::triggered, this, [this] { link_.send(command::PlayAgain{}); });
@@ -146,6 +147,7 @@ void MainWindow::loadStudy(const QString& folder) {
 void MainWindow::startSimulation() {
   charts_->clear();
   notice_->withdraw("session");
+  forgetDivergence();
   paused_again_ = false;
   if (session_) {
     link_.send(command::OpenSession{*std::exchange(session_, std::nullopt)});
@@ -158,6 +160,7 @@ void MainWindow::startSimulation() {
 
 void MainWindow::restart() {
   charts_->clear();
+  forgetDivergence();
   paused_again_ = false;
   LabWindow::restart();
 }
@@ -193,10 +196,12 @@ void MainWindow::readStability() {
   const auto& deformation = document_.scene().deformation;
   charts_->setDeformationRate(deformation && !deformation->springs.empty() ? std::optional(deformation->rate)
                                                                            : std::nullopt);
-  if (reading.level == StabilityReading::Level::unstable)
-    notice_->show("stability", NoticeBar::Level::warning,
-                  tr("The time step is over the limit of this method: the run will diverge."), tr("Use auto"),
-                  [this] { takeStableStep(); });
+  if (divergence_)
+    sayDivergence();
+  else if (reading.level == StabilityReading::Level::unstable)
+    notice_->showState("stability", NoticeBar::Level::warning,
+                       tr("The time step is over the limit of this method: the run will diverge."),
+                       {{tr("Use auto"), [this] { takeStableStep(); }}});
   else
     notice_->withdraw("stability");
 }

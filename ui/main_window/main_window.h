@@ -72,8 +72,10 @@ class MainWindow : public LabWindow {
   void followScene(const WorkerStatus& status);
   void followSession(const WorkerStatus& status);
   void followDivergence(const WorkerStatus& status);
-  void sayPinched(const cloth::Divergence& stop);
+  void sayDivergence(bool is_new = false);
+  void forgetDivergence();
   void forgetPinch();
+  std::vector<NoticeAction> helpAgainst(const cloth::Divergence& stop);
 
   // main_window_menus.cpp
   void makeActions();
@@ -101,6 +103,8 @@ class MainWindow : public LabWindow {
   QAction* save_cloth_ = nullptr;
 
   WorkerStatus shown_status_;
+  std::optional<cloth::Divergence> divergence_;   ///< until the run is past it or starts again
+  std::int64_t divergences_ = 0;                  ///< how many were shown
   std::shared_ptr<const cloth::Scene> followed_;  ///< the worker's scene that the document adopted last
   std::optional<cloth::Session> session_;         ///< a session to be opened instead of the document's scene
   QString saving_session_;                        ///< the file, until it is written

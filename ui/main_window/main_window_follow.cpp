@@ -2,7 +2,6 @@
 #include <QAction>
 #include <QStringList>
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "main_window/main_window.h"
@@ -28,7 +27,7 @@ void MainWindow::followStatus(const WorkerStatus& status) {
                           status.step < status.history.last_step);
   followRun(status);
   if (status.notice != shown_status_.notice)
-    say("quality", NoticeBar::Level::warning, as_sentences(status.notice));
+    notice_->showState("quality", NoticeBar::Level::warning, as_sentences(status.notice));
   followDivergence(status);
   followRecording(shown_status_, status);
   followSession(status);
@@ -66,39 +65,55 @@ void MainWindow::followSession(const WorkerStatus& status) {
                      "may round differently."));
 }
 
+/// A run that goes on after a change has yet to show that it gets past that place. One that is restarted or
+/// goes back in time is done with it.
 void MainWindow::followDivergence(const WorkerStatus& status) {
-  if (!status.divergence) {
-    if (shown_status_.divergence) notice_->withdraw("divergence");
-    return;
+  if (!link_.isUpToDate()) return;  // it may be over
+  if (std::exchange(divergences_, status.divergences) != status.divergences) {
+    divergence_ = status.divergence;
+    if (divergence_) sayDivergence(true);
+  } else if (divergence_ && !status.divergence && status.time >= divergence_->time) {
+    forgetDivergence();
   }
-  if (shown_status_.divergence) return;
-  if (status.divergence->pinched) return sayPinched(*status.divergence);
-  const QString text = tr("The run %1. The view shows the last good state.")
-                           .arg(QString::fromStdString(cloth::describe(*status.divergence)));
-  if (status.divergence->stable_step > 0 && std::isfinite(status.divergence->stable_step))
-    notice_->show("divergence", NoticeBar::Level::error, text, tr("Use auto and restart"), [this] {
-      takeStableStep();
-      restart();
-    });
-  else
-    notice_->show("divergence", NoticeBar::Level::error, text);
 }
 
-/// A pinch is not a divergence: after any undo or move the run continues from its present state.
-void MainWindow::sayPinched(const cloth::Divergence& stop) {
-  const QString text = tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.")
-                           .arg(QString::fromStdString(cloth::describe(stop)));
+/// Says a new divergence, or what helps against the present one after an edit.
+void MainWindow::sayDivergence(bool is_new) {
+  notice_->withdraw("stability");                        // what it warned of has happened
+  if (!is_new && !notice_->shows("divergence")) return;  // it was closed
+  const QString what = QString::fromStdString(cloth::describe(*divergence_));
+  notice_->show("divergence", NoticeBar::Level::error,
+                divergence_->pinched
+                    ? tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.").arg(what)
+                    : tr("The run %1. The view shows the last good state.").arg(what),
+                helpAgainst(*divergence_));
+}
+
+std::vector<NoticeAction> MainWindow::helpAgainst(const cloth::Divergence& stop) {
+  std::vector<NoticeAction> actions;
   QUndoStack& edits = document_.undoStack();
-  if (edits.canUndo())
-    notice_->show("divergence", NoticeBar::Level::error, text, tr("Undo: %1").arg(edits.undoText()),
-                  [this] { document_.undoStack().undo(); });
-  else
-    notice_->show("divergence", NoticeBar::Level::error, text);
+  if (stop.pinched && edits.canUndo())
+    actions.push_back({tr("Undo: %1").arg(edits.undoText()), [this] { document_.undoStack().undo(); }});
+  for (const Remedy& remedy : remedies_for(document_.scene(), stop))
+    actions.push_back({remedy.text, [this, remedy] {
+                         restartWith(remedy,
+                                     [this](const std::string& path, const cloth::ParameterValue& to) {
+                                       document_.setParameter(path, to);
+                                     });
+                       }});
+  return actions;
 }
 
-/// Its message offers to undo the edit that led there; after another edit that would be the wrong one.
+void MainWindow::forgetDivergence() {
+  if (!std::exchange(divergence_, std::nullopt)) return;
+  notice_->withdraw("divergence");
+  readStability();
+}
+
+/// A pinched run goes on from where it stands, whatever is undone or moved. Its message offers to undo the
+/// edit that led there; after another edit that would be the wrong one.
 void MainWindow::forgetPinch() {
-  if (shown_status_.divergence && shown_status_.divergence->pinched) notice_->withdraw("divergence");
+  if (divergence_ && divergence_->pinched) forgetDivergence();
 }
 
 }  // namespace clothlab

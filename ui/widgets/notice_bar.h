@@ -1,49 +1,67 @@
-// One message above the view: what happened, how to correct it, and optionally a button with an action. A new
-// message replaces the present one.
+// Messages over a view: each says what happened, with buttons for what would help and one that closes it. A
+// message is of a kind ("divergence"): a later one takes the place of that of the same kind, and leaves all
+// others where they are.
 #pragma once
 
-#include <QFrame>
+#include <QScrollArea>
 #include <functional>
+#include <map>
+#include <vector>
 
-class QLabel;
-class QPushButton;
-class QToolButton;
+class QBoxLayout;
 
 namespace clothlab {
 
-class NoticeBar : public QFrame {
+class NoticeRow;
+
+/// What a button of a message does. The message is taken away first.
+struct NoticeAction {
+  QString text;
+  std::function<void()> act;
+};
+
+class NoticeBar : public QScrollArea {
   Q_OBJECT
 
  public:
   enum class Level { info, warning, error };
 
   explicit NoticeBar(QWidget* parent = nullptr);
+  /// Lies over the upper or the lower edge of `view`, inside it and beside its other children, and leaves it
+  /// where it is.
+  void layOver(QWidget* view, Qt::Edge edge);
 
-  /// `cause` names what the message is about ("divergence"); a later message of the same cause replaces it.
-  void show(const QString& cause, Level level, const QString& text, const QString& button = {},
-            std::function<void()> action = {});
-
-  /// Hides the message if it has this cause.
-  void withdraw(const QString& cause) {
-    if (cause_ == cause) hide();
+  void show(const QString& kind, Level level, const QString& text, std::vector<NoticeAction> actions = {},
+            const QString& details = {});
+  void show(const QString& kind, Level level, const QString& text, const QString& button,
+            std::function<void()> action) {
+    show(kind, level, text, {{button, std::move(action)}});
   }
+  /// For a state that is told again and again: a message that was closed stays away until its text is another
+  /// one or it was withdrawn. Empty: withdraws it.
+  void showState(const QString& kind, Level level, const QString& text,
+                 std::vector<NoticeAction> actions = {});
+  /// Takes the message of this kind away: it is over.
+  void withdraw(const QString& kind);
 
-  QString cause() const { return isHidden() ? QString() : cause_; }
-  QString text() const;
+  bool shows(const QString& kind) const { return rows_.contains(kind); }
+  /// Of the message of this kind; without a kind of all messages, a line each at least.
+  QString text(const QString& kind = {}) const;
+  /// Of the newest message; empty: there is none.
+  QString cause() const;
 
  protected:
-  void changeEvent(QEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  void dress();
+  void close(const QString& kind);
+  void place();
 
-  QString cause_;
-  Level level_ = Level::info;
-  QLabel* symbol_;
-  QLabel* label_;
-  QPushButton* button_;
-  QToolButton* close_;
-  std::function<void()> action_;
+  QWidget* view_ = nullptr;
+  Qt::Edge edge_ = Qt::TopEdge;
+  QBoxLayout* column_;  ///< from the edge inwards: a new message moves no other
+  std::map<QString, NoticeRow*> rows_;
+  std::map<QString, QString> closed_;  ///< texts by their kind
 };
 
 }  // namespace clothlab

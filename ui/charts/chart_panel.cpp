@@ -12,7 +12,7 @@ namespace clothlab {
 namespace {
 
 constexpr double key_pan = 0.1, key_zoom = 0.8;
-constexpr QSize smallest{260, 300};  // px
+constexpr QSize smallest{260, 220};  // px
 
 }  // namespace
 

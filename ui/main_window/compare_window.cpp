@@ -167,7 +167,7 @@ void CompareWindow::makeLayout() {
   QDockWidget* left = addDock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
   QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
   QDockWidget* bottom = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
-  resizeDocks({left, right}, {form_width, curves_width}, Qt::Horizontal);
+  setWidths({left, right}, {form_width, curves_width});
   resizeDocks({bottom}, {ranking_height}, Qt::Vertical);
 }
 

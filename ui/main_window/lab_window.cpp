@@ -15,6 +15,7 @@
 #include <QToolBar>
 #include <QUrl>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <utility>
 
 #include "compare/builtin_comparisons.h"
@@ -118,6 +119,39 @@ QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget*
   dock->setWidget(content);
   addDockWidget(area, dock);
   return dock;
+}
+
+void LabWindow::setWidths(const QList<QDockWidget*>& docks, const QList<int>& widths) {
+  for (qsizetype k = 0; k < docks.size(); ++k) {
+    wanted_widths_[docks[k]] = widths[k];
+    docks[k]->installEventFilter(this);
+  }
+  resizeDocks(docks, widths, Qt::Horizontal);
+}
+
+/// A dock whose edge a hand drags is wanted as wide as it becomes.
+bool LabWindow::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::Resize && QApplication::mouseButtons() != Qt::NoButton)
+    if (auto* dock = qobject_cast<QDockWidget*>(watched); dock && wanted_widths_.contains(dock))
+      wanted_widths_[dock] = dock->width();
+  return QMainWindow::eventFilter(watched, event);
+}
+
+/// Docks that a narrower window has squeezed get their widths back, as far as the middle can spare it.
+void LabWindow::resizeEvent(QResizeEvent* event) {
+  QMainWindow::resizeEvent(event);
+  if (!centralWidget()) return;
+  int spare = centralWidget()->width() - centralWidget()->minimumSizeHint().width();
+  QList<QDockWidget*> docks;
+  QList<int> widths;
+  for (auto [dock, wanted] : wanted_widths_.asKeyValueRange()) {
+    if (!dock->isVisible() || dock->isFloating() || dock->width() >= wanted || spare <= 0) continue;
+    const int more = std::min(wanted - dock->width(), spare);
+    docks << dock;
+    widths << dock->width() + more;
+    spare -= more;
+  }
+  if (!docks.isEmpty()) resizeDocks(docks, widths, Qt::Horizontal);
 }
 
 void LabWindow::addTransport() {

@@ -93,6 +93,8 @@ class LabWindow : public QMainWindow {
   void closeEvent(QCloseEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
   /// An action of this window; its tooltip contains the shortcut.
   QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
@@ -115,6 +117,8 @@ class LabWindow : public QMainWindow {
   /// the messages over its edge.
   void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched, Qt::Edge messages);
   QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
+  /// Docks at the sides get these widths, in px, and get them back when the window was narrower meanwhile.
+  void setWidths(const QList<QDockWidget*>& docks, const QList<int>& widths);
   void addTransport();
 
   /// With an entry to open a file; of the other menus all that both windows have.
@@ -163,7 +167,8 @@ class LabWindow : public QMainWindow {
   std::unique_ptr<Document> any_document_;
   Wording wording_;
   bool asks_to_save_ = true;
-  bool may_close_ = false;  ///< quit() has asked already
+  bool may_close_ = false;                 ///< quit() has asked already
+  QMap<QDockWidget*, int> wanted_widths_;  ///< px, of the docks at the sides
 };
 
 /// Shows a new window, which is deleted when it is closed.

@@ -55,12 +55,12 @@ void MainWindow::makeLayout() {
   addTransport();
   timeline_ = new Timeline(play_again_, this);
   view_bar_ = new ViewBar(*view_, save_picture_, this);
-  view_->setMinimumSize(320, 240);
+  view_->setMinimumSize(320, 160);
 
   setMiddle({view_bar_, view_, timeline_}, view_, Qt::TopEdge);
   QDockWidget* left = addDock(tr("Parameters"), "parametersDock", parameters_, Qt::LeftDockWidgetArea);
   QDockWidget* right = addDock(tr("Charts"), "chartsDock", charts_, Qt::RightDockWidgetArea);
-  resizeDocks({left, right}, {parameters_width, charts_width}, Qt::Horizontal);
+  setWidths({left, right}, {parameters_width, charts_width});
   studies_dock_ = named("studiesDock", new QDockWidget(tr("Studies"), this));
   studies_dock_->setWidget(studies_);
   addDockWidget(Qt::BottomDockWidgetArea, studies_dock_);

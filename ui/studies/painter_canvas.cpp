@@ -1,6 +1,7 @@
 #include "studies/painter_canvas.h"
 
 #include <QPainterPath>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -55,6 +56,8 @@ QVector<qreal> pattern_of(cloth::Dash dash) {
   }
   return {};
 }
+
+constexpr double least_text = 11;  // px
 
 QFont sized(QFont font, double size, bool bold) {
   font.setPixelSize(std::max(1, static_cast<int>(std::lround(size))));
@@ -119,12 +122,15 @@ void PainterCanvas::marker(cloth::Marker marker, cloth::SvgPoint centre, double 
 
 void PainterCanvas::text(cloth::SvgPoint baseline, const cloth::SvgText& text) {
   const QString words = QString::fromStdString(text.text), raised = QString::fromStdString(text.superscript);
-  const QFont font = sized(font_, text.size, text.bold), small = sized(font_, 0.75 * text.size, text.bold);
+  const QFont font = sized(font_, text.size, text.bold),
+              small = sized(font_, std::max(least_text, 0.75 * text.size), text.bold);
   const double width = QFontMetricsF(font).horizontalAdvance(words);
   const double whole = width + (raised.isEmpty() ? 0 : QFontMetricsF(small).horizontalAdvance(raised));
   const double left = text.anchor == cloth::Anchor::start    ? 0
                       : text.anchor == cloth::Anchor::middle ? -whole / 2
                                                              : -whole;
+  smallest_text_ =
+      std::min(smallest_text_, static_cast<double>(raised.isEmpty() ? font.pixelSize() : small.pixelSize()));
   painter_.save();
   painter_.translate(baseline.x, baseline.y);
   painter_.rotate(text.turn);

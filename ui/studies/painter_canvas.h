@@ -6,6 +6,7 @@
 #include <QFont>
 #include <QPainter>
 #include <QRectF>
+#include <limits>
 #include <vector>
 
 #include "report/svg.h"
@@ -28,6 +29,8 @@ class PainterCanvas : public cloth::PlotCanvas {
 
   QColor colour(const cloth::PageColour& colour) const;
   const std::vector<PlotTouch>& touches() const { return touches_; }
+  /// Of the texts drawn so far, in px; infinity: none.
+  double smallestText() const { return smallest_text_; }
 
   void path(const std::string& data, const cloth::SvgStyle& style, const cloth::SvgTip& tip = {}) override;
   void rect(cloth::SvgPoint corner, double width, double height, const cloth::SvgStyle& style,
@@ -51,6 +54,7 @@ class PainterCanvas : public cloth::PlotCanvas {
   Look look_;
   std::vector<Group> groups_;
   std::vector<PlotTouch> touches_;
+  double smallest_text_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace clothlab

@@ -2,6 +2,7 @@
 
 #include <QComboBox>
 #include <QDir>
+#include <QEvent>
 #include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -13,9 +14,11 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 
 #include "document/result_files.h"
 #include "document/save_dialog.h"
+#include "params/panel_parts.h"
 #include "studies/study_library.h"
 #include "study/extremes_report.h"
 #include "study/stability_report.h"
@@ -72,6 +75,9 @@ StudiesPanel::StudiesPanel(LabDocument& document, QWidget* parent) : QWidget(par
   };
   connect(&document_, &LabDocument::loaded, this, stale);
   connect(&document_, &LabDocument::sceneChanged, this, stale);
+  connect(choices_, &StudyChoices::changed, this, [this] {
+    if (isVisible()) compareWithForm();
+  });
   showStatus({});
 }
 
@@ -112,7 +118,7 @@ QWidget* StudiesPanel::makeLeft() {
 
 QWidget* StudiesPanel::makeRight() {
   auto* right = new QWidget(this);
-  title_ = named("studyTitle", new QLabel(right));
+  title_ = named("studyTitle", new ElidedLabel(right));
   title_->setProperty("heading", true);
   against_ = named("against", new QComboBox(right));
   against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
@@ -138,23 +144,31 @@ QWidget* StudiesPanel::makeRight() {
                       right);
   empty_->setAlignment(Qt::AlignCenter);
   empty_->setWordWrap(true);
-  empty_->setMargin(12 * spacing);
+  empty_->setMargin(2 * spacing);
   empty_->setProperty("muted", true);
   empty_->setObjectName("studyEmpty");
-  plot_ = new StudyPlot(right);
+  earlier_ = named("studyEarlier", new QLabel(tr("An earlier study: the form has other values now."), right));
+  earlier_->setProperty("state", "warning");
+  earlier_->setWordWrap(true);
+  earlier_->hide();
+  plot_area_ = named("studyPlotArea", new QScrollArea(right));
+  plot_ = new StudyPlot(plot_area_);
+  plot_area_->setWidget(plot_);
+  plot_area_->setWidgetResizable(true);
+  plot_area_->installEventFilter(this);
   stack_ = new QStackedWidget(right);
   stack_->addWidget(empty_);
-  stack_->addWidget(plot_);
+  stack_->addWidget(plot_area_);
   bar_ = named("studyProgress", new QProgressBar(right));
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
   bar_->setFixedHeight(6);
-  line_ = named("studyLine", new QLabel(right));
+  line_ = named("studyLine", new ElidedLabel(right));
   line_->setProperty("muted", true);
-  line_->setMinimumWidth(100);
 
   auto* column = spaced(new QVBoxLayout(right), spacing / 2);
   column->addLayout(head);
+  column->addWidget(earlier_);
   column->addWidget(stack_, 1);
   column->addWidget(bar_);
   column->addWidget(line_);
@@ -168,21 +182,30 @@ QWidget* StudiesPanel::makeRight() {
   return right;
 }
 
+bool StudiesPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == plot_area_ && event->type() == QEvent::Resize) plot_->setRoom(plot_area_->size());
+  return QWidget::eventFilter(watched, event);
+}
+
 void StudiesPanel::showEvent(QShowEvent*) {
   if (choices_stale_) choices_->setScene(document_.scene());
   choices_stale_ = false;
+  compareWithForm();
 }
 
 void StudiesPanel::start() {
-  if (isRunning()) return;
+  if (const StudyStatus status = runner_.status(); status.running && !status.writing) return;
+  if (was_running_ && table_) recent_studies.remember(folder_);  // which is still being written
   auto order = choices_->order();
   if (const QString* problem = std::get_if<QString>(&order)) {
     say(*problem, true);
     return;
   }
   StudyOrder& chosen = std::get<StudyOrder>(order);
+  choices_->keepAxes();
   folder_ = QString::fromStdString(chosen.folder.string());
   table_.reset();
+  compareWithForm();
   stack_->setCurrentIndex(0);
   empty_->setText(tr("<p><b>The study runs.</b></p><p>Its first results will be drawn here.</p>"));
   runner_.start(std::move(chosen));
@@ -209,9 +232,10 @@ void StudiesPanel::poll() {
 }
 
 void StudiesPanel::showStatus(const StudyStatus& status) {
-  start_->setEnabled(!status.running);
-  choices_->setEnabled(!status.running);
-  cancel_->setVisible(status.running);
+  const bool computing = status.running && !status.writing;
+  start_->setEnabled(!computing);
+  choices_->setEnabled(!computing);
+  cancel_->setVisible(computing);
   cancel_->setEnabled(!status.stopping);
   open_->setEnabled(!status.running);
   save_->setEnabled(table_ != nullptr);
@@ -221,9 +245,13 @@ void StudiesPanel::showStatus(const StudyStatus& status) {
   title_->setText(
       table_ ? tr("%1: %2").arg(kind_title(*table_), QString::fromStdString(cloth::title_of(*table_)))
              : QString());
-  if (status.running) {
-    QString text = status.stopping ? tr("stopping") : QString::fromStdString(status.text);
-    text += tr(" – %1 %").arg(static_cast<int>(100 * status.fraction));
+  if (!status.earlier_problem.empty()) {
+    say(tr("The results of the study before could not be written. %1")
+            .arg(QString::fromStdString(status.earlier_problem)),
+        true);
+  } else if (status.running) {
+    QString text = status.stopping && computing ? tr("stopping") : QString::fromStdString(status.text);
+    if (computing) text += tr(" – %1 %").arg(static_cast<int>(100 * status.fraction));
     if (status.left && !status.stopping) text += tr(", about %1 left").arg(time_text(*status.left));
     say(text);
   } else if (!status.problem.empty()) {
@@ -244,7 +272,13 @@ QString StudiesPanel::summary() const {
 void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {
   table_ = std::move(table);
   refreshDiagram();
+  compareWithForm();
   stack_->setCurrentIndex(1);
+}
+
+/// Says so where what is shown is not what the form would give now.
+void StudiesPanel::compareWithForm() {
+  earlier_->setVisible(table_ && !choices_->describes(*table_));
 }
 
 void StudiesPanel::refreshDiagram() {
@@ -305,7 +339,7 @@ void StudiesPanel::saveAs() {
 void StudiesPanel::say(const QString& text, bool error) {
   line_->setProperty("state", error ? "error" : "");
   line_->style()->polish(line_);
-  line_->setText(line_->fontMetrics().elidedText(text, Qt::ElideRight, std::max(200, line_->width())));
+  line_->setText(text);
   line_->setToolTip(text);
 }
 

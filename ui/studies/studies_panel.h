@@ -16,6 +16,7 @@ class QLabel;
 class QMenu;
 class QProgressBar;
 class QPushButton;
+class QScrollArea;
 class QStackedWidget;
 class QToolButton;
 
@@ -55,6 +56,7 @@ class StudiesPanel : public QWidget {
   void poll();
   void show(std::shared_ptr<const cloth::StudyTable> table);
   void refreshDiagram();
+  void compareWithForm();
   void showStatus(const StudyStatus& status);
   void openRun(int run);
   void saveAs();
@@ -73,7 +75,8 @@ class StudiesPanel : public QWidget {
   StudyChoices* choices_ = nullptr;
   StudyPlot* plot_ = nullptr;
   QStackedWidget* stack_ = nullptr;  // nothing yet, the diagram
-  QLabel *title_ = nullptr, *line_ = nullptr, *empty_ = nullptr;
+  QScrollArea* plot_area_ = nullptr;
+  QLabel *title_ = nullptr, *earlier_ = nullptr, *line_ = nullptr, *empty_ = nullptr;
   QComboBox* against_ = nullptr;
   QProgressBar* bar_ = nullptr;
   QPushButton *start_ = nullptr, *cancel_ = nullptr;
@@ -81,6 +84,7 @@ class StudiesPanel : public QWidget {
   QMenu* recent_ = nullptr;
 
  protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
   void showEvent(QShowEvent* event) override;
 };
 

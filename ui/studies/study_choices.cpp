@@ -1,23 +1,18 @@
 #include "studies/study_choices.h"
 
-#include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
-#include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QLocale>
+#include <QScopedValueRollback>
 #include <QSpinBox>
-#include <QStackedWidget>
-#include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "integrators/registry.h"
-#include "report/svg.h"
-#include "scene/scene_parameters.h"
+#include "studies/axis_choice.h"
 #include "studies/study_library.h"
 #include "study/stability_map.h"
 #include "study/stability_report.h"
@@ -48,34 +43,34 @@ QString purpose_of(StudyChoices::Kind kind) {
   return {};
 }
 
-QFormLayout* form_on(QWidget* page) {
-  auto* form = spaced(new QFormLayout(page), spacing / 2);
-  form->setRowWrapPolicy(QFormLayout::WrapLongRows);
-  return form;
+std::vector<std::string> names_of(const std::vector<cloth::MethodStudy>& methods) {
+  std::vector<std::string> names;
+  for (const cloth::MethodStudy& method : methods) names.push_back(method.ladder.facts.name);
+  return names;
 }
 
-constexpr int usual_count = 12;
-constexpr int count_width = 54;  // px
-
-QString number_text(double value) {
-  return QString::fromStdString(cloth::short_number(value, 3));
+bool is_same(const cloth::StudyAxis& a, const cloth::StudyAxis& b) {
+  return a.path == b.path && a.low == b.low && a.high == b.high && a.count == b.count && a.scale == b.scale;
 }
 
-double number_of(const QLineEdit& field) {
-  bool ok = false;
-  const double value = QLocale::c().toDouble(field.text().trimmed(), &ok);
-  return ok ? value : std::numeric_limits<double>::quiet_NaN();
+bool has_inputs(const cloth::WorkPrecision& study, const cloth::Scene& given,
+                const cloth::WorkPrecisionOptions& options) {
+  const cloth::Scene scene = cloth::studied_scene(given);
+  return study.scene == scene && names_of(study.methods) == options.methods &&
+         study.repeats == options.repeats &&
+         study.horizon == options.horizon.value_or(cloth::default_horizon(scene));
 }
 
-/// Around the scene's own value: the form's slider range.
-cloth::StudyAxis offer_of(const cloth::Parameter& parameter) {
-  const cloth::ParameterInfo& info = parameter.info;
-  const bool logarithmic = info.scale == cloth::Scale::logarithmic && info.slider_minimum > 0;
-  return {.path = parameter.path,
-          .low = info.slider_minimum,
-          .high = info.slider_maximum,
-          .count = usual_count,
-          .scale = logarithmic ? cloth::AxisScale::logarithmic : cloth::AxisScale::linear};
+bool has_inputs(const cloth::StabilityMap& map, const cloth::Scene& scene,
+                const cloth::StabilityOptions& options) {
+  return map.scene == scene && map.options.methods == options.methods &&
+         map.options.criterion.periods == options.criterion.periods && is_same(map.options.x, options.x) &&
+         is_same(map.options.y, options.y);
+}
+
+bool has_inputs(const cloth::ExtremesTable& table, const cloth::Scene&,
+                const cloth::ExtremesOptions& options) {
+  return table.scene == options.scene && table.methods == options.methods;
 }
 
 }  // namespace
@@ -100,56 +95,60 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
     item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
     item->setCheckState(Qt::Checked);
   }
-  makeForms();
+  makeRows();
+  connectRows();
+  follow();
+}
+
+/// Two left edges: that of the labels and that of the fields.
+void StudyChoices::makeRows() {
+  horizon_ = named("horizon", new QLineEdit(this));
+  repeats_ = named("repeats", new QSpinBox(this));
+  repeats_->setRange(5, 100);
+  repeats_->setToolTip(tr("How often each run is timed"));
+  x_ = named("xAxis", new AxisChoice(this));
+  y_ = named("yAxis", new AxisChoice(this));
+  periods_ = named("periods", new QSpinBox(this));
+  periods_->setRange(1, 100000);
+  periods_->setValue(static_cast<int>(cloth::StabilityCriterion{}.periods));
+  periods_->setToolTip(tr("How long a run lasts, in periods of the fastest motion"));
+  cases_ = named("cases", new QComboBox(this));
+  cases_->addItems({tr("This scene, pushed"), tr("The fixed list")});
   folder_ = named("studyFolder", new QLineEdit(this));
   folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(shown_path(studies_folder())));
   folder_->setPlaceholderText(tr("a new one in %1").arg(shown_path(studies_folder())));
 
-  auto* column = spaced(new QVBoxLayout(this), spacing / 2);
-  column->addWidget(kind_);
-  column->addWidget(purpose_);
-  column->addWidget(methods_);
-  column->addWidget(forms_);
-  auto* folder = new QWidget(this);
-  form_on(folder)->addRow(tr("Folder"), folder_);
-  column->addWidget(folder);
-  column->addStretch();
-  connect(kind_, &QComboBox::currentIndexChanged, this, &StudyChoices::follow);
-  follow();
+  form_ = spaced(new QFormLayout(this), spacing / 2);
+  form_->setRowWrapPolicy(QFormLayout::DontWrapRows);
+  form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  form_->setLabelAlignment(Qt::AlignLeading);
+  form_->addRow(kind_);
+  form_->addRow(purpose_);
+  form_->addRow(methods_);
+  form_->addRow(tr("Horizon (s)"), horizon_);
+  form_->addRow(tr("Repeats"), repeats_);
+  form_->addRow(tr("Across"), x_);
+  form_->addRow(tr("Up"), y_);
+  form_->addRow(tr("Periods"), periods_);
+  form_->addRow(tr("Cases"), cases_);
+  form_->addRow(tr("Folder"), folder_);
+  for (QWidget* field : {static_cast<QWidget*>(repeats_), static_cast<QWidget*>(periods_)})
+    field->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-void StudyChoices::makeForms() {
-  forms_ = new QStackedWidget(this);
-  auto* precision = new QWidget(forms_);
-  QFormLayout* form = form_on(precision);
-  horizon_ = named("horizon", new QLineEdit(precision));
-  form->addRow(tr("Horizon (s)"), horizon_);
-  repeats_ = named("repeats", new QSpinBox(precision));
-  repeats_->setRange(5, 100);
-  repeats_->setToolTip(tr("How often each run is timed"));
-  form->addRow(tr("Repeats"), repeats_);
-  forms_->addWidget(precision);
-
-  auto* map = new QWidget(forms_);
-  form = form_on(map);
-  form->setRowWrapPolicy(QFormLayout::DontWrapRows);
-  x_ = named("xAxis", new AxisChoice(map));
-  form->addRow(tr("Across"), x_);
-  y_ = named("yAxis", new AxisChoice(map));
-  form->addRow(tr("Up"), y_);
-  periods_ = named("periods", new QSpinBox(map));
-  periods_->setRange(1, 100000);
-  periods_->setValue(static_cast<int>(cloth::StabilityCriterion{}.periods));
-  periods_->setToolTip(tr("How long a run lasts, in periods of the fastest motion"));
-  form->addRow(tr("Periods"), periods_);
-  forms_->addWidget(map);
-
-  auto* extremes = new QWidget(forms_);
-  form = form_on(extremes);
-  cases_ = named("cases", new QComboBox(extremes));
-  cases_->addItems({tr("This scene, pushed"), tr("The fixed list")});
-  form->addRow(tr("Cases"), cases_);
-  forms_->addWidget(extremes);
+void StudyChoices::connectRows() {
+  connect(kind_, &QComboBox::currentIndexChanged, this, &StudyChoices::follow);
+  connect(methods_, &QListWidget::itemChanged, this, [this] {
+    if (checking_) return;
+    own_methods_[kind()] = methods();
+    Q_EMIT changed();
+  });
+  connect(horizon_, &QLineEdit::textChanged, this, &StudyChoices::changed);
+  connect(repeats_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
+  connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
+  connect(y_, &AxisChoice::changed, this, &StudyChoices::changed);
+  connect(periods_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
+  connect(cases_, &QComboBox::currentIndexChanged, this, &StudyChoices::changed);
 }
 
 StudyChoices::Kind StudyChoices::kind() const {
@@ -161,16 +160,24 @@ void StudyChoices::setKind(Kind kind) {
 }
 
 void StudyChoices::follow() {
-  purpose_->setText(purpose_of(kind()));
-  forms_->setCurrentIndex(static_cast<int>(kind()));
-  for (int k = 0; k < forms_->count(); ++k)  // no taller than the form that is seen
-    forms_->widget(k)->setSizePolicy(
-        QSizePolicy::Preferred, k == forms_->currentIndex() ? QSizePolicy::Preferred : QSizePolicy::Ignored);
-  forms_->adjustSize();
-  checkMethods(kind() == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
+  const Kind now = kind();
+  purpose_->setText(purpose_of(now));
+  for (QWidget* field : {static_cast<QWidget*>(horizon_), static_cast<QWidget*>(repeats_)})
+    form_->setRowVisible(field, now == Kind::work_precision);
+  for (QWidget* field :
+       {static_cast<QWidget*>(x_), static_cast<QWidget*>(y_), static_cast<QWidget*>(periods_)})
+    form_->setRowVisible(field, now == Kind::stability);
+  form_->setRowVisible(cases_, now == Kind::extremes);
+  const auto own = own_methods_.find(now);
+  if (own != own_methods_.end())
+    checkMethods(own->second);
+  else
+    checkMethods(now == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
+  Q_EMIT changed();
 }
 
 void StudyChoices::checkMethods(const std::vector<std::string>& names) {
+  const QScopedValueRollback checking(checking_, true);
   for (int row = 0; row < methods_->count(); ++row) {
     const std::string name = methods_->item(row)->data(Qt::UserRole).toString().toStdString();
     const bool on = std::find(names.begin(), names.end(), name) != names.end();
@@ -184,6 +191,13 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
       QLocale::c().toString(cloth::default_horizon(cloth::studied_scene(scene)), 'g', 4));
   x_->setScene(scene, cloth::default_time_axis(scene, cloth::methods_with_a_limit()));
   y_->setScene(scene, cloth::default_stiffness_axis(scene));
+  Q_EMIT changed();
+}
+
+void StudyChoices::keepAxes() {
+  if (kind() != Kind::stability) return;
+  x_->keep();
+  y_->keep();
 }
 
 std::vector<std::string> StudyChoices::methods() const {
@@ -194,7 +208,7 @@ std::vector<std::string> StudyChoices::methods() const {
   return names;
 }
 
-std::variant<StudyOrder, QString> StudyChoices::stabilityOrder() const {
+std::variant<StudyOrder, QString> StudyChoices::stabilityInputs() const {
   cloth::StabilityOptions options{.methods = methods()};
   options.criterion.periods = periods_->value();
   for (const auto& [choice, axis, name] :
@@ -209,27 +223,30 @@ std::variant<StudyOrder, QString> StudyChoices::stabilityOrder() const {
   return StudyOrder{scene_, options, {}, made_by};
 }
 
-std::variant<StudyOrder, QString> StudyChoices::order() const {
-  if (methods().empty()) return tr("Choose at least one method.");
-  std::variant<StudyOrder, QString> result;
-  if (kind() == Kind::stability) {
-    result = stabilityOrder();
-  } else if (kind() == Kind::extremes) {
-    cloth::ExtremesOptions options{.methods = methods()};
-    if (cases_->currentIndex() == 0) options.scene = scene_;
-    result = StudyOrder{scene_, options, {}, made_by};
-  } else {
-    cloth::WorkPrecisionOptions options;
-    options.methods = methods();
-    options.repeats = repeats_->value();
-    if (const QString text = horizon_->text().trimmed(); !text.isEmpty()) {
-      bool ok = false;
-      options.horizon = QLocale::c().toDouble(text, &ok);
-      if (!ok || !(*options.horizon > 0) || !std::isfinite(*options.horizon))
-        return tr("Horizon: \"%1\" must be a time in s, more than 0.").arg(text);
-    }
-    result = StudyOrder{scene_, options, {}, made_by};
+std::variant<StudyOrder, QString> StudyChoices::precisionInputs() const {
+  cloth::WorkPrecisionOptions options;
+  options.methods = methods();
+  options.repeats = repeats_->value();
+  if (const QString text = horizon_->text().trimmed(); !text.isEmpty()) {
+    bool ok = false;
+    options.horizon = QLocale::c().toDouble(text, &ok);
+    if (!ok || !(*options.horizon > 0) || !std::isfinite(*options.horizon))
+      return tr("Horizon: \"%1\" must be a time in s, more than 0.").arg(text);
   }
+  return StudyOrder{scene_, options, {}, made_by};
+}
+
+std::variant<StudyOrder, QString> StudyChoices::inputs() const {
+  if (methods().empty()) return tr("Choose at least one method.");
+  if (kind() == Kind::stability) return stabilityInputs();
+  if (kind() == Kind::work_precision) return precisionInputs();
+  cloth::ExtremesOptions options{.methods = methods()};
+  if (cases_->currentIndex() == 0) options.scene = scene_;
+  return StudyOrder{scene_, options, {}, made_by};
+}
+
+std::variant<StudyOrder, QString> StudyChoices::order() const {
+  auto result = inputs();
   if (auto* order = std::get_if<StudyOrder>(&result)) {
     const QString folder = path_from(folder_->text().trimmed());
     order->folder =
@@ -240,68 +257,17 @@ std::variant<StudyOrder, QString> StudyChoices::order() const {
   return result;
 }
 
-AxisChoice::AxisChoice(QWidget* parent) : QWidget(parent) {
-  parameter_ = named("parameter", new QComboBox(this));
-  parameter_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  parameter_->setMinimumContentsLength(12);
-  low_ = named("low", new QLineEdit(this));
-  low_->setToolTip(tr("The smallest value"));
-  high_ = named("high", new QLineEdit(this));
-  high_->setToolTip(tr("The largest value"));
-  count_ = named("count", new QSpinBox(this));
-  count_->setRange(2, 200);
-  count_->setToolTip(tr("How many values"));
-  logarithmic_ = named("logarithmic", new QCheckBox(tr("log"), this));
-  logarithmic_->setToolTip(tr("In equal ratios"));
-  auto* grid = spaced(new QGridLayout(this), spacing / 2);
-  grid->addWidget(parameter_, 0, 0, 1, 5);
-  count_->setFixedWidth(count_width);
-  grid->addWidget(low_, 1, 0);
-  grid->addWidget(new QLabel(tr("to"), this), 1, 1);
-  grid->addWidget(high_, 1, 2);
-  grid->addWidget(count_, 1, 3);
-  grid->addWidget(logarithmic_, 1, 4);
-  connect(parameter_, &QComboBox::activated, this, &AxisChoice::chooseParameter);
-}
-
-void AxisChoice::setScene(const cloth::Scene& scene, const cloth::StudyAxis& axis) {
-  parameter_->clear();
-  offers_.clear();
-  const auto offer = [&](const QString& name, cloth::StudyAxis offered) {
-    if (offered.path == axis.path) offered = axis;
-    parameter_->addItem(name);
-    offers_.push_back(std::move(offered));
-    if (offers_.back().path == axis.path) parameter_->setCurrentIndex(parameter_->count() - 1);
-  };
-  if (scene.springs) offer(tr("All stiffnesses (N/m)"), cloth::default_stiffness_axis(scene));
-  for (const cloth::Block& block : cloth::blocks_of(scene))
-    for (const cloth::Parameter& parameter : block.parameters) {
-      const cloth::ParameterInfo& info = parameter.info;
-      if (info.kind != cloth::Kind::number && info.kind != cloth::Kind::integer) continue;
-      if (!(info.slider_maximum > info.slider_minimum)) continue;
-      const QString unit = info.unit.empty() ? "" : QString(" (%1)").arg(QString::fromStdString(info.unit));
-      offer(QString::fromStdString(block.title + ": " + info.label) + unit, offer_of(parameter));
-      parameter_->setItemData(parameter_->count() - 1, QString::fromStdString(parameter.path),
-                              Qt::ToolTipRole);
-    }
-  show(axis);
-}
-
-void AxisChoice::show(const cloth::StudyAxis& axis) {
-  low_->setText(number_text(axis.low));
-  low_->setCursorPosition(0);
-  high_->setText(number_text(axis.high));
-  count_->setValue(axis.count);
-  logarithmic_->setChecked(axis.scale == cloth::AxisScale::logarithmic);
-}
-
-cloth::StudyAxis AxisChoice::axis() const {
-  const int index = parameter_->currentIndex();
-  return {.path = index < 0 ? std::string() : offers_[static_cast<std::size_t>(index)].path,
-          .low = number_of(*low_),
-          .high = number_of(*high_),
-          .count = count_->value(),
-          .scale = logarithmic_->isChecked() ? cloth::AxisScale::logarithmic : cloth::AxisScale::linear};
+bool StudyChoices::describes(const cloth::StudyTable& table) const {
+  const auto now = inputs();
+  const auto* order = std::get_if<StudyOrder>(&now);
+  if (!order) return false;
+  return std::visit(
+      [order](const auto& shown, const auto& options) {
+        if constexpr (requires { has_inputs(shown, order->scene, options); })
+          return has_inputs(shown, order->scene, options);
+        return false;  // another kind
+      },
+      table, order->options);
 }
 
 }  // namespace clothlab

@@ -2,45 +2,22 @@
 #pragma once
 
 #include <QWidget>
+#include <map>
 #include <variant>
 #include <vector>
 
 #include "bridge/study_runner.h"
-#include "study/study_axis.h"
 
 class QComboBox;
+class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QListWidget;
 class QSpinBox;
-class QStackedWidget;
-class QCheckBox;
 
 namespace clothlab {
 
-/// One axis of a stability map: which parameter, from where to where, how many values.
-class AxisChoice : public QWidget {
-  Q_OBJECT
-
- public:
-  explicit AxisChoice(QWidget* parent = nullptr);
-
-  /// Offers the scene's numeric parameters and shows `axis`.
-  void setScene(const cloth::Scene& scene, const cloth::StudyAxis& axis);
-
-  /// As typed; low and high are NaN where a field is no number.
-  cloth::StudyAxis axis() const;
-
- private:
-  void show(const cloth::StudyAxis& axis);
-  void chooseParameter(int index) { show(offers_[static_cast<std::size_t>(index)]); }
-
-  QComboBox* parameter_;
-  QLineEdit *low_, *high_;
-  QSpinBox* count_;
-  QCheckBox* logarithmic_;
-  std::vector<cloth::StudyAxis> offers_;  ///< what each parameter begins with
-};
+class AxisChoice;
 
 class StudyChoices : public QWidget {
   Q_OBJECT
@@ -50,26 +27,40 @@ class StudyChoices : public QWidget {
 
   explicit StudyChoices(QWidget* parent = nullptr);
 
-  /// Prefills what the user has not changed.
+  /// Suggests what the user has not set.
   void setScene(const cloth::Scene& scene);
   Kind kind() const;
   void setKind(Kind kind);
 
   /// The order, or a sentence that says which choice breaks a rule.
   std::variant<StudyOrder, QString> order() const;
+  /// The axes of what is started stay, whatever scene comes.
+  void keepAxes();
+
+  /// Whether a study has the inputs that an order would have now.
+  bool describes(const cloth::StudyTable& table) const;
+
+ Q_SIGNALS:
+  void changed();  ///< an input of the study, the scene too
 
  private:
-  void makeForms();
+  void makeRows();
+  void connectRows();
   void follow();  ///< the kind
   void checkMethods(const std::vector<std::string>& names);
   std::vector<std::string> methods() const;
-  std::variant<StudyOrder, QString> stabilityOrder() const;
+  /// An order without its folder.
+  std::variant<StudyOrder, QString> inputs() const;
+  std::variant<StudyOrder, QString> stabilityInputs() const;
+  std::variant<StudyOrder, QString> precisionInputs() const;
 
   cloth::Scene scene_;
   QComboBox* kind_;
   QLabel* purpose_;
   QListWidget* methods_;
-  QStackedWidget* forms_;
+  std::map<Kind, std::vector<std::string>> own_methods_;  ///< as the user checked them
+  bool checking_ = false;                                 ///< the boxes change, but not by the user
+  QFormLayout* form_;
   QLineEdit* horizon_;
   QSpinBox* repeats_;
   AxisChoice *x_, *y_;

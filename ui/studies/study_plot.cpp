@@ -4,6 +4,7 @@
 #include <QEvent>
 #include <QMouseEvent>
 #include <QPdfWriter>
+#include <QStyle>
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,8 @@ namespace clothlab {
 namespace {
 
 constexpr double reach = 5;  // px around a shape that still count as on it
-constexpr double smallest_scale = 0.55;
+constexpr double smallest_width = 480, lowest_plot = 130, lowest_panel = 110, narrowest_panel = 170;  // px
+constexpr double beside_panels = 90;                                                                  // px
 constexpr double export_scale = 2;  // of a PNG
 
 double height_of(const Diagram& diagram) {
@@ -41,10 +43,10 @@ void fill_height(Diagram& diagram, double low, double high, double height, Set s
   set(low);
 }
 
-bool fit(Diagram& diagram, QSizeF room) {
+void fit(Diagram& diagram, QSizeF room) {
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) {
     plot->width = room.width();
-    fill_height(diagram, 130, room.height(), room.height(), [&](double h) { plot->plot_height = h; });
+    fill_height(diagram, lowest_plot, room.height(), room.height(), [&](double h) { plot->plot_height = h; });
   } else if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
     map->width = room.width();
     const int panels = std::max(1, static_cast<int>(map->panels.size()));
@@ -61,11 +63,26 @@ bool fit(Diagram& diagram, QSizeF room) {
   } else {
     std::get<cloth::CategoryMap>(diagram).width = room.width();
   }
-  return height_of(diagram) <= room.height();
+}
+
+/// The least height at which a diagram of this width can be read.
+double lowest(Diagram diagram, double width) {
+  if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) {
+    plot->width = width;
+    plot->plot_height = lowest_plot;
+  } else if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
+    map->width = width;
+    map->highest = lowest_panel;
+    const int panels = std::max(1, static_cast<int>(map->panels.size()));
+    map->columns = std::clamp(static_cast<int>((width - beside_panels) / narrowest_panel), 1, panels);
+  } else {
+    std::get<cloth::CategoryMap>(diagram).width = width;
+  }
+  return height_of(diagram);
 }
 
 /// As it goes onto the screen, where the panel around it has the title.
-Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
+Diagram for_screen(Diagram diagram) {
   std::visit([](auto& plot) { plot.title.clear(), plot.subtitle.clear(); }, diagram);
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
   if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
@@ -73,9 +90,6 @@ Diagram fitted(Diagram diagram, QSizeF room, double& scale) {
     map->y.label =
         map->y.label.substr(0, map->y.label.find(','));  // no room for what qualifies it: the files have it
   }
-  for (scale = 1; scale > smallest_scale; scale -= 0.05)
-    if (fit(diagram, room / scale)) return diagram;
-  fit(diagram, room / scale);
   return diagram;
 }
 
@@ -96,27 +110,48 @@ void StudyPlot::setDiagram(Diagram diagram) {
   diagram_ = std::move(diagram);
   stale_ = true;
   marked_ = {};
+  keepLegible();
   update();
+}
+
+void StudyPlot::setRoom(QSize room) {
+  room_ = room;
+  keepLegible();
+}
+
+/// The least height is that beside a scroll bar, whether there is one or not: then it does not come and go
+/// by itself.
+void StudyPlot::keepLegible() {
+  const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent, nullptr, this);
+  const double width = std::max(smallest_width, static_cast<double>(room_.width() - bar));
+  setMinimumSize(static_cast<int>(smallest_width),
+                 static_cast<int>(std::ceil(lowest(for_screen(diagram_), width))));
 }
 
 void StudyPlot::refresh() {
   if (!stale_ || size().isEmpty()) return;
   stale_ = false;
-  const Diagram shown = fitted(diagram_, size(), scale_);
+  Diagram shown = for_screen(diagram_);
+  fit(shown, size());
   picture_ = QPixmap(size() * devicePixelRatioF());
   picture_.setDevicePixelRatio(devicePixelRatioF());
   picture_.fill(theme().panel);
   QPainter painter(&picture_);
-  painter.scale(scale_, scale_);
   PainterCanvas canvas(painter, font(), PainterCanvas::Look::theme);
   draw(canvas, shown);
   touches_ = canvas.touches();
+  smallest_label_ = canvas.smallestText();
+}
+
+double StudyPlot::smallestLabel() const {
+  const_cast<StudyPlot*>(this)->refresh();
+  return smallest_label_;
 }
 
 QRectF StudyPlot::placeOf(int run) const {
   const_cast<StudyPlot*>(this)->refresh();
   for (const PlotTouch& touch : touches_)
-    if (touch.tag == run) return onScreen(touch.box);
+    if (touch.tag == run) return touch.box;
   return {};
 }
 
@@ -124,7 +159,7 @@ const PlotTouch* StudyPlot::touchAt(QPointF at) const {
   const PlotTouch* nearest = nullptr;
   double least = INFINITY;
   for (const PlotTouch& touch : touches_) {
-    const QRectF box = onScreen(touch.box);
+    const QRectF& box = touch.box;
     const bool large = box.width() > 4 * reach;  // a cell: its neighbours begin where it ends
     const double margin = large ? 0 : reach;
     if (!box.adjusted(-margin, -margin, margin, margin).contains(at)) continue;
@@ -137,7 +172,7 @@ const PlotTouch* StudyPlot::touchAt(QPointF at) const {
 
 void StudyPlot::hover(QPointF at) {
   const PlotTouch* touch = touchAt(at);
-  const QRectF marked = touch ? onScreen(touch->box) : QRectF();
+  const QRectF marked = touch ? touch->box : QRectF();
   if (marked == marked_) return;
   marked_ = marked;
   update();

@@ -30,8 +30,14 @@ class StudyPlot : public QWidget {
   /// The run under a place and what is said of it.
   const PlotTouch* touchAt(QPointF at) const;
 
+  /// It is to be seen in a scroll area of this size: the diagram fills it, or is as large as it must be for
+  /// its labels to stay legible.
+  void setRoom(QSize room);
+
+  /// The size of the smallest text in the diagram as it is shown, in px.
+  double smallestLabel() const;
+
   QSize sizeHint() const override { return {760, 360}; }
-  QSize minimumSizeHint() const override { return {320, 200}; }
 
  Q_SIGNALS:
   void runHovered(const QString& text);  ///< empty: none
@@ -47,13 +53,14 @@ class StudyPlot : public QWidget {
 
  private:
   void refresh();
+  void keepLegible();
   void hover(QPointF at);
-  QRectF onScreen(const QRectF& drawn) const { return {drawn.topLeft() * scale_, drawn.size() * scale_}; }
 
   Diagram diagram_;
   QPixmap picture_;
   std::vector<PlotTouch> touches_;
-  double scale_ = 1;
+  QSize room_;
+  double smallest_label_ = 0;  // px
   bool stale_ = true;
   QRectF marked_;  // of the hovered run
 };

@@ -249,6 +249,22 @@ class NoticeTest : public QObject {
     QCOMPARE(*scene_of(bench.comparison(), 1).integrator.time_step, 0.01);
   }
 
+  void in_a_narrow_pane_all_buttons_of_a_message_can_be_reached() {
+    CompareBench bench(with_a_pane_that_diverges({"verlet", "rk4", "rk4", "rk4"}, 0.01));
+    bench.window.resize(1000, 650);
+    bench.play_to_the_end();
+    PaneView& pane = bench.window.panes().pane(1);
+    const QWidget* notice = notice_in(pane, "divergence");
+    QVERIFY(notice);
+    QTest::qWait(50);
+    const QRect view(pane.view().mapTo(&pane, QPoint()), pane.view().size());
+    for (const QAbstractButton* button : notice->findChildren<QAbstractButton*>()) {
+      const QRect at(button->mapTo(&pane, QPoint()), button->size());
+      QVERIFY2(at.left() >= view.left() && at.right() <= view.right(), qPrintable(button->text()));
+      QVERIFY2(at.width() >= button->sizeHint().width(), qPrintable(button->text()));
+    }
+  }
+
   void a_pane_that_stops_again_says_so_again() {
     CompareBench bench(with_a_pane_that_diverges({"verlet", "rk4"}, 0.01));
     PaneView& pane = bench.window.panes().pane(1);

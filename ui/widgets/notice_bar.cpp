@@ -1,7 +1,7 @@
 #include "widgets/notice_bar.h"
 
 #include <QEvent>
-#include <QHBoxLayout>
+#include <QGridLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <QStyle>
@@ -15,6 +15,15 @@ namespace clothlab {
 namespace {
 
 constexpr int widest_notice = 720;  // px
+
+/// Broken at the space next to the middle.
+QString in_two_lines(QString text) {
+  const qsizetype half = text.size() / 2, before = text.lastIndexOf(' ', half),
+                  after = text.indexOf(' ', half);
+  const qsizetype at = before < 0 || (after >= 0 && after - half < half - before) ? after : before;
+  if (at >= 0) text[at] = '\n';
+  return text;
+}
 
 }  // namespace
 
@@ -45,7 +54,7 @@ class NoticeRow : public QFrame {
   QLabel* symbol_;
   QLabel* label_;
   QToolButton* close_;
-  QBoxLayout* middle_;
+  QGridLayout* cells_;
   QBoxLayout* buttons_;
 };
 
@@ -53,7 +62,8 @@ NoticeRow::NoticeRow(const QString& kind)
     : symbol_(new QLabel(this)),
       label_(named("noticeText", new QLabel(this))),
       close_(named("noticeClose", new QToolButton(this))),
-      middle_(spaced(new QBoxLayout(QBoxLayout::LeftToRight), spacing)),
+      cells_(spaced(new QGridLayout(this), spacing,
+                    {spacing + spacing / 2, spacing / 2, spacing / 2, spacing / 2})),
       buttons_(spaced(new QBoxLayout(QBoxLayout::LeftToRight), spacing)) {
   setObjectName("notice:" + kind);
   label_->setWordWrap(true);
@@ -63,14 +73,12 @@ NoticeRow::NoticeRow(const QString& kind)
   close_->setFocusPolicy(Qt::TabFocus);  // a click leaves the focus where it was
   close_->setToolTip(NoticeBar::tr("Close this message"));
   close_->setAccessibleName(NoticeBar::tr("Close this message"));
-  auto* row =
-      spaced(new QHBoxLayout(this), spacing, {spacing + spacing / 2, spacing / 2, spacing / 2, spacing / 2});
-  row->addWidget(symbol_, 0, Qt::AlignTop);
-  row->addLayout(middle_, 1);
-  row->addWidget(close_, 0, Qt::AlignTop);
+  cells_->addWidget(symbol_, 0, 0, Qt::AlignTop);
+  cells_->addWidget(label_, 0, 1);
+  cells_->addWidget(close_, 0, 3, Qt::AlignTop);
+  cells_->addLayout(buttons_, 0, 2);
+  cells_->setColumnStretch(1, 1);
   symbol_->setMinimumHeight(close_->sizeHint().height());
-  middle_->addWidget(label_, 1);
-  middle_->addLayout(buttons_);
 }
 
 void NoticeRow::say(NoticeBar::Level level, const QString& text, const QString& details) {
@@ -102,11 +110,22 @@ void NoticeRow::clearButtons() {
 }
 
 void NoticeRow::suitWidth(int width) {
-  constexpr int least_text = 240;  // px
+  constexpr int least_text = 240, narrow = 260;  // px
+  const bool is_narrow = width < narrow;
+  symbol_->setVisible(!is_narrow);
   int beside = spacing;
-  for (int i = 0; i < buttons_->count(); ++i) beside += buttons_->itemAt(i)->sizeHint().width() + spacing;
+  for (int i = 0; i < buttons_->count(); ++i) {
+    auto* button = static_cast<QPushButton*>(buttons_->itemAt(i)->widget());
+    const QString text = button->text().replace('\n', ' ');
+    button->setText(is_narrow ? in_two_lines(text) : text);
+    beside += button->sizeHint().width() + spacing;
+  }
   const int room = width - symbol_->sizeHint().width() - close_->sizeHint().width() - 4 * spacing;
-  middle_->setDirection(room - beside >= least_text ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
+  cells_->removeItem(buttons_);
+  if (room - beside >= least_text)
+    cells_->addLayout(buttons_, 0, 2);
+  else
+    cells_->addLayout(buttons_, 1, is_narrow ? 0 : 1, 1, is_narrow ? 4 : 3);
   buttons_->setDirection(room >= beside ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
 }
 

@@ -116,27 +116,7 @@ QWidget* StudiesPanel::makeLeft() {
   return left;
 }
 
-QWidget* StudiesPanel::makeRight() {
-  auto* right = new QWidget(this);
-  title_ = named("studyTitle", new ElidedLabel(right));
-  title_->setProperty("heading", true);
-  against_ = named("against", new QComboBox(right));
-  against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
-  save_ = named("saveStudy", new QToolButton(right));
-  save_->setIcon(icon("export-plot"));
-  save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
-  open_ = named("openStudy", new QToolButton(right));
-  open_->setIcon(icon("open"));
-  open_->setToolTip(tr("Open the folder of a study"));
-  open_->setPopupMode(QToolButton::InstantPopup);
-  recent_ = new QMenu(open_);
-  open_->setMenu(recent_);
-  auto* head = spaced(new QHBoxLayout, spacing);
-  head->addWidget(title_, 1);
-  head->addWidget(against_);
-  head->addWidget(open_);
-  head->addWidget(save_);
-
+void StudiesPanel::makeDiagram(QWidget* right) {
   empty_ = new QLabel(tr("<p><b>No study yet.</b></p>"
                          "<p>Choose a study of the scene being edited and start it: it runs beside the "
                          "simulation, and its diagram fills as results come. Rest the pointer on a run "
@@ -159,6 +139,30 @@ QWidget* StudiesPanel::makeRight() {
   stack_ = new QStackedWidget(right);
   stack_->addWidget(empty_);
   stack_->addWidget(plot_area_);
+}
+
+QWidget* StudiesPanel::makeRight() {
+  auto* right = new QWidget(this);
+  title_ = named("studyTitle", new ElidedLabel(right));
+  title_->setProperty("heading", true);
+  against_ = named("against", new QComboBox(right));
+  against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
+  save_ = named("saveStudy", new QToolButton(right));
+  save_->setIcon(icon("export-plot"));
+  save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
+  open_ = named("openStudy", new QToolButton(right));
+  open_->setIcon(icon("open"));
+  open_->setToolTip(tr("Open the folder of a study"));
+  open_->setPopupMode(QToolButton::InstantPopup);
+  recent_ = new QMenu(open_);
+  open_->setMenu(recent_);
+  auto* head = spaced(new QHBoxLayout, spacing);
+  head->addWidget(title_, 1);
+  head->addWidget(against_);
+  head->addWidget(open_);
+  head->addWidget(save_);
+
+  makeDiagram(right);
   bar_ = named("studyProgress", new QProgressBar(right));
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);

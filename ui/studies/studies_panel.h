@@ -51,6 +51,7 @@ class StudiesPanel : public QWidget {
  private:
   void makeLayout();
   QWidget* makeLeft();
+  void makeDiagram(QWidget* right);
   QWidget* makeRight();
   void start();
   void poll();

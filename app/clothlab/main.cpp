@@ -7,7 +7,7 @@
 
 #include "io/machine.h"
 #include "io/process.h"
-#include "main_window/main_window.h"
+#include "main_window/lab_window.h"
 #include "main_window/stop_signals.h"
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"

@@ -121,6 +121,10 @@ std::vector<Pane> panes_for(const std::vector<std::string>& methods) {
   return panes;
 }
 
+Comparison comparison_of_one(Scene scene) {
+  return {.title = {}, .scene = std::move(scene), .panes = {{.name = pane_names[0], .title = {}, .own = {}}}};
+}
+
 Scene scene_of(const Comparison& comparison, std::size_t pane) {
   Scene scene = comparison.scene;
   const std::vector<OwnValue>& own = comparison.panes[pane].own;
@@ -246,7 +250,7 @@ std::size_t duplicate_pane(Comparison& comparison, std::size_t pane) {
 }
 
 void remove_pane(Comparison& comparison, std::size_t pane) {
-  assert(comparison.panes.size() > least_panes);
+  assert(comparison.panes.size() > 1);
   if (comparison.reference == comparison.panes[pane].name) comparison.reference = controlled_reference;
   comparison.panes.erase(comparison.panes.begin() + static_cast<std::ptrdiff_t>(pane));
 }

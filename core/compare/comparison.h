@@ -51,6 +51,9 @@ struct Comparison {
 /// One pane for each method, A, B, ..., with nothing else of its own. At most four.
 std::vector<Pane> panes_for(const std::vector<std::string>& methods);
 
+/// A scene as a comparison of one pane, A, which no file describes: the window's document of a scene.
+Comparison comparison_of_one(Scene scene);
+
 /// The shared scene with the pane's own values. A value for a parameter that the scene lacks is left out.
 Scene scene_of(const Comparison& comparison, std::size_t pane);
 
@@ -105,7 +108,7 @@ std::vector<std::string> mesh_files(const Comparison& comparison);
 /// A copy of the pane under the first free name, after it; its index. Precondition: less than four panes.
 std::size_t duplicate_pane(Comparison& comparison, std::size_t pane);
 
-/// A reference that goes with its pane becomes the controlled one. Precondition: more than two panes.
+/// A reference that goes with its pane becomes the controlled one. Precondition: more than one pane.
 void remove_pane(Comparison& comparison, std::size_t pane);
 
 /// What is wrong with it. Paths are those of the file: "scene.springs.shear",

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "bench_tools.h"
-#include "main_window/compare_window.h"
+#include "main_window/lab_window.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab {
@@ -52,7 +52,7 @@ json kinds_json(const TimedApplication& application) {
 }  // namespace
 
 json pane_row(TimedApplication& application, int panes, int side, const std::string& look, double seconds) {
-  CompareWindow window;
+  LabWindow window;
   window.setAsksToSave(false);
   window.show();
   window.document().load(comparison_of(panes, side));

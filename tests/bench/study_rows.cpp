@@ -7,7 +7,7 @@
 
 #include "bench_tools.h"
 #include "bridge/study_runner.h"
-#include "main_window/main_window.h"
+#include "main_window/lab_window.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab {
@@ -31,7 +31,7 @@ struct Watched {
   }
 };
 
-void watch(MainWindow& window, double seconds, Watched& watched) {
+void watch(LabWindow& window, double seconds, Watched& watched) {
   QObject context;
   QElapsedTimer clock;
   clock.start();
@@ -41,7 +41,7 @@ void watch(MainWindow& window, double seconds, Watched& watched) {
     if (last >= 0) watched.intervals.push_back(now - last);
     last = now;
   });
-  QObject::connect(&window.simulation(), &SimulationLink::samplesReady, &context,
+  QObject::connect(&window.simulation(), &RunLink::samplesReady, &context,
                    [&](const std::vector<ChartSample>& samples) {
                      for (const ChartSample& sample : samples)
                        if (sample.step_ms > 0) watched.steps.push_back(sample.step_ms);
@@ -67,7 +67,7 @@ json study_row(int side, double seconds, int rounds) {
   cloth::Scene scene = cloth::builtin_scene("wind");
   scene.cloth.rows = scene.cloth.columns = side;
   scene.duration = 1e6;
-  MainWindow window;
+  LabWindow window;
   window.setAsksToSave(false);
   window.show();
   window.document().load(scene);

@@ -34,7 +34,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench_tools.h"
-#include "main_window/main_window.h"
+#include "main_window/lab_window.h"
 #include "pane_rows.h"
 #include "scene/builtin_scenes.h"
 #include "study_rows.h"
@@ -77,8 +77,8 @@ class WindowBench {
       ends_.push_back(1e-6 * static_cast<double>(clock_.nsecsElapsed()));
       if (replaying_) show_next();
     });
-    QObject::connect(&window_.simulation(), &SimulationLink::frameReady, &window_,
-                     [this](const std::shared_ptr<const ClothFrame>& frame) {
+    QObject::connect(&window_.simulation(), &RunLink::frameReady, &window_,
+                     [this](std::size_t, const std::shared_ptr<const ClothFrame>& frame) {
                        if (keeping_ && frames_.size() < replayed_frames) frames_.push_back(frame);
                      });
     clock_.start();
@@ -124,7 +124,7 @@ class WindowBench {
             {"events", events - std::min<std::size_t>(events, 1)}};  // not the timer that ends it
   }
 
-  QSize size_of_view() const { return const_cast<MainWindow&>(window_).view().size(); }
+  QSize size_of_view() const { return const_cast<LabWindow&>(window_).view().size(); }
 
  private:
   struct Live {
@@ -199,7 +199,7 @@ class WindowBench {
 
   TimedApplication& application_;
   const Options& options_;
-  MainWindow window_;
+  LabWindow window_;
   QElapsedTimer clock_;
   std::vector<double> drawings_, uploads_, ends_;  // ms
   std::vector<std::shared_ptr<const ClothFrame>> frames_;

@@ -26,7 +26,7 @@ cloth::Comparison small_comparison(const std::vector<std::string>& methods = {"v
 }
 
 /// To the end of the duration.
-CompareStatus play_to_the_end(CompareWorker& worker) {
+WorkerStatus play_to_the_end(CompareWorker& worker) {
   worker.send(command::Speed{fastest});
   worker.send(command::Play{});
   worker.wait_until_idle();
@@ -61,7 +61,7 @@ TEST(CompareWorker, ShowsWhatLockStepComputesToTheBitOnAnyNumberOfThreads) {
     for (std::int64_t k = 1; k <= expected.last_index(); ++k) ASSERT_TRUE(expected.advance(k));
     CompareWorker worker(threads);
     worker.send(command::Load{small_comparison()});
-    const CompareStatus end = play_to_the_end(worker);
+    const WorkerStatus end = play_to_the_end(worker);
     EXPECT_EQ(end.time, expected.time_of(expected.last_index()));
     for (std::size_t i = 0; i < 3; ++i) {
       const auto frame = worker.take_frame(i);
@@ -106,7 +106,7 @@ TEST(CompareWorker, APaneThatDivergesStopsWithItsCauseAndTheOthersGoOn) {
   cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
   CompareWorker worker;
   worker.send(command::Load{comparison});
-  const CompareStatus end = play_to_the_end(worker);
+  const WorkerStatus end = play_to_the_end(worker);
   EXPECT_FALSE(end.panes[0].divergence);
   ASSERT_TRUE(end.panes[1].divergence);
   EXPECT_FALSE(end.panes[1].divergence->cause.empty());
@@ -128,7 +128,7 @@ TEST(CompareWorker, AnEditWhileItPlaysActsAtACommonTime) {
   cloth::set_own(comparison.panes[1], "integrator.time_step", 0.0005);
   worker.send(command::Edit{comparison});
   worker.wait_until_idle();
-  const CompareStatus status = worker.status();
+  const WorkerStatus status = worker.status();
   EXPECT_TRUE(status.playing);
   EXPECT_GT(status.time, 0.05);
   EXPECT_EQ(*status.comparison, comparison);
@@ -255,7 +255,7 @@ TEST(CompareWorker, RecordsTheRowsOfTheCommandLine) {
   CompareWorker worker(2);
   worker.send(command::Load{small_comparison()});
   worker.send(command::StartRecording{folder / "window"});
-  const CompareStatus end = play_to_the_end(worker);
+  const WorkerStatus end = play_to_the_end(worker);
   EXPECT_FALSE(end.recording) << "the duration ends it";
   EXPECT_EQ(end.recorded_rows, 21);
   EXPECT_EQ(end.recording_error, "");

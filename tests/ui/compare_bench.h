@@ -9,7 +9,7 @@
 #include <QToolButton>
 #include <QtTest>
 
-#include "main_window/compare_window.h"
+#include "main_window/lab_window.h"
 #include "params/exact_field.h"
 #include "scene/builtin_scenes.h"
 
@@ -47,7 +47,7 @@ class CompareBench {
     window.simulation().settle();
   }
 
-  const CompareStatus& status() { return window.simulation().status(); }
+  const WorkerStatus& status() { return window.simulation().status(); }
   const cloth::Comparison& comparison() { return window.document().comparison(); }
   void settle() { window.simulation().settle(); }
   QAction* action(const char* name) { return window.findChild<QAction*>(QLatin1String(name)); }
@@ -87,7 +87,7 @@ class CompareBench {
     settle();
   }
 
-  CompareWindow window;
+  LabWindow window;
 };
 
 }  // namespace clothlab::test

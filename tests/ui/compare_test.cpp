@@ -14,7 +14,7 @@
 #include "io/csv.h"
 #include "io/text_file.h"
 #include "listed_test.h"
-#include "main_window/main_window.h"
+#include "main_window/lab_window.h"
 #include "theme/theme.h"
 #include "viewport/picking.h"
 
@@ -48,16 +48,16 @@ class CompareTest : public QObject {
   }
 
   void the_main_window_compares_the_scene_being_edited_with_two_other_methods() {
-    MainWindow window;
+    LabWindow window;
     window.setAsksToSave(false);
     window.show();
     QVERIFY(QTest::qWaitForWindowActive(&window));
     window.openScene("corners-free");
     window.document().setParameter("springs.structural", 123.0);
     window.findChild<QAction*>("compareMethods")->trigger();
-    CompareWindow* compare = nullptr;
+    LabWindow* compare = nullptr;
     for (QWidget* top : QApplication::topLevelWidgets())
-      if (auto* found = qobject_cast<CompareWindow*>(top)) compare = found;
+      if (auto* found = qobject_cast<LabWindow*>(top); found && found != &window) compare = found;
     QVERIFY(compare);
     compare->simulation().settle();
     const cloth::Comparison& comparison = compare->document().comparison();
@@ -101,7 +101,7 @@ class CompareTest : public QObject {
     QCOMPARE(bench.status().comparison->scene.springs->structural, after);
     bench.action("undo")->trigger();
     QCOMPARE(bench.comparison().scene.springs->structural, before);
-    QCOMPARE(bench.window.document().form().scene().springs->structural, before);
+    QCOMPARE(bench.window.document().scene().springs->structural, before);
     bench.action("redo")->trigger();
     bench.settle();
     QCOMPARE(bench.status().comparison->scene.springs->structural, after);
@@ -133,7 +133,7 @@ class CompareTest : public QObject {
     bench.scope(2);
     QTest::mouseClick(bench.editor("springs.structural", "noteButton"), Qt::LeftButton);
     QCOMPARE(scene_of(bench.comparison(), 1).springs->structural, shared);
-    QCOMPARE(bench.window.document().form().scene().springs->structural, shared);
+    QCOMPARE(bench.window.document().scene().springs->structural, shared);
   }
 
   void method_and_step_are_changed_in_the_head_of_a_pane() {
@@ -179,13 +179,13 @@ class CompareTest : public QObject {
     bench.settle();
     const double time = bench.status().time;
     QVERIFY(time > 0);
-    const std::size_t recorded = bench.window.charts().record().samples.size();
+    const std::size_t recorded = bench.window.paneCharts().record().samples.size();
     bench.choose(1, "duplicate");
     bench.settle();
     QCOMPARE(bench.status().time, time);
     QCOMPARE(bench.window.panes().pane(2).view().frame()->positions,
              bench.window.panes().pane(1).view().frame()->positions);
-    QCOMPARE(bench.window.charts().record().samples.size(), recorded);
+    QCOMPARE(bench.window.paneCharts().record().samples.size(), recorded);
     QVERIFY(bench.window.notice().text().isEmpty());
     bench.choose(0, "removePane");  // the reference: another one has to be run from the start
     bench.settle();
@@ -296,7 +296,7 @@ class CompareTest : public QObject {
     QTemporaryDir folder;
     CompareBench bench;
     bench.play_to_the_end();
-    CompareCharts& charts = bench.window.charts();
+    CompareCharts& charts = bench.window.paneCharts();
     QCOMPARE(charts.exportPng(folder.filePath("charts.png")), QString());
     QCOMPARE(QImage(folder.filePath("charts.png")).size(), QSize(1600, 1400));
     QCOMPARE(charts.exportSvg(folder.filePath("charts.svg")), QString());

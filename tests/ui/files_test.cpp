@@ -63,20 +63,16 @@ void press(QWidget& window, Qt::Key key, Qt::KeyboardModifiers modifiers) {
   QTest::keyClick(&window, key, modifiers);
 }
 
-/// The shown windows of a kind, but for one.
-template <class Window>
-std::vector<Window*> others(const LabWindow* known = nullptr) {
-  std::vector<Window*> windows;
-  for (LabWindow* each : LabWindow::all())
-    if (auto* window = qobject_cast<Window*>(each); window && window != known && window->isVisible())
-      windows.push_back(window);
+/// The shown windows but for one.
+std::vector<LabWindow*> others(const LabWindow* known = nullptr) {
+  std::vector<LabWindow*> windows = LabWindow::all();
+  std::erase_if(windows, [known](LabWindow* window) { return window == known || !window->isVisible(); });
   return windows;
 }
 
 /// The only one.
-template <class Window>
-Window* other(const LabWindow* known = nullptr) {
-  const auto windows = others<Window>(known);
+LabWindow* other(const LabWindow* known = nullptr) {
+  const auto windows = others(known);
   return windows.size() == 1 ? windows.front() : nullptr;
 }
 
@@ -116,13 +112,13 @@ class FilesTest : public QObject {
     press(bench.window, Qt::Key_O, Qt::ControlModifier);
     QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
     QVERIFY2(is_said(bench.window), qPrintable(bench.window.notice().text()));
-    QVERIFY(others<CompareWindow>().empty());
+    QVERIFY(others(&bench.window).empty());
     QVERIFY(bench.window.document().isModified());
     QCOMPARE(bench.window.document().scene().springs->structural, 123.0);
 
     open_first_window(path("bad.compare.json"));  // as the program does
-    auto* first = other<MainWindow>(&bench.window);
-    QVERIFY(first && others<CompareWindow>().empty());
+    auto* first = other(&bench.window);
+    QVERIFY(first);
     QVERIFY(is_said(*first));
     QCOMPARE(first->document().scene(), cloth::builtin_scene(cloth::default_scene_name));
   }
@@ -137,17 +133,6 @@ class FilesTest : public QObject {
     QCOMPARE(bench.comparison(), before);
     bench.choose(0, "duplicate");
     QCOMPARE(bench.window.panes().paneCount(), std::size_t{3});
-  }
-
-  void panes_without_a_comparison_take_no_clicks() {
-    CompareWindow window;
-    window.show();
-    QVERIFY(QTest::qWaitForWindowActive(&window));
-    auto* method = window.panes().pane(0).findChild<QComboBox*>("method");
-    QTest::mouseClick(method, Qt::LeftButton);
-    QTest::keyClick(method, Qt::Key_Down);
-    QVERIFY(!window.panes().isEnabled());
-    window.setAsksToSave(false);
   }
 
   void every_file_is_asked_about_by_its_final_name_data() {
@@ -229,7 +214,7 @@ class FilesTest : public QObject {
     QVERIFY(again.status().refusal.empty());
   }
 
-  void the_window_of_a_scene_opens_every_type() {
+  void a_scene_gives_way_to_every_type() {
     write(path("sheet.obj"), two_triangles);
     write(path("x.compare.json"), of_a_mesh);
     write(path("results/comparison.json"),
@@ -248,33 +233,24 @@ class FilesTest : public QObject {
     QCOMPARE(bench.window.document().undoStack().count(), 1);
     QVERIFY(open(path("study/study.json")));
     QVERIFY(bench.window.studies().isVisible() && bench.window.studies().table());
+    QVERIFY(bench.window.document().isModified());  // nothing of it was lost
     for (const char* name : {"x.compare.json", "results/comparison.json"}) {
       QVERIFY(open(path(name)));
-      auto* compare = other<CompareWindow>();
-      QVERIFY2(compare, qPrintable(bench.window.notice().text()));
-      QCOMPARE(compare->document().paneCount(), std::size_t{2});
-      compare->close();
+      QCOMPARE(bench.window.document().paneCount(), std::size_t{2});
+      QCOMPARE(bench.window.panes().paneCount(), std::size_t{2});
+      QVERIFY(bench.window.ranking().isVisible() && bench.window.paneCharts().isVisible());
     }
-    QVERIFY(bench.window.document().isModified());  // nothing of it was lost
-    bench.window.document().undoStack().undo();
-    QCOMPARE(bench.window.document().scene(), cloth::builtin_scene("corners-free"));
+    QVERIFY(others(&bench.window).empty());
   }
 
-  void the_window_of_a_comparison_opens_every_type() {
+  void a_comparison_gives_way_to_every_type() {
     write(path("sheet.obj"), two_triangles);
     write(path("x.scene.json"), "{\"cloth\": {\"rows\": 7, \"columns\": 5}}");
     write_small_study(path("study"));
     CompareBench bench;
     const cloth::Comparison before = bench.comparison();
-    drop(bench.window, path("x.scene.json"));
-    auto* main = other<MainWindow>();
-    QVERIFY(main);
-    QCOMPARE(main->document().scene().cloth.rows, 7);
-    main->close();
     drop(bench.window, path("study"));
-    main = other<MainWindow>();
-    QVERIFY(main && main->studies().isVisible() && main->studies().table());
-    main->close();
+    QVERIFY(bench.window.studies().isVisible() && bench.window.studies().table());
     QCOMPARE(bench.comparison(), before);
     bench.scope(2);
     drop(bench.window, path("sheet.obj"));
@@ -283,6 +259,13 @@ class FilesTest : public QObject {
     QVERIFY(bench.status().refusal.empty());
     bench.action("undo")->trigger();
     QCOMPARE(bench.comparison(), before);
+    drop(bench.window, path("x.scene.json"));
+    bench.settle();
+    QCOMPARE(bench.window.document().paneCount(), std::size_t{1});
+    QCOMPARE(bench.window.document().scene().cloth.rows, 7);
+    QCOMPARE(bench.window.view().frame()->rows, 7);
+    QVERIFY(bench.window.charts().isVisible() && !bench.window.ranking().isVisible());
+    QVERIFY(others(&bench.window).empty());
   }
 
   void a_session_opens_from_a_comparison() {
@@ -293,9 +276,7 @@ class FilesTest : public QObject {
     bench.settle();
     CompareBench compare;
     drop(compare.window, path("run.session.json"));
-    auto* main = other<MainWindow>(&bench.window);
-    QVERIFY2(main, qPrintable(compare.window.notice().text()));
-    QTRY_VERIFY_WITH_TIMEOUT(main->notice().text().contains("to the bit"), 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(compare.window.notice().text().contains("to the bit"), 20000);
   }
 
   void the_program_begins_with_every_type() {
@@ -303,32 +284,32 @@ class FilesTest : public QObject {
     write(path("x.compare.json"), of_a_mesh);
     write_small_study(path("study"));
     open_first_window(path("sheet.obj"));
-    auto* main = other<MainWindow>();
-    QVERIFY(main && main->document().scene().cloth.is_mesh());
-    main->setAsksToSave(false);
-    main->close();
+    LabWindow* window = other();
+    QVERIFY(window && window->document().scene().cloth.is_mesh());
+    window->setAsksToSave(false);
+    window->close();
     open_first_window(path("study"));
-    main = other<MainWindow>();
-    QVERIFY(main && main->studies().table());
-    main->close();
+    window = other();
+    QVERIFY(window && window->studies().table());
+    window->close();
     for (const QString& name : {path("x.compare.json"), QString("report-methods")}) {
       open_first_window(name);
-      auto* compare = other<CompareWindow>();
-      QVERIFY(compare && others<MainWindow>().empty());
-      compare->close();
+      window = other();
+      QVERIFY(window && window->document().isComparison());
+      window->close();
     }
     open_first_window("no-such-thing");
-    main = other<MainWindow>();
-    QVERIFY(main && main->notice().text().contains("no-such-thing"));
-    QCOMPARE(main->document().scene(), cloth::builtin_scene(cloth::default_scene_name));
+    window = other();
+    QVERIFY(window && window->notice().text().contains("no-such-thing"));
+    QCOMPARE(window->document().scene(), cloth::builtin_scene(cloth::default_scene_name));
   }
 
   void quit_asks_every_window_and_cancel_keeps_all() {
     open_first_window("corners-free");
-    auto* main = other<MainWindow>();
+    LabWindow* main = other();
     QVERIFY(main && QTest::qWaitForWindowActive(main));
     press(*main, Qt::Key_M, Qt::ControlModifier);  // compare methods: in no file yet
-    auto* compare = other<CompareWindow>();
+    LabWindow* compare = other(main);
     QVERIFY(compare && QTest::qWaitForWindowActive(compare));
     main->document().setParameter("springs.structural", 123.0);
     {

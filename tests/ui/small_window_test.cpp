@@ -140,7 +140,7 @@ class SmallWindowTest : public QObject {
     apply_theme(*qApp, dark);
     CompareBench bench(panes_of({"verlet", "semi-implicit-euler", "rk4", "implicit-midpoint"}));
     resize_to(bench.window, size);
-    const CompareCharts& charts = bench.window.charts();
+    const CompareCharts& charts = bench.window.paneCharts();
     QVERIFY2(trouble_with_buttons(charts).isEmpty(), qPrintable(trouble_with_buttons(charts)));
   }
 

@@ -233,7 +233,7 @@ class TimelineTest : public QObject {
     QVERIFY(bench.window.view().frame()->positions == ended);
     QVERIFY(bench.window.notice().text().contains("to the bit"));
     QVERIFY(!bench.window.document().isModified());
-    QCOMPARE(bench.window.document().scene(), *bench.status().scene);
+    QCOMPARE(bench.window.document().scene(), bench.status().comparison->scene);
 
     QProcess replay;
     replay.start(CLOTHLAB_CLI, {"replay", file, "--json"});

@@ -9,7 +9,7 @@
 #include <QToolButton>
 #include <QtTest>
 
-#include "main_window/main_window.h"
+#include "main_window/lab_window.h"
 #include "theme/theme.h"
 
 namespace clothlab::test {
@@ -72,7 +72,7 @@ class WindowBench {
     return {at[i], at[i + 1], at[i + 2]};
   }
 
-  MainWindow window;
+  LabWindow window;
 };
 
 }  // namespace clothlab::test

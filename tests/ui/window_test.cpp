@@ -370,7 +370,7 @@ class WindowTest : public QObject {
   void an_idle_window_fetches_nothing() {
     WindowBench bench;
     QTest::qWait(200);
-    QSignalSpy fetches(&bench.window.simulation(), &SimulationLink::statusChanged);
+    QSignalSpy fetches(&bench.window.simulation(), &RunLink::statusChanged);
     QTest::qWait(300);
     QCOMPARE(fetches.count(), 0);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bridge/fill_frame.h"
 #include "compare/comparison_log.h"
 #include "io/process.h"
 
@@ -18,14 +17,14 @@ using LoadComparison = command::Load<cloth::Comparison>;
 using EditComparison = command::Edit<cloth::Comparison>;
 
 /// Whether the command has to wait for a common time.
-bool acts_on_the_panes(const CompareCommand& command) {
+bool acts_on_the_panes(const Command& command) {
   return command::is_one_of<EditComparison, command::SingleStep, command::Brush, command::Pull,
                             command::StartRecording, command::StopRecording>(command);
 }
 
 /// Only the newest of several waiting commands of one kind is carried out, because mouse input is faster than
 /// the panes.
-bool is_overtaken_by(const CompareCommand& command, const CompareCommand& next) {
+bool is_replaced_by(const Command& command, const Command& next) {
   return command.index() == next.index() &&
          command::is_one_of<LoadComparison, EditComparison, command::Brush, command::Pull>(command);
 }
@@ -45,8 +44,8 @@ void CompareWorker::run(const std::stop_token& stop) {
     } catch (...) {
       give_up(cloth::failure_in_hand().text);
     }
-    publish_status();
     if (!under_way_) settled_ = handled_;
+    publish_status();
     report_done(settled_, has_work());
   });
   end_recording();
@@ -81,13 +80,13 @@ void CompareWorker::wait_for_work(const std::stop_token& stop) {
 /// In their order, up to the first one that has to wait for a common time.
 void CompareWorker::handle_waiting() {
   while (!waiting_.empty()) {
-    if (waiting_.size() > 1 && is_overtaken_by(waiting_[0], waiting_[1]) && !changes_panes(waiting_[0])) {
+    if (waiting_.size() > 1 && is_replaced_by(waiting_[0], waiting_[1]) && !changes_panes(waiting_[0])) {
       waiting_.pop_front();
       ++handled_;
       continue;
     }
     if (under_way_ && acts_on_the_panes(waiting_.front())) return;
-    const CompareCommand command = std::move(waiting_.front());
+    const Command command = std::move(waiting_.front());
     waiting_.pop_front();
     handling_ = true;
     std::visit([this](const auto& c) { handle(c); }, command);
@@ -97,7 +96,7 @@ void CompareWorker::handle_waiting() {
 }
 
 /// Such an edit is not overtaken: a pane that was copied and then changed is another than a new one.
-bool CompareWorker::changes_panes(const CompareCommand& command) const {
+bool CompareWorker::changes_panes(const Command& command) const {
   const auto* edit = std::get_if<EditComparison>(&command);
   return edit && lockstep_ &&
          !std::equal(edit->content.panes.begin(), edit->content.panes.end(),
@@ -186,6 +185,11 @@ void CompareWorker::handle(const command::Colour& colour) {
   if (lockstep_) publish_frames();
 }
 
+void CompareWorker::handle(const command::ShowContact& show) {
+  contact_ = show.choice;
+  if (lockstep_) publish_frames();
+}
+
 void CompareWorker::handle(const command::StartRecording& start) {
   end_recording();
   if (!lockstep_) return;
@@ -270,6 +274,9 @@ void CompareWorker::publish_frame(std::size_t pane) {
   const auto frame = frames_[pane].blank();
   frame->topology = topology_;
   fill_frame(*lane.simulation, lane.state, normals_, *frame);
+  // Contact is that of the simulation's own state, which a pane under way or stopped does not show.
+  const bool is_shown = !under_way_ && lane.going();
+  contact_filler_.fill(*lane.simulation, is_shown ? contact_ : ContactChoice{}, *frame);
   if (colouring_ == Colouring::difference) {
     static const std::vector<float> none;
     const cloth::Difference* difference = lockstep_->difference(pane);
@@ -279,11 +286,13 @@ void CompareWorker::publish_frame(std::size_t pane) {
 }
 
 void CompareWorker::publish_status() {
+  status_.commands = settled_;
   status_.threads = threads_;
   status_.recording = recorder_.has_value();
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   if (lockstep_ && !under_way_) {
     status_.time = now();
+    status_.step = lockstep_->index();
     status_.duration = lockstep_->time_of(lockstep_->last_index());
     if (!status_.comparison || *status_.comparison != lockstep_->comparison())
       status_.comparison = std::make_shared<cloth::Comparison>(lockstep_->comparison());

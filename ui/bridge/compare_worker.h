@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "bridge/chart_sample.h"
+#include "bridge/fill_frame.h"
 #include "bridge/frame_exchange.h"
 #include "bridge/worker.h"
 #include "bridge/worker_commands.h"
@@ -14,7 +15,7 @@
 
 namespace clothlab {
 
-class CompareWorker final : public Worker<CompareCommand, CompareSample, CompareStatus> {
+class CompareWorker final : public Worker<CompareSample> {
  public:
   /// Runs the panes on `threads` threads; 0: one for each core except one, which is left to the window.
   explicit CompareWorker(int threads = 0);
@@ -28,7 +29,7 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   void wait_for_work(const std::stop_token& stop);
   bool has_work() const;
   void handle_waiting();
-  bool changes_panes(const CompareCommand& command) const;
+  bool changes_panes(const Command& command) const;
   void handle(const command::Load<cloth::Comparison>& load);
   void handle(const command::Restart&);
   void handle(const command::Edit<cloth::Comparison>& edit);
@@ -41,6 +42,13 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   void handle(const command::Colour& colour);
   void handle(const command::StartRecording& start);
   void handle(const command::StopRecording&) { end_recording(); }
+  void handle(const command::ShowContact& show);
+  void handle(const command::Load<cloth::Scene>&) {}
+  void handle(const command::Edit<cloth::Scene>&) {}
+  void handle(const command::SaveSession&) {}
+  void handle(const command::OpenSession&) {}
+  void handle(const command::GoTo&) {}
+  void handle(const command::PlayAgain&) {}
 
   void start(const cloth::Comparison& comparison);
   /// s, the common time that all panes have reached.
@@ -58,7 +66,7 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
 
   std::array<FrameExchange, cloth::max_panes> frames_;  ///< shared with the window
   int threads_;
-  std::deque<CompareCommand> waiting_;
+  std::deque<Command> waiting_;
   bool handling_ = false;  ///< a command is being carried out and not counted in handled_ yet
   std::uint64_t handled_ = 0,
                 settled_ = 0;  ///< commands carried out; settled_: including the step that they requested
@@ -66,6 +74,8 @@ class CompareWorker final : public Worker<CompareCommand, CompareSample, Compare
   std::optional<std::int64_t> under_way_;  ///< index of the common time that the panes are computing
   std::optional<cloth::ComparisonRecorder> recorder_;
   Colouring colouring_ = Colouring::strain;
+  ContactChoice contact_;
+  ContactFiller contact_filler_;
   std::uint64_t topology_ = 0;
   cloth::Vec3Field normals_;  ///< scratch of frames
   Clock::time_point last_flush_{};

@@ -22,7 +22,7 @@ std::string refusal_of(const cloth::Scene& scene) {
 
 /// A scene that is replaced before the next step need not be put in force: a slider moves faster than a big
 /// cloth assembles.
-bool is_overtaken_by(const SceneCommand& command, const SceneCommand& next) {
+bool is_overtaken_by(const Command& command, const Command& next) {
   return command.index() == next.index() &&
          command::is_one_of<command::Load<cloth::Scene>, command::Edit<cloth::Scene>, command::GoTo>(command);
 }
@@ -35,7 +35,7 @@ SimulationWorker::SimulationWorker(std::size_t max_history)
 void SimulationWorker::run(const std::stop_token& stop) {
   yield_to_the_window();
   repeat(stop, [&] {
-    const std::vector<SceneCommand> commands = wait_for_work(stop);
+    const std::vector<Command> commands = wait_for_work(stop);
     try {
       carry_out(commands);
       if (status_.playing && !stop.stop_requested()) play_for_a_moment();
@@ -50,7 +50,7 @@ void SimulationWorker::run(const std::stop_token& stop) {
   end_recording();
 }
 
-void SimulationWorker::carry_out(const std::vector<SceneCommand>& commands) {
+void SimulationWorker::carry_out(const std::vector<Command>& commands) {
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (i + 1 == commands.size() || !is_overtaken_by(commands[i], commands[i + 1])) {
       batch_is_done_ = i + 1 == commands.size();
@@ -69,7 +69,7 @@ void SimulationWorker::give_up(const std::string& why) {
 }
 
 /// Until there is a command, or the next step is due.
-std::vector<SceneCommand> SimulationWorker::wait_for_work(const std::stop_token& stop) {
+std::vector<Command> SimulationWorker::wait_for_work(const std::stop_token& stop) {
   if (!status_.playing) return receive(stop, std::nullopt);
   return receive(stop, pace_.due_time(simulation_->time() + simulation_->time_step()));
 }
@@ -310,8 +310,9 @@ void SimulationWorker::publish_status() {
     }
     status_.notice += energy_.notice();
     if (status_.notice.ends_with('\n')) status_.notice.pop_back();
-    if (!status_.scene || *status_.scene != simulation_->scene())
-      status_.scene = std::make_shared<cloth::Scene>(simulation_->scene());
+    if (!status_.comparison || status_.comparison->scene != simulation_->scene())
+      status_.comparison =
+          std::make_shared<const cloth::Comparison>(cloth::comparison_of_one(simulation_->scene()));
     status_.history = {.last_step = history_.last_step(),
                        .last_time = history_.last_time(),
                        .states = history_.state_count(),

@@ -16,13 +16,15 @@
 
 namespace clothlab {
 
-class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerStatus> {
+class SimulationWorker final : public Worker<ChartSample> {
  public:
   /// `max_history`: limit of the history's memory, bytes.
   explicit SimulationWorker(std::size_t max_history = cloth::History::default_max_bytes);
 
   /// The newest frame that was not fetched yet, or nullptr. Called by the window's thread.
-  std::shared_ptr<const ClothFrame> take_frame() { return frames_.take(); }
+  std::shared_ptr<const ClothFrame> take_frame(std::size_t pane = 0) {
+    return pane == 0 ? frames_.take() : nullptr;
+  }
 
  private:
   void run(const std::stop_token& stop);
@@ -45,6 +47,9 @@ class SimulationWorker final : public Worker<SceneCommand, ChartSample, WorkerSt
   void handle(const command::SaveSession& save);
   void handle(const command::OpenSession& open);
   void handle(const command::ShowContact& show);
+  void handle(const command::Load<cloth::Comparison>&) {}
+  void handle(const command::Edit<cloth::Comparison>&) {}
+  void handle(const command::Colour&) {}
 
   bool start_simulation(const cloth::Scene& scene);
   std::vector<cloth::Problem> perform(const cloth::SessionAction& action);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "bridge/worker_commands.h"
 #include "bridge/worker_pace.h"
 #include "bridge/worker_status.h"
 #include "io/text_file.h"
@@ -20,26 +21,27 @@ namespace clothlab {
 
 /// The base of a worker that owns a computation and the thread for it. Public members are called by the
 /// window's thread, protected ones by the worker's thread.
-template <class CommandType, class SampleType, class StatusType>
+template <class SampleType>
 class Worker {
  public:
-  using Command = CommandType;
   using Sample = SampleType;
-  using Status = StatusType;
   static constexpr std::size_t max_samples = 1 << 18;  ///< more than an hour at 60 samples a second
 
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  void send(Command command) {
+  /// Returns the number of commands sent so far; see WorkerStatus::commands.
+  std::uint64_t send(Command command) {
+    std::uint64_t number;
     {
       const std::lock_guard lock(mutex_);
       inbox_.push_back(std::move(command));
-      ++sent_;
+      number = ++sent_;
       busy_ = true;
       has_mail_ = true;
     }
     wake_.notify_one();
+    return number;
   }
 
   /// Every sample since the last call, in order.
@@ -49,8 +51,8 @@ class Worker {
   }
 
   /// The newest status; copied outside the lock.
-  Status status() const {
-    std::shared_ptr<const Status> newest;
+  WorkerStatus status() const {
+    std::shared_ptr<const WorkerStatus> newest;
     {
       const std::lock_guard lock(mutex_);
       newest = published_;
@@ -123,7 +125,7 @@ class Worker {
 
   /// Makes a copy of `status_` available to the window.
   void publish() {
-    auto newest = std::make_shared<const Status>(status_);
+    auto newest = std::make_shared<const WorkerStatus>(status_);
     const std::lock_guard lock(mutex_);
     published_.swap(newest);  // the one before goes after the lock
   }
@@ -161,7 +163,7 @@ class Worker {
     if (error && status_.recording_error.empty()) status_.recording_error = error->text();
   }
 
-  Status status_;
+  WorkerStatus status_;
   WorkerPace pace_;
   RateMeter meter_;
   Clock::time_point last_frame_{};
@@ -171,7 +173,7 @@ class Worker {
   std::condition_variable_any wake_, idle_;
   std::vector<Command> inbox_;
   std::vector<Sample> samples_;
-  std::shared_ptr<const Status> published_ = std::make_shared<const Status>();
+  std::shared_ptr<const WorkerStatus> published_ = std::make_shared<const WorkerStatus>();
   std::uint64_t sent_ = 0, done_ = 0;  ///< commands
   std::atomic<bool> busy_{false}, has_mail_{false};
 };

@@ -76,14 +76,12 @@ bool is_one_of(const Variant& command) {
 }
 }  // namespace command
 
-using SceneCommand =
-    std::variant<command::Load<cloth::Scene>, command::Edit<cloth::Scene>, command::Restart, command::Play,
-                 command::Pause, command::SingleStep, command::Speed, command::Brush, command::Pull,
-                 command::StartRecording, command::StopRecording, command::GoTo, command::PlayAgain,
-                 command::SaveSession, command::OpenSession, command::ShowContact>;
-using CompareCommand =
-    std::variant<command::Load<cloth::Comparison>, command::Edit<cloth::Comparison>, command::Restart,
-                 command::Play, command::Pause, command::SingleStep, command::Speed, command::Brush,
-                 command::Pull, command::StartRecording, command::StopRecording, command::Colour>;
+/// Every worker accepts all of them and ignores those of the other kind of content.
+using Command =
+    std::variant<command::Load<cloth::Scene>, command::Edit<cloth::Scene>, command::Load<cloth::Comparison>,
+                 command::Edit<cloth::Comparison>, command::Restart, command::Play, command::Pause,
+                 command::SingleStep, command::Speed, command::Brush, command::Pull, command::StartRecording,
+                 command::StopRecording, command::GoTo, command::PlayAgain, command::SaveSession,
+                 command::OpenSession, command::ShowContact, command::Colour>;
 
 }  // namespace clothlab

@@ -10,7 +10,7 @@ namespace {
 constexpr auto glimpse_interval = std::chrono::milliseconds(100);  // on a long way
 
 /// A way through the history is not gone to its end when the next thing is to go elsewhere.
-bool ends_a_way(const SceneCommand& next) {
+bool ends_a_way(const Command& next) {
   return command::is_one_of<command::GoTo, command::Load<cloth::Scene>, command::Restart,
                             command::OpenSession>(next);
 }

@@ -27,10 +27,9 @@ PaneGrid::PaneGrid(QWidget* parent)
   setFocusPolicy(Qt::ClickFocus);
   grid_->addWidget(colour_bar_, 0, 2, 2, 1);
   colour_bar_->hide();
-  grid_->setContentsMargins(spacing / 2, spacing / 2, spacing / 2, spacing / 2);
   grid_->setSpacing(spacing / 2);
   // At once: a window that gets its first OpenGL view after it was shown is made anew.
-  while (panes_.size() < cloth::least_panes) addPane();
+  addPane();
   layOut();
   colour_timer_.setSingleShot(true);
   colour_timer_.setInterval(glide_interval);
@@ -50,39 +49,61 @@ void PaneGrid::showComparison(const cloth::Comparison& comparison) {
     panes_.pop_back();
   }
   if (count != before) layOut();
-  for (std::size_t i = 0; i < count; ++i)
-    panes_[i]->showPane(comparison, i, count<cloth::max_panes, count> cloth::least_panes);
+  for (std::size_t i = 0; i < count; ++i) panes_[i]->showPane(comparison, i, count < cloth::max_panes);
+  if (isOne() && colouring_ == Colouring::difference) setMode(mode_);  // there is none
+  followColours();
 }
 
 void PaneGrid::addPane() {
   auto* pane = new PaneView(this);
-  ClothView* view = &pane->view();
-  view->setTool(tool_);
-  view->setSmoothAtRest(!playing_);
-  view->setMode(mode_);
+  ClothView& view = pane->view();
+  view.setTool(tool_);
+  view.setSmoothAtRest(isOne() || !playing_);
+  view.setMode(mode_);
+  view.setContact(contact_);
+  view.setObstaclesMovable(true);
   if (!panes_.empty()) {
-    ClothView& first = panes_.front()->view();
-    view->setAnimated(first.animated());
-    if (first.cameraWasMoved()) view->setCameraPose(first.camera().pose());
+    view.setAnimated(this->view().animated());
+    if (this->view().cameraWasMoved()) view.setCameraPose(this->view().camera().pose());
   }
   const std::size_t i = panes_.size();
   panes_.push_back(pane);
-  connect(pane, &PaneView::methodChosen, this,
+  connectHead(*pane, i);
+  connectView(view, i);
+}
+
+void PaneGrid::connectHead(PaneView& pane, std::size_t i) {
+  connect(&pane, &PaneView::methodChosen, this,
           [this, i](const std::string& method) { Q_EMIT methodChosen(i, method); });
-  connect(pane, &PaneView::stepChosen, this,
+  connect(&pane, &PaneView::stepChosen, this,
           [this, i](const cloth::ParameterValue& step) { Q_EMIT stepChosen(i, step); });
-  connect(pane, &PaneView::duplicateWanted, this, [this, i] { Q_EMIT duplicateWanted(i); });
-  connect(pane, &PaneView::removeWanted, this, [this, i] { Q_EMIT removeWanted(i); });
-  connect(pane, &PaneView::referenceWanted, this, [this, i] { Q_EMIT referenceWanted(i); });
-  connect(pane, &PaneView::remedyChosen, this,
+  connect(&pane, &PaneView::duplicateWanted, this, [this, i] { Q_EMIT duplicateWanted(i); });
+  connect(&pane, &PaneView::removeWanted, this, [this, i] { Q_EMIT removeWanted(i); });
+  connect(&pane, &PaneView::referenceWanted, this, [this, i] { Q_EMIT referenceWanted(i); });
+  connect(&pane, &PaneView::remedyChosen, this,
           [this, i](const Remedy& remedy) { Q_EMIT remedyChosen(i, remedy); });
-  connect(view, &ClothView::pullChanged, this, &PaneGrid::pullChanged);
-  connect(view, &ClothView::pullEnded, this, &PaneGrid::pullEnded);
-  connect(view, &ClothView::brushChanged, this, &PaneGrid::brushChanged);
-  connect(view, &ClothView::brushEnded, this, &PaneGrid::brushEnded);
-  connect(view, &ClothView::pinToggled, this, &PaneGrid::pinToggled);
-  connect(view, &ClothView::cameraMoved, this,
-          [this, view](const CameraPose& pose) { followCamera(*view, pose); });
+}
+
+void PaneGrid::connectView(ClothView& view, std::size_t i) {
+  connect(&view, &ClothView::pullChanged, this, &PaneGrid::pullChanged);
+  connect(&view, &ClothView::pullEnded, this, &PaneGrid::pullEnded);
+  connect(&view, &ClothView::brushChanged, this, &PaneGrid::brushChanged);
+  connect(&view, &ClothView::brushEnded, this, &PaneGrid::brushEnded);
+  connect(&view, &ClothView::pinToggled, this, &PaneGrid::pinToggled);
+  connect(&view, &ClothView::obstacleMoveStarted, this, &PaneGrid::obstacleMoveStarted);
+  connect(&view, &ClothView::obstacleMoved, this, &PaneGrid::obstacleMoved);
+  connect(&view, &ClothView::obstacleMoveEnded, this, &PaneGrid::obstacleMoveEnded);
+  connect(&view, &ClothView::openGlFailed, this, &PaneGrid::openGlFailed);
+  connect(&view, &ClothView::toolChanged, this, &PaneGrid::setTool);
+  connect(&view, &ClothView::modeChanged, this, [this](ViewMode mode) {
+    if (mode != mode_) setMode(mode);
+  });
+  connect(&view, &ClothView::contactChosen, this, &PaneGrid::setContact);
+  connect(&view, &ClothView::cameraMoved, this,
+          [this, &view](const CameraPose& pose) { followCamera(view, pose); });
+  if (i > 0) return;
+  connect(&view, &ClothView::hierarchyDepthChanged, this, &PaneGrid::hierarchyDepthChanged);
+  connect(&view, &ClothView::frameDrawn, this, &PaneGrid::frameDrawn);
 }
 
 /// Two panes beside each other; three and four in two rows.
@@ -96,6 +117,13 @@ void PaneGrid::layOut() {
   for (int line = 0; line < 2; ++line) {
     grid_->setColumnStretch(line, 1);
     grid_->setRowStretch(line, line == 0 || panes_.size() > 2 ? 1 : 0);
+  }
+  grid_->setColumnStretch(1, isOne() ? 0 : 1);
+  const int margin = isOne() ? 0 : spacing / 2;
+  grid_->setContentsMargins(margin, margin, margin, margin);
+  for (PaneView* pane : panes_) {
+    pane->setAlone(isOne());
+    pane->view().setSmoothAtRest(isOne() || !playing_);
   }
 }
 
@@ -112,10 +140,10 @@ void PaneGrid::showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> fra
 void PaneGrid::followPlaying(bool playing) {
   if (playing == playing_) return;
   playing_ = playing;
-  for (PaneView* pane : panes_) pane->view().setSmoothAtRest(!playing);
+  for (PaneView* pane : panes_) pane->view().setSmoothAtRest(isOne() || !playing);
 }
 
-void PaneGrid::showResults(const CompareStatus& status) {
+void PaneGrid::showResults(const WorkerStatus& status) {
   const bool has_reference = status.comparison && status.comparison->reference != cloth::no_reference;
   if (std::exchange(starts_, status.starts) != status.starts)
     for (PaneView* pane : panes_) pane->forgetStop();
@@ -127,7 +155,9 @@ void PaneGrid::showResults(const CompareStatus& status) {
 
 /// The same colour is the same value in all panes.
 void PaneGrid::followColours() {
-  if (mode_ != ViewMode::strain) return;
+  colour_bar_->setVisible(mode_ == ViewMode::strain && !isOne());
+  if (isOne()) view().setColourMaximum(std::nullopt);
+  if (mode_ != ViewMode::strain || isOne()) return;
   double largest = 0, rate = -1;
   bool difference = false;
   for (PaneView* pane : panes_) {
@@ -155,19 +185,34 @@ void PaneGrid::resetCamera() {
 }
 
 void PaneGrid::setTool(Tool tool) {
-  tool_ = tool;
+  if (std::exchange(tool_, tool) == tool) return;
   for (PaneView* pane : panes_) pane->view().setTool(tool);
+  Q_EMIT toolChanged(tool);
 }
 
-void PaneGrid::setMode(ViewMode mode) {
+void PaneGrid::setMode(ViewMode mode, Colouring colouring) {
+  if (mode == mode_ && colouring == colouring_) return;
   mode_ = mode;
+  colouring_ = colouring;
   for (PaneView* pane : panes_) pane->view().setMode(mode);
-  colour_bar_->setVisible(mode == ViewMode::strain);
   followColours();
+  Q_EMIT modeChanged(mode, colouring);
 }
 
-void PaneGrid::setPreset(CameraPreset preset) {
-  if (!panes_.empty()) panes_.front()->view().setPreset(preset);  // the others follow
+void PaneGrid::setContact(const ContactChoice& choice) {
+  if (choice == contact_) return;
+  contact_ = choice;
+  for (PaneView* pane : panes_) pane->view().setContact(choice);
+  Q_EMIT contactChosen(choice);
+}
+
+QImage PaneGrid::grabPicture() {
+  if (isOne()) return view().grabPicture();
+  QImage picture = grab().toImage();
+  QPainter painter(&picture);
+  for (PaneView* pane : panes_)
+    painter.drawImage(pane->view().mapTo(this, QPoint()), pane->view().grabPicture());
+  return picture;
 }
 
 void ColourBar::showRange(const QString& title, double maximum, double factor, double limit) {

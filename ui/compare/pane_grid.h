@@ -1,4 +1,5 @@
-// The panes side by side: one camera, one tool, one way of colouring and one range of colours for all.
+// The panes side by side: one camera, one tool, one way of colouring and one range of colours for all. A
+// scene is one pane without a head and without a frame, which chooses its own range of colours.
 #pragma once
 
 #include <QElapsedTimer>
@@ -6,7 +7,8 @@
 #include <QWidget>
 #include <vector>
 
-#include "bridge/compare_worker.h"
+#include "bridge/worker_commands.h"
+#include "bridge/worker_status.h"
 #include "compare/pane_view.h"
 
 class QGridLayout;
@@ -46,7 +48,7 @@ class PaneGrid : public QWidget {
   /// Shows the comparison's panes with their names, methods and steps.
   void showComparison(const cloth::Comparison& comparison);
   void showFrame(std::size_t pane, std::shared_ptr<const ClothFrame> frame);
-  void showResults(const CompareStatus& status);
+  void showResults(const WorkerStatus& status);
   /// Says again why panes have stopped.
   void sayStops() {
     for (PaneView* pane : panes_) pane->sayStop();
@@ -56,16 +58,27 @@ class PaneGrid : public QWidget {
 
   std::size_t paneCount() const { return panes_.size(); }
   PaneView& pane(std::size_t i) { return *panes_[i]; }
+  /// Of the first pane: what holds for all, as tool and camera, can be asked there.
+  ClothView& view() { return panes_.front()->view(); }
 
   void setTool(Tool tool);
-  void setMode(ViewMode mode);
+  /// `colouring` counts where the mode shows colours.
+  void setMode(ViewMode mode, Colouring colouring = Colouring::strain);
   ViewMode mode() const { return mode_; }
-  void setPreset(CameraPreset preset);
-  void frameAll() {
-    if (!panes_.empty()) panes_.front()->view().frameAll();
-  }
+  void setContact(const ContactChoice& choice);
+  void setPreset(CameraPreset preset) { view().setPreset(preset); }  ///< the others follow
+  void frameAll() { view().frameAll(); }
+
+  /// A picture of the panes as they are shown, in device pixels.
+  QImage grabPicture();
 
  Q_SIGNALS:
+  void toolChanged(clothlab::Tool tool);
+  void modeChanged(clothlab::ViewMode mode, clothlab::Colouring colouring);
+  void contactChosen(const clothlab::ContactChoice& choice);
+  void hierarchyDepthChanged(int depth);
+  void openGlFailed();
+  void frameDrawn(double milliseconds);  ///< of the first pane
   void methodChosen(std::size_t pane, const std::string& method);
   void stepChosen(std::size_t pane, const cloth::ParameterValue& step);
   void duplicateWanted(std::size_t pane);
@@ -77,10 +90,16 @@ class PaneGrid : public QWidget {
   void brushChanged(const cloth::BrushGust& gust);
   void brushEnded();
   void pinToggled(int particle);
+  void obstacleMoveStarted(int obstacle);
+  void obstacleMoved(int obstacle, const Eigen::Vector3d& by);
+  void obstacleMoveEnded(int obstacle, bool kept);
 
  private:
   void addPane();
+  void connectHead(PaneView& pane, std::size_t i);
+  void connectView(ClothView& view, std::size_t i);
   void layOut();
+  bool isOne() const { return panes_.size() == 1; }
   void followPlaying(bool playing);
   void followCamera(const ClothView& moved, const CameraPose& pose);
   void followColours();
@@ -92,6 +111,8 @@ class PaneGrid : public QWidget {
   std::int64_t starts_ = 0;  ///< of the comparison, that the results are from
   Tool tool_ = Tool::pull;
   ViewMode mode_ = ViewMode::textured;
+  Colouring colouring_ = Colouring::strain;
+  ContactChoice contact_;
   StrainRange strains_;
   StrainRange differences_;
   QTimer colour_timer_;         ///< runs while the colour range changes

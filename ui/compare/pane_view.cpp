@@ -69,10 +69,9 @@ PaneView::PaneView(QWidget* parent)
       cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
       notice_(new NoticeBar(this)) {
-  auto* column = spaced(new QVBoxLayout(this), 0, {frame_width, frame_width, frame_width, frame_width});
+  auto* column = spaced(new QVBoxLayout(this), 0);
   column->addWidget(header_);
   column->addWidget(view_, 1);
-  view_->setMinimumSize(160, 100);
   notice_->layOver(view_, Qt::TopEdge);
   makeHeader();
 
@@ -123,8 +122,7 @@ void PaneView::makeMenu(QToolButton& button) {
   auto* menu = new QMenu(&button);
   duplicate_ = menu->addAction(tr("Duplicate"), this, &PaneView::duplicateWanted);
   duplicate_->setObjectName("duplicate");
-  remove_ = menu->addAction(tr("Remove"), this, &PaneView::removeWanted);
-  remove_->setObjectName("removePane");
+  menu->addAction(tr("Remove"), this, &PaneView::removeWanted)->setObjectName("removePane");
   menu->addSeparator();
   make_reference_ = menu->addAction(tr("Measure the others against it"), this, &PaneView::referenceWanted);
   make_reference_->setObjectName("makeReference");
@@ -152,8 +150,17 @@ void PaneView::showStepRule(const QString& rule) {
   step_->setToolTip(rule.isEmpty() ? tr("Time step of this pane: a number of seconds, or \"auto\"") : rule);
 }
 
-void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow,
-                        bool can_shrink) {
+void PaneView::setAlone(bool alone) {
+  is_alone_ = alone;
+  const int margin = alone ? 0 : frame_width;
+  layout()->setContentsMargins(margin, margin, margin, margin);
+  header_->setVisible(!alone);
+  view_->setMinimumSize(alone ? QSize(320, 160) : QSize(160, 72));
+  if (alone) forgetStop();  // the window says it
+  update();
+}
+
+void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow) {
   const cloth::Pane& shown = comparison.panes[pane];
   scene_ = scene_of(comparison, pane);
   style_ = style_of(shown);
@@ -177,7 +184,6 @@ void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, b
   }
   gauge_->setReading(reading);
   duplicate_->setEnabled(can_grow);
-  remove_->setEnabled(can_shrink);
   make_reference_->setChecked(comparison.reference == shown.name);
   dress();
 }
@@ -223,6 +229,7 @@ void PaneView::changeEvent(QEvent* event) {
 }
 
 QSize PaneView::minimumSizeHint() const {
+  if (is_alone_) return QFrame::minimumSizeHint();
   return {least_width, QFrame::minimumSizeHint().height()};
 }
 
@@ -256,6 +263,7 @@ void PaneView::resizeEvent(QResizeEvent* event) {
 }
 
 void PaneView::paintEvent(QPaintEvent*) {
+  if (is_alone_) return;
   QPainter painter(this);
   painter.fillRect(rect(), theme().panel);
   painter.setPen(QPen(pane_colour(style_), frame_width));

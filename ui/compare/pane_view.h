@@ -31,8 +31,10 @@ class PaneView : public QFrame {
 
   ClothView& view() { return *view_; }
 
-  /// What the pane is. `can_grow`, `can_shrink`: whether there may be another pane, or one less.
-  void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow, bool can_shrink);
+  /// What the pane is. `can_grow`: whether there may be another pane.
+  void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow);
+  /// Whether it is the only one: without a head and a frame.
+  void setAlone(bool alone);
   /// Shows the pane's measurements and its state.
   void showResult(const cloth::PaneResult& result, bool has_reference);
   /// Says over the view why the pane stopped and what may help; if it was closed, again.
@@ -66,6 +68,7 @@ class PaneView : public QFrame {
   void suitWidth();
 
   int style_ = 0;
+  bool is_alone_ = false;
   cloth::Scene scene_;
   std::optional<cloth::Divergence> stop_;
   ClothView* view_;
@@ -81,7 +84,6 @@ class PaneView : public QFrame {
   QHBoxLayout* first_row_ = nullptr;
   QHBoxLayout* second_row_ = nullptr;
   QAction* duplicate_;
-  QAction* remove_;
   QAction* make_reference_;
 };
 

@@ -10,109 +10,57 @@
 namespace clothlab {
 namespace {
 
-using cloth::Block;
-using cloth::Kind;
-using cloth::Parameter;
-using cloth::ParameterInfo;
+using cloth::Comparison;
 using cloth::ParameterValue;
 using cloth::Scene;
 using Effect = SceneChange::Effect;
 
-constexpr int following = -1;  // the drag number of scenes that follow the run
+constexpr int following = -1;  // the drag number of edits that follow the run
 
-Effect effect_of(cloth::EditCost cost) {
-  return cost == cloth::EditCost::restart ? Effect::restart : Effect::live;
-}
-
-Effect effect_of(const Block& block) {
-  const bool restart = std::any_of(block.parameters.begin(), block.parameters.end(), [](const Parameter& p) {
-    return p.info.cost == cloth::EditCost::restart;
-  });
-  return restart ? Effect::restart : Effect::live;
-}
-
-std::optional<Block> find_block(const Scene& scene, const std::string& path) {
-  for (Block& block : blocks_of(scene))
-    if (block.path == path) return std::move(block);
-  return std::nullopt;
-}
-
-/// The block that `after` has and `before` has not.
-std::optional<Block> added_block(const Scene& before, const Scene& after) {
-  for (Block& block : blocks_of(after))
-    if (!find_block(before, block.path)) return std::move(block);
-  return std::nullopt;
-}
-
-/// "must be ..." if the value is of another type than the parameter's.
-QString broken_kind(const ParameterInfo& info, const ParameterValue& value) {
-  if (info.auto_allowed && value == ParameterValue(std::string("auto"))) return {};
-  const auto unless = [](bool holds, const char* rule) {
-    return holds ? QString() : QString::fromLatin1(rule);
-  };
-  switch (info.kind) {
-    case Kind::number:
-      return unless(std::holds_alternative<double>(value), "must be a number");
-    case Kind::integer:
-      return unless(std::holds_alternative<std::int64_t>(value), "must be a whole number");
-    case Kind::vector:
-      return unless(std::holds_alternative<cloth::Vec3>(value), "must be three numbers");
-    case Kind::choice:
-    case Kind::text:
-      return unless(std::holds_alternative<std::string>(value), "must be a text");
-    case Kind::words:
-      return unless(std::holds_alternative<cloth::Words>(value), "must be a list of words");
+/// Of comparisons: own values of parameters that went with their block or method go too. What has one pane
+/// left is that pane's scene.
+void make_consistent(Comparison& comparison) {
+  if (comparison.panes.size() == 1) {
+    comparison = cloth::comparison_of_one(scene_of(comparison, 0));
+    return;
   }
-  return {};
-}
-
-/// A label inside a sentence: "Structural stiffness" -> "structural stiffness"; abbreviations keep their
-/// capitals.
-QString in_sentence(const std::string& label) {
-  QString text = QString::fromStdString(label);
-  if (text.size() > 1 && text[1].isLower()) text[0] = text[0].toLower();
-  return text;
-}
-
-std::vector<std::string> shape_of(const std::vector<Block>& blocks) {
-  std::vector<std::string> names;
-  for (const Block& block : blocks) {
-    names.push_back(block.path + " " + block.title);
-    for (const Parameter& parameter : block.parameters) names.push_back(parameter.path);
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i) {
+    const Scene scene = scene_of(comparison, i);
+    std::erase_if(comparison.panes[i].own,
+                  [&](const cloth::OwnValue& own) { return !find_parameter(scene, own.path); });
   }
-  return names;
 }
 
-/// The parameters that both scenes have, with different values.
-std::vector<std::string> differing_parameters(const Scene& before, const Scene& after) {
-  const std::vector<Parameter> old_parameters = parameters_of(before);
-  std::vector<std::string> paths;
-  for (const Parameter& parameter : parameters_of(after)) {
-    const auto same = std::find_if(old_parameters.begin(), old_parameters.end(),
-                                   [&](const Parameter& old) { return old.path == parameter.path; });
-    if (same != old_parameters.end() && same->get(before) != parameter.get(after))
-      paths.push_back(parameter.path);
-  }
-  return paths;
+/// Whether both run the same: what a session logs as an edit differs in no pane.
+bool run_alike(const Comparison& one, const Comparison& other) {
+  for (std::size_t i = 0; i < one.panes.size(); ++i)
+    if (!edits_between(scene_of(one, i), scene_of(other, i)).empty()) return false;
+  return true;
+}
+
+bool have_same_panes(const Comparison& one, const Comparison& other) {
+  return std::equal(one.panes.begin(), one.panes.end(), other.panes.begin(), other.panes.end(),
+                    [](const cloth::Pane& a, const cloth::Pane& b) { return a.name == b.name; });
 }
 
 }  // namespace
 
-/// A scene is a small value, so a command keeps it whole before and after: undo is exact by construction.
+/// A comparison is a small value, so a command keeps it whole before and after: undo is exact by
+/// construction.
 class LabDocument::EditCommand : public QUndoCommand {
  public:
-  EditCommand(LabDocument& document, const QString& text, Scene before, Scene after, SceneChange change,
-              int drag)
+  EditCommand(LabDocument& document, const QString& text, Comparison after, SceneChange change, int drag)
       : QUndoCommand(text),
         document_(document),
-        before_(std::move(before)),
+        before_(document.comparison_),
         after_(std::move(after)),
         change_(std::move(change)),
+        scope_(document.scope_),
         drag_(drag) {}
 
   void undo() override { document_.apply(before_, change_); }
   void redo() override {
-    // The run already has this scene now; a later redo must apply it to the run.
+    // The run already has this now; a later redo must apply it to the run.
     const bool is_in_force = std::exchange(is_new_, false) && drag_ == following;
     document_.apply(after_, is_in_force ? SceneChange{Effect::none, change_.path} : change_);
   }
@@ -120,49 +68,94 @@ class LabDocument::EditCommand : public QUndoCommand {
 
   bool mergeWith(const QUndoCommand* other) override {
     const auto* next = static_cast<const EditCommand*>(other);
-    if (!belongs_to(next->drag_, next->change_.path)) return false;
+    if (!belongs_to(next->drag_, next->change_.path, next->scope_)) return false;
     after_ = next->after_;
     change_.effect = std::max(change_.effect, next->change_.effect);
     setObsolete(after_ == before_);
     return true;
   }
 
-  bool belongs_to(int drag, const std::string& path) const {
-    return drag_ != 0 && drag_ == drag && change_.path == path;
+  bool belongs_to(int drag, const std::string& path, std::optional<std::size_t> scope) const {
+    return drag_ != 0 && drag_ == drag && change_.path == path && scope_ == scope;
   }
-  const Scene& before() const { return before_; }
+  const Comparison& before() const { return before_; }
 
  private:
   LabDocument& document_;
-  Scene before_, after_;
+  Comparison before_, after_;
   SceneChange change_;
+  std::optional<std::size_t> scope_;
   int drag_;
   bool is_new_ = true;
 };
 
-LabDocument::LabDocument(QObject* parent) : Document(parent) {
+LabDocument::LabDocument(QObject* parent) : QObject(parent), comparison_(cloth::comparison_of_one({})) {
   qRegisterMetaType<SceneChange>();
+  connect(&undo_stack_, &QUndoStack::cleanChanged, this, [this] { Q_EMIT modifiedChanged(isModified()); });
+}
+
+LabDocument::~LabDocument() {
+  // The stack is cleared after this body, when no signal may be sent any more.
+  undo_stack_.disconnect(this);
+}
+
+void LabDocument::markSaved(const QString& path) {
+  path_ = path;
+  path_is_comparison_ = isComparison();
+  undo_stack_.setClean();
+  setUnsaved(false);
+  Q_EMIT titleChanged();
+}
+
+void LabDocument::setUnsaved(bool unsaved) {
+  if (unsaved == unsaved_) return;
+  unsaved_ = unsaved;
+  Q_EMIT modifiedChanged(isModified());
+}
+
+QString LabDocument::title() const {
+  for (const std::string& title : {comparison_.title, comparison_.scene.title})
+    if (!title.empty()) return QString::fromStdString(title);
+  const QString name = QFileInfo(path()).fileName();
+  if (name.isEmpty()) return tr("Untitled");
+  for (const char* suffix : {".scene.json", ".compare.json"})
+    if (name.endsWith(QLatin1String(suffix))) return name.chopped(qstrlen(suffix));
+  return name;
+}
+
+void LabDocument::load(Scene scene, const QString& path, bool unsaved) {
+  load(cloth::comparison_of_one(std::move(scene)), path, unsaved);
+}
+
+void LabDocument::load(Comparison comparison, const QString& path, bool unsaved) {
+  drag_ = 0;
+  comparison_ = std::move(comparison);
+  scope_.reset();
+  scene_ = comparison_.scene;
+  path_ = path;
+  path_is_comparison_ = isComparison();
+  undo_stack_.clear();
+  setUnsaved(unsaved);
+  Q_EMIT loaded();
+  Q_EMIT titleChanged();
+}
+
+void LabDocument::setScope(std::optional<std::size_t> pane) {
+  if (pane == scope_ || !isComparison()) return;
+  drag_ = 0;
+  scope_ = pane;
+  scene_ = sceneOfScope();
+  Q_EMIT scopeChanged();
+}
+
+Scene LabDocument::sceneOfScope() const {
+  return scope_ ? scene_of(comparison_, *scope_) : comparison_.scene;
 }
 
 std::optional<ParameterValue> LabDocument::value(const std::string& path) const {
   const auto parameter = find_parameter(scene_, path);
   if (!parameter) return std::nullopt;
   return parameter->get(scene_);
-}
-
-QString LabDocument::title() const {
-  if (!scene_.title.empty()) return QString::fromStdString(scene_.title);
-  if (path().isEmpty()) return tr("Untitled");
-  const QString name = QFileInfo(path()).fileName();
-  return name.endsWith(".scene.json") ? name.chopped(11) : name;
-}
-
-void LabDocument::load(Scene scene, const QString& path) {
-  drag_ = 0;
-  scene_ = std::move(scene);
-  beginHistory(path, false);
-  Q_EMIT loaded();
-  Q_EMIT titleChanged();
 }
 
 QString LabDocument::setParameter(const std::string& path, const ParameterValue& value) {
@@ -182,104 +175,178 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
   if (const auto rule = broken_rule(parameter->info, value)) return QString::fromStdString(*rule);
   if (parameter->get(scene_) == value) return {};
 
-  Scene after = sceneBefore(path);
-  parameter->set(after, value);
-  if (const auto problems = load_meshes(after, &scene_); !problems.empty())
+  const bool is_own = scope_ && !cloth::must_be_shared(path);
+  Comparison after = comparisonBefore(path);
+  Scene edited = is_own ? scene_of(after, *scope_) : after.scene;
+  const cloth::ClothSheet before = edited.cloth;
+  parameter->set(edited, value);
+  if (const auto problems = load_meshes(edited, &scene_); !problems.empty())
     return QString::fromStdString(problems.front().rule);
-  if (after.cloth.rows != scene_.cloth.rows || after.cloth.columns != scene_.cloth.columns)
-    after.cloth.pins = pins_inside(after.cloth);
-  push(verb.arg(in_sentence(parameter->info.label)), std::move(after),
-       {effect_of(parameter->info.cost), path}, drag_);
+  QString text = verb.arg(in_sentence(parameter->info.label));
+  if (is_own) {
+    set_own(after.panes[*scope_], path, value);
+    text += tr(" of %1").arg(QString::fromStdString(after.panes[*scope_].name));
+  } else {
+    if (edited.cloth.rows != before.rows || edited.cloth.columns != before.columns)
+      edited.cloth.pins = pins_inside(edited.cloth);
+    after.scene = std::move(edited);
+  }
+  push(text, std::move(after), {effect_of(parameter->info.cost), path}, drag_);
   return {};
 }
 
-/// Within a drag each edit starts from the scene before the drag, so that pins which a small grid lost on the
-/// way are there again when the drag ends on a larger one.
-const Scene& LabDocument::sceneBefore(const std::string& path) const {
-  const QUndoStack& edits = undoStack();
-  if (drag_ == 0 || edits.index() == 0 || edits.isClean()) return scene_;
-  const auto* last = static_cast<const EditCommand*>(edits.command(edits.index() - 1));
-  return last->belongs_to(drag_, path) ? last->before() : scene_;
+/// Within a drag each edit starts from what was there before the drag, so that pins which a small grid lost
+/// on the way are there again when the drag ends on a larger one.
+Comparison LabDocument::comparisonBefore(const std::string& path) const {
+  if (drag_ == 0 || undo_stack_.index() == 0 || undo_stack_.isClean()) return comparison_;
+  const auto* last = static_cast<const EditCommand*>(undo_stack_.command(undo_stack_.index() - 1));
+  return last->belongs_to(drag_, path, scope_) ? last->before() : comparison_;
 }
 
 bool LabDocument::addBlock(const std::string& offer_path) {
-  for (const cloth::BlockOffer& offer : offers_for(scene_)) {
+  const Scene& shared = comparison_.scene;
+  for (const cloth::BlockOffer& offer : offers_for(shared)) {
     if (offer.path != offer_path) continue;
-    Scene after = scene_;
+    Scene after = shared;
     offer.add(after);
-    const auto block = added_block(scene_, after);
+    const auto block = added_block(shared, after);
     if (!block) return false;
-    push(tr("Add %1").arg(in_sentence(offer.title)), std::move(after), {effect_of(*block), block->path});
+    pushShared(tr("Add %1").arg(in_sentence(offer.title)), std::move(after),
+               {effect_of(*block), block->path});
     return true;
   }
   return false;
 }
 
 bool LabDocument::removeBlock(const std::string& block_path) {
-  const auto block = find_block(scene_, block_path);
+  const auto block = find_block(comparison_.scene, block_path);
   if (!block || !block->removable) return false;
-  Scene after = scene_;
+  Scene after = comparison_.scene;
   remove_block(after, block_path);
-  push(tr("Remove %1").arg(in_sentence(block->title)), std::move(after), {effect_of(*block), block_path});
+  pushShared(tr("Remove %1").arg(in_sentence(block->title)), std::move(after),
+             {effect_of(*block), block_path});
   return true;
 }
 
 QString LabDocument::setClothMesh(const std::string& file) {
-  Scene after = scene_;
+  const Scene& shared = comparison_.scene;
+  Scene after = shared;
   if (file.empty()) {
-    after.cloth = grid_in_place_of(scene_.cloth);
+    after.cloth = grid_in_place_of(shared.cloth);
   } else {
     after.cloth.mesh.file = file;
-    if (const auto problems = load_meshes(after, &scene_); !problems.empty())
+    if (const auto problems = load_meshes(after, &shared); !problems.empty())
       return QString::fromStdString(problems.front().rule);
     after.cloth.pins.clear();
-    after.cloth.origin = middle_of(scene_.cloth) - after.cloth.mesh.loaded->bounds.center();
+    after.cloth.origin = middle_of(shared.cloth) - after.cloth.mesh.loaded->bounds.center();
   }
-  push(file.empty() ? tr("Make the cloth a grid") : tr("Make the cloth a mesh"), std::move(after),
-       {Effect::restart, "cloth.mesh"});
+  pushShared(file.empty() ? tr("Make the cloth a grid") : tr("Make the cloth a mesh"), std::move(after),
+             {Effect::restart, "cloth.mesh"});
   return {};
 }
 
 void LabDocument::moveObstacle(int number, const cloth::Obstacle& moved) {
   const auto k = static_cast<std::size_t>(number);
-  if (k >= scene_.obstacles.size()) return;
+  Scene after = comparison_.scene;
+  if (k >= after.obstacles.size()) return;
   const std::string path = "obstacles." + std::to_string(k);
-  Scene after = scene_;
   after.obstacles[k] = moved;
-  push(tr("Move %1").arg(in_sentence(find_block(scene_, path)->title)), std::move(after),
-       {Effect::live, path}, drag_);
+  const QString text = tr("Move %1").arg(in_sentence(find_block(after, path)->title));
+  pushShared(text, std::move(after), {Effect::live, path}, drag_);
 }
 
 void LabDocument::togglePin(int row, int column) {
-  const bool pinned = is_pinned(scene_.cloth, row, column);
-  Scene after = scene_;
-  after.cloth.pins = toggled_pins(scene_.cloth, row, column);
-  push(pinned ? tr("Free particle") : tr("Pin particle"), std::move(after), {Effect::live, "cloth.pins"});
+  Scene after = comparison_.scene;
+  const bool pinned = is_pinned(after.cloth, row, column);
+  after.cloth.pins = toggled_pins(after.cloth, row, column);
+  pushShared(pinned ? tr("Free particle") : tr("Pin particle"), std::move(after),
+             {Effect::live, "cloth.pins"});
 }
 
-void LabDocument::follow(const Scene& scene) {
-  if (edits_between(scene_, scene).empty()) return;
+QString LabDocument::setOwn(std::size_t pane, const std::string& path, const ParameterValue& value) {
+  if (!isComparison()) return setParameter(path, value);
+  const auto parameter = cloth::find_parameter(scene_of(comparison_, pane), path);
+  if (!parameter) return tr("is not a parameter of this pane");
+  if (const auto rule = broken_rule(parameter->info, value)) return QString::fromStdString(*rule);
+  Comparison after = comparison_;
+  set_own(after.panes[pane], path, value);
+  push(tr("Change %1 of %2")
+           .arg(in_sentence(parameter->info.label), QString::fromStdString(comparison_.panes[pane].name)),
+       std::move(after), {effect_of(parameter->info.cost), path});
+  return {};
+}
+
+void LabDocument::useShared(std::size_t pane, const std::string& path) {
+  Comparison after = comparison_;
+  set_shared(after.panes[pane], path);
+  push(tr("Use the shared value in %1").arg(QString::fromStdString(comparison_.panes[pane].name)),
+       std::move(after), {Effect::live, path});
+}
+
+void LabDocument::duplicatePane(std::size_t pane) {
+  if (paneCount() >= cloth::max_panes) return;
+  Comparison after = comparison_;
+  const QString name = QString::fromStdString(after.panes[pane].name);
+  if (!isComparison()) after.reference = after.panes[pane].name;
+  duplicate_pane(after, pane);
+  push(isComparison() ? tr("Duplicate pane %1").arg(name) : tr("Compare with a copy"), std::move(after), {});
+}
+
+void LabDocument::removePane(std::size_t pane) {
+  if (!isComparison()) return;
+  Comparison after = comparison_;
+  remove_pane(after, pane);
+  push(tr("Remove pane %1").arg(QString::fromStdString(comparison_.panes[pane].name)), std::move(after), {});
+}
+
+void LabDocument::setReference(const std::string& reference) {
+  Comparison after = comparison_;
+  after.reference = reference;
+  push(tr("Change the reference"), std::move(after), {});
+}
+
+void LabDocument::follow(const Comparison& run) {
+  if (!have_same_panes(comparison_, run) || run_alike(comparison_, run)) return;
   drag_ = 0;
-  if (undoStack().count() == 0) return apply(scene, {Effect::none, {}});
+  Comparison after = comparison_;
+  after.scene = run.scene;
+  after.panes = run.panes;
+  if (undo_stack_.count() == 0) return apply(after, {Effect::none, {}});
   Effect effect = Effect::live;
-  for (const std::string& path : differing_parameters(scene_, scene))
-    effect = std::max(effect, effect_of(find_parameter(scene, path)->info.cost));
-  push(tr("Go to another time"), scene, {effect, {}}, following);
+  for (std::size_t i = 0; i < paneCount(); ++i)
+    effect = std::max(effect, effect_between(scene_of(comparison_, i), scene_of(after, i)));
+  push(tr("Go to another time"), std::move(after), {effect, {}}, following);
 }
 
-void LabDocument::push(const QString& text, Scene after, SceneChange change, int drag) {
-  if (after == scene_) return;
-  const Scene before = drag == following ? scene_ : sceneBefore(change.path);
-  undoStack().push(new EditCommand(*this, text, before, std::move(after), std::move(change), drag));
+void LabDocument::pushShared(const QString& text, Scene after, SceneChange change, int drag) {
+  Comparison target = comparison_;
+  target.scene = std::move(after);
+  push(text, std::move(target), std::move(change), drag);
 }
 
-void LabDocument::apply(const Scene& target, const SceneChange& change) {
+void LabDocument::push(const QString& text, Comparison after, SceneChange change, int drag) {
+  make_consistent(after);
+  if (after == comparison_) return;
+  undo_stack_.push(new EditCommand(*this, text, std::move(after), std::move(change), drag));
+}
+
+void LabDocument::apply(const Comparison& target, const SceneChange& change) {
   // A copy, because a listener may edit again and so move the commands that own the arguments.
   const SceneChange announced = change;
-  const Scene before = std::exchange(scene_, target);
-  if (shape_of(blocks_of(before)) != shape_of(blocks_of(scene_))) Q_EMIT blocksChanged();
-  for (const std::string& path : differing_parameters(before, scene_)) Q_EMIT parameterChanged(path);
-  if (before.title != scene_.title) Q_EMIT titleChanged();
+  const QString title_before = title();
+  const std::string scope_name = scope_ ? comparison_.panes[*scope_].name : "";
+  const Scene before = std::move(scene_);
+  comparison_ = target;
+  const auto scope = scope_ && isComparison() ? find_pane(comparison_, scope_name) : std::nullopt;
+  const bool is_other_scope = std::exchange(scope_, scope) != scope;
+  scene_ = sceneOfScope();
+  if (is_other_scope) {
+    Q_EMIT scopeChanged();
+  } else {
+    if (!have_same_rows(before, scene_)) Q_EMIT blocksChanged();
+    for (const std::string& path : differing_parameters(before, scene_)) Q_EMIT parameterChanged(path);
+  }
+  if (title() != title_before) Q_EMIT titleChanged();
   Q_EMIT sceneChanged(announced);
 }
 

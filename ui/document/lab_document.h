@@ -1,42 +1,59 @@
-// The scene being edited, its file and its undo history. All other parts of the window read the scene from
-// here. Every edit is an undoable command, and every change, undo and redo included, emits the same signals.
-// It depends on no worker and no widget.
+// The document of a window: a scene, or a comparison of two to four panes, with its file and its undo
+// history. A scene is a comparison with one pane, which has no values of its own. All other parts of the
+// window read it from here. Every edit is an undoable command, and every change, undo and redo included,
+// emits the same signals. The form edits one scene at a time, that of the scope: what all panes share, or one
+// pane's; an edit of a pane's scene becomes the pane's own value. It depends on no worker and no widget; GUI
+// thread only.
 #pragma once
 
+#include <QObject>
+#include <QUndoStack>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "document/document.h"
-#include "scene/scene.h"
-#include "scene/scene_parameters.h"
+#include "compare/comparison.h"
+#include "document/scene_change.h"
 
 namespace clothlab {
 
-/// How a running simulation applies an edit, from ParameterInfo::cost: a live edit before the next step, a
-/// restart by starting again at t = 0. Adding or removing a block is a restart if an edit of one of its
-/// parameters is.
-struct SceneChange {
-  /// `none`: the run already has the change, see LabDocument::follow().
-  enum class Effect { none, live, restart } effect = Effect::live;
-  std::string path;  ///< of the parameter or block; "cloth.pins" for pins; empty after follow()
-};
-
-class LabDocument : public Document {
+class LabDocument : public QObject {
   Q_OBJECT
 
  public:
   explicit LabDocument(QObject* parent = nullptr);
+  ~LabDocument() override;
 
+  // --- File and undo history ---
+
+  QUndoStack& undoStack() { return undo_stack_; }
+  const QUndoStack& undoStack() const { return undo_stack_; }
+  /// Of the file; empty for a built-in document, for one that was never saved, and for a scene that became a
+  /// comparison since, or a comparison that became a scene.
+  QString path() const { return path_is_comparison_ == isComparison() ? path_ : QString(); }
+  /// The document's title, else the file's name, else "Untitled".
+  QString title() const;
+  bool isModified() const { return unsaved_ || !undo_stack_.isClean(); }
+  /// Records that the file `path` contains the document as it is now.
+  void markSaved(const QString& path);
+
+  // --- Content ---
+
+  const cloth::Comparison& comparison() const { return comparison_; }
+  std::size_t paneCount() const { return comparison_.panes.size(); }
+  bool isComparison() const { return paneCount() > 1; }
+  /// The scene that the form edits: that of the scope.
   const cloth::Scene& scene() const { return scene_; }
+  /// Whose scene that is: a pane's index, or nothing for what all panes share. In a scene always nothing.
+  std::optional<std::size_t> scope() const { return scope_; }
+  void setScope(std::optional<std::size_t> pane);
   /// The value at `path`, if the scene has that parameter.
   std::optional<cloth::ParameterValue> value(const std::string& path) const;
 
-  QString title() const override;
-  LabDocument& form() override { return *this; }
+  /// Replaces the content and clears the undo history. `unsaved`: no file contains it yet.
+  void load(cloth::Scene scene, const QString& path = {}, bool unsaved = false);
+  void load(cloth::Comparison comparison, const QString& path = {}, bool unsaved = false);
 
-  /// Replaces the scene and clears the undo history.
-  void load(cloth::Scene scene, const QString& path = {});
+  // --- Edits of the scene in scope ---
 
   /// Changes one parameter. On error returns the rule that `value` breaks ("must be >= 0") and changes
   /// nothing; returns an empty string on success. Setting an equal value is not an edit.
@@ -50,48 +67,71 @@ class LabDocument : public Document {
   void endDrag() { drag_ = 0; }
   int presentDrag() const { return drag_; }  ///< number of the present drag; 0: none
 
+  // --- Edits of what all panes share ---
+
   /// Adds the block of a cloth::BlockOffer with this path ("air", "sphere"); false if the scene has no such
   /// offer.
   bool addBlock(const std::string& offer_path);
   /// Removes the removable cloth::Block with this path; false if there is none.
   bool removeBlock(const std::string& block_path);
-
   /// Replaces the cloth by a mesh, or by a grid if `file` is empty, at about the same place and without pins.
   /// On error returns why the file cannot be used and changes nothing; returns an empty string on success.
   QString setClothMesh(const std::string& file);
-
   /// Replaces the obstacle with index `number` by `moved`, as a live edit; within a drag all moves are one
   /// undo step. `moved` must satisfy the rules of the block's parameters.
   void moveObstacle(int number, const cloth::Obstacle& moved);
-
   /// Pins a free particle or frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);
 
-  /// Adopts the scene of a run that has moved in its own history. Consecutive calls are one undo step, or
-  /// none if the scene ends where it began. If there are no edits to undo, as after opening a session, the
-  /// scene is replaced without an undo step.
-  void follow(const cloth::Scene& scene);
+  // --- Panes ---
+
+  /// Sets the pane's own value; in a scene the scene's. Returns like setParameter().
+  QString setOwn(std::size_t pane, const std::string& path, const cloth::ParameterValue& value);
+  /// Removes the pane's own value, so that it has the shared one.
+  void useShared(std::size_t pane, const std::string& path);
+  /// Adds a copy of the pane after it; nothing if there are max_panes. A scene becomes a comparison, measured
+  /// against what was there.
+  void duplicatePane(std::size_t pane);
+  /// Nothing if it is the only one. The last one that stays is a scene.
+  void removePane(std::size_t pane);
+  void setReference(const std::string& reference);
+
+  /// Adopts what the run has in force after it has moved in its own history. Consecutive calls are one undo
+  /// step, or none if the document ends where it began. If there are no edits to undo, as after opening a
+  /// session, the document is replaced without an undo step.
+  void follow(const cloth::Comparison& run);
 
  Q_SIGNALS:
+  void loaded();  ///< the whole content was replaced; no other signal is emitted for it
+  void titleChanged();
+  void modifiedChanged(bool modified);
+  void scopeChanged();  ///< the form has another scene to edit; also when the scope's pane went
   void parameterChanged(const std::string& path);
   void blocksChanged();  ///< blocks or parameters were added or removed; emitted before parameterChanged of
                          ///< the same edit
-  void sceneChanged(const clothlab::SceneChange&
-                        change);  ///< emitted once for each edit, undo and redo, after the other signals
+  void sceneChanged(const clothlab::SceneChange& change);  ///< emitted once for each edit, undo and redo,
+                                                           ///< after the other signals
 
  private:
   class EditCommand;
 
-  void apply(const cloth::Scene& target, const SceneChange& change);
-  void push(const QString& text, cloth::Scene after, SceneChange change, int drag = 0);
   QString change(const std::string& path, const cloth::ParameterValue& value, const QString& verb);
-  const cloth::Scene& sceneBefore(const std::string& path) const;
+  cloth::Comparison comparisonBefore(const std::string& path) const;
+  void pushShared(const QString& text, cloth::Scene after, SceneChange change, int drag = 0);
+  void push(const QString& text, cloth::Comparison after, SceneChange change, int drag = 0);
+  void apply(const cloth::Comparison& target, const SceneChange& change);
+  cloth::Scene sceneOfScope() const;
+  void setUnsaved(bool unsaved);
 
-  cloth::Scene scene_;
-  int drag_ = 0;  ///< number of the present drag; 0: none
+  QString path_;
+  bool path_is_comparison_ = false;
+  bool unsaved_ = false;
+  QUndoStack undo_stack_;
+  cloth::Comparison comparison_;
+  std::optional<std::size_t> scope_;
+  cloth::Scene scene_;  ///< of the scope
+  int drag_ = 0;        ///< number of the present drag; 0: none
   int last_drag_ = 0;
 };
 
 }  // namespace clothlab
-
-Q_DECLARE_METATYPE(clothlab::SceneChange)

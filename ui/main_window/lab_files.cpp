@@ -141,8 +141,8 @@ QString save_scene_file(const cloth::Scene& scene, const QString& path) {
                                         cloth::write_scene(moved_to_folder(scene, folder_of(path).path))));
 }
 
-const RecentPaths recent_scenes{"recentScenes", 8,
-                                [](const QString& path) { return QFileInfo::exists(path); }};
+const RecentPaths recent_documents{"recentScenes", 8,
+                                   [](const QString& path) { return QFileInfo::exists(path); }};
 
 OpenedComparison open_comparison(const QString& name) {
   const QFileInfo file(name);

@@ -1,115 +1,110 @@
 #include "main_window/lab_window.h"
 
-#include <QAction>
 #include <QApplication>
-#include <QCloseEvent>
-#include <QDesktopServices>
 #include <QDockWidget>
-#include <QDragEnterEvent>
-#include <QFileDialog>
-#include <QFileInfo>
-#include <QMenuBar>
-#include <QMessageBox>
-#include <QMimeData>
 #include <QScreen>
 #include <QToolBar>
-#include <QUrl>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <array>
 #include <utility>
 
-#include "compare/builtin_comparisons.h"
-#include "document/result_files.h"
-#include "main_window/lab_files.h"
-#include "params/mesh_button.h"
+#include "compare/scope_tabs.h"
+#include "main_window/view_bar.h"
+#include "simulation/time_step.h"
+#include "studies/studies_panel.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 
 namespace clothlab {
 namespace {
 
+constexpr QSize pleasant_size{1440, 900};
 constexpr int title_bar_height = 32;  // px, at least what a desktop puts above a window
-
-/// A click has switched the action already, but not its icon: the text tells which one it has. An action that
-/// is told what it knows would have its bar laid out anew all the same.
-void dress(QAction& action, bool on, const QString& text, const char* icon_name) {
-  action.setChecked(on);
-  if (action.text() == text) return;
-  action.setText(text);
-  action.setIcon(icon(icon_name));
-}
+/// px, of form and charts; the panes of a comparison need more room than one.
+constexpr std::array widths_of_scene{330, 400}, widths_of_comparison{284, 330};
+constexpr int studies_height = 400, ranking_height = 200;  // px
 
 }  // namespace
 
-LabWindow::LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size,
-                     QWidget* parent)
-    : QMainWindow(parent), any_document_(std::move(document)), wording_(std::move(wording)) {
+LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
+  setObjectName("labWindow");
   setAcceptDrops(true);
+  setDockNestingEnabled(true);
   resize(pleasant_size.boundedTo(screen()->availableSize() - QSize(0, title_bar_height)));
-  play_ = makeAction("play", tr("Play"), wording_.play_tip, Qt::Key_Space, "play");
-  play_->setCheckable(true);
-  step_ = makeAction("step", tr("Step"), wording_.step_tip, Qt::Key_Period, "step");
-  reset_ = makeAction("reset", tr("Reset"), tr("Back to the start, paused"), QKeySequence("Ctrl+R"), "reset");
-  record_ = makeAction("record", tr("Record"), wording_.record_tip, QKeySequence("Ctrl+Shift+R"), "record");
-  record_->setCheckable(true);
-  save_plots_ = makeAction("export-plot", tr("Save plots…"), tr("Save the charts as PNG, SVG or CSV"),
-                           QKeySequence("Ctrl+Shift+P"), "savePlots");
-  connect(play_, &QAction::triggered, this, &LabWindow::play);
-  connect(step_, &QAction::triggered, this, [this] { send(command::SingleStep{}); });
-  connect(reset_, &QAction::triggered, this, &LabWindow::restart);
-  connect(record_, &QAction::triggered, this, [this](bool on) {
-    if (on)
-      startRecording(new_folder(results_folder(), {any_document_->title()}));
-    else
-      send(command::StopRecording{});
-  });
-  connect(any_document_.get(), &Document::titleChanged, this, &LabWindow::updateTitle);
-  connect(any_document_.get(), &Document::modifiedChanged, this, [this](bool modified) {
-    updateTitle();
-    if (modified) notice_->withdraw("save " + wording_.document);  // no longer what lies there
-  });
+  grid_ = new PaneGrid(this);
+  charts_ = new ChartPanel(this);
+  pane_charts_ = new CompareCharts(this);
+  ranking_ = new RankingPanel(this);
+  parameters_ = new ParameterPanel(document_, this);
+  notice_ = new NoticeBar(this);
+  studies_ = new StudiesPanel(document_, this);
+  makeActions();
+  makeLayout();
+  makeMenus();
+  connectDocument();
+  connectHand();
+  connectPanes();
+  connectRun();
+  showKind();
   updateTitle();
 }
 
-void LabWindow::makeForm() {
-  parameters_ = new ParameterPanel(any_document_->form(), this);
-  notice_ = new NoticeBar(this);
-}
-
-void LabWindow::deleteWidgets() {
+/// The widgets refer to the document and the link.
+LabWindow::~LabWindow() {
   delete takeCentralWidget();
   qDeleteAll(findChildren<QDockWidget*>());
 }
 
-void LabWindow::play(bool on) {
-  if (on)
-    send(command::Play{});
-  else
-    send(command::Pause{});
-}
-
-void LabWindow::brush(const cloth::BrushGust& gust) {
-  if (hasAir())
-    send(command::Brush{gust});
-  else
-    offerAir(tr("The wind brush needs air, and this scene has none."));
-}
-
-QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const QString& tip,
-                               const QKeySequence& key, const char* name) {
-  auto* action = named(name, new QAction(icon(icon_name), text, this));
-  action->setShortcut(key);
-  action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, key.toString(QKeySequence::NativeText)));
-  addAction(action);
-  return action;
-}
-
-void LabWindow::setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched, Qt::Edge messages) {
+void LabWindow::makeLayout() {
+  view_bar_ = new ViewBar(*grid_, save_picture_, this);
+  timeline_ = new Timeline(play_again_, this);
   auto* middle = new QWidget(this);
   auto* column = spaced(new QVBoxLayout(middle), 0);
-  for (QWidget* part : parts) column->addWidget(part, part == stretched ? 1 : 0);
+  column->addWidget(view_bar_);
+  column->addWidget(grid_, 1);
+  column->addWidget(timeline_);
   setCentralWidget(middle);
-  notice_->layOver(stretched, messages);
+  notice_->layOver(grid_, Qt::TopEdge);
+
+  transport_ = new TransportBar({play_, step_, reset_, record_}, this);
+  auto* bottom = named("transportToolBar", new QToolBar(tr("Run"), this));
+  bottom->setMovable(false);
+  bottom->addWidget(transport_);
+  addToolBar(Qt::BottomToolBarArea, bottom);
+  makeDocks();
+  view().setFocus();
+}
+
+void LabWindow::makeDocks() {
+  auto* form = new QWidget(this);
+  auto* rows = spaced(new QVBoxLayout(form), 0);
+  scopes_ = new ScopeTabs(document_, *parameters_, form);
+  rows->addWidget(scopes_);
+  rows->addWidget(parameters_, 1);
+  auto* charts = new QWidget(this);
+  auto* one_of_two = spaced(new QVBoxLayout(charts), 0);
+  one_of_two->addWidget(charts_);
+  one_of_two->addWidget(pane_charts_);
+
+  parameters_dock_ = addDock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
+  charts_dock_ = addDock(tr("Charts"), "chartsDock", charts, Qt::RightDockWidgetArea);
+  parameters_dock_->installEventFilter(this);
+  charts_dock_->installEventFilter(this);
+  ranking_dock_ = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
+  ranking_dock_->hide();
+  studies_dock_ = named("studiesDock", new QDockWidget(tr("Studies"), this));
+  studies_dock_->setWidget(studies_);
+  addDockWidget(Qt::BottomDockWidgetArea, studies_dock_);
+  studies_dock_->hide();
+  connect(studies_dock_, &QDockWidget::visibilityChanged, this, &LabWindow::placeCorners);
+}
+
+/// Studies take the whole width; the ranking leaves form and charts of a comparison their height.
+void LabWindow::placeCorners() {
+  const bool whole = !shows_comparison_ || studies_dock_->isVisible();
+  setCorner(Qt::BottomLeftCorner, whole ? Qt::BottomDockWidgetArea : Qt::LeftDockWidgetArea);
+  setCorner(Qt::BottomRightCorner, whole ? Qt::BottomDockWidgetArea : Qt::RightDockWidgetArea);
 }
 
 QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
@@ -121,12 +116,17 @@ QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget*
   return dock;
 }
 
-void LabWindow::setWidths(const QList<QDockWidget*>& docks, const QList<int>& widths) {
-  for (qsizetype k = 0; k < docks.size(); ++k) {
-    wanted_widths_[docks[k]] = widths[k];
-    docks[k]->installEventFilter(this);
+/// Docks at the sides get the widths of a scene or of a comparison, but for those that the user made wider or
+/// narrower. They get them back when the window was narrower meanwhile.
+void LabWindow::setWidths() {
+  const auto& now = shows_comparison_ ? widths_of_comparison : widths_of_scene;
+  const auto& before = shows_comparison_ ? widths_of_scene : widths_of_comparison;
+  const QList<QDockWidget*> docks{parameters_dock_, charts_dock_};
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    int& wanted = wanted_widths_[docks[static_cast<qsizetype>(k)]];
+    if (wanted == 0 || wanted == before[k]) wanted = now[k];
   }
-  resizeDocks(docks, widths, Qt::Horizontal);
+  resizeDocks(docks, {wanted_widths_[parameters_dock_], wanted_widths_[charts_dock_]}, Qt::Horizontal);
 }
 
 /// A dock whose edge a hand drags is wanted as wide as it becomes.
@@ -154,246 +154,266 @@ void LabWindow::resizeEvent(QResizeEvent* event) {
   if (!docks.isEmpty()) resizeDocks(docks, widths, Qt::Horizontal);
 }
 
-void LabWindow::addTransport() {
-  transport_ =
-      new TransportBar({play_, step_, reset_, record_}, wording_.widest_time, wording_.widest_rate, this);
-  connect(transport_, &TransportBar::speedChosen, this,
-          [this](double factor) { send(command::Speed{factor}); });
-  auto* bottom = named("transportToolBar", new QToolBar(tr("Run"), this));
-  bottom->setMovable(false);
-  bottom->addWidget(transport_);
-  addToolBar(Qt::BottomToolBarArea, bottom);
+void LabWindow::showStudies() {
+  const bool was_hidden = studies_dock_->isHidden();
+  studies_dock_->show();
+  studies_dock_->raise();
+  if (was_hidden) resizeDocks({studies_dock_}, {studies_height}, Qt::Vertical);
 }
 
-QMenu* LabWindow::addFileMenu() {
-  QMenu* file = menuBar()->addMenu(tr("&File"));
-  open_ = file->addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &LabWindow::openWithDialog);
-  open_->setToolTip(tr("Open a scene, a session, a comparison, a mesh or a study (Ctrl+O)"));
-  return file;
+void LabWindow::connectDocument() {
+  connect(&document_, &LabDocument::sceneChanged, this, &LabWindow::followEdit);
+  connect(&document_, &LabDocument::blocksChanged, this, &LabWindow::noteKeyframes);
+  connect(&document_, &LabDocument::scopeChanged, this, [this] {
+    noteKeyframes();
+    readStability();
+  });
+  connect(&document_, &LabDocument::loaded, this, [this] {
+    showDocument();
+    noteKeyframes();
+    grid_->resetCamera();
+    startRun();
+  });
+  connect(&document_, &LabDocument::titleChanged, this, &LabWindow::updateTitle);
+  connect(&document_, &LabDocument::modifiedChanged, this, [this](bool modified) {
+    updateTitle();
+    if (modified) notice_->withdraw("save " + what());  // no longer what lies there
+  });
 }
 
-void LabWindow::addSaveEntries(QMenu& file) {
-  file.addSeparator();
-  save_ = file.addAction(icon("save"), tr("Save"), QKeySequence::Save, this, [this] { save(); });
-  save_->setToolTip(tr("Save the %1 (Ctrl+S)").arg(wording_.document));
-  file.addAction(tr("Save as…"), QKeySequence("Ctrl+Shift+S"), this, [this] { saveAs(); })
-      ->setObjectName("saveAs");
+/// What the user does in the views: pull, wind brush, pins, obstacles. It acts on all panes.
+void LabWindow::connectHand() {
+  connect(grid_, &PaneGrid::pullChanged, this,
+          [this](const cloth::Pull& pull) { link_.send(command::Pull{pull}); });
+  connect(grid_, &PaneGrid::pullEnded, this, [this] { link_.send(command::Pull{}); });
+  connect(grid_, &PaneGrid::brushChanged, this, &LabWindow::brush);
+  connect(grid_, &PaneGrid::brushEnded, this, [this] {
+    if (document_.scene().air) link_.send(command::Brush{});
+  });
+  connect(grid_, &PaneGrid::pinToggled, this, [this](int particle) {
+    const int columns = document_.scene().cloth.columns;
+    document_.togglePin(particle / columns, particle % columns);
+  });
+  connect(grid_, &PaneGrid::obstacleMoveStarted, this, &LabWindow::startObstacleMove);
+  connect(grid_, &PaneGrid::obstacleMoved, this, &LabWindow::moveObstacle);
+  connect(grid_, &PaneGrid::obstacleMoveEnded, this, &LabWindow::endObstacleMove);
 }
 
-void LabWindow::addCloseEntries(QMenu& file) {
-  file.addSeparator();
-  file.addAction(tr("Close"), QKeySequence::Close, this, &QWidget::close);
-  file.addAction(tr("Quit"), QKeySequence("Ctrl+Q"), this, [] { quit(); })->setObjectName("quit");
-}
-
-void LabWindow::addComparisons(QMenu& menu) {
-  QMenu* builtin = menu.addMenu(tr("Built-in comparisons"));
-  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
-    const QString name = QString::fromStdString(comparison.name);
-    builtin->addAction(QString::fromStdString(cloth::builtin_comparison(comparison.name).title), this,
-                       [this, name] { open(name); });
-  }
-}
-
-QMenu* LabWindow::addEditMenu() {
-  QUndoStack& stack = any_document_->undoStack();
-  undo_ = stack.createUndoAction(this, tr("Undo"));
-  undo_->setObjectName("undo");
-  undo_->setIcon(icon("undo"));
-  undo_->setShortcut(QKeySequence::Undo);
-  redo_ = stack.createRedoAction(this, tr("Redo"));
-  redo_->setObjectName("redo");
-  redo_->setIcon(icon("redo"));
-  redo_->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
-  QMenu* edit = menuBar()->addMenu(tr("&Edit"));
-  edit->addActions({undo_, redo_});
-  return edit;
-}
-
-QMenu* LabWindow::addRunMenu(const QList<QAction*>& actions) {
-  QMenu* run = menuBar()->addMenu(tr("&Run"));
-  run->addActions(actions);
-  run->addSeparator();
-  run->addAction(record_);
-  return run;
-}
-
-void LabWindow::addDockEntries(QMenu& view) {
-  for (QDockWidget* dock : findChildren<QDockWidget*>()) view.addAction(dock->toggleViewAction());
-}
-
-void LabWindow::say(const QString& kind, NoticeBar::Level level, const QString& text) {
-  if (text.isEmpty())
-    notice_->withdraw(kind);
-  else
-    notice_->show(kind, level, text);
-}
-
-void LabWindow::followRun(const RunStatus& now) {
-  dress(*play_, now.playing, now.playing ? tr("Pause") : tr("Play"), now.playing ? "pause" : "play");
-  play_->setEnabled(now.refusal.empty());
-  step_->setEnabled(now.refusal.empty());
-  notice_->showState("refusal", NoticeBar::Level::error, QString::fromStdString(now.refusal));
-}
-
-void LabWindow::followRecording(const RunStatus& before, const RunStatus& now) {
-  dress(*record_, now.recording, now.recording ? tr("Stop recording") : tr("Record"),
-        now.recording ? "stop-record" : "record");
-  if (now.recording_error != before.recording_error && !now.recording_error.empty()) {
-    notice_->show("recording", NoticeBar::Level::error,
-                  tr("Recording stopped: %1. What was written before is valid.")
-                      .arg(QString::fromStdString(now.recording_error)));
-  } else if (before.recording && !now.recording) {
-    const QString folder = QString::fromStdString(now.recording_folder.string());
-    notice_->show("recording", NoticeBar::Level::info,
-                  tr("Recorded %1 rows in %2").arg(now.recorded_rows).arg(folder), tr("Open folder"),
-                  [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
-  }
-}
-
-void LabWindow::restartWith(
-    const Remedy& remedy,
-    const std::function<void(const std::string& path, const cloth::ParameterValue& value)>& set) {
-  if (!remedy.edits.empty()) {
-    any_document_->undoStack().beginMacro(remedy.text);
-    for (const auto& [path, value] : remedy.edits) set(path, value);
-    any_document_->undoStack().endMacro();
-  }
-  restart();
-}
-
-void LabWindow::updateTitle() {
-  setWindowTitle(wording_.title.arg(any_document_->title()));
-  setWindowModified(any_document_->isModified());
-}
-
-/// Asks to save, discard or cancel. Returns false if the user cancelled or saving failed.
-bool LabWindow::mayLoseChanges() {
-  if (!asks_to_save_ || !any_document_->isModified()) return true;
-  comeForward();
-  const auto answer = QMessageBox::question(
-      this, tr("Unsaved changes"), wording_.unsaved.arg(any_document_->title()),
-      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
-  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save());
-}
-
-void LabWindow::comeForward() {
-  if (isMinimized()) showNormal();
-  raise();
-  activateWindow();
-}
-
-void LabWindow::closeEvent(QCloseEvent* event) {
-  if (!std::exchange(may_close_, false) && !mayClose()) return event->ignore();
-  send(command::Pause{});
-  send(command::StopRecording{});
-  event->accept();
-}
-
-std::vector<LabWindow*> LabWindow::all() {
-  std::vector<LabWindow*> windows;
-  for (QWidget* top : QApplication::topLevelWidgets())
-    if (auto* window = qobject_cast<LabWindow*>(top)) windows.push_back(window);
-  return windows;
-}
-
-void LabWindow::quit() {
-  std::vector<LabWindow*> windows = all();
-  std::erase_if(windows, [](const LabWindow* window) { return !window->isVisible(); });
-  for (LabWindow* window : windows)
-    if (!window->mayClose()) return;
-  for (LabWindow* window : windows) {
-    window->may_close_ = true;
-    window->close();
-  }
-}
-
-void LabWindow::dragEnterEvent(QDragEnterEvent* event) {
-  const auto urls = event->mimeData()->urls();
-  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
-}
-
-void LabWindow::dropEvent(QDropEvent* event) {
-  event->acceptProposedAction();
-  open(event->mimeData()->urls().front().toLocalFile());
-}
-
-void LabWindow::openWithDialog() {
-  const QString path = QFileDialog::getOpenFileName(this, tr("Open"), any_document_->path(), open_filter());
-  if (!path.isEmpty()) open(path);
-}
-
-void LabWindow::open(const QString& name) {
-  switch (type_of(name)) {
-    case FileType::scene:
-      return openScene(name);
-    case FileType::comparison:
-      return openComparison(name);
-    case FileType::mesh:
-      return loadMesh(name);
-    case FileType::study:
-      return loadStudy(QFileInfo(name).isDir() ? name : QFileInfo(name).absolutePath());
-  }
-}
-
-void LabWindow::openScene(const QString& name) {
-  if (const OpenedScene opened = open_scene(name); isSound(tr("scene"), opened.problems)) load(opened);
-}
-
-void LabWindow::openComparison(const QString& name) {
-  if (const OpenedComparison opened = open_comparison(name); isSound(tr("comparison"), opened.problems))
-    load(opened);
-}
-
-/// Whether what was read has no problems; says them.
-bool LabWindow::isSound(const QString& what, const QString& problems) {
-  say("open", NoticeBar::Level::error,
-      problems.isEmpty() ? QString() : tr("The %1 was not opened.\n%2").arg(what, problems));
-  return problems.isEmpty();
-}
-
-void LabWindow::loadMesh(const QString& file) {
-  LabDocument& form = any_document_->form();
-  const QString rule = form.setClothMesh(file_as_seen_from(form.scene().folder, file));
-  if (rule.isEmpty())
-    say("open", NoticeBar::Level::info, tr("The cloth is now made of the mesh %1.").arg(file));
-  else
-    say("open", NoticeBar::Level::error, tr("The mesh was not opened.\n%1 %2").arg(file, rule));
-}
-
-bool LabWindow::saveAs() {
-  const QString path = ask_where_to_save(this, tr("Save the %1").arg(wording_.document), {wording_.kind},
-                                         any_document_->path());
-  return !path.isEmpty() && saveTo(path);
-}
-
-bool LabWindow::saveTo(const QString& path) {
-  const bool saved = saySaved(wording_.document, path, write(path));
-  if (saved) any_document_->markSaved(path);
-  return saved;
-}
-
-bool LabWindow::saveByDialog(const QString& what, const std::vector<FileKind>& kinds,
-                             const std::function<QString(const QString& path)>& write) {
-  const QString path = ask_where_to_save(this, tr("Save the %1").arg(what), kinds);
-  return !path.isEmpty() && saySaved(what, path, write(path));
-}
-
-bool LabWindow::saySaved(const QString& what, const QString& path, const QString& problem) {
-  if (problem.isEmpty())
-    say("save " + what, NoticeBar::Level::info, saved_in(what, path));
-  else
-    say("save " + what, NoticeBar::Level::error, tr("The %1 was not saved. %2").arg(what, problem));
-  return problem.isEmpty();
-}
-
-void LabWindow::connectCharts(ChartArea* charts) {
-  const auto save = [this, charts] {
-    saveByDialog(tr("charts"), ChartArea::kinds(),
-                 [charts](const QString& path) { return charts->save(path); });
+/// What the user chooses in the heads of the panes, in the ranking, and about the drawing.
+void LabWindow::connectPanes() {
+  const auto set_own = [this](std::size_t pane, const std::string& path, const cloth::ParameterValue& value) {
+    const QString rule = document_.setOwn(pane, path, value);
+    if (path == "integrator.time_step") grid_->pane(pane).showStepRule(rule);
+    if (rule.isEmpty()) grid_->showComparison(document_.comparison());
   };
-  connect(save_plots_, &QAction::triggered, this, save);
-  connect(charts, &ChartArea::saveWanted, this, save);
+  connect(grid_, &PaneGrid::methodChosen, this, [set_own](std::size_t pane, const std::string& method) {
+    set_own(pane, "integrator.method", method);
+  });
+  connect(grid_, &PaneGrid::stepChosen, this, [set_own](std::size_t pane, const cloth::ParameterValue& step) {
+    set_own(pane, "integrator.time_step", step);
+  });
+  connect(grid_, &PaneGrid::duplicateWanted, &document_, &LabDocument::duplicatePane);
+  connect(grid_, &PaneGrid::removeWanted, &document_, &LabDocument::removePane);
+  connect(grid_, &PaneGrid::referenceWanted, this, [this](std::size_t pane) {
+    const std::string& name = document_.comparison().panes[pane].name;
+    document_.setReference(document_.comparison().reference == name ? cloth::controlled_reference : name);
+    showDocument();  // the menu's check mark, also where nothing changed
+  });
+  connect(grid_, &PaneGrid::remedyChosen, this, &LabWindow::restartWith);
+  connect(ranking_, &RankingPanel::referenceChosen, &document_, &LabDocument::setReference);
+  connect(grid_, &PaneGrid::contactChosen, this,
+          [this](const ContactChoice& choice) { link_.send(command::ShowContact{choice}); });
+  connect(grid_, &PaneGrid::modeChanged, this,
+          [this](ViewMode, Colouring colouring) { link_.send(command::Colour{colouring}); });
+  connect(grid_, &PaneGrid::openGlFailed, this, [this] {
+    notice_->show("opengl", NoticeBar::Level::warning,
+                  tr("The view needs OpenGL 3.3, which this machine does not give. Everything else works."));
+  });
+  connect(grid_, &PaneGrid::frameDrawn, this, [this](double milliseconds) {
+    if (shown_status_.playing && !shown_status_.playing_again && !shown_status_.is_comparison())
+      charts_->appendDrawTime(shown_status_.time, milliseconds);
+  });
+  for (ChartArea* charts : {static_cast<ChartArea*>(charts_), static_cast<ChartArea*>(pane_charts_)})
+    connect(charts, &ChartArea::saveWanted, this, &LabWindow::saveCharts);
+  connect(studies_, &StudiesPanel::runOpened, this, &LabWindow::openRun);
+}
+
+void LabWindow::connectRun() {
+  connect(&link_, &RunLink::frameReady, grid_, &PaneGrid::showFrame);
+  connect(&link_, &RunLink::samplesReady, this,
+          [this](const std::vector<ChartSample>& samples) { charts_->append(samples); });
+  connect(&link_, &RunLink::paneSamplesReady, pane_charts_, &CompareCharts::append);
+  connect(&link_, &RunLink::statusChanged, this, &LabWindow::followStatus);
+  connect(transport_, &TransportBar::speedChosen, this,
+          [this](double factor) { link_.send(command::Speed{factor}); });
+  connect(&timeline_->track(), &TimelineTrack::timeWanted, this, [this](double time) {
+    paused_again_ = false;
+    forgetDivergence();
+    link_.send(command::GoTo{{.step = {}, .time = time}});
+  });
+  connect(play_, &QAction::triggered, this, &LabWindow::play);
+  connect(play_again_, &QAction::triggered, this, [this] { link_.send(command::PlayAgain{}); });
+  connect(step_, &QAction::triggered, this, [this] { link_.send(command::SingleStep{}); });
+  connect(reset_, &QAction::triggered, this, &LabWindow::restart);
+}
+
+/// Goes on with what the pause ended; otherwise from here on something new begins. Where all panes have
+/// stopped nothing moves: their messages tell why, also those that were closed.
+void LabWindow::play(bool on) {
+  if (on && std::exchange(paused_again_, false)) return link_.send(command::PlayAgain{});
+  if (!on) paused_again_ = shown_status_.playing_again;
+  if (on) grid_->sayStops();
+  link_.send(on ? Command(command::Play{}) : Command(command::Pause{}));
+}
+
+void LabWindow::restart() {
+  charts_->clear();
+  forgetDivergence();
+  paused_again_ = false;
+  link_.send(command::Restart{});
+}
+
+/// Of what the document contains, from the start.
+void LabWindow::startRun() {
+  charts_->clear();
+  for (const char* kind : {"session", "new-start", "quality", "reference", "rate"}) notice_->withdraw(kind);
+  forgetDivergence();
+  paused_again_ = false;
+  if (session_) {
+    link_.send(command::OpenSession{*std::exchange(session_, std::nullopt)});
+    link_.send(command::PlayAgain{});
+  } else if (document_.isComparison()) {
+    link_.send(command::Load{document_.comparison()});
+  } else {
+    link_.send(command::Load{document_.scene()});
+  }
+  readStability();
+}
+
+void LabWindow::followEdit(const SceneChange& change) {
+  const bool was_comparison = shows_comparison_;
+  showDocument();
+  if (change.effect == SceneChange::Effect::none) return readStability();
+  if (document_.presentDrag() == 0) forgetPinch();
+  paused_again_ = false;
+  const bool was_playing = shown_status_.playing;
+  if (was_comparison != document_.isComparison()) {
+    startRun();
+  } else if (document_.isComparison()) {
+    link_.send(command::Edit{document_.comparison()});
+    return readStability();
+  } else if (change.effect == SceneChange::Effect::live) {
+    link_.send(command::Edit{document_.scene()});
+    return readStability();
+  } else {
+    startRun();
+  }
+  if (was_playing) link_.send(command::Play{});
+}
+
+/// What of the document the panes, their charts, tabs and ranking show.
+void LabWindow::showDocument() {
+  const cloth::Comparison& comparison = document_.comparison();
+  grid_->showComparison(comparison);
+  if (document_.isComparison()) {
+    pane_charts_->setPanes(comparison);
+    ranking_->showComparison(comparison);
+  }
+  scopes_->refresh();
+  if (shows_comparison_ != document_.isComparison()) showKind();
+}
+
+/// Arranges the widgets for a scene or for a comparison.
+void LabWindow::showKind() {
+  shows_comparison_ = document_.isComparison();
+  charts_->setVisible(!shows_comparison_);
+  pane_charts_->setVisible(shows_comparison_);
+  placeCorners();
+  setWidths();
+  ranking_dock_->setVisible(shows_comparison_);
+  ranking_dock_->toggleViewAction()->setVisible(shows_comparison_);
+  if (shows_comparison_) resizeDocks({ranking_dock_}, {ranking_height}, Qt::Vertical);
+  timeline_->setVisible(!shows_comparison_);
+  transport_->gauge().setVisible(!shows_comparison_);
+  view_bar_->showComparison(shows_comparison_);
+  save_session_->setEnabled(!shows_comparison_);
+  duplicate_->setVisible(!shows_comparison_);
+  notice_->layOver(grid_, shows_comparison_ ? Qt::BottomEdge : Qt::TopEdge);
+  updateTitle();
+}
+
+void LabWindow::readStability() {
+  const StabilityReading reading = read_stability(document_.scene());
+  transport_->gauge().setReading(reading);
+  const bool has_step = reading.time_step > 0;
+  parameters_->setAutoValue("integrator.time_step",
+                            has_step ? std::optional(reading.time_step) : std::nullopt);
+
+  const auto& deformation = document_.scene().deformation;
+  charts_->setDeformationRate(deformation && !deformation->springs.empty() ? std::optional(deformation->rate)
+                                                                           : std::nullopt);
+  if (divergence_)
+    sayDivergence();
+  else if (reading.level == StabilityReading::Level::unstable && !document_.isComparison())
+    notice_->showState(
+        "stability", NoticeBar::Level::warning,
+        tr("The time step is over the limit of this method: the run will diverge."),
+        {{tr("Use auto"), [this] { document_.setParameter("integrator.time_step", std::string("auto")); }}});
+  else
+    notice_->withdraw("stability");
+}
+
+/// Under the fields that keyframes leave without effect.
+void LabWindow::noteKeyframes() {
+  const auto& obstacles = document_.scene().obstacles;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (document_.isComparison() && obstacles[k].keyframes.empty())
+      continue;  // notes may be there on own values
+    const QString note = obstacles[k].keyframes.empty()
+                             ? QString()
+                             : tr("Has no effect: keyframes say where it is. Drag it in the view.");
+    for (const char* key : {"center", "point", "translate", "velocity", "spin"})
+      parameters_->setNote("obstacles." + std::to_string(k) + "." + key, note);
+  }
+}
+
+void LabWindow::brush(const cloth::BrushGust& gust) {
+  const auto& air = document_.scene().air;
+  if (air && air->drag > 0) return link_.send(command::Brush{gust});
+  notice_->show("brush", NoticeBar::Level::info, tr("The wind brush needs air, and this scene has none."),
+                tr("Add still air"), [this] { addStillAir(); });
+}
+
+void LabWindow::addStillAir() {
+  document_.setScope(std::nullopt);
+  document_.undoStack().beginMacro(tr("Add still air"));
+  if (!document_.scene().air) {
+    document_.addBlock("air");
+    document_.setParameter("air.wind", cloth::Vec3(0, 0, 0));
+  } else {
+    document_.resetParameter("air.drag");
+  }
+  document_.undoStack().endMacro();
+}
+
+void LabWindow::startObstacleMove(int obstacle) {
+  const auto& obstacles = document_.comparison().scene.obstacles;
+  if (static_cast<std::size_t>(obstacle) >= obstacles.size()) return;
+  forgetPinch();
+  dragged_ = obstacles[static_cast<std::size_t>(obstacle)];
+  document_.beginDrag();
+}
+
+/// Only while the drag lasts that began: a scene that was opened meanwhile keeps its obstacles.
+void LabWindow::moveObstacle(int obstacle, const cloth::Vec3& by) {
+  if (document_.presentDrag() == 0 || !dragged_ || !by.allFinite()) return;
+  document_.moveObstacle(obstacle, moved_by(*dragged_, by));
+}
+
+void LabWindow::endObstacleMove(int obstacle, bool kept) {
+  if (!kept) moveObstacle(obstacle, cloth::Vec3::Zero());
+  document_.endDrag();
+  dragged_.reset();
 }
 
 }  // namespace clothlab

@@ -1,22 +1,28 @@
-// The base of the windows of a scene and of a comparison: actions and menus for files, edits and runs,
-// opening and saving, the dialog about unsaved changes, messages, docks and recording.
+// The window: the panes in the middle, parameters and charts beside them, timeline and studies below. It
+// shows one document, a scene in one pane or a comparison in two to four. It owns the document and the link
+// to the workers and connects their signals to the widgets.
 #pragma once
 
 #include <QMainWindow>
-#include <memory>
 
-#include "bridge/worker_commands.h"
-#include "bridge/worker_status.h"
-#include "charts/chart_area.h"
-#include "document/document.h"
-#include "document/remedies.h"
+#include "bridge/worker_link.h"
+#include "charts/chart_panel.h"
+#include "compare/compare_charts.h"
+#include "compare/pane_grid.h"
+#include "compare/ranking_panel.h"
+#include "document/lab_document.h"
 #include "document/save_dialog.h"
 #include "main_window/transport_bar.h"
 #include "params/parameter_panel.h"
+#include "simulation/session.h"
+#include "timeline/timeline.h"
 #include "widgets/notice_bar.h"
 
 namespace clothlab {
 
+class ScopeTabs;
+class StudiesPanel;
+class ViewBar;
 struct OpenedComparison;
 struct OpenedScene;
 
@@ -24,160 +30,169 @@ class LabWindow : public QMainWindow {
   Q_OBJECT
 
  public:
-  /// Opens a file of any FileType, a study's folder, or a built-in scene or comparison by its name; in a new
-  /// window if this one does not show that type. On error the window shows a message with place, value and
-  /// rule, and nothing else changes.
-  void open(const QString& name);
-  void openScene(const QString& name);  ///< or a session
-  void openComparison(const QString& name);
+  explicit LabWindow(QWidget* parent = nullptr);
+  ~LabWindow() override;
+
+  // --- lab_window_files.cpp ---
+
+  /// Opens a file of any FileType, a study's folder, or a built-in scene or comparison by its name, in place
+  /// of the present document; asks first if that has unsaved changes. On error the window shows a message
+  /// with place, value and rule, and nothing else changes. False if it was not opened.
+  bool open(const QString& name);
+  bool openScene(const QString& name);  ///< or a session, which is replayed
+  bool openComparison(const QString& name);
+  /// False, with a message in the window, if the file could not be written.
+  bool saveTo(const QString& path);
+  /// Saves the run so far with all its edits (docs/sessions.md).
+  void saveSession(const QString& path);
+  /// Whether closing or opening another document asks about unsaved changes.
+  void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
   /// Closes all windows. Each with unsaved changes or a running study asks first; on Cancel none is closed.
   static void quit();
   /// All windows, visible or not.
   static std::vector<LabWindow*> all();
-
-  /// Whether closing or opening another document asks about unsaved changes.
-  void setAsksToSave(bool asks) { asks_to_save_ = asks; }
+  /// Shows a new window, which is deleted when it is closed.
+  static LabWindow* showNew();
 
   /// Records into `folder` until the record action is switched off or the worker ends the recording.
-  void startRecording(const QString& folder) { send(command::StartRecording{folder.toStdString()}); }
-  /// False, with a message in the window, if the file could not be written.
-  bool saveTo(const QString& path);
+  void startRecording(const QString& folder) { link_.send(command::StartRecording{folder.toStdString()}); }
+  void showStudies();
 
+  LabDocument& document() { return document_; }
+  RunLink& simulation() { return link_; }
+  ClothView& view() { return grid_->view(); }  ///< of the first pane
+  PaneGrid& panes() { return *grid_; }
+  ChartPanel& charts() { return *charts_; }  ///< of a scene
+  CompareCharts& paneCharts() { return *pane_charts_; }
+  RankingTable& ranking() { return ranking_->table(); }
+  Timeline& timeline() { return *timeline_; }
+  StudiesPanel& studies() { return *studies_; }
   ParameterPanel& parameters() { return *parameters_; }
   NoticeBar& notice() { return *notice_; }
 
  protected:
-  /// The texts that differ between the windows.
-  struct Wording {
-    QString document;  ///< "scene"
-    FileKind kind;     ///< of the document's file
-    QString title;     ///< of the window; %1 is the document's
-    QString unsaved;   ///< the question before changes of %1 are lost
-    QString play_tip, step_tip, record_tip;
-    QString widest_time, widest_rate;  ///< in the transport bar
-  };
-  /// The commands that every worker accepts.
-  using RunCommand =
-      std::variant<command::Restart, command::Play, command::Pause, command::SingleStep, command::Speed,
-                   command::Brush, command::Pull, command::StartRecording, command::StopRecording>;
-
-  LabWindow(std::unique_ptr<Document> document, Wording wording, QSize pleasant_size, QWidget* parent);
-  bool hasAir() { return scene().air && scene().air->drag > 0; }
-  void brush(const cloth::BrushGust& gust);
-  Document& anyDocument() { return *any_document_; }
-  /// Called by a derived class's destructor, because the widgets refer to its link.
-  void deleteWidgets();
-  /// Makes the form of the document and the notice bar.
-  void makeForm();
-
-  virtual void send(const RunCommand& command) = 0;
-  /// Shows what was read without problems, in this window or in a new one.
-  virtual void load(const OpenedScene& opened) = 0;
-  virtual void load(const OpenedComparison& opened) = 0;
-  virtual void loadStudy(const QString& folder) = 0;
-  /// Replaces the cloth by the mesh, as an undoable edit.
-  virtual void loadMesh(const QString& file);
-  /// Empty when done, else what went wrong.
-  virtual QString write(const QString& path) = 0;
-  /// The edited scene; in a comparison the scene that all panes share.
-  virtual const cloth::Scene& scene() = 0;
-  virtual void togglePin(int row, int column) = 0;
-  /// Shows a message that the wind brush needs air, with a button that adds air.
-  virtual void offerAir(const QString& text) = 0;
-  virtual void play(bool on);
-  virtual void restart() { send(command::Restart{}); }
-
-  /// Asks about what closing the window would lose; false: the user cancelled.
-  virtual bool mayClose() { return mayLoseChanges(); }
   void closeEvent(QCloseEvent* event) override;
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
 
-  /// An action of this window; its tooltip contains the shortcut.
+ private:
+  // lab_window.cpp
+  void makeLayout();
+  void makeDocks();
+  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
+  void setWidths();
+  void connectDocument();
+  void connectHand();
+  void connectPanes();
+  void connectRun();
+  void play(bool on);
+  void restart();
+  void startRun();
+  void followEdit(const SceneChange& change);
+  void showDocument();
+  void showKind();
+  void placeCorners();
+  void readStability();
+  void noteKeyframes();
+  void brush(const cloth::BrushGust& gust);
+  void addStillAir();
+  void startObstacleMove(int obstacle);
+  void moveObstacle(int obstacle, const cloth::Vec3& by);
+  void endObstacleMove(int obstacle, bool kept);
+
+  // lab_window_follow.cpp
+  void followStatus(const WorkerStatus& status);
+  void followScene(const WorkerStatus& status);
+  void followComparison(const WorkerStatus& status);
+  void followRecording(const WorkerStatus& status);
+  void followSession(const WorkerStatus& status);
+  void followDivergence(const WorkerStatus& status);
+  void adoptRun(const WorkerStatus& status);
+  void sayDivergence(bool is_new = false);
+  void forgetDivergence();
+  void forgetPinch();
+  std::vector<NoticeAction> helpAgainst(const cloth::Divergence& stop);
+  void restartWith(std::size_t pane, const Remedy& remedy);
+
+  // lab_window_menus.cpp
+  void makeActions();
   QAction* makeAction(const char* icon_name, const QString& text, const QString& tip, const QKeySequence& key,
                       const char* name);
-  /// Connects pull, wind brush and pin signals of a view or of the panes to the worker and the document.
-  template <class View>
-  void connectHand(View* view) {
-    connect(view, &View::pullChanged, this, [this](const cloth::Pull& pull) { send(command::Pull{pull}); });
-    connect(view, &View::pullEnded, this, [this] { send(command::Pull{}); });
-    connect(view, &View::brushChanged, this, &LabWindow::brush);
-    connect(view, &View::brushEnded, this, [this] {
-      if (hasAir()) send(command::Brush{});
-    });
-    connect(view, &View::pinToggled, this, [this](int particle) {
-      const int columns = scene().cloth.columns;
-      togglePin(particle / columns, particle % columns);
-    });
-  }
-  /// Sets the central widget: `parts` from top to bottom, of which `stretched` takes the free height and has
-  /// the messages over its edge.
-  void setMiddle(const std::vector<QWidget*>& parts, QWidget* stretched, Qt::Edge messages);
-  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
-  /// Docks at the sides get these widths, in px, and get them back when the window was narrower meanwhile.
-  void setWidths(const QList<QDockWidget*>& docks, const QList<int>& widths);
-  void addTransport();
+  void makeMenus();
+  void fillFileMenu(QMenu& file);
+  void makeEditMenu();
+  void makeToolBar();
+  void fillRecentMenu();
+  void compareMethods();
+  void savePicture();
+  void saveCloth();
+  void showAbout();
 
-  /// With an entry to open a file; of the other menus all that both windows have.
-  QMenu* addFileMenu();
-  void addSaveEntries(QMenu& file);
-  void addCloseEntries(QMenu& file);
-  void addComparisons(QMenu& menu);
-  QMenu* addEditMenu();
-  QMenu* addRunMenu(const QList<QAction*>& actions);
-  void addDockEntries(QMenu& view);
-
-  /// Shows a message, or withdraws the one of this kind if the text is empty.
-  void say(const QString& kind, NoticeBar::Level level, const QString& text);
-  /// Updates actions and messages from the state of a run and of its recording.
-  void followRun(const RunStatus& now);
-  void followRecording(const RunStatus& before, const RunStatus& now);
-  /// The edits as one undo step, and a restart.
-  void restartWith(
-      const Remedy& remedy,
-      const std::function<void(const std::string& path, const cloth::ParameterValue& value)>& set);
-  void updateTitle();
-  bool mayLoseChanges();
-  bool save() { return any_document_->path().isEmpty() ? saveAs() : saveTo(any_document_->path()); }
+  // lab_window_files.cpp
+  void openWithDialog();
+  bool load(const OpenedScene& opened);
+  bool load(const OpenedComparison& opened);
+  bool loadMesh(const QString& file);
+  bool loadStudy(const QString& folder);
+  void openRun(const cloth::Scene& scene, const QString& note);
+  bool isSound(const QString& what, const QString& problems);
+  QString what() const { return document_.isComparison() ? tr("comparison") : tr("scene"); }
+  bool save() { return document_.path().isEmpty() ? saveAs() : saveTo(document_.path()); }
   bool saveAs();
-  /// Asks for a path, calls `write` and shows where it wrote, or the error that it returned. `what`:
-  /// "picture".
+  void saveSessionAs();
+  void saveCharts();
   bool saveByDialog(const QString& what, const std::vector<FileKind>& kinds,
                     const std::function<QString(const QString& path)>& write);
-  /// Shows that `what` was saved, or the problem; true if there is none.
   bool saySaved(const QString& what, const QString& path, const QString& problem);
-  /// Connects the action and the charts' own button that save the charts.
-  void connectCharts(ChartArea* charts);
-  void openWithDialog();
-  /// Brings the window to the front, so that its question is visible.
+  void say(const QString& kind, NoticeBar::Level level, const QString& text);
+  void updateTitle();
+  bool mayLoseChanges();
+  bool mayStopStudy();
+  bool mayClose() { return mayStopStudy() && mayLoseChanges(); }
   void comeForward();
 
-  ParameterPanel* parameters_ = nullptr;
-  NoticeBar* notice_ = nullptr;
-  TransportBar* transport_ = nullptr;
-  QAction *play_, *step_, *reset_, *record_, *save_plots_;
+  LabDocument document_;
+  RunLink link_;
+
+  QAction *play_, *play_again_, *step_, *reset_, *record_, *save_plots_, *save_picture_, *save_cloth_,
+      *save_session_, *duplicate_;
   QAction *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
+  QMenu *builtin_menu_ = nullptr, *recent_menu_ = nullptr;
 
- private:
-  bool isSound(const QString& what, const QString& problems);
-
-  std::unique_ptr<Document> any_document_;
-  Wording wording_;
-  bool asks_to_save_ = true;
-  bool may_close_ = false;                 ///< quit() has asked already
+  PaneGrid* grid_ = nullptr;
+  ParameterPanel* parameters_ = nullptr;
+  ScopeTabs* scopes_ = nullptr;
+  NoticeBar* notice_ = nullptr;
+  ViewBar* view_bar_ = nullptr;
+  Timeline* timeline_ = nullptr;
+  TransportBar* transport_ = nullptr;
+  ChartPanel* charts_ = nullptr;
+  CompareCharts* pane_charts_ = nullptr;
+  RankingPanel* ranking_ = nullptr;
+  StudiesPanel* studies_ = nullptr;
+  QDockWidget *parameters_dock_ = nullptr, *charts_dock_ = nullptr, *ranking_dock_ = nullptr,
+              *studies_dock_ = nullptr;
   QMap<QDockWidget*, int> wanted_widths_;  ///< px, of the docks at the sides
+
+  bool asks_to_save_ = true;
+  bool may_close_ = false;         ///< quit() has asked already
+  bool shows_comparison_ = false;  ///< what the widgets are arranged for
+  WorkerStatus shown_status_;
+  std::optional<cloth::Divergence> divergence_;  ///< until the run is past it or starts again
+  std::int64_t divergences_ = 0;                 ///< how many were shown
+  std::shared_ptr<const cloth::Comparison>
+      followed_;                            ///< the worker's content that the document adopted last
+  std::optional<cloth::Session> session_;   ///< a session to be opened instead of the document's scene
+  QString saving_session_;                  ///< the file, until it is written
+  bool paused_again_ = false;               ///< paused while it was playing again: Play goes on so
+  std::optional<cloth::Obstacle> dragged_;  ///< the dragged obstacle as it was before the drag
 };
 
-/// Shows a new window, which is deleted when it is closed.
-template <class Window>
-Window* new_window() {
-  auto* window = new Window;
-  window->setAttribute(Qt::WA_DeleteOnClose);
-  window->show();
-  return window;
-}
+/// Opens the first window of the program with what `name` names; with the default scene if `name` is empty or
+/// cannot be opened.
+void open_first_window(const QString& name);
 
 }  // namespace clothlab

@@ -27,12 +27,11 @@ QString grouped(double value) {
 
 }  // namespace
 
-TransportBar::TransportBar(const QList<QAction*>& actions, const QString& widest_time,
-                           const QString& widest_rate, QWidget* parent)
+TransportBar::TransportBar(const QList<QAction*>& actions, QWidget* parent)
     : QFrame(parent),
       speed_(new QComboBox(this)),
-      time_(new Reading(widest_time, Reading::Look::bold, this)),
-      rate_(new Reading(widest_rate, Reading::Look::muted, this)),
+      time_(new Reading("000.000 of 00.00 s", Reading::Look::bold, this)),
+      rate_(new Reading("000 000 steps/s, 0.00x real time", Reading::Look::muted, this)),
       recording_(new Reading("000 000 rows", Reading::Look::plain, this)),
       gauge_(new StabilityGauge(this)) {
   setObjectName("transportBar");
@@ -91,33 +90,29 @@ void TransportBar::suitDuration(double seconds) {
 }
 
 void TransportBar::showStatus(const WorkerStatus& status) {
-  time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
-  if (status.divergence)
-    rate_->setText(status.divergence->pinched ? tr("Stopped: pinched") : tr("Stopped: diverged"));
-  else if (!status.playing)
-    rate_->setText(status.step > 0
-                       ? tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step)))
-                       : tr("Ready"));
-  else if (status.steps_per_second > 0)
-    rate_->setText(tr("%1 steps/s, %2x real time")
-                       .arg(grouped(status.steps_per_second))
-                       .arg(status.real_time_factor, 0, 'f', 2));
+  if (status.is_comparison() && status.time <= status.duration)  // else played on beyond its end
+    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
   else
-    rate_->setText(tr("Running"));
+    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
+  rate_->setText(rateText(status));
   recording_->setVisible(status.recording);
   if (status.recording)
     recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
 }
 
-void TransportBar::showStatus(const CompareStatus& status) {
-  if (status.time > status.duration)  // played on beyond its end
-    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
-  else
-    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
-  if (status.playing)
-    rate_->setText(tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2));
-  else
-    rate_->setText(status.time > 0 && status.time >= status.duration ? tr("Finished") : tr("Paused"));
+QString TransportBar::rateText(const WorkerStatus& status) const {
+  if (status.divergence) return status.divergence->pinched ? tr("Stopped: pinched") : tr("Stopped: diverged");
+  if (status.playing && status.is_comparison())
+    return tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2);
+  if (status.playing && status.steps_per_second > 0)
+    return tr("%1 steps/s, %2x real time")
+        .arg(grouped(status.steps_per_second))
+        .arg(status.real_time_factor, 0, 'f', 2);
+  if (status.playing) return tr("Running");
+  if (status.step == 0) return tr("Ready");
+  if (!status.is_comparison())
+    return tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step)));
+  return status.time >= status.duration ? tr("Finished") : tr("Paused");
 }
 
 }  // namespace clothlab

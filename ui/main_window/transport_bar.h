@@ -18,13 +18,10 @@ class TransportBar : public QFrame {
   Q_OBJECT
 
  public:
-  /// Shows the actions as buttons, the first one (play) larger. The widest texts fix the width of the time
-  /// and rate fields.
-  TransportBar(const QList<QAction*>& actions, const QString& widest_time, const QString& widest_rate,
-               QWidget* parent);
+  /// Shows the actions as buttons, the first one (play) larger.
+  TransportBar(const QList<QAction*>& actions, QWidget* parent);
 
   void showStatus(const WorkerStatus& status);
-  void showStatus(const CompareStatus& status);
   /// Called for a newly opened scene: selects a lower speed if its duration is very short; for the next
   /// longer scene restores the previous speed.
   void suitDuration(double seconds);
@@ -36,6 +33,7 @@ class TransportBar : public QFrame {
  private:
   void fillSpeeds();
   void makePrimary(QToolButton& button);
+  QString rateText(const WorkerStatus& status) const;
 
   QComboBox* speed_;
   std::optional<int> speed_before_;  ///< the row that was selected before a short scene

@@ -19,29 +19,7 @@ QAction* make_view_action(const char* icon_name, const QString& text, const QStr
   return action;
 }
 
-QToolButton* make_camera_button(QWidget* parent, const std::function<void(CameraPreset)>& choose) {
-  const std::pair<CameraPreset, QString> presets[] = {
-      {CameraPreset::front, ViewBar::tr("Front")}, {CameraPreset::back, ViewBar::tr("Back")},
-      {CameraPreset::left, ViewBar::tr("Left")},   {CameraPreset::right, ViewBar::tr("Right")},
-      {CameraPreset::top, ViewBar::tr("Top")},     {CameraPreset::isometric, ViewBar::tr("Isometric")}};
-  auto* menu = new QMenu(parent);
-  int key = 0;
-  for (const auto& [preset, name] : presets) {
-    QAction* action = menu->addAction(name, parent, [choose, which = preset] { choose(which); });
-    action->setShortcut(QStringLiteral("F%1").arg(++key));
-  }
-  auto* button = named("cameraButton", new QToolButton(parent));
-  button->setIcon(icon("camera-iso"));
-  button->setIconSize({20, 20});
-  button->setAutoRaise(true);
-  button->setMenu(menu);
-  button->setPopupMode(QToolButton::InstantPopup);
-  button->setToolTip(ViewBar::tr("Look from the front, back, left, right, top or a corner"));
-  button->setAccessibleName(ViewBar::tr("Camera"));
-  return button;
-}
-
-ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent) : QFrame(parent), view_(view) {
+ViewBar::ViewBar(PaneGrid& panes, QAction* save_picture, QWidget* parent) : QFrame(parent), panes_(panes) {
   setObjectName("viewBar");
   auto* row = spaced(new QHBoxLayout(this), spacing / 2, {spacing, spacing / 2, spacing, spacing / 2});
   addTools();
@@ -50,6 +28,7 @@ ViewBar::ViewBar(ClothView& view, QAction* save_picture, QWidget* parent) : QFra
     for (QAction* action : group->actions()) row->addWidget(make_action_button(action, this));
     row->addSpacing(2 * spacing);
   }
+  difference_ = findChild<QWidget*>("modeDifferenceButton");
   addContact(*row);
   row->addStretch(1);
   addCamera();
@@ -64,22 +43,49 @@ void ViewBar::addTools() {
        tr("Drag to blow where the cursor is; also with Shift held. Wheel while blowing: radius"), "2",
        "toolBrush"},
       {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"}};
-  tools_ = make_choices(this, tools, [this](Tool tool) { view_.setTool(tool); });
-  connect(&view_, &ClothView::toolChanged, this,
+  tools_ = make_choices(this, tools, [this](Tool tool) { panes_.setTool(tool); });
+  connect(&panes_, &PaneGrid::toolChanged, this,
           [this](Tool tool) { tools_->actions()[static_cast<int>(tool)]->setChecked(true); });
 }
 
 void ViewBar::addModes() {
-  const std::vector<ViewChoice<ViewMode>> modes{
-      {ViewMode::textured, "view-textured", tr("Textured"), tr("Woven cloth with light"), "T",
+  using Mode = std::pair<ViewMode, Colouring>;
+  const std::vector<ViewChoice<Mode>> modes{
+      {{ViewMode::textured, Colouring::strain},
+       "view-textured",
+       tr("Textured"),
+       tr("Woven cloth with light"),
+       "T",
        "modeTextured"},
-      {ViewMode::wireframe, "view-wireframe", tr("Wireframe"), tr("The grid of structural springs"), "W",
+      {{ViewMode::wireframe, Colouring::strain},
+       "view-wireframe",
+       tr("Wireframe"),
+       tr("The grid of structural springs"),
+       "W",
        "modeWireframe"},
-      {ViewMode::strain, "view-strain", tr("Strain"),
-       tr("Colours for the strain of structural and shear springs"), "S", "modeStrain"}};
-  modes_ = make_choices(this, modes, [this](ViewMode mode) { view_.setMode(mode); });
-  connect(&view_, &ClothView::modeChanged, this,
-          [this](ViewMode mode) { modes_->actions()[static_cast<int>(mode)]->setChecked(true); });
+      {{ViewMode::strain, Colouring::strain},
+       "view-strain",
+       tr("Strain"),
+       tr("Colours for the strain of structural and shear springs"),
+       "S",
+       "modeStrain"},
+      {{ViewMode::strain, Colouring::difference},
+       "view-difference",
+       tr("Difference"),
+       tr("Colours for each particle's distance from the reference, the same in all panes"),
+       "D",
+       "modeDifference"}};
+  modes_ = make_choices(this, modes, [this](const Mode& mode) { panes_.setMode(mode.first, mode.second); });
+  connect(&panes_, &PaneGrid::modeChanged, this, [this](ViewMode mode, Colouring colouring) {
+    const bool difference = mode == ViewMode::strain && colouring == Colouring::difference;
+    modes_->actions()[difference ? 3 : static_cast<int>(mode)]->setChecked(true);
+  });
+}
+
+void ViewBar::showComparison(bool on) {
+  modes_->actions().constLast()->setVisible(on);
+  difference_->setVisible(on);
+  suitWidth();
 }
 
 /// The spin box is there only where a scene has a hierarchy of boxes.
@@ -103,25 +109,47 @@ void ViewBar::addContact(QHBoxLayout& row) {
   const auto choose = [this] {
     const bool shown = contact_->isChecked();
     box_level_->setEnabled(shown);
-    view_.setContact({.marks = shown, .box_level = shown ? box_level_->value() : -1});
+    panes_.setContact({.marks = shown, .box_level = shown ? box_level_->value() : -1});
   };
   box_level_->setEnabled(false);
   connect(contact_, &QAction::toggled, this, choose);
   connect(box_level_, &QSpinBox::valueChanged, this, choose);
-  connect(&view_, &ClothView::hierarchyDepthChanged, this, [this](int depth) {
+  connect(&panes_, &PaneGrid::hierarchyDepthChanged, this, [this](int depth) {
     box_level_->setMaximum(depth);
     box_level_->setVisible(depth > 0);
     suitWidth();
   });
 }
 
+/// A button with a menu of the camera presets.
+QToolButton* ViewBar::makeCameraButton() {
+  const std::pair<CameraPreset, QString> presets[] = {
+      {CameraPreset::front, tr("Front")}, {CameraPreset::back, tr("Back")},
+      {CameraPreset::left, tr("Left")},   {CameraPreset::right, tr("Right")},
+      {CameraPreset::top, tr("Top")},     {CameraPreset::isometric, tr("Isometric")}};
+  auto* menu = new QMenu(this);
+  int key = 0;
+  for (const auto& [preset, name] : presets) {
+    QAction* action = menu->addAction(name, this, [this, which = preset] { panes_.setPreset(which); });
+    action->setShortcut(QStringLiteral("F%1").arg(++key));
+  }
+  camera_ = menu->actions();
+  auto* button = named("cameraButton", new QToolButton(this));
+  button->setIcon(icon("camera-iso"));
+  button->setIconSize({20, 20});
+  button->setAutoRaise(true);
+  button->setMenu(menu);
+  button->setPopupMode(QToolButton::InstantPopup);
+  button->setToolTip(tr("Look from the front, back, left, right, top or a corner"));
+  button->setAccessibleName(tr("Camera"));
+  return button;
+}
+
 void ViewBar::addCamera() {
-  QToolButton* button = make_camera_button(this, [this](CameraPreset preset) { view_.setPreset(preset); });
-  camera_ = button->menu()->actions();
-  keepLast(button);
+  keepLast(makeCameraButton());
   frame_all_ = make_view_action("frame-all", tr("Frame all"),
                                 tr("Fit the cloth and the obstacles into the view"), "F", "frameAll", this);
-  connect(frame_all_, &QAction::triggered, &view_, &ClothView::frameAll);
+  connect(frame_all_, &QAction::triggered, &panes_, &PaneGrid::frameAll);
   keepLast(make_action_button(frame_all_, this));
 }
 

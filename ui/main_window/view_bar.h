@@ -5,10 +5,9 @@
 #include <QAction>
 #include <QActionGroup>
 #include <QFrame>
-#include <functional>
 #include <vector>
 
-#include "viewport/cloth_view.h"
+#include "compare/pane_grid.h"
 
 class QHBoxLayout;
 class QMenu;
@@ -44,17 +43,18 @@ QActionGroup* make_choices(QObject* parent, const std::vector<ViewChoice<Value>>
   return group;
 }
 
-/// A button with a menu of the camera presets.
-QToolButton* make_camera_button(QWidget* parent, const std::function<void(CameraPreset)>& choose);
-
 class ViewBar : public QFrame {
   Q_OBJECT
 
  public:
-  ViewBar(ClothView& view, QAction* save_picture, QWidget* parent = nullptr);
+  /// `panes` must outlive the bar.
+  ViewBar(PaneGrid& panes, QAction* save_picture, QWidget* parent = nullptr);
 
   /// Adds the same choices to a menu of the window's menu bar.
   void fillMenu(QMenu& menu) const;
+
+  /// Only a comparison has differences to show.
+  void showComparison(bool on);
 
   QSize minimumSizeHint() const override;
 
@@ -66,13 +66,15 @@ class ViewBar : public QFrame {
   void addModes();
   void addContact(QHBoxLayout& row);
   void addCamera();
+  QToolButton* makeCameraButton();
   void keepLast(QWidget* button);
   int roomOf(const QWidget& part) const;  ///< px, with the gap before it
   int leastWidth() const;                 ///< px
   void suitWidth();
 
-  ClothView& view_;
+  PaneGrid& panes_;
   QActionGroup *tools_ = nullptr, *modes_ = nullptr;
+  QWidget* difference_ = nullptr;  ///< the button of that mode
   QAction* contact_ = nullptr;
   QSpinBox* box_level_ = nullptr;
   QList<QAction*> camera_;

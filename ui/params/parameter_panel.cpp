@@ -55,6 +55,7 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
   connect(&document, &LabDocument::parameterChanged, this, &ParameterPanel::follow);
   connect(&document, &LabDocument::blocksChanged, this, &ParameterPanel::rebuild);
   connect(&document, &LabDocument::loaded, this, &ParameterPanel::rebuild);
+  connect(&document, &LabDocument::scopeChanged, this, &ParameterPanel::rebuild);
 }
 
 QWidget* ParameterPanel::makeHead() {

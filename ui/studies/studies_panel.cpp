@@ -75,6 +75,7 @@ StudiesPanel::StudiesPanel(LabDocument& document, QWidget* parent) : QWidget(par
   };
   connect(&document_, &LabDocument::loaded, this, stale);
   connect(&document_, &LabDocument::sceneChanged, this, stale);
+  connect(&document_, &LabDocument::scopeChanged, this, stale);
   connect(choices_, &StudyChoices::changed, this, [this] {
     if (isVisible()) compareWithForm();
   });

@@ -31,6 +31,7 @@ void History::start_over(const Simulation& simulation) {
   scene_ = simulation.scene();
   states_.clear();
   commands_.clear();
+  ++command_changes_;
   interval_ = 1;
   last_step_ = 0;
   last_time_ = 0;
@@ -112,6 +113,7 @@ void History::log(SessionAction action, const Simulation& simulation) {
   const bool edits = std::holds_alternative<Edits>(action);
   commands_.push_back({simulation.state().step, simulation.time(), std::move(action)});
   command_bytes_ += bytes_of(commands_.back());
+  ++command_changes_;
   expected_hash_.clear();
   if (edits) keep(simulation);  // costly to carry out again, and it may have stopped particles
 }
@@ -122,6 +124,7 @@ bool History::cut(const Simulation& simulation) {
   while (!commands_.empty() && commands_.back().step > step) {
     command_bytes_ -= bytes_of(commands_.back());
     commands_.pop_back();
+    ++command_changes_;
   }
   while (states_.size() > 1 && states_.back().step() > step) pop_state();
   while (!step_changes_.empty() && step_changes_.back().step > step) step_changes_.pop_back();

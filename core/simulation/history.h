@@ -72,6 +72,8 @@ class History {
   std::vector<double> state_times() const;  ///< s, ascending
   const std::vector<SessionCommand>& commands() const { return commands_; }
   std::size_t commands_until(std::int64_t step) const;  ///< how many were logged up to and with it
+  /// Another number whenever commands() has become another list.
+  std::int64_t command_changes() const { return command_changes_; }
   const std::string& expected_hash() const {
     return expected_hash_;
   }  ///< of a session's end, if it is the end
@@ -102,6 +104,7 @@ class History {
   std::vector<State> states_;  ///< steps ascend; the first is the start
   std::int64_t interval_ = 1;  ///< steps between two states, at least
   std::vector<SessionCommand> commands_;
+  std::int64_t command_changes_ = 0;
   std::int64_t last_step_ = 0;
   double last_time_ = 0;
   std::vector<StepChange> step_changes_;  ///< up to last_step_

@@ -82,6 +82,30 @@ TEST_F(WorkerHistory, IsShownWithItsEndsAndItsMemory) {
   EXPECT_LT(history.bytes, history.max_bytes);
 }
 
+TEST_F(WorkerHistory, MarksWhatWasDoneUntilItIsCutOff) {
+  do_everything();
+  using Kind = HistoryMark::Kind;
+  const auto marks = [&] {
+    const auto all = status().history.marks;
+    return all ? *all : std::vector<HistoryMark>{};
+  };
+  const auto done = marks();
+  ASSERT_EQ(done.size(), 5u);
+  EXPECT_EQ(done[0].kind, Kind::pull);
+  EXPECT_LT(done[0].from, done[0].to);
+  EXPECT_EQ(done[1].kind, Kind::edit);
+  EXPECT_NE(done[1].what.find("tructural"), std::string::npos) << done[1].what;
+  EXPECT_EQ(done[2].kind, Kind::gust);
+  EXPECT_EQ(done[3].kind, Kind::edit);
+  EXPECT_EQ(done[4].kind, Kind::pins);
+  go_to(18);
+  EXPECT_EQ(marks().size(), 5u);
+  steps(1);
+  EXPECT_EQ(marks().size(), 3u);  // those of step 18 stay
+  worker_.send(command::Restart{});
+  EXPECT_TRUE(marks().empty());
+}
+
 TEST_F(WorkerHistory, ShowsAStepOfThePastAndPauses) {
   load(small_scene());
   steps(13);

@@ -8,6 +8,7 @@
 #include <QProcess>
 #include <QPushButton>
 #include <QTimer>
+#include <QToolTip>
 
 #include "io/obj_reader.h"
 #include "listed_test.h"
@@ -153,6 +154,111 @@ class TimelineTest : public QObject {
     QTest::keyClick(&track, Qt::Key_End);
     bench.settle();
     QCOMPARE(bench.status().time, end);
+  }
+
+  void nothing_moves_under_the_mouse_that_drags_to_the_left() {
+    WindowBench bench;
+    bench.play_until(0.3);
+    bench.pause();
+    TimelineTrack& track = bench.window.timeline().track();
+    const QRect place = track.geometry();
+    const int y = track.height() - 10, from = qRound(track.placeOf(bench.status().time));
+    int x = from;
+    QTest::mousePress(&track, Qt::LeftButton, {}, {x, y});
+    for (; x > from / 3; x -= 20) {
+      QMouseEvent move(QEvent::MouseMove, QPointF(x, y), track.mapToGlobal(QPointF(x, y)), Qt::NoButton,
+                       Qt::LeftButton, {});
+      QApplication::sendEvent(&track, &move);
+      bench.settle();
+      QTest::qWait(1);
+      QCOMPARE(track.geometry(), place);
+      const double shown = track.placeOf(bench.status().time);
+      QVERIFY2(std::abs(shown - x) < 3, qPrintable(QString("at %1 instead of %2 px").arg(shown).arg(x)));
+    }
+    QTest::mouseRelease(&track, Qt::LeftButton, {}, {x, y});
+    QVERIFY(!later_text(bench).isEmpty());
+    QCOMPARE(track.geometry(), place);
+  }
+
+  void keys_move_wherever_the_focus_is_but_in_what_uses_them_itself() {
+    WindowBench bench("corners-free");
+    bench.play_until(0.1);
+    bench.pause();
+    const double end = bench.status().time;
+    const auto press = [&](QWidget* on, Qt::Key key) {
+      on->setFocus();
+      QTest::keyClick(on, key);
+      bench.settle();
+      return bench.status().time;
+    };
+    QCOMPARE(press(&bench.window.view(), Qt::Key_Home), 0.0);
+    QVERIFY(press(&bench.window.view(), Qt::Key_Right) > 0);
+    QCOMPARE(press(bench.window.findChild<QToolButton*>("playButton"), Qt::Key_End), end);
+    QVERIFY(press(bench.window.findChild<QToolButton*>("playButton"), Qt::Key_Left) < end);
+
+    const double there = bench.status().time;
+    QWidget* slider = bench.editor("springs.structural", "slider");
+    QWidget* field = bench.editor("springs.structural", "field");
+    QVERIFY(slider && field);
+    for (QWidget* own : {field, static_cast<QWidget*>(&bench.window.charts())})
+      for (const Qt::Key key : {Qt::Key_Left, Qt::Key_Home, Qt::Key_End}) QCOMPARE(press(own, key), there);
+    const double before = bench.window.document().scene().springs->structural;
+    QCOMPARE(press(slider, Qt::Key_Right), there);
+    QVERIFY(bench.window.document().scene().springs->structural > before);
+  }
+
+  void marks_say_what_was_done_until_that_time_is_cut_off() {
+    WindowBench bench("corners-free");
+    TimelineTrack& track = bench.window.timeline().track();
+    const auto marks = [&](double time) { return track.marksAt(track.placeOf(time)); };
+    bench.play_until(0.1);
+    QCOMPARE(marks(0.05), QString());
+    const auto middle = [&] { return bench.pixel_of(16 * 33 + 16); };
+    QWidget* view = bench.window.view().childAt(middle());
+    if (!view) view = &bench.window.view();
+    const QPoint grip = middle();
+    QTest::mousePress(view, Qt::LeftButton, {}, grip);
+    for (int part = 1; part <= 5; ++part) {
+      const QPointF at = grip + QPointF(4 * part, 0);
+      QMouseEvent move(QEvent::MouseMove, at, view->mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
+      QApplication::sendEvent(view, &move);
+      QTest::qWait(20);
+    }
+    const double held = bench.status().time;
+    QTest::mouseRelease(view, Qt::LeftButton, {}, grip + QPoint(20, 0));
+    bench.play_until(held + 0.2);
+    bench.pause();
+    const double edited = bench.status().time;
+    const double stiffness = bench.window.document().scene().springs->structural;
+    QCOMPARE(bench.window.document().setParameter("springs.structural", 1.2 * stiffness), QString());
+    bench.play_until(edited + 0.3);
+    bench.pause();
+    bench.click("toolPinButton");
+    QTest::mouseClick(view, Qt::LeftButton, {}, middle());
+    bench.settle();
+    const double pinned = bench.status().time;
+    QVERIFY2(marks(held).startsWith("Pulled from"), qPrintable(marks(held)));
+    QVERIFY2(marks(edited).startsWith("Edited (Structural"), qPrintable(marks(edited)));
+    QVERIFY2(marks(pinned).startsWith("Pinned"), qPrintable(marks(pinned)));
+
+    const QPoint place(qRound(track.placeOf(edited)), track.height() - 5);
+    QHelpEvent help(QEvent::ToolTip, place, track.mapToGlobal(place));
+    QApplication::sendEvent(&track, &help);
+    QCOMPARE(QToolTip::text(), marks(edited));
+
+    drag_along(track, pinned, edited - 0.1);
+    bench.settle();
+    QVERIFY(!marks(edited).isEmpty());  // going back cuts nothing off
+    QVERIFY(!marks(pinned).isEmpty());
+    bench.click("stepButton");
+    bench.settle();
+    QVERIFY2(marks(held).startsWith("Pulled from"), qPrintable(marks(held)));
+    QVERIFY2(!marks(bench.status().history.last_time).contains("Edited"),
+             qPrintable(marks(bench.status().history.last_time)));
+    bench.play_until(pinned + 0.1);
+    bench.pause();
+    QCOMPARE(marks(edited), QString());
+    QCOMPARE(marks(pinned), QString());
   }
 
   void playing_on_from_an_earlier_point_drops_the_later_part() {

@@ -317,7 +317,8 @@ void SimulationWorker::publish_status() {
                        .last_time = history_.last_time(),
                        .states = history_.state_count(),
                        .bytes = history_.bytes(),
-                       .max_bytes = history_.max_bytes()};
+                       .max_bytes = history_.max_bytes(),
+                       .marks = marks_.of(history_, simulation_->scene())};
   }
   status_.playing_again = status_.playing && playing_again_;
   status_.steps_per_second = status_.playing ? meter_.steps_per_second() : 0;

@@ -9,6 +9,7 @@
 #include "bridge/energy_watch.h"
 #include "bridge/fill_frame.h"
 #include "bridge/frame_exchange.h"
+#include "bridge/history_marks.h"
 #include "bridge/live_recording.h"
 #include "bridge/worker.h"
 #include "bridge/worker_commands.h"
@@ -71,6 +72,7 @@ class SimulationWorker final : public Worker<ChartSample> {
   FrameExchange frames_;  ///< shared with the window
   std::unique_ptr<cloth::Simulation> simulation_;
   cloth::History history_;
+  HistoryMarks marks_;
   bool playing_again_ = false;
   bool gave_up_ = false;                 ///< memory ran out, and no scene has been started since
   bool batch_is_done_ = true;            ///< the present command is the last of those received together

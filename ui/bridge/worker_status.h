@@ -13,12 +13,20 @@
 
 namespace clothlab {
 
+/// Something that was done to the cloth during the run.
+struct HistoryMark {
+  enum class Kind { pull, gust, pins, edit } kind = Kind::edit;
+  double from = 0, to = 0;  ///< s
+  std::string what;         ///< of an edit, the parameter's label
+};
+
 /// The part of the run that can be gone back to.
 struct HistoryStatus {
   std::int64_t last_step = 0;            ///< of a comparison the number of its last common time
   double last_time = 0;                  ///< s
   std::size_t states = 0;                ///< stored states; steps between them are computed again
   std::size_t bytes = 0, max_bytes = 0;  ///< of a comparison for all panes together
+  std::shared_ptr<const std::vector<HistoryMark>> marks;  ///< in order; null: none
 };
 
 struct WorkerStatus {

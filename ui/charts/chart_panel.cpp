@@ -6,6 +6,7 @@
 
 #include "charts/chart_bar.h"
 #include "charts/live_chart.h"
+#include "widgets/building.h"
 
 namespace clothlab {
 
@@ -19,6 +20,7 @@ constexpr QSize smallest{260, 220};  // px
 ChartPanel::ChartPanel(QWidget* parent) : ChartArea({}, TimeView::Span::last_minute, {1600, 1200}, parent) {
   setObjectName(QStringLiteral("chart_panel"));
   setFocusPolicy(Qt::ClickFocus);
+  setProperty(keeps_arrow_keys, true);
   const auto& specs = chart_specs();
   for (std::size_t i = 0; i < specs.size(); ++i)
     stack_.add(new LiveChart(specs[i], i + 1 == specs.size(), this));

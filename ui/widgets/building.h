@@ -29,6 +29,10 @@ Layout* spaced(Layout* layout, int gap, QMargins around = {}) {
   return layout;
 }
 
+/// A widget with this dynamic property set to true has a use of its own for arrow keys, Home and End; from
+/// other widgets they move the timeline.
+inline constexpr const char* keeps_arrow_keys = "keepsArrowKeys";
+
 /// A flat tool button for an action in a bar.
 inline QToolButton* make_action_button(QAction* action, QWidget* parent) {
   auto* button = named(action->objectName() + "Button", new QToolButton(parent));

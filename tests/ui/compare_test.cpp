@@ -8,6 +8,7 @@
 #include <QTemporaryDir>
 #include <cmath>
 
+#include "charts/live_chart.h"
 #include "compare/comparison_json.h"
 #include "compare/run_comparison.h"
 #include "compare_bench.h"
@@ -213,10 +214,10 @@ class CompareTest : public QObject {
   void the_reference_is_chosen_and_differences_colour_the_cloth() {
     CompareBench bench;
     auto* reference = bench.window.findChild<QComboBox*>("reference");
-    QCOMPARE(reference->currentText(), QString("Pane A"));
+    QCOMPARE(reference->currentText(), QString("Pane A, Verlet"));
     bench.choose(1, "makeReference");
     QCOMPARE(bench.comparison().reference, std::string("B"));
-    QCOMPARE(reference->currentText(), QString("Pane B"));
+    QCOMPARE(reference->currentText(), QString("Pane B, Runge-Kutta 4"));
     reference->setFocus();
     QTest::keyClick(reference, Qt::Key_Home);
     QCOMPARE(bench.comparison().reference, std::string("controlled"));
@@ -290,6 +291,32 @@ class CompareTest : public QObject {
       QCOMPARE(timeless_rows(window / file).size(), std::size_t{31});
       QVERIFY2(timeless_rows(window / file) == timeless_rows(alone / file), file);
     }
+  }
+
+  void legends_name_methods_and_another_method_changes_no_more_than_its_name() {
+    CompareBench bench;
+    CompareCharts& charts = bench.window.paneCharts();
+    const auto entry = [&](const char* name) {
+      return charts.findChild<QAbstractButton*>(QLatin1String(name));
+    };
+    QVERIFY(entry("compare_name_a")->isVisible());
+    QCOMPARE(entry("compare_name_a")->text(), QString("A  Verlet"));
+    QCOMPARE(entry("compare_energy_a")->text(), QString("A"));
+    QVERIFY(entry("compare_energy_a")->toolTip().contains("A  Verlet"));
+    LiveChart* energy = charts.chart("compare_energy");
+    QTest::mouseClick(entry("compare_energy_log"), Qt::LeftButton);
+    QVERIFY(energy->is_logarithmic());
+    auto* methods = bench.part<QComboBox>(0, "method");
+    methods->setFocus();
+    QTest::keyClick(methods, Qt::Key_Home);
+    bench.settle();
+    QVERIFY(!entry("compare_name_a")->text().endsWith("Verlet"));
+    QVERIFY(entry("compare_name_a")->text().startsWith("A  "));
+    QCOMPARE(charts.chart("compare_energy"), energy);
+    QVERIFY(energy->is_logarithmic());
+    QTest::mouseClick(entry("compare_name_a"), Qt::LeftButton);
+    for (const char* key : {"compare_energy", "compare_difference"})
+      QCOMPARE(charts.chart(key)->shown_curves(), (std::vector<bool>{false, true}));
   }
 
   void the_charts_are_saved_with_a_column_for_each_pane_and_quantity() {

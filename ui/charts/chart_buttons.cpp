@@ -76,6 +76,13 @@ LegendEntry::LegendEntry(const QString& name, const CurveStyle& style, QWidget* 
   setToolTip(tr("Click to hide or show %1").arg(name.toLower()));
 }
 
+void LegendEntry::setName(const QString& text, const QString& name) {
+  setText(text);
+  setAccessibleName(name);
+  setToolTip(tr("Click to hide or show %1").arg(name));
+  update();
+}
+
 int LegendEntry::width_of(const QString& name, const QFont& font) {
   return 2 * entry_padding + swatch_width + swatch_gap + QFontMetrics(font).horizontalAdvance(name);
 }
@@ -89,8 +96,9 @@ void LegendEntry::paint(QPainter& painter, const QRect& rect, const QString& nam
   const QRectF swatch(rect.left() + entry_padding, rect.top(), swatch_width, rect.height());
   paint_swatch(painter, swatch, style, colours, shown);
   painter.setPen(shown ? colours.text : colours.disabled_text);
-  painter.drawText(rect.adjusted(entry_padding + swatch_width + swatch_gap, 0, 0, 0),
-                   Qt::AlignLeft | Qt::AlignVCenter, name);
+  const QRect beside = rect.adjusted(entry_padding + swatch_width + swatch_gap, 0, 0, 0);
+  painter.drawText(beside, Qt::AlignLeft | Qt::AlignVCenter,
+                   painter.fontMetrics().elidedText(name, Qt::ElideRight, beside.width()));
 }
 
 void LegendEntry::paintEvent(QPaintEvent*) {

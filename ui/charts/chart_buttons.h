@@ -32,6 +32,8 @@ class LegendEntry : public FlatButton {
  public:
   LegendEntry(const QString& name, const CurveStyle& style, QWidget* parent = nullptr);
   QSize sizeHint() const override;
+  /// Shows `text`, which is short for `name`.
+  void setName(const QString& text, const QString& name);
 
   /// The same picture and its width for an exported chart.
   static int width_of(const QString& name, const QFont& font);

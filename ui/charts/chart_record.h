@@ -40,6 +40,7 @@ struct CurveSpec {
   std::size_t column = 0;
   double scale = 1;  ///< recorded value to the chart's unit
   CurveStyle style;
+  QString short_name{};  ///< in the legend, where there is no room for the name; empty: there is none
 
   const SampleSeries& series(const ChartRecord& record) const {
     return source == Source::samples ? record.samples : record.draws;

@@ -42,7 +42,8 @@ LiveChart::LiveChart(const ChartSpec& spec, bool time_labels, QWidget* parent)
   title_->setToolTip(PlotView::help());
   const auto add_entry = [this](const CurveSpec& curve) {
     auto* entry = new LegendEntry(curve.name, curve.style, this);
-    entry->setObjectName(spec_.key + "_" + curve.name.toLower().replace(' ', '_'));
+    const QString& name = curve.short_name.isEmpty() ? curve.name : curve.short_name;
+    entry->setObjectName(spec_.key + "_" + name.toLower().replace(' ', '_'));
     connect(entry, &LegendEntry::toggled, this, [this] { Q_EMIT changed(); });
     return entry;
   };
@@ -106,6 +107,18 @@ void LiveChart::set_y_range(std::optional<Range> axis_range) {
 void LiveChart::zoom_y(double anchor, double factor) {
   const Range now = frame_.y;
   set_y_range(Range{anchor + (now.low - anchor) * factor, anchor + (now.high - anchor) * factor});
+}
+
+bool LiveChart::has_room_for_names(int width) const {
+  int needed = title_->sizeHint().width() + log_button_->sizeHint().width() + 2 * spacing;
+  for (const CurveSpec& curve : spec_.curves) needed += LegendEntry::width_of(curve.name, title_->font());
+  return needed <= width;
+}
+
+void LiveChart::name_curves(bool in_full) {
+  for (std::size_t i = 0; i < legend_.size(); ++i)
+    legend_[i]->setName(in_full ? spec_.curves[i].name : spec_.curves[i].short_name, spec_.curves[i].name);
+  lay_out();
 }
 
 std::vector<bool> LiveChart::shown_curves() const {

@@ -37,6 +37,11 @@ class LiveChart : public QWidget {
   void read(const ChartRecord& record, std::optional<double> time_s);
   void set_message(const QString& message) { scene_->overlay().set_message(message); }
   void apply_look();
+  /// Whether the legend has room for the curves' names beside the title.
+  bool has_room_for_names(int width) const;
+  /// Shows the curves' names in the legend, or their short names.
+  void name_curves(bool in_full);
+  void show_curve(std::size_t curve, bool shown) { legend_[curve]->setChecked(shown); }
 
   /// Rows of the header at a width, and the whole height that is not plot (px).
   int height_beside_plot(int width) const;

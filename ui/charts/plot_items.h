@@ -1,7 +1,7 @@
 // What lies inside a plot's axes: the curves, and over them the read-out. Drawn by graphics items of our own
 // because a QLineSeries strokes its whole path again, for hit tests, at each new range and each new list of
-// points: three charts of Qt Charts alone take 9 to 14 ms of processor time for a frame, these 5 to 6 with the
-// axes of Qt Charts (docs/dependencies.md). It cannot break a curve at a gap either.
+// points: three charts of Qt Charts alone take 9 to 14 ms of processor time for a frame, these 5 to 6 with
+// the axes of Qt Charts (docs/dependencies.md). It cannot break a curve at a gap either.
 #pragma once
 
 #include <QFont>

@@ -55,7 +55,12 @@ void CompareCharts::setPanes(const cloth::Comparison& comparison) {
     curves.styles.push_back(style_of(pane));
     curves.names.push_back(QString::fromStdString(pane.name));
   }
-  if (curves == curves_) return;
+  std::vector<QString> titles;
+  for (std::size_t i = 0; i < comparison.panes.size(); ++i)
+    titles.push_back(
+        QStringLiteral("%1  %2").arg(curves.names[i], QString::fromStdString(title_of(comparison, i))));
+  if (curves == curves_) return name_curves(std::move(titles));
+  titles_ = std::move(titles);
   std::vector<int> kept;
   std::copy_if(curves.styles.begin(), curves.styles.end(), std::back_inserter(kept), [this](int style) {
     return std::find(curves_.styles.begin(), curves_.styles.end(), style) != curves_.styles.end();
@@ -82,11 +87,20 @@ void CompareCharts::deleteCharts() {
   const std::vector<LiveChart*> charts = stack_.charts();
   stack_.clear();
   qDeleteAll(charts);
+  qDeleteAll(names_);
+  names_.clear();
   specs_.clear();
 }
 
 void CompareCharts::makeCharts() {
   deleteCharts();
+  for (std::size_t i = 0; i < curves_.styles.size(); ++i) {
+    LegendEntry* entry = names_.emplace_back(new LegendEntry({}, pane_curve(curves_.styles[i]), this));
+    entry->setObjectName("compare_name_" + curves_.names[i].toLower());
+    connect(entry, &LegendEntry::toggled, this, [this, i](bool on) {
+      for (LiveChart* chart : stack_.charts()) chart->show_curve(i, on);
+    });
+  }
   const auto all = chart_quantities();
   for (std::size_t q = 0; q < quantities; ++q) {
     auto spec = std::make_unique<ChartSpec>();
@@ -95,8 +109,8 @@ void CompareCharts::makeCharts() {
     spec->unit = all[q].unit;
     spec->from_zero = all[q].from_zero;
     for (std::size_t i = 0; i < curves_.styles.size(); ++i)
-      spec->curves.push_back({curves_.names[i], Source::samples, column_of(q, curves_.styles[i]),
-                              all[q].scale, pane_curve(curves_.styles[i])});
+      spec->curves.push_back({titles_[i], Source::samples, column_of(q, curves_.styles[i]), all[q].scale,
+                              pane_curve(curves_.styles[i]), curves_.names[i]});
     auto* chart = new LiveChart(*spec, q + 1 == quantities, this);
     chart->set_logarithmic(all[q].logarithmic);
     stack_.add(chart);
@@ -105,6 +119,47 @@ void CompareCharts::makeCharts() {
   }
   lay_out();
   data_changed();
+}
+
+/// Another method changes no more than the names: ranges and scales that the user chose stay.
+void CompareCharts::name_curves(std::vector<QString> titles) {
+  if (titles == titles_) return;
+  titles_ = std::move(titles);
+  for (const auto& spec : specs_)
+    for (std::size_t i = 0; i < titles_.size(); ++i) spec->curves[i].name = titles_[i];
+  lay_out();
+  data_changed();
+}
+
+/// The names above all charts, unless each chart has room for them.
+int CompareCharts::lay_out_head() {
+  const auto charts = stack_.charts();
+  const bool in_charts = std::all_of(charts.begin(), charts.end(), [this](const LiveChart* chart) {
+    return chart->has_room_for_names(width());
+  });
+  for (LiveChart* chart : charts) chart->name_curves(in_charts);
+  for (LegendEntry* entry : names_) entry->setVisible(!in_charts);
+  return in_charts || names_.empty() ? spacing : lay_out_names();
+}
+
+/// As many in a row as there is room for.
+int CompareCharts::lay_out_names() {
+  constexpr int margin = spacing / 2;
+  int x = margin, y = margin, row = 0;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    LegendEntry* entry = names_[i];
+    entry->setFont(chart_font(font()));
+    entry->setName(titles_[i], titles_[i]);
+    const QSize wanted = entry->sizeHint().boundedTo({width() - 2 * margin, height()});
+    row = wanted.height();
+    if (x > margin && x + wanted.width() > width() - margin) {
+      x = margin;
+      y += row;
+    }
+    entry->setGeometry({{x, y}, wanted});
+    x += wanted.width();
+  }
+  return y + row + margin;
 }
 
 LiveChart* CompareCharts::chart(const QString& key) const {

@@ -1,8 +1,10 @@
 // The charts of a comparison: total energy, maximum strain, step time and difference from the reference over
-// simulated time, a curve for each pane in its colour and marker.
+// simulated time, a curve for each pane in its colour and marker. Above them is a legend with the panes'
+// methods.
 #pragma once
 
 #include "charts/chart_area.h"
+#include "charts/chart_buttons.h"
 
 namespace clothlab {
 
@@ -34,9 +36,13 @@ class CompareCharts : public ChartArea {
   void forgetAllBut(const std::vector<int>& styles);
   std::vector<CsvColumn> csv_columns() const override;
   void show_message() override;
-  int lay_out_head() override { return spacing; }
+  int lay_out_head() override;
+  void name_curves(std::vector<QString> titles);
+  int lay_out_names();
 
   Curves curves_;
+  std::vector<QString> titles_;      ///< "A  Verlet", for each curve
+  std::vector<LegendEntry*> names_;  ///< a legend for all charts, where theirs have no room for the names
   std::vector<std::unique_ptr<ChartSpec>> specs_;  ///< charts refer to them
 };
 

@@ -41,8 +41,11 @@ void RankingPanel::showComparison(const cloth::Comparison& comparison) {
   reference_->addItem(tr("Error control"), QString::fromLatin1(cloth::controlled_reference));
   for (std::size_t i = 0; i < comparison.panes.size(); ++i) {
     const cloth::Pane& pane = comparison.panes[i];
-    reference_->addItem(pane_icon(style_of(pane)), tr("Pane %1").arg(QString::fromStdString(pane.name)),
-                        QString::fromStdString(pane.name));
+    reference_->addItem(
+        pane_icon(style_of(pane)),
+        tr("Pane %1, %2")
+            .arg(QString::fromStdString(pane.name), QString::fromStdString(title_of(comparison, i))),
+        QString::fromStdString(pane.name));
   }
   reference_->addItem(tr("None"), QString::fromLatin1(cloth::no_reference));
   reference_->setCurrentIndex(reference_->findData(QString::fromStdString(comparison.reference)));

@@ -78,6 +78,8 @@ void ScopeTabs::refresh() {
     const cloth::Pane& pane = panes[static_cast<std::size_t>(tab - 1)];
     tabs_->setTabText(tab, QString::fromStdString(pane.name));
     tabs_->setTabIcon(tab, pane_icon(style_of(pane)));
+    tabs_->setTabToolTip(
+        tab, QString::fromStdString(title_of(document_.comparison(), static_cast<std::size_t>(tab - 1))));
   }
   const auto scope = document_.scope();
   tabs_->setCurrentIndex(scope ? static_cast<int>(*scope) + 1 : 0);

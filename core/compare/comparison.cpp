@@ -121,8 +121,11 @@ std::vector<Pane> panes_for(const std::vector<std::string>& methods) {
   return panes;
 }
 
-Comparison comparison_of_one(Scene scene) {
-  return {.title = {}, .scene = std::move(scene), .panes = {{.name = pane_names[0], .title = {}, .own = {}}}};
+Comparison comparison_of_one(Scene scene, const std::string& reference) {
+  return {.title = {},
+          .scene = std::move(scene),
+          .panes = {{.name = pane_names[0], .title = {}, .own = {}}},
+          .reference = reference};
 }
 
 Scene scene_of(const Comparison& comparison, std::size_t pane) {

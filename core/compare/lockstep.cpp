@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "integrators/registry.h"
+#include "scene/scene_edits.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -114,6 +115,18 @@ bool LockStep::all_stopped() const {
                       [](const auto& lane) { return lane->going(); });
 }
 
+Lane::Sums LockStep::sums_of(const Lane& lane) {
+  return {lane.step_time, lane.wall, lane.max_strain, lane.limiter_excess, lane.energy};
+}
+
+void LockStep::take_sums(Lane& lane, const Lane::Sums& sums) {
+  lane.step_time = sums.step_time;
+  lane.wall = sums.wall;
+  lane.max_strain = sums.max_strain;
+  lane.limiter_excess = sums.limiter_excess;
+  lane.energy = sums.energy;
+}
+
 void LockStep::arrive(Lane& lane, std::int64_t index) {
   lane.index = index;
   lane.state = lane.simulation->state();
@@ -125,6 +138,11 @@ void LockStep::arrive(Lane& lane, std::int64_t index) {
   lane.wall += lane.wall_since_;
   lane.steps_since_ = 0;
   lane.wall_since_ = 0;
+  if (!lane.history_) return;
+  const auto known = static_cast<std::int64_t>(lane.past_.size());
+  if (index < known) return take_sums(lane, lane.past_[static_cast<std::size_t>(index)]);
+  lane.past_.push_back(sums_of(lane));
+  lane.history_->keep(*lane.simulation);
 }
 
 bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::function<bool()>& may_go_on) {
@@ -134,25 +152,37 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
     const auto is_there = [&] { return lane.simulation->time() > next - 0.5 * lane.simulation->time_step(); };
     while (!lane.divergence && !is_there()) {
       if (may_go_on && !may_go_on()) break;
-      const std::int64_t begin = lane.simulation->state().step;
       const double step = lane.simulation->time_step();
-      const std::int64_t left = steps_beyond(lane.simulation->time(), next - 0.5 * step, step);
-      const Clock::time_point start = Clock::now();
-      lane.divergence = lane.simulation->advance(std::min(left, lane.batch_.steps()));
-      const double taken = seconds_since(start);
-      const std::int64_t steps = lane.simulation->state().step - begin;
-      lane.wall_since_ += taken;
-      lane.steps_since_ += steps;
-      lane.batch_.note(std::max<std::int64_t>(1, steps), taken);
-      if (lane.simulation->interrupted()) break;
+      if (!step_lane(lane, steps_beyond(lane.simulation->time(), next - 0.5 * step, step))) break;
     }
-    if (lane.divergence)
+    if (lane.divergence) {
       lane.wall += lane.wall_since_;
-    else if (!is_there())
+      lane.known_stop_ = lane.divergence;
+    } else if (!is_there()) {
       return false;
-    else
+    } else {
       arrive(lane, lane.index + 1);
+    }
   }
+  return true;
+}
+
+/// A batch of steps, at most `left`; within the history the next step of it. False if it was interrupted.
+bool LockStep::step_lane(Lane& lane, std::int64_t left) {
+  const std::int64_t begin = lane.simulation->state().step;
+  const Clock::time_point start = Clock::now();
+  if (repeats(lane))
+    lane.divergence = lane.history_->step(*lane.simulation).divergence;
+  else
+    lane.divergence = lane.simulation->advance(std::min(left, lane.batch_.steps()));
+  const double taken = seconds_since(start);
+  const std::int64_t steps = lane.simulation->state().step - begin;
+  lane.wall_since_ += taken;
+  lane.steps_since_ += steps;
+  if (lane.simulation->interrupted()) return false;
+  if (lane.divergence) return true;
+  lane.batch_.note(std::max<std::int64_t>(1, steps), taken);
+  if (lane.history_) lane.history_->extend(*lane.simulation);
   return true;
 }
 
@@ -163,8 +193,8 @@ void LockStep::measure(Error& error, std::size_t lane, std::size_t against) {
   assert(one.index == index() && other.index == index());
   measure_difference(one.state.position, other.state.position, error.difference);
   if (one.index <= error.counted) return;
-  error.squares += error.difference.rms * error.difference.rms;
-  ++error.times;
+  error.sum.squares += error.difference.rms * error.difference.rms;
+  ++error.sum.times;
   error.counted = one.index;
 }
 
@@ -173,6 +203,7 @@ void LockStep::compare() {
   if (!against) return;
   for (std::size_t i = 0; i < errors_.size(); ++i) measure(errors_[i], i, *against);
   if (*against == pane_count()) measure(floor_, pane_count() + 1, pane_count());
+  if (keeps_history()) remember_errors();
 }
 
 void LockStep::set_stop_test(const std::function<bool()>& test) {
@@ -203,6 +234,7 @@ bool LockStep::advance(std::int64_t index, const std::function<bool()>& may_go_o
   }
   if (failure) std::rethrow_exception(failure);
   if (!whole) return false;
+  if (keeps_history()) put_in_force(index);
   compare();
   return true;
 }
@@ -213,8 +245,8 @@ const Difference* LockStep::difference(std::size_t pane) const {
 
 std::optional<double> LockStep::rms_over_time(std::size_t pane) const {
   const Error& error = errors_[pane];
-  if (error.times == 0) return std::nullopt;
-  return std::sqrt(error.squares / static_cast<double>(error.times));
+  if (error.sum.times == 0) return std::nullopt;
+  return std::sqrt(error.sum.squares / static_cast<double>(error.sum.times));
 }
 
 /// Another run of the same past: it goes on as `from` does, to the bit.
@@ -233,7 +265,11 @@ std::unique_ptr<Lane> LockStep::copy_of(const Lane& from) {
   lane->limiter_excess = from.limiter_excess;
   lane->energy = from.energy;
   lane->divergence = from.divergence;
+  lane->timed_from = from.timed_from;
   lane->start_ = from.start_;
+  lane->history_ = from.history_;
+  lane->past_ = from.past_;
+  lane->known_stop_ = from.known_stop_;
   return lane;
 }
 
@@ -262,13 +298,14 @@ void LockStep::take_panes(const Comparison& edited) {
 void LockStep::edit_lane(Lane& lane, const Scene& scene) {
   const Scene resolved = in_lock_step(scene);
   if (resolved == lane.simulation->scene()) return;
-  lane.simulation->edit(resolved);
+  perform(lane, edits_between(lane.simulation->scene(), resolved));
   lane.notice = notice_of(scene, *lane.simulation);
   lane.measurement = lane.simulation->measure();
 }
 
 void LockStep::edit(const Comparison& edited) {
   assert(acts_at_once(comparison_, edited));
+  cut();
   take_panes(edited);
   if (edited.reference != comparison_.reference) {
     for (Error& error : errors_) error = {};
@@ -290,20 +327,23 @@ void LockStep::edit(const Comparison& edited) {
   }
   share_pull_strength();
   compare();
+  remember_in_force();
 }
 
 void LockStep::set_brush(const std::optional<BrushGust>& brush) {
+  cut();
   for (const auto& lane : lanes_)
-    if (lane->going()) lane->simulation->set_brush(brush);
+    if (lane->going()) perform(*lane, brush);
 }
 
 void LockStep::set_pull(const std::optional<Pull>& pull) {
+  cut();
   for (const auto& lane : lanes_)
-    if (lane->going()) lane->simulation->set_pull(pull);
+    if (lane->going()) perform(*lane, pull);
 }
 
 /// A pane beyond its method's limit could bear no hand at all; it must not take it from the others.
-void LockStep::share_pull_strength() {
+std::optional<PullStrength> LockStep::weakest_pull() const {
   std::optional<PullStrength> weakest;
   for (const auto& lane : lanes_) {
     const PullStrength& own = lane->simulation->strongest_pull();
@@ -312,6 +352,11 @@ void LockStep::share_pull_strength() {
     weakest->stiffness = std::min(weakest->stiffness, own.stiffness);
     weakest->damping = std::min(weakest->damping, own.damping);
   }
+  return weakest;
+}
+
+void LockStep::share_pull_strength() {
+  const std::optional<PullStrength> weakest = weakest_pull();
   for (const auto& lane : lanes_)
     if (lane->going()) lane->simulation->limit_pull(weakest);
 }

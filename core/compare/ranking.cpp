@@ -39,6 +39,7 @@ PaneResult result_of(const LockStep& lockstep, std::size_t pane) {
                     .time_step = lane.simulation->time_step(),
                     .simulated = lane.state.time,
                     .wall = lane.wall,
+                    .timed_from = lane.timed_from,
                     .count = lane.simulation->count(),
                     .max_strain = lane.max_strain,
                     .energy = lane.energy,

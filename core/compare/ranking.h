@@ -16,9 +16,10 @@ struct PaneResult {
   Status status = Status::finished;
   std::optional<Divergence> divergence;
   std::optional<RateBreach> rate_breach;
-  double time_step = 0;  ///< s
-  double simulated = 0;  ///< s, up to the last common time
-  double wall = 0;       ///< s, of stepping alone
+  double time_step = 0;   ///< s
+  double simulated = 0;   ///< s, up to the last common time
+  double wall = 0;        ///< s, of stepping alone, since `timed_from`
+  double timed_from = 0;  ///< s of simulated time; another than 0 where a run was taken over
   StepCount count;
   double max_strain = 0;                ///< largest of all common times
   EnergyAccount energy;                 ///< up to the last common time
@@ -28,8 +29,9 @@ struct PaneResult {
   std::optional<double> rms_over_time;  ///< m, over particles and common times; of a stopped pane until then
   int error_rank = 0, cost_rank = 0;    ///< from 1; equal values share one; 0: not ranked
 
-  double cost() const { return simulated > 0 ? wall / simulated : 0; }  ///< s for each simulated second
-  double evaluations_each_second() const {                              ///< of simulated time
+  /// s for each simulated second
+  double cost() const { return simulated > timed_from ? wall / (simulated - timed_from) : 0; }
+  double evaluations_each_second() const {  ///< of simulated time
     return simulated > 0 ? static_cast<double>(count.force_evaluations) / simulated : 0;
   }
 };

@@ -79,6 +79,11 @@ class History {
   }  ///< of a session's end, if it is the end
 
   std::size_t max_bytes() const { return max_bytes_; }
+  void set_max_bytes(std::size_t bytes) {
+    max_bytes_ = bytes;
+    thin_out();
+  }
+  const Scene& start_scene() const { return scene_; }  ///< as started
   /// Memory of the checkpoints, at most max_bytes() unless the first and the newest alone need more, and of
   /// the log, which is kept whole.
   std::size_t bytes() const { return state_bytes_ + command_bytes_; }
@@ -110,6 +115,12 @@ class History {
   std::vector<StepChange> step_changes_;  ///< up to last_step_
   std::string expected_hash_;
   std::size_t state_bytes_ = 0, command_bytes_ = 0;
+};
+
+/// A run with its history, as it passes from one owner to another.
+struct RunWithHistory {
+  std::unique_ptr<Simulation> simulation;
+  History history;
 };
 
 }  // namespace cloth

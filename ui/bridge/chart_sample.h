@@ -32,8 +32,9 @@ struct PaneSample {
 struct CompareSample {
   double time_s = 0;
   bool is_start = false;  ///< the first sample of a new run
+  bool is_cut = false;    ///< a marker, as in ChartSample
   std::array<PaneSample, cloth::max_panes>
-      panes;  ///< indexed by style_of(pane): A, B, C, D, independent of the panes' order
+      panes{};  ///< indexed by style_of(pane): A, B, C, D, independent of the panes' order
 };
 
 }  // namespace clothlab

@@ -18,15 +18,22 @@ using EditComparison = command::Edit<cloth::Comparison>;
 
 /// Whether the command has to wait for a common time.
 bool acts_on_the_panes(const Command& command) {
-  return command::is_one_of<EditComparison, command::SingleStep, command::Brush, command::Pull,
-                            command::StartRecording, command::StopRecording>(command);
+  return command::is_one_of<EditComparison, command::Play, command::SingleStep, command::Brush, command::Pull,
+                            command::GoTo, command::PlayAgain, command::GiveRun, command::StartRecording,
+                            command::StopRecording>(command);
 }
 
 /// Only the newest of several waiting commands of one kind is carried out, because mouse input is faster than
 /// the panes.
 bool is_replaced_by(const Command& command, const Command& next) {
   return command.index() == next.index() &&
-         command::is_one_of<LoadComparison, EditComparison, command::Brush, command::Pull>(command);
+         command::is_one_of<LoadComparison, EditComparison, command::Brush, command::Pull, command::GoTo>(
+             command);
+}
+
+/// A way through the history is not gone to its end when the next thing is to go elsewhere.
+bool goes_elsewhere(const Command& next) {
+  return command::is_one_of<command::GoTo, LoadComparison, command::Restart>(next);
 }
 
 }  // namespace
@@ -117,22 +124,86 @@ void CompareWorker::handle(const command::Restart&) {
 
 void CompareWorker::start(const cloth::Comparison& comparison) {
   end_recording();
-  status_.refusal.clear();
+  if (!accepts(comparison)) return;
+  lockstep_ = std::make_unique<cloth::LockStep>(comparison);
+  begin_run();
+}
+
+bool CompareWorker::accepts(const cloth::Comparison& comparison) {
   auto problems = cloth::find_problems(comparison);
   if (problems.empty()) problems = cloth::find_start_problems(comparison);
-  if (!problems.empty()) {
-    status_.refusal = problems.front().text();
-    status_.playing = false;
-    return;
-  }
+  status_.refusal = problems.empty() ? "" : problems.front().text();
+  if (!problems.empty()) status_.playing = false;
+  return problems.empty();
+}
+
+/// Of panes that are new here.
+void CompareWorker::begin_run() {
   under_way_.reset();
-  lockstep_ = std::make_unique<cloth::LockStep>(comparison);
+  playing_again_ = false;
+  lockstep_->keep_history(cloth::History::default_max_bytes);
   ++topology_;
   ++status_.starts;
-  restart_clock(0);
+  restart_clock(now());
   drop_samples();  // of the run before
+  last_sampled_ = -1;
   take_sample(true);
   publish_frames();
+}
+
+void CompareWorker::handle(const command::TakeRun<cloth::Comparison>& take) {
+  cloth::RunWithHistory run = take.from->get();
+  if (!run.simulation) return handle(command::Load{take.content});
+  end_recording();
+  status_.playing = false;
+  if (!accepts(take.content)) return;
+  const cloth::Scene scene = run.simulation->scene();
+  lockstep_ = std::make_unique<cloth::LockStep>(scene, std::move(run));
+  lockstep_->edit(take.content);
+  begin_run();
+}
+
+void CompareWorker::handle(const command::GiveRun& give) {
+  status_.playing = playing_again_ = false;
+  end_recording();
+  cloth::RunWithHistory given;
+  for (std::size_t i = 0; lockstep_ && !given.simulation && i < lockstep_->pane_count(); ++i)
+    if (scene_of(lockstep_->comparison(), i) == give.scene) given = lockstep_->release(i);
+  lockstep_.reset();
+  give.to->set_value(std::move(given));
+}
+
+/// Begins a new branch: deletes the history after the present common time.
+void CompareWorker::begin_branch() {
+  playing_again_ = false;
+  lockstep_->cut();
+  if (last_sampled_ <= lockstep_->index()) return;
+  last_sampled_ = lockstep_->index();
+  deliver({.time_s = now(), .is_cut = true, .panes = {}});
+}
+
+void CompareWorker::handle(const command::GoTo& go) {
+  status_.playing = playing_again_ = false;
+  if (!lockstep_) return;
+  end_recording();
+  status_.refusal.clear();  // an earlier refusal no longer applies
+  ++status_.jumps;
+  const std::int64_t index = go.target.step
+                                 ? std::clamp<std::int64_t>(*go.target.step, 0, lockstep_->known_index())
+                                 : lockstep_->index_near(go.target.time);
+  lockstep_->set_stop_test([stop = thread_.get_stop_token()] { return stop.stop_requested(); });
+  if (lockstep_->go_to(index, [this] { return may_go_on(); })) publish_frames();
+}
+
+bool CompareWorker::may_go_on() const {
+  if (thread_.get_stop_token().stop_requested()) return false;
+  return waiting_.empty() ? !next_is(goes_elsewhere) : !goes_elsewhere(waiting_.front());
+}
+
+void CompareWorker::handle(const command::PlayAgain&) {
+  if (!lockstep_ || !status_.refusal.empty() || lockstep_->index() >= lockstep_->known_index()) return;
+  status_.playing = playing_again_ = true;
+  restart_clock(now());
 }
 
 void CompareWorker::handle(const EditComparison& edit) {
@@ -147,12 +218,15 @@ void CompareWorker::handle(const EditComparison& edit) {
     return start(edit.content);
   }
   if (recorder_) log(cloth::comparison_log_lines(lockstep_->comparison(), edit.content, now()));
+  begin_branch();
   lockstep_->edit(edit.content);
+  lockstep_->keep_history(cloth::History::default_max_bytes);
   publish_frames();
 }
 
 void CompareWorker::handle(const command::Play&) {
   if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
+  begin_branch();
   status_.playing = true;
   restart_clock(now());
 }
@@ -165,18 +239,21 @@ void CompareWorker::handle(const command::Pause&) {
 void CompareWorker::handle(const command::SingleStep&) {
   status_.playing = false;
   if (!lockstep_ || !status_.refusal.empty() || lockstep_->all_stopped()) return;
+  begin_branch();
   under_way_ = lockstep_->index() + 1;
 }
 
 void CompareWorker::handle(const command::Brush& brush) {
   if (!lockstep_) return;
   if (recorder_) log(cloth::comparison_log_lines(brush.gust, now()));
+  begin_branch();
   lockstep_->set_brush(brush.gust);
 }
 
 void CompareWorker::handle(const command::Pull& pull) {
   if (!lockstep_) return;
   if (recorder_) log(cloth::comparison_log_lines(pull.pull, now()));
+  begin_branch();
   lockstep_->set_pull(pull.pull);
 }
 
@@ -226,7 +303,7 @@ void CompareWorker::arrive() {
     publish_frames();
     return;
   }
-  take_sample(false);
+  if (lockstep_->index() > last_sampled_) take_sample(false);
   if (recorder_) {
     note_record(recorder_->add_row(*lockstep_));
     ++status_.recorded_rows;
@@ -235,15 +312,16 @@ void CompareWorker::arrive() {
     note_record(recorder_->flush());
     last_flush_ = Clock::now();
   }
-  if (lockstep_->index() == lockstep_->last_index()) {
-    status_.playing = false;
+  const std::int64_t end = playing_again_ ? lockstep_->known_index() : lockstep_->last_index();
+  if (lockstep_->index() == end) {
+    status_.playing = playing_again_ = false;
     end_recording();
   }
   if (!status_.playing || Clock::now() - last_frame_ >= frame_interval) publish_frames();
 }
 
 void CompareWorker::take_sample(bool is_start) {
-  CompareSample sample{.time_s = now(), .is_start = is_start, .panes = {}};
+  CompareSample sample{.time_s = now(), .is_start = is_start};
   for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) {
     const cloth::Lane& lane = lockstep_->lane(i);
     if (!lane.going()) continue;
@@ -251,10 +329,11 @@ void CompareWorker::take_sample(bool is_start) {
     PaneSample& pane = sample.panes[static_cast<std::size_t>(style)];
     pane.total_J = lane.measurement.energy.total();
     pane.max_strain = lane.measurement.strain.maximum();
-    if (is_start) continue;  // no step was taken, and all panes are alike
+    if (is_start && now() == 0) continue;  // no step was taken, and all panes are alike
     pane.step_ms = 1e3 * lane.step_time;
     if (const cloth::Difference* difference = lockstep_->difference(i)) pane.rms_m = difference->rms;
   }
+  last_sampled_ = lockstep_->index();
   deliver(sample);
 }
 
@@ -288,11 +367,18 @@ void CompareWorker::publish_frame(std::size_t pane) {
 void CompareWorker::publish_status() {
   status_.commands = settled_;
   status_.threads = threads_;
+  status_.playing_again = status_.playing && playing_again_;
   status_.recording = recorder_.has_value();
   status_.real_time_factor = status_.playing ? meter_.real_time_factor() : 0;
   if (lockstep_ && !under_way_) {
     status_.time = now();
     status_.step = lockstep_->index();
+    const std::int64_t last = lockstep_->known_index();
+    status_.history = {.last_step = last,
+                       .last_time = lockstep_->time_of(last),
+                       .states = lockstep_->stored_states(),
+                       .bytes = lockstep_->history_bytes(),
+                       .max_bytes = cloth::History::default_max_bytes};
     status_.duration = lockstep_->time_of(lockstep_->last_index());
     if (!status_.comparison || *status_.comparison != lockstep_->comparison())
       status_.comparison = std::make_shared<cloth::Comparison>(lockstep_->comparison());

@@ -3,6 +3,7 @@
 // change the cloths are applied at a common time that all panes have reached.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <thread>
 
@@ -47,10 +48,17 @@ class CompareWorker final : public Worker<CompareSample> {
   void handle(const command::Edit<cloth::Scene>&) {}
   void handle(const command::SaveSession&) {}
   void handle(const command::OpenSession&) {}
-  void handle(const command::GoTo&) {}
-  void handle(const command::PlayAgain&) {}
+  void handle(const command::GoTo& go);
+  void handle(const command::PlayAgain&);
+  void handle(const command::GiveRun& give);
+  void handle(const command::TakeRun<cloth::Comparison>& take);
+  void handle(const command::TakeRun<cloth::Scene>&) {}
 
   void start(const cloth::Comparison& comparison);
+  bool accepts(const cloth::Comparison& comparison);
+  void begin_run();
+  void begin_branch();
+  bool may_go_on() const;
   /// s, the common time that all panes have reached.
   double now() const { return lockstep_->time_of(lockstep_->index()); }
   void log(const std::vector<std::string>& lines) {
@@ -72,6 +80,8 @@ class CompareWorker final : public Worker<CompareSample> {
                 settled_ = 0;  ///< commands carried out; settled_: including the step that they requested
   std::unique_ptr<cloth::LockStep> lockstep_;
   std::optional<std::int64_t> under_way_;  ///< index of the common time that the panes are computing
+  bool playing_again_ = false;
+  std::int64_t last_sampled_ = -1;  ///< index of the last common time of which a sample was sent
   std::optional<cloth::ComparisonRecorder> recorder_;
   Colouring colouring_ = Colouring::strain;
   ContactChoice contact_;

@@ -96,10 +96,16 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
       status_.refusal = problems.front().text();
   if (!status_.refusal.empty()) return false;
   simulation_ = std::make_unique<cloth::Simulation>(scene);
+  history_.begin(*simulation_);
+  begin_run();
+  return true;
+}
+
+/// Of a simulation that is new here.
+void SimulationWorker::begin_run() {
   simulation_->set_threads(std::max(1, cloth::machine_threads() - 1));  // one core is the window's
   simulation_->set_stop_test([this] { return thread_.get_stop_token().stop_requested(); });
   gave_up_ = false;
-  history_.begin(*simulation_);
   playing_again_ = false;
   last_sampled_step_ = -1;
   first_sample_.reset();
@@ -109,10 +115,29 @@ bool SimulationWorker::start_simulation(const cloth::Scene& scene) {
   energy_ = {};
   wall_since_row_ = 0;
   steps_since_row_ = 0;
-  restart_clock(0);
+  restart_clock(simulation_->time());
   drop_samples();  // of the run before
   take_sample();
-  return true;
+}
+
+/// A run that stands still leaves nothing behind here but its status.
+void SimulationWorker::handle(const command::GiveRun& give) {
+  status_.playing = playing_again_ = false;
+  end_recording();
+  give.to->set_value({std::move(simulation_), std::exchange(history_, cloth::History(history_.max_bytes()))});
+}
+
+void SimulationWorker::handle(const command::TakeRun<cloth::Scene>& take) {
+  cloth::RunWithHistory run = take.from->get();
+  if (!run.simulation) return handle(command::Load{take.content});
+  end_recording();
+  status_.playing = false;
+  simulation_ = std::move(run.simulation);
+  history_ = std::move(run.history);
+  history_.set_max_bytes(cloth::History::default_max_bytes);
+  ++topology_;
+  begin_run();
+  handle(command::Edit{take.content});
 }
 
 void SimulationWorker::handle(const command::Edit<cloth::Scene>& edit) {

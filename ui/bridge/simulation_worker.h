@@ -48,11 +48,15 @@ class SimulationWorker final : public Worker<ChartSample> {
   void handle(const command::SaveSession& save);
   void handle(const command::OpenSession& open);
   void handle(const command::ShowContact& show);
+  void handle(const command::GiveRun& give);
+  void handle(const command::TakeRun<cloth::Scene>& take);
+  void handle(const command::TakeRun<cloth::Comparison>&) {}
   void handle(const command::Load<cloth::Comparison>&) {}
   void handle(const command::Edit<cloth::Comparison>&) {}
   void handle(const command::Colour&) {}
 
   bool start_simulation(const cloth::Scene& scene);
+  void begin_run();
   std::vector<cloth::Problem> perform(const cloth::SessionAction& action);
   void begin_branch();
   bool may_go_on();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <variant>
 
@@ -69,6 +70,19 @@ struct Colour {
   Colouring by;
 };
 
+/// Gives the run away, at its present state and with its history, to what takes it: an empty one if it runs
+/// nothing that goes on as `scene`. A comparison gives the run of the first pane that does.
+struct GiveRun {
+  cloth::Scene scene;
+  std::shared_ptr<std::promise<cloth::RunWithHistory>> to;
+};
+/// Goes on with a run that another worker gives away; loads the content if it gives none.
+template <class Content>
+struct TakeRun {
+  Content content;
+  std::shared_ptr<std::future<cloth::RunWithHistory>> from;
+};
+
 /// Whether the variant holds one of these kinds of command.
 template <class... Kinds, class Variant>
 bool is_one_of(const Variant& command) {
@@ -82,6 +96,7 @@ using Command =
                  command::Edit<cloth::Comparison>, command::Restart, command::Play, command::Pause,
                  command::SingleStep, command::Speed, command::Brush, command::Pull, command::StartRecording,
                  command::StopRecording, command::GoTo, command::PlayAgain, command::SaveSession,
-                 command::OpenSession, command::ShowContact, command::Colour>;
+                 command::OpenSession, command::ShowContact, command::Colour, command::GiveRun,
+                 command::TakeRun<cloth::Scene>, command::TakeRun<cloth::Comparison>>;
 
 }  // namespace clothlab

@@ -1,12 +1,19 @@
 #include "bridge/worker_link.h"
 
+#include <limits>
+
 namespace clothlab {
 namespace {
 
 constexpr int fetch_interval = 16;  // ms: a 60 Hz screen
 
 bool loads_scene(const Command& command) {
-  return command::is_one_of<command::Load<cloth::Scene>, command::OpenSession>(command);
+  return command::is_one_of<command::Load<cloth::Scene>, command::TakeRun<cloth::Scene>,
+                            command::OpenSession>(command);
+}
+
+bool loads_comparison(const Command& command) {
+  return command::is_one_of<command::Load<cloth::Comparison>, command::TakeRun<cloth::Comparison>>(command);
 }
 
 /// How the run is shown and played, whatever is loaded.
@@ -25,8 +32,7 @@ RunLink::RunLink(QObject* parent) : QObject(parent) {
 }
 
 void RunLink::send(Command command) {
-  const bool loads_comparison = command::is_one_of<command::Load<cloth::Comparison>>(command);
-  if (loads_comparison != compares_ && (loads_comparison || loads_scene(command))) activate(loads_comparison);
+  if (compares_ ? loads_scene(command) : loads_comparison(command)) activate(!compares_);
   if (is_for_both(command)) {
     if (compares_)
       scene_.send(command);
@@ -36,6 +42,22 @@ void RunLink::send(Command command) {
   sent_ = compares_ ? comparison_.send(std::move(command)) : scene_.send(std::move(command));
   active_since_ = std::min(active_since_, sent_);
   if (!timer_.isActive()) timer_.start();
+}
+
+template <class Content>
+void RunLink::pass_on(const Content& content, const cloth::Scene& scene) {
+  auto run = std::make_shared<std::promise<cloth::RunWithHistory>>();
+  auto taken = std::make_shared<std::future<cloth::RunWithHistory>>(run->get_future());
+  send(command::GiveRun{scene, run});
+  send(command::TakeRun<Content>{content, taken});
+}
+
+void RunLink::continueAs(const cloth::Comparison& comparison) {
+  pass_on(comparison, comparison.scene);
+}
+
+void RunLink::continueAs(const cloth::Scene& scene) {
+  pass_on(scene, scene);
 }
 
 /// The worker that rests ends its recording.

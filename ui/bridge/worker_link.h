@@ -18,6 +18,10 @@ class RunLink : public QObject {
   explicit RunLink(QObject* parent = nullptr);
 
   void send(Command command);
+  /// Goes on with the present run, with its history: the scene as panes of a comparison, or a pane as a
+  /// scene. Starts from the beginning where the run does not fit. A recording ends.
+  void continueAs(const cloth::Comparison& comparison);
+  void continueAs(const cloth::Scene& scene);
   const WorkerStatus& status() const { return status_; }
   /// Whether the status already reflects every command sent.
   bool isUpToDate() const { return status_.commands == sent_; }
@@ -37,6 +41,8 @@ class RunLink : public QObject {
   bool fetch();
   template <class Worker>
   bool fetch_from(Worker& worker);
+  template <class Content>
+  void pass_on(const Content& content, const cloth::Scene& scene);
   void activate(bool comparison);
   template <class Worker>
   void send_to(Worker& worker, Command command);

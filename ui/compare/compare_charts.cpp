@@ -170,6 +170,10 @@ LiveChart* CompareCharts::chart(const QString& key) const {
 
 void CompareCharts::append(const std::vector<CompareSample>& samples) {
   for (const CompareSample& sample : samples) {
+    if (sample.is_cut) {
+      record_.samples.drop_after(sample.time_s);
+      continue;
+    }
     if (sample.is_start) {
       record_ = empty_record();
       stack_.follow();

@@ -273,12 +273,17 @@ void LabWindow::restart() {
   link_.send(command::Restart{});
 }
 
-/// Of what the document contains, from the start.
-void LabWindow::startRun() {
+/// What was shown and said of the run before is over.
+void LabWindow::beginRun() {
   charts_->clear();
   for (const char* kind : {"session", "new-start", "quality", "reference", "rate"}) notice_->withdraw(kind);
   forgetDivergence();
   paused_again_ = false;
+}
+
+/// Of what the document contains, from the start.
+void LabWindow::startRun() {
+  beginRun();
   if (session_) {
     link_.send(command::OpenSession{*std::exchange(session_, std::nullopt)});
     link_.send(command::PlayAgain{});
@@ -290,6 +295,20 @@ void LabWindow::startRun() {
   readStability();
 }
 
+/// As a comparison or as a scene, which the document has just become.
+void LabWindow::continueRun() {
+  beginRun();
+  const cloth::Comparison& comparison = document_.comparison();
+  const cloth::Comparison one = cloth::comparison_of_one(comparison.scene, cloth::no_reference);
+  if (!document_.isComparison())
+    link_.continueAs(document_.scene());
+  else if (acts_at_once(one, comparison))
+    link_.continueAs(comparison);
+  else
+    link_.send(command::Load{comparison});
+  readStability();
+}
+
 void LabWindow::followEdit(const SceneChange& change) {
   const bool was_comparison = shows_comparison_;
   showDocument();
@@ -298,7 +317,7 @@ void LabWindow::followEdit(const SceneChange& change) {
   paused_again_ = false;
   const bool was_playing = shown_status_.playing;
   if (was_comparison != document_.isComparison()) {
-    startRun();
+    continueRun();
   } else if (document_.isComparison()) {
     link_.send(command::Edit{document_.comparison()});
     return readStability();
@@ -333,7 +352,6 @@ void LabWindow::showKind() {
   ranking_dock_->setVisible(shows_comparison_);
   ranking_dock_->toggleViewAction()->setVisible(shows_comparison_);
   if (shows_comparison_) resizeDocks({ranking_dock_}, {ranking_height}, Qt::Vertical);
-  timeline_->setVisible(!shows_comparison_);
   transport_->gauge().setVisible(!shows_comparison_);
   view_bar_->showComparison(shows_comparison_);
   save_session_->setEnabled(!shows_comparison_);

@@ -90,7 +90,9 @@ class LabWindow : public QMainWindow {
   void connectRun();
   void play(bool on);
   void restart();
+  void beginRun();
   void startRun();
+  void continueRun();
   void followEdit(const SceneChange& change);
   void showDocument();
   void showKind();

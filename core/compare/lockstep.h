@@ -142,6 +142,7 @@ class LockStep {
   bool go_to(std::int64_t index, const std::function<bool()>& may_go_on = {});
   /// Makes the present common time the end of the history, as every edit and the hand do.
   void cut();
+  const History& history_of(std::size_t lane) const { return *lanes_[lane]->history_; }
   std::size_t stored_states() const;  ///< of all lanes
   std::size_t history_bytes() const;
   /// Gives a pane's run away, at its present common time. Precondition: a history is kept; afterwards this

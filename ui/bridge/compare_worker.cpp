@@ -31,11 +31,6 @@ bool is_replaced_by(const Command& command, const Command& next) {
              command);
 }
 
-/// A way through the history is not gone to its end when the next thing is to go elsewhere.
-bool goes_elsewhere(const Command& next) {
-  return command::is_one_of<command::GoTo, LoadComparison, command::Restart>(next);
-}
-
 }  // namespace
 
 CompareWorker::CompareWorker(int threads)
@@ -141,6 +136,7 @@ bool CompareWorker::accepts(const cloth::Comparison& comparison) {
 void CompareWorker::begin_run() {
   under_way_.reset();
   playing_again_ = false;
+  marks_ = {};
   lockstep_->keep_history(cloth::History::default_max_bytes);
   ++topology_;
   ++status_.starts;
@@ -149,61 +145,6 @@ void CompareWorker::begin_run() {
   last_sampled_ = -1;
   take_sample(true);
   publish_frames();
-}
-
-void CompareWorker::handle(const command::TakeRun<cloth::Comparison>& take) {
-  cloth::RunWithHistory run = take.from->get();
-  if (!run.simulation) return handle(command::Load{take.content});
-  end_recording();
-  status_.playing = false;
-  if (!accepts(take.content)) return;
-  const cloth::Scene scene = run.simulation->scene();
-  lockstep_ = std::make_unique<cloth::LockStep>(scene, std::move(run));
-  lockstep_->edit(take.content);
-  begin_run();
-}
-
-void CompareWorker::handle(const command::GiveRun& give) {
-  status_.playing = playing_again_ = false;
-  end_recording();
-  cloth::RunWithHistory given;
-  for (std::size_t i = 0; lockstep_ && !given.simulation && i < lockstep_->pane_count(); ++i)
-    if (scene_of(lockstep_->comparison(), i) == give.scene) given = lockstep_->release(i);
-  lockstep_.reset();
-  give.to->set_value(std::move(given));
-}
-
-/// Begins a new branch: deletes the history after the present common time.
-void CompareWorker::begin_branch() {
-  playing_again_ = false;
-  lockstep_->cut();
-  if (last_sampled_ <= lockstep_->index()) return;
-  last_sampled_ = lockstep_->index();
-  deliver({.time_s = now(), .is_cut = true, .panes = {}});
-}
-
-void CompareWorker::handle(const command::GoTo& go) {
-  status_.playing = playing_again_ = false;
-  if (!lockstep_) return;
-  end_recording();
-  status_.refusal.clear();  // an earlier refusal no longer applies
-  ++status_.jumps;
-  const std::int64_t index = go.target.step
-                                 ? std::clamp<std::int64_t>(*go.target.step, 0, lockstep_->known_index())
-                                 : lockstep_->index_near(go.target.time);
-  lockstep_->set_stop_test([stop = thread_.get_stop_token()] { return stop.stop_requested(); });
-  if (lockstep_->go_to(index, [this] { return may_go_on(); })) publish_frames();
-}
-
-bool CompareWorker::may_go_on() const {
-  if (thread_.get_stop_token().stop_requested()) return false;
-  return waiting_.empty() ? !next_is(goes_elsewhere) : !goes_elsewhere(waiting_.front());
-}
-
-void CompareWorker::handle(const command::PlayAgain&) {
-  if (!lockstep_ || !status_.refusal.empty() || lockstep_->index() >= lockstep_->known_index()) return;
-  status_.playing = playing_again_ = true;
-  restart_clock(now());
 }
 
 void CompareWorker::handle(const EditComparison& edit) {
@@ -220,6 +161,7 @@ void CompareWorker::handle(const EditComparison& edit) {
   if (recorder_) log(cloth::comparison_log_lines(lockstep_->comparison(), edit.content, now()));
   begin_branch();
   lockstep_->edit(edit.content);
+  marks_ = {};
   lockstep_->keep_history(cloth::History::default_max_bytes);
   publish_frames();
 }
@@ -373,12 +315,7 @@ void CompareWorker::publish_status() {
   if (lockstep_ && !under_way_) {
     status_.time = now();
     status_.step = lockstep_->index();
-    const std::int64_t last = lockstep_->known_index();
-    status_.history = {.last_step = last,
-                       .last_time = lockstep_->time_of(last),
-                       .states = lockstep_->stored_states(),
-                       .bytes = lockstep_->history_bytes(),
-                       .max_bytes = cloth::History::default_max_bytes};
+    publish_history();
     status_.duration = lockstep_->time_of(lockstep_->last_index());
     if (!status_.comparison || *status_.comparison != lockstep_->comparison())
       status_.comparison = std::make_shared<cloth::Comparison>(lockstep_->comparison());

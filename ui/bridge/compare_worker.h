@@ -10,6 +10,7 @@
 #include "bridge/chart_sample.h"
 #include "bridge/fill_frame.h"
 #include "bridge/frame_exchange.h"
+#include "bridge/history_marks.h"
 #include "bridge/worker.h"
 #include "bridge/worker_commands.h"
 #include "compare/comparison_recorder.h"
@@ -71,6 +72,7 @@ class CompareWorker final : public Worker<CompareSample> {
   void publish_frames();
   void publish_frame(std::size_t pane);
   void publish_status();
+  void publish_history();
 
   std::array<FrameExchange, cloth::max_panes> frames_;  ///< shared with the window
   int threads_;
@@ -83,6 +85,7 @@ class CompareWorker final : public Worker<CompareSample> {
   bool playing_again_ = false;
   std::int64_t last_sampled_ = -1;  ///< index of the last common time of which a sample was sent
   std::optional<cloth::ComparisonRecorder> recorder_;
+  std::array<HistoryMarks, cloth::max_panes> marks_;
   Colouring colouring_ = Colouring::strain;
   ContactChoice contact_;
   ContactFiller contact_filler_;

@@ -18,6 +18,7 @@ struct HistoryMark {
   enum class Kind { pull, gust, pins, edit } kind = Kind::edit;
   double from = 0, to = 0;  ///< s
   std::string what;         ///< of an edit, the parameter's label
+  bool operator==(const HistoryMark&) const = default;
 };
 
 /// The part of the run that can be gone back to.

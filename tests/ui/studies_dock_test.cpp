@@ -8,6 +8,7 @@
 #include <QScrollArea>
 #include <thread>
 
+#include "charts/live_chart.h"
 #include "dialogs.h"
 #include "listed_test.h"
 #include "studies/axis_choice.h"
@@ -236,6 +237,8 @@ class StudiesDockTest : public QObject {
     QVERIFY(bench.window.studies().isVisible());
     QTest::qWait(200);
     QCOMPARE(bench.window.size(), small_window);
+    for (LiveChart* chart : bench.window.charts().findChildren<LiveChart*>())
+      QVERIFY2(chart->scene().map().plot.height() >= 20, qPrintable(chart->objectName()));
     bench.window.studies().openFolder(folder_.filePath("map"));
     QTest::qWait(200);
     QCOMPARE(bench.window.size(), small_window);

@@ -2,11 +2,15 @@
 #include "theme/theme.h"
 
 #include <QApplication>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QDirIterator>
 #include <QEvent>
 #include <QFile>
+#include <QFileDialog>
+#include <QFileIconProvider>
 #include <QImage>
+#include <QPainter>
 #include <QPixmap>
 #include <QRegularExpression>
 #include <QTest>
@@ -114,6 +118,32 @@ class ThemeTest : public QObject {
  private Q_SLOTS:
   void init() { qunsetenv("CLOTHLAB_THEME"); }
   void cleanupTestCase() { apply_theme(*qApp, false); }
+
+  void file_dialogs_are_in_the_theme_data() { both_themes(); }
+  void file_dialogs_are_in_the_theme() {
+    QFETCH(bool, dark);
+    apply_theme(*qApp, dark);
+    QVERIFY(QApplication::testAttribute(Qt::AA_DontUseNativeDialogs));
+    QFileDialog dialog;
+    dialog.setAcceptMode(QFileDialog::AcceptSave);
+    dialog.show();
+    for (const char* name : {"backButton", "toParentButton", "newFolderButton", "listModeButton"}) {
+      const auto* button = dialog.findChild<QAbstractButton*>(QLatin1String(name));
+      QVERIFY2(button, name);
+      QCOMPARE(ink(picture(button->icon(), 24)), theme().text);
+    }
+    QCOMPARE(ink(picture(dialog.iconProvider()->icon(QFileIconProvider::Folder), 24)), theme().text);
+    for (const QAbstractButton* button : dialog.findChild<QDialogButtonBox*>()->buttons())
+      QVERIFY2(button->icon().isNull(), qPrintable(button->text()));
+  }
+
+  void an_icon_without_room_is_drawn_without_a_warning() {
+    QTest::failOnWarning(QRegularExpression(".*"));
+    QVERIFY(icon("play").pixmap(QSize(0, 16)).isNull());
+    QPixmap paper(16, 16);
+    QPainter painter(&paper);
+    icon("play").paint(&painter, QRect(0, 0, 0, 0));
+  }
 
   void text_reads_on_every_surface_data() { both_themes(); }
   void text_reads_on_every_surface() {

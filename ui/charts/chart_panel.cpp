@@ -13,7 +13,7 @@ namespace clothlab {
 namespace {
 
 constexpr double key_pan = 0.1, key_zoom = 0.8;
-constexpr QSize smallest{260, 220};  // px
+constexpr QSize smallest{260, 290};  // px: with legends in two rows each plot has some 30
 
 }  // namespace
 

@@ -47,8 +47,6 @@ void set_ticks(QCategoryAxis* axis, Range range, std::vector<Tick> ticks) {
 void colour_axis(QCategoryAxis* axis, const Theme& colours, const QFont& font) {
   axis->setLabelsColor(colours.muted_text);
   axis->setLabelsFont(font);
-  axis->setTitleBrush(colours.muted_text);
-  axis->setTitleFont(font);
   axis->setGridLinePen(QPen(colours.grid_line, 1));
   axis->setLinePen(QPen(colours.border, 1));
 }
@@ -83,7 +81,6 @@ PlotScene::PlotScene(const ChartSpec& spec, bool time_labels, bool on_screen)
   time_axis_ = add_axis(chart_, carrier, Qt::AlignBottom);
   y_axis_ = add_axis(chart_, carrier, Qt::AlignLeft);
   time_axis_->setLabelsVisible(time_labels);
-  if (time_labels) time_axis_->setTitleText(QStringLiteral("Simulated time (s)"));
   curves_ = new CurvesItem(chart_);
   curves_->setZValue(100);
   if (on_screen) curves_->setCacheMode(QGraphicsItem::DeviceCoordinateCache);
@@ -94,15 +91,23 @@ PlotScene::PlotScene(const ChartSpec& spec, bool time_labels, bool on_screen)
 void PlotScene::set_look(const Theme& colours, const QFont& font) {
   setFont(font);
   field_ = colours.field;
+  title_colour_ = colours.muted_text;
   colour_axis(time_axis_, colours, font);
   colour_axis(y_axis_, colours, font);
   curves_->set_theme(colours);
   overlay_->set_look(colours, font);
 }
 
-/// Not by Qt Charts, whose own plot background reaches beyond a plot area that was set by hand.
+/// Not by Qt Charts, whose own plot background reaches beyond a plot area that was set by hand, and whose
+/// axis cuts its title in a low chart.
 void PlotScene::drawBackground(QPainter* painter, const QRectF&) {
   painter->fillRect(map_.plot, field_);
+  if (!time_labels_) return;
+  const QRectF below(map_.plot.left(), map_.plot.bottom(), map_.plot.width(), time_axis_height(font()));
+  painter->setFont(font());
+  painter->setPen(title_colour_);
+  painter->drawText(below.adjusted(0, 0, 0, -spacing / 2.0), Qt::AlignHCenter | Qt::AlignBottom,
+                    QStringLiteral("Simulated time (s)"));
 }
 
 void PlotScene::set_geometry(QSizeF size, const QRectF& plot) {

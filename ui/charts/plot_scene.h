@@ -51,7 +51,7 @@ class PlotScene : public QGraphicsScene {
   QCategoryAxis* y_axis_;
   CurvesItem* curves_;
   OverlayItem* overlay_;
-  QColor field_;
+  QColor field_, title_colour_;
   PlotMap map_;
   PlotFrame frame_;
 };

@@ -158,7 +158,8 @@ void LabWindow::showStudies() {
   const bool was_hidden = studies_dock_->isHidden();
   studies_dock_->show();
   studies_dock_->raise();
-  if (was_hidden) resizeDocks({studies_dock_}, {studies_height}, Qt::Vertical);
+  // The upper half of a low window keeps the larger part.
+  if (was_hidden) resizeDocks({studies_dock_}, {std::min(studies_height, height() * 9 / 20)}, Qt::Vertical);
 }
 
 void LabWindow::connectDocument() {

@@ -45,6 +45,7 @@ class ThemedIcon : public QIconEngine {
 
   /// `size` counts device pixels: QIcon multiplies by the screen's ratio before it asks.
   QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
+    if (size.isEmpty()) return {};
     if (on_accent_ && mode != QIcon::Disabled) mode = QIcon::Selected;
     const QColor colour = tint(name_, mode, state, theme());
     const QString key = QString("clothlab/%1/%2x%3/%4%5")

@@ -1,11 +1,11 @@
 #include "theme/theme.h"
 
 #include <QApplication>
-#include <QStyleFactory>
 #include <optional>
 
 #include "report/palette.h"
 #include "theme/follow_desktop.h"
+#include "theme/lab_style.h"
 
 namespace clothlab {
 namespace {
@@ -115,7 +115,8 @@ void show_theme(QApplication& application, const Theme& t) {
   chosen = &t;
   // A style sheet wraps the style, which then no longer shows whether it is Fusion: so that is remembered.
   if (!application.property("clothlab_styled").toBool()) {
-    QApplication::setStyle(QStyleFactory::create("Fusion"));
+    QApplication::setStyle(new LabStyle);
+    QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);  // they follow the desktop, not our theme
     application.setProperty("clothlab_styled", true);
   }
   QApplication::setPalette(palette_for(t));

@@ -98,7 +98,7 @@ QRectF TimelineTrack::line() const {
 
 QRectF TimelineTrack::placeOf(const HistoryMark& mark) const {
   const double left = placeOf(mark.from), right = placeOf(mark.to);
-  return {left - mark_height / 2, line().bottom() + 2, right - left + mark_height, mark_height};
+  return {left - mark_height, line().bottom() + 2, right - left + 2 * mark_height, mark_height};
 }
 
 QString TimelineTrack::marksAt(double x) const {

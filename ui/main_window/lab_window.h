@@ -131,7 +131,6 @@ class LabWindow : public QMainWindow {
   void compareMethods();
   void savePicture();
   void saveCloth();
-  void showAbout();
 
   // lab_window_files.cpp
   void openWithDialog();

@@ -2,13 +2,12 @@
 #include <QAction>
 #include <QDockWidget>
 #include <QMenuBar>
-#include <QMessageBox>
 #include <QToolBar>
 #include <QToolButton>
 
 #include "compare/builtin_comparisons.h"
 #include "document/result_files.h"
-#include "io/machine.h"
+#include "help/help_window.h"
 #include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
 #include "main_window/view_bar.h"
@@ -96,8 +95,7 @@ void LabWindow::makeMenus() {
   view->addSeparator();
   for (QDockWidget* dock : findChildren<QDockWidget*>()) view->addAction(dock->toggleViewAction());
 
-  QMenu* help = menuBar()->addMenu(tr("&Help"));
-  help->addAction(tr("About Clothlab"), this, &LabWindow::showAbout);
+  fill_help_menu(*menuBar()->addMenu(tr("&Help")), *this);
   makeToolBar();
 }
 
@@ -189,15 +187,6 @@ void LabWindow::saveCloth() {
   const ClothFrame frame = *shown;
   saveByDialog(tr("cloth"), {{tr("Meshes"), {".obj"}}},
                [&](const QString& path) { return save_cloth_file(frame, document_.title(), path); });
-}
-
-void LabWindow::showAbout() {
-  QMessageBox::about(
-      this, tr("About Clothlab"),
-      tr("<h3>Clothlab %1</h3><p>A lab for cloth simulation after Provot (1995): mass and springs, "
-         "deformation rate, integrators to compare.</p><p>Source under the MIT licence. This program uses "
-         "Qt Charts, so as a distributed binary it is under the GPL, version 3.</p>")
-          .arg(QString::fromStdString(cloth::version())));
 }
 
 }  // namespace clothlab

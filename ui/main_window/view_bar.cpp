@@ -131,7 +131,7 @@ QToolButton* ViewBar::makeCameraButton() {
   int key = 0;
   for (const auto& [preset, name] : presets) {
     QAction* action = menu->addAction(name, this, [this, which = preset] { panes_.setPreset(which); });
-    action->setShortcut(QStringLiteral("F%1").arg(++key));
+    action->setShortcut(QStringLiteral("Ctrl+%1").arg(++key));
   }
   camera_ = menu->actions();
   auto* button = named("cameraButton", new QToolButton(this));

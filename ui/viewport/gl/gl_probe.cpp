@@ -45,12 +45,13 @@ GlAbilities probe() {
     return QString::fromLatin1(reinterpret_cast<const char*>(context.functions()->glGetString(name)));
   };
   found.renderer = text(GL_RENDERER);
+  found.version = text(GL_VERSION);
   for (const char* name : {"llvmpipe", "softpipe", "SWR", "SwiftShader", "Software"})
     found.software = found.software || found.renderer.contains(QLatin1String(name), Qt::CaseInsensitive);
   const std::pair<int, int> version = context.format().version();
   found.usable = !context.isOpenGLES() && version >= std::pair(3, 3);
   if (!found.usable)
-    found.problem = words("This display offers %1; the view needs OpenGL 3.3.").arg(text(GL_VERSION));
+    found.problem = words("This display offers %1; the view needs OpenGL 3.3.").arg(found.version);
   context.doneCurrent();
   return found;
 }

@@ -9,6 +9,7 @@ struct GlAbilities {
   bool usable = false;    ///< OpenGL 3.3 core or later
   bool software = false;  ///< drawn by the processor (Mesa's llvmpipe and the like)
   QString renderer;       ///< the driver's own name
+  QString version;        ///< the driver's own text
   QString problem;        ///< why it is not usable, in words for a person
 };
 

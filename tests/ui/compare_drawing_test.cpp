@@ -1,5 +1,7 @@
 // What four large panes do to the window's thread.
 #include <QAction>
+#include <QOpenGLContext>
+#include <QOpenGLFunctions>
 #include <QStandardPaths>
 #include <map>
 
@@ -9,6 +11,7 @@
 #include "theme/theme.h"
 #include "viewport/drawing_turns.h"
 #include "viewport/gl/gl_probe.h"
+#include "viewport/gl_canvas.h"
 
 namespace clothlab::test::compare_drawing_test {
 namespace {
@@ -69,6 +72,39 @@ class Patient : public DrawingTurns::Drawer {
   std::vector<std::int64_t>& events_;
 };
 
+/// A canvas in a window of its own that shows one colour.
+class OneColour {
+ public:
+  explicit OneColour(QColor colour) : colour_(colour) {
+    canvas_ = make_memory_canvas(&window_, {.initialise = [] {},
+                                            .resized = [](int, int) {},
+                                            .draw = [this](bool) { clear(); },
+                                            .paint_over = [](QPainter&) {},
+                                            .shown = [this](double) { ++shown_; }});
+    window_.resize(60, 40);
+    canvas_->widget().setGeometry(window_.rect());
+    canvas_->setSmoothAtRest(false);
+    window_.show();
+  }
+  ~OneColour() { canvas_.reset(); }
+
+  void redraw() { canvas_->redraw(); }
+  int shown() const { return shown_; }
+  bool shows_its_colour() { return window_.grab().toImage().pixelColor(30, 20) == colour_; }
+
+ private:
+  void clear() {
+    QOpenGLFunctions* gl = QOpenGLContext::currentContext()->functions();
+    gl->glClearColor(colour_.redF(), colour_.greenF(), colour_.blueF(), 1);
+    gl->glClear(GL_COLOR_BUFFER_BIT);
+  }
+
+  QColor colour_;
+  QWidget window_;
+  std::unique_ptr<GlCanvas> canvas_;
+  int shown_ = 0;
+};
+
 }  // namespace
 
 class CompareDrawingTest : public QObject {
@@ -93,6 +129,17 @@ class CompareDrawingTest : public QObject {
     for (std::size_t turn = 0; turn < 4; ++turn) {
       QVERIFY(events[0][turn] < events[1][turn]);
       if (turn > 0) QVERIFY(events[1][turn - 1] < events[0][turn]);
+    }
+  }
+
+  /// All pictures are handed over before the pixels of the first are fetched.
+  void each_canvas_shows_its_own_picture() {
+    OneColour canvases[] = {OneColour(Qt::red), OneColour(Qt::green), OneColour(Qt::blue)};
+    for (int round = 1; round <= 5; ++round) {
+      for (OneColour& canvas : canvases) canvas.redraw();
+      for (OneColour& canvas : canvases) QTRY_VERIFY(canvas.shown() >= round);
+      QTest::qWait(50);
+      for (OneColour& canvas : canvases) QVERIFY(canvas.shows_its_colour());
     }
   }
 

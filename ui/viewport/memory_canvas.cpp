@@ -205,7 +205,7 @@ void MemoryCanvas::setSmoothAtRest(bool on) {
   if (on && !stale_) rest_timer_.start();
 }
 
-/// Leaves the picture in `plain_`, bound. With a current context.
+/// Leaves the picture in `plain_`. With a current context.
 void MemoryCanvas::submit(Quality quality) {
   if (!plain_ || plain_->size() != pixels()) {
     plain_ = make_target(pixels(), 0);
@@ -218,10 +218,11 @@ void MemoryCanvas::submit(Quality quality) {
   shared_->context.functions()->glViewport(0, 0, plain_->width(), plain_->height());
   callbacks_.draw(!smooth);
   if (smooth) QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
-  plain_->bind();
 }
 
+/// Another canvas may have drawn meanwhile, and have left its framebuffer bound.
 void MemoryCanvas::readPicture() {
+  plain_->bind();
   if (picture_.size() != plain_->size()) picture_ = QImage(plain_->size(), QImage::Format_RGB32);
   picture_.setDevicePixelRatio(devicePixelRatioF());
   QOpenGLFunctions* gl = shared_->context.functions();

@@ -52,6 +52,18 @@ std::vector<FileKind> ChartArea::kinds() {
   return {{tr("Picture"), {".png"}}, {tr("Drawing"), {".svg"}}, {tr("Points"), {".csv"}}};
 }
 
+std::map<QString, bool> ChartArea::logarithmicAxes() {
+  for (const LiveChart* chart : stack_.charts()) axes_[chart->spec().key] = chart->is_logarithmic();
+  return axes_;
+}
+
+void ChartArea::setLogarithmicAxes(const std::map<QString, bool>& axes) {
+  axes_ = axes;
+  for (LiveChart* chart : stack_.charts())
+    if (const auto axis = axes_.find(chart->spec().key); axis != axes_.end())
+      chart->set_logarithmic(axis->second);
+}
+
 void ChartArea::data_changed() {
   stale_ = true;
   if (isVisible() && !data_timer_.isActive()) data_timer_.start();

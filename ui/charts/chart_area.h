@@ -8,6 +8,7 @@
 
 #include <QTimer>
 #include <QWidget>
+#include <map>
 
 #include "charts/chart_export.h"
 #include "charts/chart_stack.h"
@@ -33,6 +34,10 @@ class ChartArea : public QWidget {
   /// Saves as PNG, SVG or CSV, by the path's suffix; empty, or what went wrong.
   QString save(const QString& path);
   static std::vector<FileKind> kinds();  ///< those three
+
+  /// By the charts' keys; a chart that is not there takes its axis when it comes.
+  std::map<QString, bool> logarithmicAxes();
+  void setLogarithmicAxes(const std::map<QString, bool>& axes);
 
   const ChartRecord& record() const { return record_; }
 
@@ -63,6 +68,7 @@ class ChartArea : public QWidget {
 
   ChartRecord record_;
   ChartStack stack_;
+  std::map<QString, bool> axes_;  ///< by the charts' keys: whether they are logarithmic
 
  private:
   void refresh();

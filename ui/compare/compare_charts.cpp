@@ -84,6 +84,7 @@ void CompareCharts::forgetAllBut(const std::vector<int>& styles) {
 }
 
 void CompareCharts::deleteCharts() {
+  logarithmicAxes();  // as the user chose them
   const std::vector<LiveChart*> charts = stack_.charts();
   stack_.clear();
   qDeleteAll(charts);

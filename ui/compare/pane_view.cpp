@@ -155,7 +155,7 @@ void PaneView::setAlone(bool alone) {
   const int margin = alone ? 0 : frame_width;
   layout()->setContentsMargins(margin, margin, margin, margin);
   header_->setVisible(!alone);
-  view_->setMinimumSize(alone ? QSize(320, 160) : QSize(160, 72));
+  view_->setMinimumSize(alone ? QSize(320, 160) : QSize(160, 56));
   if (alone) forgetStop();  // the window says it
   update();
 }

@@ -47,6 +47,15 @@ void RecentPaths::remember(const QString& path) const {
   QSettings().setValue(key, QStringList(paths.mid(0, most)));
 }
 
+QString last_folder(const QString& kind) {
+  const QString folder = QSettings().value("folders/" + kind).toString();
+  return QFileInfo(folder).isDir() ? folder : QString();
+}
+
+void remember_folder(const QString& kind, const QString& path) {
+  QSettings().setValue("folders/" + kind, QFileInfo(path).absolutePath());
+}
+
 QString write_file(const QString& path, const QByteArray& bytes) {
   const auto error = cloth::write_user_file(path.toStdString(), bytes.toStdString());
   return error ? QString::fromStdString(error->message) : QString();

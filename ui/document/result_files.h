@@ -24,6 +24,11 @@ struct RecentPaths {
   void remember(const QString& path) const;
 };
 
+/// The folder that a dialog for this kind of file was last used in, stored in QSettings; empty: none yet.
+QString last_folder(const QString& kind);
+/// Of a file that was chosen in the dialog.
+void remember_folder(const QString& kind, const QString& path);
+
 /// Writes a file atomically: after an error the old file is unchanged. Returns the error; empty on success.
 QString write_file(const QString& path, const QByteArray& bytes);
 

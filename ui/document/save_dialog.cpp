@@ -10,6 +10,8 @@
 #include <QRegularExpression>
 #include <algorithm>
 
+#include "document/result_files.h"
+
 namespace clothlab {
 namespace {
 
@@ -68,12 +70,16 @@ QString ask_where_to_save(QWidget* parent, const QString& title, const std::vect
   dialog.setAcceptMode(QFileDialog::AcceptSave);
   dialog.setOption(QFileDialog::DontConfirmOverwrite);  // the final name is asked about, not the one typed
   dialog.setNameFilters(filters);
-  if (!suggestion.isEmpty()) suggest(dialog, suggestion);
+  const QString kind = kinds.front().suffixes.front().mid(1);
+  if (!suggestion.isEmpty())
+    suggest(dialog, suggestion);
+  else if (const QString folder = last_folder(kind); !folder.isEmpty())
+    dialog.setDirectory(folder);
   while (dialog.exec() == QDialog::Accepted) {
     QString path = dialog.selectedFiles().value(0);
     suggest(dialog, path);
     const QString suffix = suffix_of(path);
-    const auto is_of = [&](const FileKind& kind) { return kind.suffixes.contains(suffix); };
+    const auto is_of = [&](const FileKind& one) { return one.suffixes.contains(suffix); };
     if (suffix.isEmpty()) {
       const auto chosen = std::max<qsizetype>(0, filters.indexOf(dialog.selectedNameFilter()));
       path += kinds[static_cast<std::size_t>(chosen)].suffixes.front();
@@ -81,7 +87,9 @@ QString ask_where_to_save(QWidget* parent, const QString& title, const std::vect
       refuse(parent, title, path, kinds);
       continue;
     }
-    if (!QFileInfo::exists(path) || may_replace(parent, title, path)) return path;
+    if (QFileInfo::exists(path) && !may_replace(parent, title, path)) continue;
+    remember_folder(kind, path);
+    return path;
   }
   return {};
 }

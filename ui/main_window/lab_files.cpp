@@ -21,6 +21,12 @@
 namespace clothlab {
 namespace {
 
+constexpr int most_recent = 8;
+
+bool is_there(const QString& path) {
+  return QFileInfo::exists(path);
+}
+
 QString lines_of(const std::vector<cloth::Problem>& problems) {
   QStringList lines;
   for (const cloth::Problem& problem : problems) lines << QString::fromStdString(problem.text());
@@ -141,8 +147,9 @@ QString save_scene_file(const cloth::Scene& scene, const QString& path) {
                                         cloth::write_scene(moved_to_folder(scene, folder_of(path).path))));
 }
 
-const RecentPaths recent_documents{"recentScenes", 8,
-                                   [](const QString& path) { return QFileInfo::exists(path); }};
+const RecentPaths recent_scenes{"recentScenes", most_recent, is_there},
+    recent_sessions{"recentSessions", most_recent, is_there},
+    recent_comparisons{"recentComparisons", most_recent, is_there};
 
 OpenedComparison open_comparison(const QString& name) {
   const QFileInfo file(name);

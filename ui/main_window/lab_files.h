@@ -41,7 +41,7 @@ OpenedScene open_scene(const QString& name);
 /// Empty when done, else what went wrong.
 QString save_scene_file(const cloth::Scene& scene, const QString& path);
 
-extern const RecentPaths recent_documents;  ///< files of scenes, sessions and comparisons
+extern const RecentPaths recent_scenes, recent_sessions, recent_comparisons;  ///< files
 
 /// A comparison, or the errors that prevented opening it.
 struct OpenedComparison {

@@ -46,8 +46,8 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
   connectHand();
   connectPanes();
   connectRun();
+  recall();
   showKind();
-  updateTitle();
 }
 
 /// The widgets refer to the document and the link.
@@ -93,9 +93,7 @@ void LabWindow::makeDocks() {
   charts_dock_->installEventFilter(this);
   ranking_dock_ = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
   ranking_dock_->hide();
-  studies_dock_ = named("studiesDock", new QDockWidget(tr("Studies"), this));
-  studies_dock_->setWidget(studies_);
-  addDockWidget(Qt::BottomDockWidgetArea, studies_dock_);
+  studies_dock_ = addDock(tr("Studies"), "studiesDock", studies_, Qt::BottomDockWidgetArea);
   studies_dock_->hide();
   connect(studies_dock_, &QDockWidget::visibilityChanged, this, &LabWindow::placeCorners);
 }
@@ -110,7 +108,6 @@ void LabWindow::placeCorners() {
 QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
                                 Qt::DockWidgetArea area) {
   auto* dock = named(name, new QDockWidget(title, this));
-  dock->setTitleBarWidget(new QWidget(dock));  // the panels have heads of their own
   dock->setWidget(content);
   addDockWidget(area, dock);
   return dock;

@@ -128,9 +128,14 @@ class LabWindow : public QMainWindow {
   void makeEditMenu();
   void makeToolBar();
   void fillRecentMenu();
+  void fillThemeMenu(QMenu& menu);
   void compareMethods();
   void savePicture();
   void saveCloth();
+
+  // lab_window_memory.cpp
+  void remember();
+  void recall();
 
   // lab_window_files.cpp
   void openWithDialog();

@@ -50,7 +50,7 @@ bool LabWindow::isSound(const QString& what, const QString& problems) {
 
 bool LabWindow::load(const OpenedScene& opened) {
   if (!mayLoseChanges()) return false;
-  if (!opened.path.isEmpty()) recent_documents.remember(opened.path);
+  if (!opened.path.isEmpty()) (opened.session ? recent_sessions : recent_scenes).remember(opened.path);
   session_ = opened.session;
   transport_->suitDuration(opened.scene->duration);
   document_.load(*opened.scene, opened.session ? QString() : opened.path);
@@ -59,7 +59,7 @@ bool LabWindow::load(const OpenedScene& opened) {
 
 bool LabWindow::load(const OpenedComparison& opened) {
   if (!mayLoseChanges()) return false;
-  if (!opened.path.isEmpty()) recent_documents.remember(opened.path);
+  if (!opened.path.isEmpty()) recent_comparisons.remember(opened.path);
   transport_->suitDuration(opened.comparison->scene.duration);
   document_.load(*opened.comparison, opened.path);
   return true;
@@ -88,8 +88,11 @@ void LabWindow::openRun(const cloth::Scene& scene, const QString& note) {
 }
 
 void LabWindow::openWithDialog() {
-  const QString path = QFileDialog::getOpenFileName(this, tr("Open"), document_.path(), open_filter());
-  if (!path.isEmpty()) open(path);
+  const QString start = document_.path().isEmpty() ? last_folder("open") : document_.path();
+  const QString path = QFileDialog::getOpenFileName(this, tr("Open"), start, open_filter());
+  if (path.isEmpty()) return;
+  remember_folder("open", path);
+  open(path);
 }
 
 void LabWindow::dragEnterEvent(QDragEnterEvent* event) {
@@ -111,7 +114,7 @@ bool LabWindow::saveAs() {
 bool LabWindow::saveTo(const QString& path) {
   const QString problem = document_.isComparison() ? save_comparison_file(document_.comparison(), path)
                                                    : save_scene_file(document_.scene(), path);
-  if (problem.isEmpty()) recent_documents.remember(path);
+  if (problem.isEmpty()) (document_.isComparison() ? recent_comparisons : recent_scenes).remember(path);
   const bool saved = saySaved(what(), path, problem);
   if (saved) document_.markSaved(path);
   return saved;
@@ -194,6 +197,7 @@ void LabWindow::closeEvent(QCloseEvent* event) {
   link_.send(command::Pause{});
   link_.send(command::StopRecording{});
   studies_->stop();
+  remember();
   event->accept();
 }
 

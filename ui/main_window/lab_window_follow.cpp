@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
 #include "theme/theme.h"
 
@@ -117,10 +118,10 @@ void LabWindow::followSession(const WorkerStatus& status) {
                     tr("Session: %1").arg(QString::fromStdString(status.session_error)));
     if (link_.isUpToDate()) saving_session_.clear();
   } else if (!saving_session_.isEmpty() && link_.isUpToDate()) {
-    notice_->show("session", NoticeBar::Level::info,
-                  tr("Saved the session of %1 s in %2")
-                      .arg(status.history.last_time, 0, 'f', 3)
-                      .arg(std::exchange(saving_session_, QString())));
+    notice_->show(
+        "session", NoticeBar::Level::info,
+        tr("Saved the session of %1 s in %2").arg(status.history.last_time, 0, 'f', 3).arg(saving_session_));
+    recent_sessions.remember(std::exchange(saving_session_, QString()));
   }
   if (!status.session_agrees || status.session_agrees == shown_status_.session_agrees) return;
   if (*status.session_agrees)

@@ -1,5 +1,6 @@
 // LabWindow: actions, menus and bars, and what their entries show.
 #include <QAction>
+#include <QApplication>
 #include <QDockWidget>
 #include <QMenuBar>
 #include <QToolBar>
@@ -94,6 +95,8 @@ void LabWindow::makeMenus() {
   view_bar_->fillMenu(*view);
   view->addSeparator();
   for (QDockWidget* dock : findChildren<QDockWidget*>()) view->addAction(dock->toggleViewAction());
+  view->addSeparator();
+  fillThemeMenu(*view->addMenu(tr("Theme")));
 
   fill_help_menu(*menuBar()->addMenu(tr("&Help")), *this);
   makeToolBar();
@@ -163,9 +166,31 @@ void LabWindow::makeToolBar() {
 
 void LabWindow::fillRecentMenu() {
   recent_menu_->clear();
-  const QStringList recent = recent_documents.list();
-  for (const QString& path : recent) recent_menu_->addAction(path, this, [this, path] { open(path); });
-  if (recent.isEmpty()) recent_menu_->addAction(tr("No file was opened yet"))->setEnabled(false);
+  const std::pair<QString, const RecentPaths&> kinds[] = {{tr("Scenes"), recent_scenes},
+                                                          {tr("Sessions"), recent_sessions},
+                                                          {tr("Comparisons"), recent_comparisons}};
+  for (const auto& [title, paths] : kinds) {
+    const QStringList recent = paths.list();
+    if (!recent.isEmpty()) recent_menu_->addSection(title);
+    for (const QString& path : recent) recent_menu_->addAction(path, this, [this, path] { open(path); });
+  }
+  if (recent_menu_->isEmpty()) recent_menu_->addAction(tr("No file was opened yet"))->setEnabled(false);
+}
+
+void LabWindow::fillThemeMenu(QMenu& menu) {
+  const std::pair<const char*, QString> choices[] = {
+      {"", tr("As the desktop")}, {"light", tr("Light")}, {"dark", tr("Dark")}};
+  auto* group = new QActionGroup(&menu);
+  for (const auto& [name, text] : choices) {
+    QAction* action = menu.addAction(text, this, [name] { choose_theme(*qApp, QLatin1String(name)); });
+    action->setObjectName(QStringLiteral("theme:") + name);
+    action->setCheckable(true);
+    group->addAction(action);
+  }
+  connect(&menu, &QMenu::aboutToShow, group, [group] {
+    for (QAction* action : group->actions())
+      action->setChecked(action->objectName() == "theme:" + chosen_theme());
+  });
 }
 
 void LabWindow::compareMethods() {

@@ -78,6 +78,15 @@ void TransportBar::fillSpeeds() {
           [this](int index) { Q_EMIT speedChosen(speed_->itemData(index).toDouble()); });
 }
 
+/// Not the lower one for a short scene.
+double TransportBar::speed() const {
+  return speed_->itemData(speed_before_.value_or(speed_->currentIndex())).toDouble();
+}
+
+void TransportBar::setSpeed(double factor) {
+  if (const int index = speed_->findData(factor); index >= 0) speed_->setCurrentIndex(index);
+}
+
 void TransportBar::suitDuration(double seconds) {
   constexpr double blink = 0.2;  // s
   constexpr int slowest = 0;

@@ -25,6 +25,8 @@ class TransportBar : public QFrame {
   /// Called for a newly opened scene: selects a lower speed if its duration is very short; for the next
   /// longer scene restores the previous speed.
   void suitDuration(double seconds);
+  double speed() const;          ///< as chosen
+  void setSpeed(double factor);  ///< nothing if it is not offered
   StabilityGauge& gauge() { return *gauge_; }
 
  Q_SIGNALS:

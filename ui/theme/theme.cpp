@@ -1,6 +1,7 @@
 #include "theme/theme.h"
 
 #include <QApplication>
+#include <QSettings>
 #include <optional>
 
 #include "report/palette.h"
@@ -131,8 +132,18 @@ void apply_theme(QApplication& application, bool dark) {
   show_theme(application, dark ? dark_theme() : light_theme());
 }
 
+QString chosen_theme() {
+  return QSettings().value("theme").toString();
+}
+
+void choose_theme(QApplication& application, const QString& choice) {
+  QSettings().setValue("theme", choice);
+  apply_theme(application);
+}
+
 void apply_theme(QApplication& application) {
-  const QByteArray wish = qgetenv("CLOTHLAB_THEME").trimmed().toLower();
+  QString wish = qEnvironmentVariable("CLOTHLAB_THEME").trimmed().toLower();
+  if (wish.isEmpty()) wish = chosen_theme();
   if (wish == "dark" || wish == "light") {
     apply_theme(application, wish == "dark");
     return;

@@ -30,9 +30,13 @@ const Theme& light_theme();
 const Theme& dark_theme();
 
 /// Fusion style, palette and style sheet. Follows the desktop: dark when the desktop's window colour is dark,
-/// unless the environment variable CLOTHLAB_THEME says "light" or "dark".
+/// unless the environment variable CLOTHLAB_THEME or else the user's choice says "light" or "dark".
 void apply_theme(QApplication& application);
 void apply_theme(QApplication& application, bool dark);
+
+/// The user's choice, which is kept in QSettings: "light", "dark", or empty for that of the desktop.
+QString chosen_theme();
+void choose_theme(QApplication& application, const QString& choice);
 
 QPalette palette_for(const Theme& theme);
 

@@ -1,0 +1,139 @@
+// What a window remembers for the next one, by real clicks and keys.
+#include <QComboBox>
+#include <QDockWidget>
+#include <QMenu>
+#include <QSettings>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+
+#include "charts/live_chart.h"
+#include "compare_bench.h"
+#include "dialogs.h"
+#include "listed_test.h"
+#include "window_bench.h"
+
+namespace clothlab::test::memory_test {
+namespace {
+
+QStringList recent(LabWindow& window) {
+  for (QMenu* menu : window.findChildren<QMenu*>())
+    if (menu->title() == "Recent") {
+      Q_EMIT menu->aboutToShow();
+      QStringList entries;
+      for (const QAction* action : menu->actions()) entries << action->text();
+      return entries;
+    }
+  return {};
+}
+
+}  // namespace
+
+class MemoryTest : public QObject {
+  Q_OBJECT
+
+ private Q_SLOTS:
+  void initTestCase() {
+    QStandardPaths::setTestModeEnabled(true);
+    QApplication::setOrganizationName("Clothlab");
+    QApplication::setApplicationName("clothlab-memory-test");
+    QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
+    QApplication::setQuitOnLastWindowClosed(false);
+    apply_theme(*qApp, false);
+  }
+
+  void init() { QSettings().clear(); }
+  void cleanupTestCase() { QSettings().clear(); }
+
+  void size_docks_speed_and_mode_come_back() {
+    {
+      WindowBench bench("corners-free");
+      bench.window.resize(1200, 760);
+      bench.window.findChild<QDockWidget*>("chartsDock")->toggleViewAction()->trigger();
+      bench.window.findChild<QComboBox*>("speed")->setCurrentText("2x");
+      QTest::keyClick(&bench.window, Qt::Key_S);
+      QTest::qWait(100);
+      bench.window.close();
+    }
+    WindowBench again("corners-free");
+    QCOMPARE(again.window.size(), QSize(1200, 760));
+    QVERIFY(!again.window.findChild<QDockWidget*>("chartsDock")->isVisible());
+    QCOMPARE(again.window.findChild<QComboBox*>("speed")->currentText(), QString("2x"));
+    QCOMPARE(again.window.view().mode(), ViewMode::strain);
+    QVERIFY(again.window.findChild<QAction*>("modeStrain")->isChecked());
+    again.settle();
+    QCOMPARE(again.status().speed, 2.0);
+  }
+
+  void a_logarithmic_axis_stays_where_panes_change_and_comes_back() {
+    {
+      CompareBench bench;
+      LiveChart* chart = bench.window.paneCharts().chart("compare_energy");
+      QVERIFY(chart && !chart->is_logarithmic());
+      chart->set_logarithmic(true);
+      bench.choose(0, "duplicate");
+      QVERIFY(bench.window.paneCharts().chart("compare_energy")->is_logarithmic());
+      bench.window.close();
+    }
+    CompareBench again;
+    QVERIFY(again.window.paneCharts().chart("compare_energy")->is_logarithmic());
+    QVERIFY(again.window.paneCharts().chart("compare_difference")->is_logarithmic());
+    QVERIFY(!again.window.paneCharts().chart("compare_strain")->is_logarithmic());
+  }
+
+  void recent_files_are_listed_by_kind() {
+    QTemporaryDir folder;
+    WindowBench bench("corners-free");
+    QCOMPARE(recent(bench.window), QStringList("No file was opened yet"));
+    const QString scene = folder.filePath("x.scene.json"), session = folder.filePath("x.session.json"),
+                  comparison = folder.filePath("x.compare.json");
+    QVERIFY(bench.window.saveTo(scene));
+    bench.window.saveSession(session);
+    bench.settle();
+    QTest::keyClick(&bench.window, Qt::Key_D, Qt::ControlModifier);
+    QVERIFY(bench.window.saveTo(comparison));
+    QCOMPARE(recent(bench.window),
+             (QStringList{"Scenes", scene, "Sessions", session, "Comparisons", comparison}));
+  }
+
+  void a_dialog_begins_in_the_folder_it_was_last_used_in() {
+    QTemporaryDir folder;
+    WindowBench bench("corners-free");
+    {
+      Answers answers;
+      answers.type(folder.filePath("one.png"));
+      bench.action("savePicture")->trigger();
+      QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+    }
+    Answers answers;
+    answers.type("two");
+    bench.action("savePicture")->trigger();
+    QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+    QVERIFY(QFile::exists(folder.filePath("two.png")));
+  }
+
+  void the_theme_that_was_chosen_is_kept() {
+    WindowBench bench("corners-free");
+    bench.window.findChild<QAction*>("theme:dark")->trigger();
+    QVERIFY(theme().dark);
+    apply_theme(*qApp, false);
+    apply_theme(*qApp);  // as the next start does
+    QVERIFY(qEnvironmentVariableIsSet("CLOTHLAB_THEME") || theme().dark);
+    choose_theme(*qApp, {});
+    apply_theme(*qApp, false);
+  }
+
+  void docks_have_title_bars_to_move_them_by() {
+    WindowBench bench("corners-free");
+    for (const char* name : {"parametersDock", "chartsDock", "studiesDock", "rankingDock"}) {
+      const auto* dock = bench.window.findChild<QDockWidget*>(name);
+      QVERIFY(dock && !dock->titleBarWidget());
+      QVERIFY(dock->features() & QDockWidget::DockWidgetMovable);
+    }
+  }
+};
+
+const Listed listed{"memory_test", test_main<MemoryTest>};
+
+}  // namespace clothlab::test::memory_test
+
+#include "memory_test.moc"

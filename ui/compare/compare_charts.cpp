@@ -118,6 +118,7 @@ void CompareCharts::makeCharts() {
     specs_.push_back(std::move(spec));
     chart->show();
   }
+  setLogarithmicAxes(std::map<QString, bool>(axes_));
   lay_out();
   data_changed();
 }

@@ -66,11 +66,13 @@ void HelpBrowser::doSetSource(const QUrl& name, QTextDocument::ResourceType type
   const bool is_made = pages_.contains(pageOf(name));
   QTextBrowser::doSetSource(name, is_made ? QTextDocument::HtmlResource : type);
   if (!is_made) dressTables();
-  showHeading(name.fragment());
+  if (name.hasFragment()) showHeading(name.fragment());
 }
 
 /// Single thin lines, and room around the text.
 void HelpBrowser::dressTables() {
+  QTextCursor edit(document());
+  edit.beginEditBlock();  // laid out once, not for each table
   for (QTextFrame* frame : document()->rootFrame()->childFrames()) {
     auto* table = qobject_cast<QTextTable*>(frame);
     if (!table) continue;
@@ -83,16 +85,17 @@ void HelpBrowser::dressTables() {
     format.setBorderBrush(theme().border);
     table->setFormat(format);
   }
+  edit.endEditBlock();
 }
 
-void HelpBrowser::showHeading(const QString& slug) {
-  if (slug.isEmpty()) return;
+bool HelpBrowser::showHeading(const QString& slug) {
   for (QTextBlock block = document()->begin(); block.isValid(); block = block.next()) {
     if (block.blockFormat().headingLevel() == 0 || slug_of(block.text()) != slug) continue;
     const QRectF place = document()->documentLayout()->blockBoundingRect(block);
     verticalScrollBar()->setValue(static_cast<int>(place.top()));
-    return;
+    return true;
   }
+  return false;
 }
 
 /// Links keep the colour that the document was made with.

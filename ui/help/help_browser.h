@@ -20,6 +20,8 @@ class HelpBrowser : public QTextBrowser {
   void showPage(const QString& name);
   /// The file's or page's name: "guide.md", "methods/verlet.md".
   static QString pageOf(const QUrl& source);
+  /// Goes to a heading of the page shown, by the name that links have for it; false if there is none.
+  bool showHeading(const QString& slug);
 
   QVariant loadResource(int type, const QUrl& name) override;
 
@@ -29,7 +31,6 @@ class HelpBrowser : public QTextBrowser {
 
  private:
   void follow(const QUrl& link);
-  void showHeading(const QString& slug);
   void dressTables();
 
   QHash<QString, std::function<QString()>> pages_;

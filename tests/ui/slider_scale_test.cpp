@@ -52,7 +52,8 @@ class SliderScaleTest : public QObject {
         QVERIFY(value >= last);
         last = value;
         const double again = scale.value_at(scale.position_of(value));
-        QVERIFY2(close(value, again, 1e-12), qPrintable(exact_text(value) + " " + exact_text(again)));
+        QVERIFY2(close(value, again, 1e-12), qPrintable(quantity_text(value, {}, cloth::all_digits) + " " +
+                                                        quantity_text(again, {}, cloth::all_digits)));
       }
     }
     const SliderScale from_zero(scaled(cloth::Scale::logarithmic, 0, 1));

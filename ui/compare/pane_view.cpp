@@ -136,13 +136,11 @@ void PaneView::takeStep(const QString& text) {
     Q_EMIT stepChosen(std::string("auto"));
     return;
   }
-  auto step = number_from(typed, "s");
-  if (!step)
-    if (const auto milliseconds = number_from(typed, "ms")) step = 1e-3 * *milliseconds;
-  if (step)
-    Q_EMIT stepChosen(*step);
+  const cloth::Quantity step = typed_quantity(text, "s");
+  if (step.ok())
+    Q_EMIT stepChosen(step.value);
   else
-    showStepRule(tr("must be a number of seconds or \"auto\""));
+    showStepRule(tr("%1, or \"auto\"").arg(typographic(QString::fromStdString(step.rule))));
 }
 
 void PaneView::showStepRule(const QString& rule) {

@@ -36,10 +36,12 @@ int steps_of(const QKeyEvent& key) {
 ExactField::ExactField(QWidget* parent) : QLineEdit(parent) {
   setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
   setMaxLength(64);
+  setLayoutDirection(Qt::LeftToRight);  // numbers and units are read so in every script
   connect(this, &QLineEdit::textEdited, this, [this] { setInvalid(false); });
+  connect(this, &QLineEdit::textChanged, this, &ExactField::updateMargins);
 }
 
-void ExactField::setUnit(const QString& unit) {
+void ExactField::setUnit(const std::string& unit) {
   unit_ = unit;
   updateMargins();
 }
@@ -49,16 +51,33 @@ void ExactField::setPrefix(const QString& text) {
   updateMargins();
 }
 
+/// None beside a text with letters other than an exponent's: it has a unit of its own.
+QString ExactField::shownUnit() const {
+  if (text().isEmpty() && !placeholderText().isEmpty()) return {};
+  if (text() == short_ && !hasFocus()) return short_unit_;
+  QString typed = text();
+  typed.remove("pi");
+  for (qsizetype at = 0; at < typed.size(); ++at) {
+    const bool is_exponent =
+        typed[at].toLower() == 'e' && at > 0 && (typed[at - 1].isDigit() || typed[at - 1] == '.');
+    if ((typed[at].isLetter() && !is_exponent) || QStringLiteral("%°").contains(typed[at])) return {};
+  }
+  return unit_text(unit_);
+}
+
 void ExactField::updateMargins() {
   const auto room = [this](const QString& text) {
     return text.isEmpty() ? 0 : fontMetrics().horizontalAdvance(text) + gap;
   };
-  setTextMargins(room(prefix_), 0, room(unit_), 0);
+  setTextMargins(room(prefix_), 0, room(shownUnit()), 0);
 }
 
 void ExactField::showValue(double value) {
-  short_ = short_text(value);
-  exact_ = exact_text(value);
+  constexpr int short_digits = 6;
+  const cloth::ShownQuantity shown = cloth::shown_quantity(value, unit_, short_digits);
+  short_ = QString::fromStdString(shown.number);
+  short_unit_ = QString::fromStdString(shown.unit);
+  exact_ = QString::fromStdString(cloth::shown_number(value, cloth::all_digits));
   setPlaceholderText({});
   abandonEdit();
 }
@@ -78,7 +97,7 @@ void ExactField::abandonEdit() {
 
 void ExactField::showText() {
   const QString& wanted = hasFocus() ? exact_ : short_;
-  if (text() == wanted) return;
+  if (text() == wanted) return updateMargins();
   const bool all_selected = hasSelectedText() && selectedText() == text();
   setText(wanted);
   if (all_selected)
@@ -100,10 +119,10 @@ void ExactField::commit() {
 }
 
 bool ExactField::event(QEvent* event) {
-  // With nothing typed, undo and redo are the document's, not the line's.
+  // With nothing typed, undo and redo are the document's, not the line's, and Space plays.
   if (event->type() == QEvent::ShortcutOverride && !isModified()) {
     auto* key = static_cast<QKeyEvent*>(event);
-    if (key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo)) {
+    if (key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo) || key->key() == Qt::Key_Space) {
       event->ignore();
       return false;
     }
@@ -114,7 +133,7 @@ bool ExactField::event(QEvent* event) {
 void ExactField::keyPressEvent(QKeyEvent* event) {
   if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter) {
     commit();
-    if (!invalid_) clearFocus();  // done here: keys belong to the window again, Space plays
+    selectAll();
     return;
   }
   if (event->key() == Qt::Key_Escape && hasPendingText()) {
@@ -181,7 +200,7 @@ void ExactField::paintEvent(QPaintEvent* event) {
       style()->subElementRect(QStyle::SE_LineEditContents, &option, this).adjusted(2, 0, -2, 0);
   QPainter painter(this);
   painter.setPen(isEnabled() ? theme().muted_text : theme().disabled_text);
-  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignRight, unit_);
+  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignRight, shownUnit());
   painter.drawText(inside, Qt::AlignVCenter | Qt::AlignLeft, prefix_);
 }
 

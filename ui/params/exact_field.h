@@ -1,8 +1,10 @@
-// A field for one exact number with its unit: what is typed is what is stored. It shows six digits while
-// it is not edited and all of them while it has the focus; showing never changes the value.
+// A field for one exact number with its unit: what is typed is what is stored. It shows six digits and the
+// unit with a prefix while it is not edited, and all digits in the unit itself while it has the focus;
+// showing never changes the value.
 #pragma once
 
 #include <QLineEdit>
+#include <string>
 
 namespace clothlab {
 
@@ -12,12 +14,12 @@ class ExactField : public QLineEdit {
  public:
   explicit ExactField(QWidget* parent = nullptr);
 
-  void setUnit(const QString& unit);    ///< after the number, muted
-  void setPrefix(const QString& text);  ///< before the number, muted: an axis
+  void setUnit(const std::string& unit);  ///< after the number, muted
+  void setPrefix(const QString& text);    ///< before the number, muted: an axis
 
   /// Shows a value and discards text being typed.
   void showValue(double value);
-  /// Shows that there is no number; `hint` stands in its place, muted.
+  /// Shows that there is no number; `hint`, with a unit of its own, stands in its place, muted.
   void showNothing(const QString& hint);
 
   /// Whether the text is not in the document: it is being typed, or was refused.
@@ -48,11 +50,13 @@ class ExactField : public QLineEdit {
  private:
   void commit();
   void showText();
+  QString shownUnit() const;
   void updateMargins();
   void endSteps();
 
-  QString unit_, prefix_;
-  QString short_, exact_;  ///< of the value shown
+  std::string unit_;
+  QString prefix_;
+  QString short_, short_unit_, exact_;  ///< of the value shown
   bool invalid_ = false;
   bool stepping_ = false;
   bool select_on_release_ = false;

@@ -28,7 +28,7 @@ NumberEditor::NumberEditor(LabDocument& document, const cloth::Parameter& parame
       field_(new ExactField(this)) {
   name(*slider_, "slider");
   name(*field_, "field", tr("exact value"));
-  field_->setUnit(unit_text(info().unit));
+  field_->setUnit(info().unit);
   field_->setMinimumWidth(104);
   field_->setMaximumWidth(136);
   controlRow().addWidget(slider_, 5);
@@ -72,7 +72,8 @@ void NumberEditor::showValue(const cloth::ParameterValue& value) {
 }
 
 void NumberEditor::showAuto() {
-  field_->showNothing(auto_value_ ? short_text(*auto_value_) : tr("auto"));
+  constexpr int digits = 3;
+  field_->showNothing(auto_value_ ? quantity_text(*auto_value_, info().unit, digits) : tr("auto"));
   if (!slider_->isSliderDown()) slider_->setPosition(scale_.position_of(startingNumber()));
 }
 
@@ -110,10 +111,10 @@ void NumberEditor::commitText(const QString& text) {
     commit(auto_word);
     return;
   }
-  const auto number = number_from(text, unit_text(info().unit));
-  if (number) return commitNumber(*number);
+  const cloth::Quantity typed = typed_quantity(text, info().unit);
+  if (typed.ok()) return commitNumber(typed.value);
   if (info().auto_allowed && text.trimmed().isEmpty()) return refresh();
-  refuseNumber(text);
+  showRule(QString::fromStdString(typed.rule));
 }
 
 void NumberEditor::commitNumber(double number) {

@@ -183,11 +183,6 @@ void ParameterEditor::connectParts(ValueSlider* slider, ExactField* field, std::
   connect(field, &ExactField::abandoned, this, &ParameterEditor::refresh);
 }
 
-void ParameterEditor::refuseNumber(const QString& text) {
-  showRule(text.contains(',') ? tr("must be a number with a decimal point, like 1.5")
-                              : tr("must be a number"));
-}
-
 ParameterEditor* make_editor(LabDocument& document, const cloth::Parameter& parameter, QWidget* parent) {
   switch (parameter.info.kind) {
     case cloth::Kind::number:

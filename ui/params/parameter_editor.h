@@ -63,8 +63,6 @@ class ParameterEditor : public QWidget {
   /// A drag of the slider, and a run of steps by key in the field, are one undo step each.
   void connectParts(ValueSlider* slider, ExactField* field, std::function<void(double position)> move,
                     std::function<void(int steps)> step);
-  /// Shows why the text is not a number.
-  void refuseNumber(const QString& text);
   /// Sets the names by which screen readers and tests know a part; its tooltip follows with the default.
   void name(QWidget& part, const QString& object_name, const QString& suffix = {});
 

@@ -89,10 +89,9 @@ void VectorEditor::commitTexts(int edited_axis) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     if (!edited_[i]) continue;
-    const QString text = fields_[i]->text();
-    const auto number = number_from(text, unit_text(info().unit));
-    if (!number) return refuseNumber(text);
-    vector[axis] = *number;
+    const cloth::Quantity typed = typed_quantity(fields_[i]->text(), info().unit);
+    if (!typed.ok()) return showRule(QString::fromStdString(typed.rule));
+    vector[axis] = typed.value;
   }
   commit(vector);
 }

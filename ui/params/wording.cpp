@@ -1,9 +1,7 @@
 #include "params/wording.h"
 
+#include <QLocale>
 #include <QStringList>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <string>
 
@@ -14,11 +12,7 @@ namespace clothlab {
 using cloth::Kind;
 
 QString unit_text(const std::string& unit) {
-  QString text = QString::fromStdString(unit);
-  text.replace("^2", QStringLiteral("²"))
-      .replace("^3", QStringLiteral("³"))
-      .replace(' ', QStringLiteral("·"));
-  return text;
+  return QString::fromStdString(cloth::shown_unit(unit));
 }
 
 QString typographic(const QString& text) {
@@ -53,17 +47,23 @@ QString words_text(const cloth::Words& words) {
 namespace {
 
 struct InWords {
-  QString operator()(double value) const { return exact_text(value); }
-  QString operator()(std::int64_t value) const { return QString::number(value); }
+  QString operator()(double value) const { return quantity_text(value, info.unit, cloth::all_digits); }
+  QString operator()(std::int64_t value) const { return with_unit(QString::number(value)); }
   QString operator()(const cloth::Vec3& v) const {
-    return QString("(%1, %2, %3)").arg(exact_text(v.x()), exact_text(v.y()), exact_text(v.z()));
+    QStringList parts;
+    for (const double part : v) parts << QString::fromStdString(cloth::shown_number(part, cloth::all_digits));
+    return with_unit('(' + parts.join(", ") + ')');
   }
   QString operator()(const std::string& word) const {
-    return kind == Kind::choice ? choice_text(word) : QString::fromStdString(word);
+    return info.kind == Kind::choice ? choice_text(word) : QString::fromStdString(word);
   }
   QString operator()(const cloth::Words& words) const { return words_text(words); }
 
-  Kind kind;
+  QString with_unit(const QString& text) const {
+    return info.unit.empty() ? text : text + ' ' + unit_text(info.unit);
+  }
+
+  const cloth::ParameterInfo& info;
 };
 
 QString range_in_words(const cloth::ParameterInfo& info) {
@@ -80,24 +80,10 @@ QString row(const QString& name, const QString& value) {
       .arg(name, value.toHtmlEscaped());
 }
 
-/// "1e-05" -> "1e-5", "1e+20" -> "1e20"
-QString with_short_exponent(const char* begin, const char* end) {
-  QString text = QString::fromLatin1(begin, end - begin);
-  const qsizetype mark = text.indexOf('e');
-  if (mark < 0) return text;
-  QString exponent = text.mid(mark + 1);
-  const bool negative = exponent.startsWith('-');
-  if (negative || exponent.startsWith('+')) exponent.remove(0, 1);
-  while (exponent.size() > 1 && exponent.startsWith('0')) exponent.remove(0, 1);
-  return text.left(mark + 1) + (negative ? "-" : "") + exponent;
-}
-
 }  // namespace
 
 QString value_in_words(const cloth::ParameterInfo& info, const cloth::ParameterValue& value) {
-  const QString text = std::visit(InWords{info.kind}, value);
-  const bool has_unit = !info.unit.empty() && !std::holds_alternative<std::string>(value);
-  return has_unit ? text + ' ' + unit_text(info.unit) : text;
+  return std::visit(InWords{info}, value);
 }
 
 QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth::ParameterValue>& fallback) {
@@ -114,29 +100,12 @@ QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth:
   return text + "</table>";
 }
 
-QString short_text(double value) {
-  std::array<char, 40> buffer;
-  const auto result = std::to_chars(buffer.begin(), buffer.end(), value, std::chars_format::general, 6);
-  return with_short_exponent(buffer.begin(), result.ptr);
+QString quantity_text(double value, const std::string& unit, int digits) {
+  return QString::fromStdString(cloth::shown_quantity(value, unit, digits).text());
 }
 
-QString exact_text(double value) {
-  std::array<char, 40> buffer;
-  const auto result = std::to_chars(buffer.begin(), buffer.end(), value);
-  return with_short_exponent(buffer.begin(), result.ptr);
-}
-
-std::optional<double> number_from(const QString& text, const QString& unit) {
-  QString bare = text.trimmed();
-  if (!unit.isEmpty() && bare.endsWith(unit)) bare = bare.chopped(unit.size()).trimmed();
-  bare.replace(QChar(0x2212), '-');  // the typographic minus, as it comes out of papers
-  if (bare.startsWith('+') && !bare.startsWith("+-")) bare.remove(0, 1);
-  const std::string ascii = bare.toStdString();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(ascii.data(), ascii.data() + ascii.size(), value);
-  if (error != std::errc() || stop != ascii.data() + ascii.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+cloth::Quantity typed_quantity(const QString& text, const std::string& unit) {
+  return cloth::quantity_from(text.trimmed().toStdString(), unit, QLocale().decimalPoint() == ",");
 }
 
 }  // namespace clothlab

@@ -1,5 +1,5 @@
-// Converts the declarations' ASCII to displayed text, and numbers to text and back, independent of the
-// locale: decimal point, no thousands separator.
+// Converts the declarations' ASCII to displayed text. Numbers are shown with a decimal point in every locale,
+// as the files have them; what is typed may have the locale's decimal comma.
 #pragma once
 
 #include <QString>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "params/parameter.h"
+#include "params/quantity.h"
 #include "scene/scene_parameters.h"
 
 namespace clothlab {
@@ -29,14 +30,10 @@ QString value_in_words(const cloth::ParameterInfo& info, const cloth::ParameterV
 /// Meaning, formula, range, default, unit, cost and path of a parameter, as rich text.
 QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth::ParameterValue>& fallback);
 
-/// Six significant digits, shortest form: 0.1, 1e-5, 123457.
-QString short_text(double value);
+/// A number and its unit with a prefix: "0.909 ms".
+QString quantity_text(double value, const std::string& unit, int digits);
 
-/// The shortest form that reads back to the same number.
-QString exact_text(double value);
-
-/// The number that a person typed: a decimal point, an exponent ("1e-4"), a unit after it if it is this one.
-/// Nothing else is a number; neither is a part of the text, nor infinity.
-std::optional<double> number_from(const QString& text, const QString& unit = {});
+/// What a person typed into a field of this unit.
+cloth::Quantity typed_quantity(const QString& text, const std::string& unit);
 
 }  // namespace clothlab

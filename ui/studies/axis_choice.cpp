@@ -4,7 +4,6 @@
 #include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QLocale>
 #include <QScopedValueRollback>
 #include <QSignalBlocker>
 #include <QSpinBox>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "params/panel_parts.h"
+#include "params/wording.h"
 #include "report/svg.h"
 #include "scene/scene_parameters.h"
 #include "study/stability_map.h"
@@ -28,10 +28,9 @@ QString number_text(double value) {
   return QString::fromStdString(cloth::short_number(value, 3));
 }
 
-double number_of(const QLineEdit& field) {
-  bool ok = false;
-  const double value = QLocale::c().toDouble(field.text().trimmed(), &ok);
-  return ok ? value : std::numeric_limits<double>::quiet_NaN();
+double number_of(const QLineEdit& field, const std::string& unit) {
+  const cloth::Quantity typed = typed_quantity(field.text(), unit);
+  return typed.ok() ? typed.value : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Around the scene's own value: the form's slider range.
@@ -77,18 +76,18 @@ AxisChoice::AxisChoice(QWidget* parent) : QWidget(parent) {
 
 std::vector<AxisChoice::Offer> AxisChoice::offersOf(const cloth::Scene& scene, const cloth::StudyAxis& axis) {
   std::vector<Offer> offers;
-  const auto offer = [&](const QString& name, cloth::StudyAxis offered) {
+  const auto offer = [&](const QString& name, const std::string& unit, cloth::StudyAxis offered) {
     if (offered.path == axis.path) offered = axis;
-    offers.push_back({name, std::move(offered)});
+    offers.push_back(
+        {unit.empty() ? name : QString("%1 (%2)").arg(name, unit_text(unit)), std::move(offered), unit});
   };
-  if (scene.springs) offer(tr("All stiffnesses (N/m)"), cloth::default_stiffness_axis(scene));
+  if (scene.springs) offer(tr("All stiffnesses"), "N/m", cloth::default_stiffness_axis(scene));
   for (const cloth::Block& block : cloth::blocks_of(scene))
     for (const cloth::Parameter& parameter : block.parameters) {
       const cloth::ParameterInfo& info = parameter.info;
       if (info.kind != cloth::Kind::number && info.kind != cloth::Kind::integer) continue;
       if (!(info.slider_maximum > info.slider_minimum)) continue;
-      const QString unit = info.unit.empty() ? "" : QString(" (%1)").arg(QString::fromStdString(info.unit));
-      offer(QString::fromStdString(block.title + ": " + info.label) + unit, offer_of(parameter));
+      offer(QString::fromStdString(block.title + ": " + info.label), info.unit, offer_of(parameter));
     }
   return offers;
 }
@@ -162,9 +161,10 @@ void AxisChoice::keep() {
 
 cloth::StudyAxis AxisChoice::axis() const {
   const int index = parameter_->currentIndex();
-  return {.path = index < 0 ? std::string() : offers_[static_cast<std::size_t>(index)].axis.path,
-          .low = number_of(*low_),
-          .high = number_of(*high_),
+  const Offer offer = index < 0 ? Offer{} : offers_[static_cast<std::size_t>(index)];
+  return {.path = offer.axis.path,
+          .low = number_of(*low_, offer.unit),
+          .high = number_of(*high_, offer.unit),
           .count = count_->value(),
           .scale = logarithmic_->isChecked() ? cloth::AxisScale::logarithmic : cloth::AxisScale::linear};
 }

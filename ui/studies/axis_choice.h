@@ -36,6 +36,7 @@ class AxisChoice : public QWidget {
   struct Offer {
     QString name;
     cloth::StudyAxis axis;  ///< what the parameter begins with
+    std::string unit;
   };
   /// What the user has set. Both ends of the range go together.
   struct Own {

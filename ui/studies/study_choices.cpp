@@ -9,9 +9,9 @@
 #include <QScopedValueRollback>
 #include <QSpinBox>
 #include <algorithm>
-#include <cmath>
 
 #include "integrators/registry.h"
+#include "params/wording.h"
 #include "studies/axis_choice.h"
 #include "studies/study_library.h"
 #include "study/stability_map.h"
@@ -228,9 +228,9 @@ std::variant<StudyOrder, QString> StudyChoices::precisionInputs() const {
   options.methods = methods();
   options.repeats = repeats_->value();
   if (const QString text = horizon_->text().trimmed(); !text.isEmpty()) {
-    bool ok = false;
-    options.horizon = QLocale::c().toDouble(text, &ok);
-    if (!ok || !(*options.horizon > 0) || !std::isfinite(*options.horizon))
+    const cloth::Quantity typed = typed_quantity(text, "s");
+    options.horizon = typed.value;
+    if (!typed.ok() || !(typed.value > 0))
       return tr("Horizon: \"%1\" must be a time in s, more than 0.").arg(text);
   }
   return StudyOrder{scene_, options, {}, made_by};

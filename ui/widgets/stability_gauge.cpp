@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "measure/stability_limit.h"
+#include "params/quantity.h"
 #include "simulation/time_step.h"
 #include "theme/theme.h"
 
@@ -15,9 +16,8 @@ constexpr int bar_width = 72, bar_height = 6;  // px
 constexpr double bar_maximum = 1.25;           // of the limit, at the bar's right end
 
 QString step_text(double seconds) {
-  if (seconds >= 0.1) return QString::number(seconds, 'g', 3) + QStringLiteral(" s");
-  if (seconds >= 1e-4) return QString::number(1e3 * seconds, 'g', 3) + QStringLiteral(" ms");
-  return QString::number(1e6 * seconds, 'g', 3) + QStringLiteral(" µs");
+  constexpr int digits = 3;
+  return QString::fromStdString(cloth::shown_quantity(seconds, "s", digits).text());
 }
 
 QString percent_text(const StabilityReading& reading) {

@@ -1,0 +1,73 @@
+// The number fields of the form: units, expressions, messages, and the focus.
+#include "form_fixture.h"
+#include "listed_test.h"
+#include "params/exact_field.h"
+
+namespace clothlab::test::form_numbers_test {
+
+class FormNumbersTest : public FormFixture {
+  Q_OBJECT
+
+ private Q_SLOTS:
+  void init() { open(); }
+  void cleanup() { close(); }
+
+  void a_field_takes_its_own_unit_others_and_expressions() {
+    type(field("integrator.time_step"), "0.3 ms");
+    QCOMPARE(doc().scene().integrator.time_step, std::optional<double>(0.0003));
+    type(field("integrator.time_step"), "1/4000 s");
+    QCOMPARE(doc().scene().integrator.time_step, std::optional<double>(1.0 / 4000));
+    type(field("springs.structural"), "5 cN/mm");
+    QCOMPARE(structural(), 50.0);
+    type(field("springs.structural"), "1e1*2");
+    QCOMPARE(structural(), 20.0);
+    type(field("springs.structural"), "2*pi");
+    QCOMPARE(structural(), 2 * M_PI);
+    type(field("deformation.rate"), "15 %");
+    QCOMPARE(doc().scene().deformation->rate, 0.15);
+    type(field("deformation.max_sweeps"), "1e1*2");
+    QCOMPARE(doc().scene().deformation->max_sweeps, std::int64_t{20});
+    type(part<QLineEdit>("gravity", "field_y"), "-162 cm/s²");
+    QCOMPARE(doc().scene().gravity->y(), -1.62);
+  }
+
+  void a_quantity_of_another_kind_is_refused_with_both_units() {
+    type(field("springs.structural"), "5 kg");
+    QCOMPARE(part<QLabel>("springs.structural", "rule")->text(),
+             QString("Must be in N/m, not in kg. Still 500 N/m."));
+    QCOMPARE(structural(), 500.0);
+    QCOMPARE(field("springs.structural")->text(), QString("5 kg"));
+  }
+
+  void values_are_shown_with_a_prefix_and_edited_in_the_unit() {
+    QLineEdit* step = field("integrator.time_step");
+    panel().setAutoValue("integrator.time_step", 0.000909091);
+    QCOMPARE(step->placeholderText(), QString("0.909 ms"));
+    type(step, "0.3 ms", Qt::Key_Tab);
+    QCOMPARE(step->text(), QString("0.3"));
+    step->setFocus();
+    QCOMPARE(step->text(), QString("3e-4"));
+    type(field("springs.structural"), "-1");
+    QVERIFY(part<QLabel>("springs.structural", "rule")->text().endsWith("Still 500 N/m."));
+    doc().setParameter("springs.structural", 54321.5);
+    type(field("springs.structural"), "-1");
+    QVERIFY(part<QLabel>("springs.structural", "rule")->text().endsWith("Still 54.3215 kN/m."));
+  }
+
+  void enter_keeps_the_focus() {
+    QLineEdit* f = field("springs.structural");
+    type(f, "700");
+    QCOMPARE(structural(), 700.0);
+    QVERIFY(f->hasFocus());
+    QTest::keyClicks(f, "7e2*2");  // what was there is selected
+    QTest::keyClick(f, Qt::Key_Enter);
+    QCOMPARE(structural(), 1400.0);
+    QVERIFY(f->hasFocus());
+  }
+};
+
+const Listed listed{"form_numbers_test", test_main<FormNumbersTest>};
+
+}  // namespace clothlab::test::form_numbers_test
+
+#include "form_numbers_test.moc"

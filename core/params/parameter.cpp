@@ -32,8 +32,9 @@ std::optional<std::string> broken_number_rule(const ParameterInfo& info, double 
   if (!std::isfinite(value)) return "must be a finite number";
   const bool low = info.minimum_excluded ? value <= info.minimum : value < info.minimum;
   if (low || value > info.maximum) return "must be " + model_range_text(info);
-  if (value > info.largest) return "must be <= " + bound_text(info.largest);
-  if (value < -info.largest) return "must be >= " + bound_text(-info.largest);
+  constexpr const char* reason = ", or sums and numbers of steps could overflow";
+  if (value > info.largest) return "must be <= " + bound_text(info.largest) + reason;
+  if (value < -info.largest) return "must be >= " + bound_text(-info.largest) + reason;
   if (has_smallest(info) && value < info.smallest) return fmt::format("must be >= {}", info.smallest);
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "params/doubt.h"
 #include "scene/builtin_scenes.h"
 #include "scene/obstacle_shape.h"
 #include "scene/scene_checks.h"
@@ -132,7 +133,8 @@ TEST(EveryParameter, HasPhysicalBoundsThatAreToldAndKept) {
   }
   EXPECT_EQ(*broken_rule(find_parameter(scene, "cloth.width")->info, 0.0), "must be > 0");
   EXPECT_EQ(*broken_rule(find_parameter(scene, "cloth.width")->info, 1e-300), "must be >= 1e-09");
-  EXPECT_EQ(*broken_rule(find_parameter(scene, "duration")->info, 1e20), "must be <= 1e+09");
+  EXPECT_EQ(*broken_rule(find_parameter(scene, "duration")->info, 1e20),
+            "must be <= 1e+09, or sums and numbers of steps could overflow");
 }
 
 TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
@@ -179,6 +181,23 @@ TEST(ReferencePage, NamesEveryParameter) {
   scene.obstacles.clear();
   for (const Parameter& parameter : parameters_of(scene))
     EXPECT_NE(page.find("`" + parameter.path + "`"), std::string::npos) << parameter.path;
+}
+
+TEST(Parameters, BeyondAllSenseHaveAReasonAndSensibleOnesHaveNone) {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    const Scene scene = builtin_scene(builtin.name);
+    for (const Parameter& parameter : parameters_of(scene)) {
+      EXPECT_FALSE(doubt_about(parameter.info, parameter.get(scene)))
+          << builtin.name << ' ' << parameter.path;
+      if (parameter.info.kind == Kind::number) {
+        EXPECT_FALSE(doubt_about(parameter.info, parameter.info.slider_maximum)) << parameter.path;
+      }
+    }
+  }
+  const Scene scene = full_scene();
+  EXPECT_TRUE(doubt_about(find_parameter(scene, "integrator.time_step")->info, 100.0));
+  EXPECT_TRUE(doubt_about(find_parameter(scene, "springs.structural")->info, 1e12));
+  EXPECT_TRUE(doubt_about(find_parameter(scene, "gravity")->info, Vec3(0, -1e5, 0)));
 }
 
 }  // namespace

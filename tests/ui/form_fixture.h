@@ -22,6 +22,7 @@
 #include "params/parameter_panel.h"
 #include "params/slider_scale.h"
 #include "params/wording.h"
+#include "part_of.h"
 
 namespace clothlab::test {
 
@@ -45,7 +46,7 @@ class FormFixture : public QObject {
   template <class Widget>
   Widget* part(const char* path, const char* name) {
     auto* editor = panel().findChild<QWidget*>(QString("param:") + path);
-    return editor ? editor->findChild<Widget*>(name) : nullptr;
+    return editor ? part_of<Widget>(panel(), *editor, name) : nullptr;
   }
   QLineEdit* field(const char* path) { return part<QLineEdit>(path, "field"); }
   QSlider* slider(const char* path) { return part<QSlider>(path, "slider"); }

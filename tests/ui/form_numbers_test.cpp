@@ -54,6 +54,53 @@ class FormNumbersTest : public FormFixture {
     QVERIFY(part<QLabel>("springs.structural", "rule")->text().endsWith("Still 54.3215 kN/m."));
   }
 
+  void a_message_moves_no_row_and_lets_the_mouse_through() {
+    auto* content = panel().findChild<QScrollArea*>("scroll")->widget();
+    const auto top_of = [&](const char* path) { return slider(path)->mapTo(content, QPoint(0, 0)).y(); };
+    const int above = top_of("springs.structural"), below = top_of("springs.shear"), tall = content->height();
+    field("springs.structural")->setFocus();
+    field("springs.structural")->selectAll();
+    QTest::keyClicks(field("springs.structural"), "-3");
+    QTest::mouseClick(slider("springs.shear"), Qt::LeftButton, {}, at(slider("springs.shear"), 0.99));
+    auto* message = part<QLabel>("springs.structural", "rule");
+    QVERIFY(message->isVisible() && message->text().startsWith(QStringLiteral("Must be ≥ 0")));
+    QCOMPARE(doc().scene().springs->shear, 1e5);
+    QCoreApplication::processEvents();
+    QCOMPARE(top_of("springs.structural"), above);
+    QCOMPARE(top_of("springs.shear"), below);
+    QCOMPARE(content->height(), tall);
+    const QRect field_place(field("springs.structural")->mapTo(content, QPoint(0, 0)),
+                            field("springs.structural")->size());
+    QVERIFY(!message->geometry().intersects(field_place));
+    QWidget* under = content->childAt(message->geometry().center());
+    QVERIFY2(under != message, "the mouse goes through");
+    field("springs.flexion")->setFocus();
+    QVERIFY2(!message->isVisible(), "away with the second step of the focus");
+    field("springs.structural")->setFocus();
+    QVERIFY2(message->isVisible(), "and back with it");
+    QTest::keyClick(field("springs.structural"), Qt::Key_Escape);
+    QVERIFY(!message->isVisible());
+  }
+
+  void values_beyond_all_sense_are_taken_with_a_warning_and_its_reason() {
+    type(field("integrator.time_step"), "100 s");
+    QCOMPARE(doc().scene().integrator.time_step, std::optional<double>(100));
+    auto* message = part<QLabel>("integrator.time_step", "rule");
+    QVERIFY(message->isVisible());
+    QVERIFY2(message->text().startsWith("100 s: Longer than a cloth takes"), qPrintable(message->text()));
+    QCOMPARE(message->property("state").toString(), QString("warning"));
+    QVERIFY(part<QLabel>("integrator.time_step", "doubt")->isVisible());
+    type(field("integrator.time_step"), "1 ms");
+    QVERIFY(!message->isVisible());
+    QVERIFY(!part<QLabel>("integrator.time_step", "doubt")->isVisible());
+    type(field("springs.structural"), "1e12 N/m");
+    QCOMPARE(structural(), 1e12);
+    QVERIFY(part<QLabel>("springs.structural", "rule")->text().contains("stiffer than any cloth"));
+    type(field("springs.structural"), "1e99 N/m");
+    QCOMPARE(structural(), 1e12);
+    QVERIFY(part<QLabel>("springs.structural", "rule")->text().contains("could overflow"));
+  }
+
   void enter_keeps_the_focus() {
     QLineEdit* f = field("springs.structural");
     type(f, "700");

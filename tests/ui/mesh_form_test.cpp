@@ -162,6 +162,25 @@ class MeshFormTest : public QObject {
     QVERIFY2(report.contains("degenerate") || report.contains("area"), qPrintable(report));
   }
 
+  void what_is_said_about_a_mesh_comes_into_sight() {
+    Bench b;
+    b.bench().window.resize(1000, 650);
+    auto* bar = b.bench().window.parameters().findChild<QScrollArea*>("scroll")->verticalScrollBar();
+    const auto is_in_sight = [](QWidget* what) {
+      return what->isVisible() && what->visibleRegion().boundingRect() == what->rect();
+    };
+    for (const char* file : {"odd.obj", "bad.obj"}) {
+      MeshButton* button = b.obstacle_button();
+      bar->setValue(bar->value() - 40);  // so that the button is at the lower edge
+      b.choose_file(button, b.path(file));
+      QCoreApplication::processEvents();
+      QWidget* said = file == QLatin1String("bad.obj") ? b.obstacle_rule() : b.obstacle_report();
+      QTRY_VERIFY2(is_in_sight(said), file);
+    }
+    b.choose_file(b.cloth_button(), b.path("bad.obj"));
+    QTRY_VERIFY(is_in_sight(b.cloth_rule()));
+  }
+
   void a_bad_file_is_answered_with_place_value_and_rule_and_nothing_is_lost() {
     Bench b;
     const cloth::Scene before = b.scene();

@@ -10,6 +10,7 @@
 #include <QtTest>
 
 #include "main_window/lab_window.h"
+#include "part_of.h"
 #include "theme/theme.h"
 
 namespace clothlab::test {
@@ -42,7 +43,7 @@ class WindowBench {
 
   QWidget* editor(const char* path, const char* part) {
     auto* editor = window.findChild<QWidget*>(QStringLiteral("param:%1").arg(QLatin1String(path)));
-    return editor ? editor->findChild<QWidget*>(QLatin1String(part)) : nullptr;
+    return editor ? part_of<QWidget>(window, *editor, QLatin1String(part)) : nullptr;
   }
 
   void play_until(double time) {

@@ -141,6 +141,10 @@ void LabWindow::makeEditMenu() {
   QMenu* edit = menuBar()->addMenu(tr("&Edit"));
   edit->addActions({undo_, redo_});
   edit->addSeparator();
+  edit->addAction(tr("Find parameter"), QKeySequence::Find, this, [this] {
+    parameters_dock_->show();
+    parameters_->startSearch();
+  });
   edit->addAction(tr("Copy ranking"), this, [this] { ranking().copy(); })->setObjectName("copyRanking");
 }
 

@@ -127,6 +127,9 @@ class MeshEditor : public TextEditor {
   void offerGrid(bool offered);
   QList<QWidget*> tabStops() const override;
 
+ Q_SIGNALS:
+  void meshChosen();  ///< and taken or refused
+
  protected:
   void showValue(const cloth::ParameterValue& value) override;
 

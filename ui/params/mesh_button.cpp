@@ -87,9 +87,9 @@ ClothShapeRow::ClothShapeRow(LabDocument& document, QWidget* parent)
 void ClothShapeRow::choose(const std::string& file) {
   QString rule = document_.setClothMesh(file);
   rule_->setVisible(!rule.isEmpty());
-  if (rule.isEmpty()) return;
-  rule[0] = rule[0].toUpper();
-  rule_->setText(tr("%1 %2. Still a grid.").arg(QString::fromStdString(file), typographic(rule)));
+  if (!rule.isEmpty())
+    rule_->setText(tr("%1 %2. Still a grid.").arg(QString::fromStdString(file), typographic(rule)));
+  Q_EMIT meshChosen();
 }
 
 }  // namespace clothlab

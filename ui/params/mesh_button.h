@@ -44,6 +44,9 @@ class ClothShapeRow : public QWidget {
   explicit ClothShapeRow(LabDocument& document, QWidget* parent = nullptr);
   QWidget* tabStop() const { return button_; }
 
+ Q_SIGNALS:
+  void meshChosen();  ///< and taken or refused
+
  private:
   void choose(const std::string& file);
 

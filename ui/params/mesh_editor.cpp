@@ -61,7 +61,10 @@ MeshEditor::MeshEditor(LabDocument& document, const cloth::Parameter& parameter,
   auto* column = static_cast<QVBoxLayout*>(layout());
   constexpr int below_the_control = 2;
   column->insertWidget(below_the_control, report_);
-  connect(button_, &MeshButton::meshChosen, this, [this](const std::string& file) { commit(file); });
+  connect(button_, &MeshButton::meshChosen, this, [this](const std::string& file) {
+    commit(file);
+    Q_EMIT meshChosen();
+  });
   connect(button_, &MeshButton::gridChosen, this, [this] { this->document().setClothMesh({}); });
   offerGrid(true);
   refresh();

@@ -116,13 +116,17 @@ void SectionHeader::paintEvent(QPaintEvent*) {
   const QColor ink = isEnabled() ? t.text : t.disabled_text;
   painter.setPen(QPen(isEnabled() && !underMouse() ? t.muted_text : ink, 1.5, Qt::SolidLine, Qt::RoundCap,
                       Qt::RoundJoin));
-  painter.translate(18, height() / 2.0);
-  if (isChecked()) painter.rotate(90);
+  const bool mirrored = isRightToLeft();
+  painter.translate(mirrored ? width() - 18 : 18, height() / 2.0);
+  if (isChecked())
+    painter.rotate(90);
+  else if (mirrored)
+    painter.rotate(180);
   painter.drawPolyline(QPolygonF({{-1.75, -3.5}, {1.75, 0}, {-1.75, 3.5}}));
   painter.resetTransform();
 
   painter.setPen(ink);
-  const QRect room = rect().adjusted(32, 0, -8, 0);
+  const QRect room = QStyle::visualRect(layoutDirection(), rect(), rect().adjusted(32, 0, -8, 0));
   painter.drawText(room, Qt::AlignVCenter | Qt::AlignLeft,
                    fontMetrics().elidedText(text(), Qt::ElideRight, room.width()));
   if (unit_.isEmpty() || !isChecked()) return;

@@ -4,10 +4,13 @@
 #include <QLabel>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <utility>
 
+#include "params/doubt.h"
 #include "params/editors.h"
 #include "params/exact_field.h"
+#include "params/message_bubble.h"
 #include "params/panel_parts.h"
 #include "params/value_slider.h"
 #include "params/wording.h"
@@ -17,12 +20,12 @@
 namespace clothlab {
 namespace {
 
-QLabel* message_label(QWidget* parent, const char* name) {
-  auto* label = named(name, new QLabel(parent));
-  label->setWordWrap(true);
-  label->setTextFormat(Qt::PlainText);
-  label->hide();
-  return label;
+constexpr int reset_width = 24;  // px
+
+/// As the first letter of a sentence.
+QString capitalised(QString text) {
+  if (!text.isEmpty()) text[0] = text[0].toUpper();
+  return text;
 }
 
 QFont smaller(QFont font) {
@@ -44,15 +47,24 @@ ParameterEditor::ParameterEditor(LabDocument& document, cloth::Parameter paramet
   control_and_reset->addLayout(control_row_, 1);
   control_and_reset->addWidget(reset_, 0, Qt::AlignVCenter);
   column->addLayout(control_and_reset);
-  makeMessages(*column);
+  makeNote(*column);
+  message_ = new MessageBubble(*this, *control_row_);
+  message_->setFont(smaller(message_->font()));
+}
+
+ParameterEditor::~ParameterEditor() {
+  delete message_;
 }
 
 void ParameterEditor::makeTitle(QVBoxLayout& column) {
   title_ = new QWidget(this);
-  title_row_ =
-      spaced(new QHBoxLayout(title_), spacing, {0, 0, 24 + spacing / 2, 0});  // ends where the control ends
+  title_row_ = spaced(new QHBoxLayout(title_), spacing);
   label_ = new ElidedLabel(QString::fromStdString(info().label), title_);
   title_row_->addWidget(label_);
+  doubt_ = named("doubt", new QLabel(QStringLiteral("⚠"), title_));
+  doubt_->setProperty("state", "warning");
+  doubt_->hide();
+  title_row_->addWidget(doubt_);
   if (info().cost == cloth::EditCost::restart) {
     auto* mark = named("restarts", new QLabel(tr("restarts"), title_));
     mark->setProperty("muted", true);
@@ -66,14 +78,17 @@ void ParameterEditor::makeTitle(QVBoxLayout& column) {
     unit->setProperty("muted", true);
     title_row_->addWidget(unit);
   }
-  column.addWidget(title_);
+  auto* to_end_of_control = spaced(new QHBoxLayout, spacing / 2);
+  to_end_of_control->addWidget(title_);
+  to_end_of_control->addSpacing(reset_width);
+  column.addLayout(to_end_of_control);
 }
 
 void ParameterEditor::makeReset() {
   reset_ = named("reset", new QToolButton(this));
   reset_->setIcon(icon("reset-value"));
   reset_->setIconSize({16, 16});
-  reset_->setFixedSize(24, 24);
+  reset_->setFixedSize(reset_width, reset_width);
   reset_->setFocusPolicy(Qt::TabFocus);
   reset_->setAccessibleName(tr("Reset %1").arg(QString::fromStdString(info().label)));
   QSizePolicy keep_room = reset_->sizePolicy();
@@ -86,12 +101,13 @@ void ParameterEditor::makeReset() {
   });
 }
 
-void ParameterEditor::makeMessages(QVBoxLayout& column) {
-  rule_ = message_label(this, "rule");
-  rule_->setProperty("state", "error");
-  note_ = message_label(this, "note");
+void ParameterEditor::makeNote(QVBoxLayout& column) {
+  note_ = named("note", new QLabel(this));
   note_->setProperty("muted", true);
-  for (QLabel* label : {rule_, note_}) label->setFont(smaller(label->font()));
+  note_->setWordWrap(true);
+  note_->setTextFormat(Qt::PlainText);
+  note_->setFont(smaller(note_->font()));
+  note_->hide();
   note_button_ = new QToolButton(this);
   name(*note_button_, "noteButton", tr("note"));
   note_button_->setFont(note_->font());
@@ -101,7 +117,6 @@ void ParameterEditor::makeMessages(QVBoxLayout& column) {
   auto* note_row = spaced(new QHBoxLayout, spacing);
   note_row->addWidget(note_, 1);
   note_row->addWidget(note_button_);
-  column.addWidget(rule_);
   column.addLayout(note_row);
 }
 
@@ -113,11 +128,18 @@ void ParameterEditor::name(QWidget& part, const QString& object_name, const QStr
   named_ << &part;
 }
 
+bool ParameterEditor::matches(const QStringList& words) const {
+  const QString text = QString::fromStdString(info().label + '\n' + path() + '\n' + info().doc);
+  return std::all_of(words.begin(), words.end(),
+                     [&](const QString& word) { return text.contains(word, Qt::CaseInsensitive); });
+}
+
 void ParameterEditor::refresh() {
   const auto present = value();
   if (!present) return;
   showRule({});
   showValue(*present);
+  markDoubt(*present);
   refreshDefault();
 }
 
@@ -136,21 +158,30 @@ void ParameterEditor::refreshDefault() {
 
 bool ParameterEditor::commit(const cloth::ParameterValue& value) {
   const QString rule = document_.setParameter(path(), value);
-  if (rule.isEmpty())
-    refresh();
-  else
+  if (!rule.isEmpty()) {
     showRule(rule);
-  return rule.isEmpty();
+    return false;
+  }
+  refresh();
+  if (!doubt_->isHidden()) message_->say(MessageBubble::Level::warning, doubt_->toolTip());
+  return true;
+}
+
+void ParameterEditor::markDoubt(const cloth::ParameterValue& value) {
+  const auto doubt = cloth::doubt_about(info(), value);
+  doubt_->setVisible(doubt.has_value());
+  if (doubt)
+    doubt_->setToolTip(
+        QStringLiteral("%1: %2.").arg(value_in_words(info(), value), QString::fromStdString(*doubt)));
 }
 
 void ParameterEditor::showRule(const QString& rule) {
   markInvalid(!rule.isEmpty());
-  rule_->setVisible(!rule.isEmpty());
-  if (rule.isEmpty()) return;
-  QString sentence = typographic(rule);
-  sentence[0] = sentence[0].toUpper();
+  if (rule.isEmpty()) return message_->withdraw();
+  const QString sentence = capitalised(typographic(rule));
   const auto kept = value();
-  rule_->setText(kept ? tr("%1. Still %2.").arg(sentence, value_in_words(info(), *kept)) : sentence);
+  message_->say(MessageBubble::Level::error,
+                kept ? tr("%1. Still %2.").arg(sentence, value_in_words(info(), *kept)) : sentence);
 }
 
 void ParameterEditor::setNote(const QString& note, const QString& button) {

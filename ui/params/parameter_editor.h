@@ -1,7 +1,8 @@
-// The form of one parameter: label, control, reset button, and lines for the error message and a note.
+// The form of one parameter: label, control, reset button, a line for a note, and messages over them.
 #pragma once
 
 #include <QList>
+#include <QPointer>
 #include <QWidget>
 #include <functional>
 #include <optional>
@@ -18,13 +19,19 @@ namespace clothlab {
 
 class ElidedLabel;
 class ExactField;
+class MessageBubble;
 class ValueSlider;
 
 class ParameterEditor : public QWidget {
   Q_OBJECT
 
  public:
+  ~ParameterEditor() override;
+
   const std::string& path() const { return parameter_.path; }
+
+  /// Whether title, path and help text together have every one of these words.
+  bool matches(const QStringList& words) const;
 
   /// Shows the document's value and discards text that was not accepted.
   void refresh();
@@ -49,7 +56,8 @@ class ParameterEditor : public QWidget {
   virtual void showDefault(const std::optional<cloth::ParameterValue>&) {}
   virtual void markInvalid(bool) {}
 
-  /// Sets the value in the document. If it breaks a rule, shows the rule below the control and returns false.
+  /// Sets the value in the document. If it breaks a rule, shows the rule at the control and returns false. A
+  /// value beyond all sense is set, with a warning.
   bool commit(const cloth::ParameterValue& value);
   void showRule(const QString& rule);  ///< empty: none
 
@@ -69,7 +77,8 @@ class ParameterEditor : public QWidget {
  private:
   void makeTitle(QVBoxLayout& column);
   void makeReset();
-  void makeMessages(QVBoxLayout& column);
+  void makeNote(QVBoxLayout& column);
+  void markDoubt(const cloth::ParameterValue& value);
 
   LabDocument& document_;
   cloth::Parameter parameter_;
@@ -80,7 +89,8 @@ class ParameterEditor : public QWidget {
   ElidedLabel* label_ = nullptr;
   QList<QWidget*> named_;
   QToolButton* reset_ = nullptr;
-  QLabel* rule_ = nullptr;
+  QLabel* doubt_ = nullptr;
+  QPointer<MessageBubble> message_;  ///< over the form, whose content owns it
   QLabel* note_ = nullptr;
   QToolButton* note_button_ = nullptr;
   bool stepping_ = false;

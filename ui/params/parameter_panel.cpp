@@ -2,7 +2,9 @@
 
 #include <QCoreApplication>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
+#include <QLineEdit>
 #include <QMenu>
 #include <QPainter>
 #include <QScrollArea>
@@ -13,6 +15,7 @@
 #include <utility>
 
 #include "params/editors.h"
+#include "params/mesh_button.h"
 #include "params/parameter_section.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
@@ -48,6 +51,7 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
   setAccessibleName(tr("Parameters"));
   auto* column = spaced(new QVBoxLayout(this), 0);
   column->addWidget(makeHead());
+  makeSearch();
   makeScrollArea();
   column->addWidget(scroll_, 1);
   rebuild();
@@ -80,6 +84,67 @@ QWidget* ParameterPanel::makeHead() {
   return head;
 }
 
+void ParameterPanel::makeSearch() {
+  search_ = named("search", new QLineEdit(this));
+  search_->setPlaceholderText(tr("Search (Ctrl+F)"));
+  search_->setAccessibleName(tr("Search the parameters"));
+  search_->setToolTip(tr("Words of a parameter's title, path or help text"));
+  search_->setClearButtonEnabled(true);
+  search_->installEventFilter(this);
+  connect(search_, &QLineEdit::textChanged, this, &ParameterPanel::filter);
+  nothing_ = named("nothing", new QLabel(this));
+  nothing_->setProperty("muted", true);
+  nothing_->setTextFormat(Qt::PlainText);
+  nothing_->setWordWrap(true);
+  nothing_->hide();
+  auto* rows = new QVBoxLayout;
+  rows->setContentsMargins(2 * spacing, 0, 2 * spacing, spacing);
+  rows->addWidget(search_);
+  rows->addWidget(nothing_);
+  static_cast<QVBoxLayout*>(layout())->addLayout(rows);
+}
+
+void ParameterPanel::startSearch() {
+  search_->setFocus(Qt::ShortcutFocusReason);
+  search_->selectAll();
+}
+
+/// Shows what has every word of the search field. Sections are open meanwhile, and afterwards as they were.
+void ParameterPanel::filter() {
+  const QStringList words = search_->text().split(' ', Qt::SkipEmptyParts);
+  bool any = false;
+  for (ParameterSection* section : sections_) {
+    const QSignalBlocker quiet(section);
+    any = section->showMatching(words) || any;
+    section->setCollapsed(words.isEmpty() && collapsed_.count(section->path()) > 0);
+  }
+  nothing_->setText(tr("No parameter matches “%1”.").arg(search_->text().trimmed()));
+  nothing_->setVisible(!any && !words.isEmpty());
+}
+
+void ParameterPanel::focusFirstMatch() {
+  for (const ParameterSection* section : sections_)
+    for (const ParameterEditor* one : section->editors())
+      if (one->isVisible()) return void(reveal(one->path()));
+}
+
+/// Escape in the search field clears it, Enter and Down go to the first match.
+bool ParameterPanel::eventFilter(QObject* watched, QEvent* event) {
+  if (watched != search_ || event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+  switch (static_cast<QKeyEvent*>(event)->key()) {
+    case Qt::Key_Escape:
+      search_->clear();
+      return true;
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+    case Qt::Key_Down:
+      focusFirstMatch();
+      return true;
+    default:
+      return QWidget::eventFilter(watched, event);
+  }
+}
+
 void ParameterPanel::makeScrollArea() {
   scroll_ = named("scroll", new QScrollArea(this));
   scroll_->setWidgetResizable(true);
@@ -109,6 +174,7 @@ void ParameterPanel::fillAddMenu() {
 void ParameterPanel::add(const std::string& offer_path) {
   std::set<std::string> before;
   for (const ParameterSection* section : sections_) before.insert(section->path());
+  search_->clear();
   if (!document_.addBlock(offer_path)) return;
   for (ParameterSection* section : sections_) {
     if (before.count(section->path())) continue;
@@ -129,6 +195,7 @@ ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
   });
   connect(section, &ParameterSection::removeRequested, this,
           [this, path = block.path] { document_.removeBlock(path); });
+  connect(section, &ParameterSection::meshChosen, this, [this, path = block.path] { showMesh(path); });
   section->setRemovable(blocks_editable_);
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* made = section->editor(parameter.path);
@@ -137,6 +204,18 @@ ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
             [this, path = parameter.path] { Q_EMIT noteButtonClicked(path); });
   }
   return section;
+}
+
+/// The name of a block's mesh with what is said about it, in sight.
+void ParameterPanel::showMesh(const std::string& block_path) {
+  QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
+  for (ParameterSection* section : sections_) {
+    if (section->path() != block_path) continue;
+    QWidget* row = section->findChild<ClothShapeRow*>();
+    for (ParameterEditor* editor : section->editors())
+      if (auto* mesh = qobject_cast<MeshEditor*>(editor)) row = mesh;
+    if (row) scroll_->ensureWidgetVisible(row, 0, 3 * spacing);
+  }
 }
 
 void ParameterPanel::retire(ParameterSection* section) {
@@ -172,7 +251,7 @@ void ParameterPanel::rebuild() {
   }
   for (ParameterSection* section : old) retire(section);
   for (std::size_t i = 0; i < sections_.size(); ++i) column_->insertWidget(static_cast<int>(i), sections_[i]);
-  for (ParameterSection* section : sections_) section->show();
+  filter();
   fillAddMenu();
   orderTabs();
   content_->setUpdatesEnabled(true);
@@ -182,7 +261,8 @@ void ParameterPanel::rebuild() {
 }
 
 void ParameterPanel::orderTabs() {
-  QWidget* last = add_;
+  QWidget::setTabOrder(add_, search_);
+  QWidget* last = search_;
   for (const ParameterSection* section : sections_)
     for (QWidget* stop : section->tabStops()) {
       QWidget::setTabOrder(last, stop);
@@ -232,6 +312,7 @@ void ParameterPanel::setAutoValue(const std::string& path, std::optional<double>
 bool ParameterPanel::reveal(const std::string& path) {
   for (ParameterSection* section : sections_)
     if (ParameterEditor* found = section->editor(path)) {
+      if (found->isHidden() || section->isHidden()) search_->clear();
       section->setCollapsed(false);
       QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
       scroll_->ensureWidgetVisible(found, 0, 2 * spacing);

@@ -11,6 +11,8 @@
 
 #include "document/lab_document.h"
 
+class QLabel;
+class QLineEdit;
 class QMenu;
 class QScrollArea;
 class QToolButton;
@@ -38,6 +40,9 @@ class ParameterPanel : public QWidget {
   /// What "auto" comes to at present for a parameter that allows it, in its unit.
   void setAutoValue(const std::string& path, std::optional<double> value);
 
+  /// Gives the search field the focus.
+  void startSearch();
+
   /// Opens the parameter's section, scrolls to it and gives it the focus. False if the scene does not have
   /// it.
   bool reveal(const std::string& path);
@@ -50,15 +55,20 @@ class ParameterPanel : public QWidget {
 
  protected:
   void paintEvent(QPaintEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
   QWidget* makeHead();
+  void makeSearch();
+  void filter();
+  void focusFirstMatch();
   void makeScrollArea();
   void fillAddMenu();
   void add(const std::string& offer_path);
   void rebuild();
   void follow(const std::string& path);
   ParameterSection* makeSection(const cloth::Block& block);
+  void showMesh(const std::string& block_path);
   void retire(ParameterSection* section);
   void orderTabs();
   void applyNotes(ParameterEditor& editor);
@@ -67,6 +77,8 @@ class ParameterPanel : public QWidget {
   LabDocument& document_;
   QToolButton* add_ = nullptr;
   QMenu* menu_ = nullptr;
+  QLineEdit* search_ = nullptr;
+  QLabel* nothing_ = nullptr;  ///< says that nothing matches
   QScrollArea* scroll_ = nullptr;
   QWidget* content_ = nullptr;
   QVBoxLayout* column_ = nullptr;

@@ -55,6 +55,7 @@ void ParameterSection::makeBody(LabDocument& document, const cloth::Block& block
   auto* rows = spaced(new QVBoxLayout(body_), spacing, {2 * spacing, 0, spacing, 2 * spacing});
   if (block.path == "cloth" && !document.scene().cloth.is_mesh())
     rows->addWidget(shape_ = new ClothShapeRow(document, body_));
+  if (shape_) connect(shape_, &ClothShapeRow::meshChosen, this, &ParameterSection::meshChosen);
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* editor = make_editor(document, parameter, body_);
     const bool said_above = block.parameters.size() == 1 && parameter.info.label == block.title &&
@@ -63,6 +64,8 @@ void ParameterSection::makeBody(LabDocument& document, const cloth::Block& block
       editor->hideTitle();
       if (parameter.info.kind == cloth::Kind::vector) head_->setUnit(unit_text(parameter.info.unit));
     }
+    if (auto* mesh = qobject_cast<MeshEditor*>(editor))
+      connect(mesh, &MeshEditor::meshChosen, this, &ParameterSection::meshChosen);
     rows->addWidget(editor);
     editors_.push_back(editor);
   }
@@ -84,10 +87,27 @@ bool ParameterSection::isCollapsed() const {
 }
 
 void ParameterSection::setRemovable(bool removable) {
+  removable_ = removable;
   if (cross_) cross_->setVisible(removable);
   if (shape_) shape_->setVisible(removable);
   for (ParameterEditor* editor : editors_)
     if (auto* mesh = qobject_cast<MeshEditor*>(editor)) mesh->offerGrid(removable);
+}
+
+bool ParameterSection::showMatching(const QStringList& words) {
+  const QString title = QString::fromStdString(title_);
+  const bool whole = std::all_of(words.begin(), words.end(), [&](const QString& word) {
+    return title.contains(word, Qt::CaseInsensitive);
+  });
+  bool any = whole;
+  for (ParameterEditor* editor : editors_) {
+    const bool shown = whole || editor->matches(words);
+    editor->setVisible(shown);
+    any = any || shown;
+  }
+  if (shape_) shape_->setVisible(whole && removable_);
+  setVisible(any);
+  return any;
 }
 
 void ParameterSection::refresh() {

@@ -32,6 +32,10 @@ class ParameterSection : public QWidget {
   /// Shows the cross of a block that may go, or hides it; likewise what makes another block of it.
   void setRemovable(bool removable);
 
+  /// Shows the rows that have every one of these words, or all where there are none or the title has them; as
+  /// long as there are words, open. False if there is none: the section is hidden then.
+  bool showMatching(const QStringList& words);
+
   void refresh();
   ParameterEditor* editor(const std::string& path) const;
   const std::vector<ParameterEditor*>& editors() const { return editors_; }
@@ -41,6 +45,7 @@ class ParameterSection : public QWidget {
  Q_SIGNALS:
   void collapsedChanged(bool collapsed);
   void removeRequested();
+  void meshChosen();  ///< and taken or refused; a message is at its place
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -50,6 +55,7 @@ class ParameterSection : public QWidget {
   void makeBody(LabDocument& document, const cloth::Block& block, QVBoxLayout& column);
 
   std::string path_, title_;
+  bool removable_ = true;
   SectionHeader* head_ = nullptr;
   QToolButton* cross_ = nullptr;
   QWidget* body_ = nullptr;

@@ -18,6 +18,7 @@ constexpr int resolution = 10000;
 }  // namespace
 
 ValueSlider::ValueSlider(QWidget* parent) : QSlider(Qt::Horizontal, parent) {
+  setLayoutDirection(Qt::LeftToRight);  // like an axis of numbers, in every script
   setRange(0, resolution);
   setFocusPolicy(Qt::StrongFocus);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);

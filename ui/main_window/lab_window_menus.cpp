@@ -11,6 +11,7 @@
 #include "help/help_window.h"
 #include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
+#include "main_window/undo_history.h"
 #include "main_window/view_bar.h"
 #include "scene/builtin_scenes.h"
 #include "theme/theme.h"
@@ -140,6 +141,8 @@ void LabWindow::makeEditMenu() {
   redo_->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
   QMenu* edit = menuBar()->addMenu(tr("&Edit"));
   edit->addActions({undo_, redo_});
+  edit->addAction(tr("Undo history"), this, [this] { show_undo_history(document_.undoStack(), *this); })
+      ->setObjectName("undoHistory");
   edit->addSeparator();
   edit->addAction(tr("Find parameter"), QKeySequence::Find, this, [this] {
     parameters_dock_->show();

@@ -101,6 +101,31 @@ class FormNumbersTest : public FormFixture {
     QVERIFY(part<QLabel>("springs.structural", "rule")->text().contains("could overflow"));
   }
 
+  void from_right_to_left_nothing_overlaps_and_numbers_stay_as_they_are() {
+    const char* const path = "springs.structural";
+    panel().resize(280, 700);
+    QCoreApplication::processEvents();
+    QCOMPARE(QApplication::layoutDirection(), Qt::LeftToRight);
+    const QImage field_before = field(path)->grab().toImage(), slider_before = slider(path)->grab().toImage();
+    QApplication::setLayoutDirection(Qt::RightToLeft);
+    const auto back = qScopeGuard([] { QApplication::setLayoutDirection(Qt::LeftToRight); });
+    QCoreApplication::processEvents();
+    QCOMPARE(field(path)->grab().toImage(), field_before);
+    QCOMPARE(slider(path)->grab().toImage(), slider_before);
+    for (QWidget* row : panel().findChildren<QWidget*>()) {
+      if (!row->layout() || !row->isVisible()) continue;
+      const QList<QWidget*> parts = row->findChildren<QWidget*>(Qt::FindDirectChildrenOnly);
+      for (qsizetype i = 0; i < parts.size(); ++i) {
+        if (!parts[i]->isVisible() || parts[i]->property("bubble").toBool()) continue;
+        QVERIFY2(row->rect().contains(parts[i]->geometry()), qPrintable(parts[i]->objectName()));
+        for (qsizetype j = 0; j < i; ++j)
+          QVERIFY2(!parts[j]->isVisible() || !parts[i]->geometry().intersects(parts[j]->geometry()),
+                   qPrintable(row->objectName() + ": " + parts[i]->objectName() + " over " +
+                              parts[j]->objectName()));
+      }
+    }
+  }
+
   void enter_keeps_the_focus() {
     QLineEdit* f = field("springs.structural");
     type(f, "700");

@@ -200,8 +200,8 @@ void ExactField::paintEvent(QPaintEvent* event) {
       style()->subElementRect(QStyle::SE_LineEditContents, &option, this).adjusted(2, 0, -2, 0);
   QPainter painter(this);
   painter.setPen(isEnabled() ? theme().muted_text : theme().disabled_text);
-  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignRight, shownUnit());
-  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignLeft, prefix_);
+  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignRight | Qt::AlignAbsolute, shownUnit());
+  painter.drawText(inside, Qt::AlignVCenter | Qt::AlignLeft | Qt::AlignAbsolute, prefix_);
 }
 
 }  // namespace clothlab

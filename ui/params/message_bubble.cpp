@@ -70,7 +70,8 @@ void MessageBubble::appear() {
 /// Above the control, over the row's title; below it where there is no room or none in sight.
 void MessageBubble::place() {
   const QWidget* content = parentWidget();
-  const QRect control(row_.mapTo(content, control_.geometry().topLeft()), control_.geometry().size());
+  const QRect row(0, control_.geometry().top(), row_.width(), control_.geometry().height());
+  const QRect control(row_.mapTo(content, row.topLeft()), row.size());
   constexpr int gap = 2;  // px
   const int tall = heightForWidth(control.width());
   const int above = control.top() - gap - tall;

@@ -31,6 +31,7 @@ QSize Reading::sizeHint() const {
 
 void Reading::paintEvent(QPaintEvent*) {
   QPainter painter(this);
+  painter.setLayoutDirection(Qt::LeftToRight);  // a number comes before its unit in every layout
   painter.setFont(textFont());
   painter.setPen(look_ == Look::muted ? theme().muted_text : theme().text);
   const QRect inside = rect().adjusted(spacing / 2, 0, -spacing / 2, 0);

@@ -147,6 +147,7 @@ QSize StabilityGauge::minimumSizeHint() const {
 
 void StabilityGauge::paintEvent(QPaintEvent*) {
   QPainter painter(this);
+  painter.setLayoutDirection(Qt::LeftToRight);  // a number comes before its unit in every layout
   painter.setRenderHint(QPainter::Antialiasing);
   const QRectF bar(0, (height() - bar_height) / 2.0, bar_width, bar_height);
   painter.setPen(Qt::NoPen);

@@ -1,5 +1,6 @@
 // What a window remembers for the next one, by real clicks and keys.
 #include <QComboBox>
+#include <QDir>
 #include <QDockWidget>
 #include <QMenu>
 #include <QSettings>
@@ -10,6 +11,7 @@
 #include "compare_bench.h"
 #include "dialogs.h"
 #include "listed_test.h"
+#include "main_window/autosave.h"
 #include "window_bench.h"
 
 namespace clothlab::test::memory_test {
@@ -120,6 +122,43 @@ class MemoryTest : public QObject {
     QVERIFY(qEnvironmentVariableIsSet("CLOTHLAB_THEME") || theme().dark);
     choose_theme(*qApp, {});
     apply_theme(*qApp, false);
+  }
+
+  void unsaved_changes_are_kept_aside_until_they_are_saved_or_discarded() {
+    QDir(Autosave::folder()).removeRecursively();
+    WindowBench bench("corners-free");
+    bench.window.autosave().setInterval(50);
+    QTest::qWait(150);
+    QVERIFY(bench.window.autosave().file().isEmpty());  // nothing was changed
+    bench.window.document().setParameter("springs.structural", 123.0);
+    QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
+    QVERIFY(Autosave::found().isEmpty());  // its process lives
+    const QString kept = bench.window.autosave().file();
+    bench.action("undo")->trigger();
+    QVERIFY(!QFile::exists(kept));
+  }
+
+  void what_a_crash_left_is_offered_and_restored() {
+    QDir(Autosave::folder()).removeRecursively();
+    const QString left = Autosave::folder() + "/1-1.compare.json";
+    {
+      CompareBench bench;
+      bench.window.autosave().setInterval(50);
+      bench.window.document().setParameter("springs.structural", 123.0);
+      QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
+      QVERIFY(QFile::copy(bench.window.autosave().file(), left));  // as of a process that is no more
+    }
+    WindowBench bench("corners-free");
+    bench.window.offerUnsaved();
+    QVERIFY2(bench.window.notice().text().contains("without saving"),
+             qPrintable(bench.window.notice().text()));
+    for (auto* button : bench.window.notice().findChildren<QAbstractButton*>())
+      if (button->text() == "Restore") QTest::mouseClick(button, Qt::LeftButton);
+    bench.settle();
+    QVERIFY(bench.window.document().isComparison() && bench.window.document().isModified());
+    QCOMPARE(bench.window.document().scene().springs->structural, 123.0);
+    QVERIFY(!QFile::exists(left));
+    QVERIFY(Autosave::found().isEmpty());
   }
 
   void docks_have_title_bars_to_move_them_by() {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compare/scope_tabs.h"
+#include "main_window/autosave.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
 #include "studies/studies_panel.h"
@@ -39,6 +40,7 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
   parameters_ = new ParameterPanel(document_, this);
   notice_ = new NoticeBar(this);
   studies_ = new StudiesPanel(document_, this);
+  autosave_ = new Autosave(document_, this);
   makeActions();
   makeLayout();
   makeMenus();
@@ -52,6 +54,7 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
 
 /// The widgets refer to the document and the link.
 LabWindow::~LabWindow() {
+  delete autosave_;
   delete takeCentralWidget();
   qDeleteAll(findChildren<QDockWidget*>());
 }
@@ -173,6 +176,10 @@ void LabWindow::connectDocument() {
     startRun();
   });
   connect(&document_, &LabDocument::titleChanged, this, &LabWindow::updateTitle);
+  connect(autosave_, &Autosave::failed, this, [this](const QString& problem) {
+    say("autosave", NoticeBar::Level::warning,
+        tr("Unsaved changes could not be saved aside. %1").arg(problem));
+  });
   connect(&document_, &LabDocument::modifiedChanged, this, [this](bool modified) {
     updateTitle();
     if (modified) notice_->withdraw("save " + what());  // no longer what lies there

@@ -20,6 +20,7 @@
 
 namespace clothlab {
 
+class Autosave;
 class ScopeTabs;
 class StudiesPanel;
 class ViewBar;
@@ -45,6 +46,9 @@ class LabWindow : public QMainWindow {
   bool saveTo(const QString& path);
   /// Saves the run so far with all its edits (docs/sessions.md).
   void saveSession(const QString& path);
+  /// Offers what a crash has left unsaved, see Autosave.
+  void offerUnsaved();
+  Autosave& autosave() { return *autosave_; }
   /// Whether closing or opening another document asks about unsaved changes.
   void setAsksToSave(bool asks) { asks_to_save_ = asks; }
 
@@ -143,6 +147,7 @@ class LabWindow : public QMainWindow {
   bool load(const OpenedComparison& opened);
   bool loadMesh(const QString& file);
   bool loadStudy(const QString& folder);
+  void restore(const QString& file);
   void openRun(const cloth::Scene& scene, const QString& note);
   bool isSound(const QString& what, const QString& problems);
   QString what() const { return document_.isComparison() ? tr("comparison") : tr("scene"); }
@@ -168,6 +173,7 @@ class LabWindow : public QMainWindow {
   QAction *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
   QMenu *builtin_menu_ = nullptr, *recent_menu_ = nullptr;
 
+  Autosave* autosave_ = nullptr;
   PaneGrid* grid_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
   ScopeTabs* scopes_ = nullptr;

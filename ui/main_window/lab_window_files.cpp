@@ -5,10 +5,12 @@
 #include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QLocale>
 #include <QMessageBox>
 #include <QMimeData>
 #include <utility>
 
+#include "main_window/autosave.h"
 #include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
 #include "params/mesh_button.h"
@@ -85,6 +87,29 @@ void LabWindow::openRun(const cloth::Scene& scene, const QString& note) {
   if (!mayLoseChanges()) return;
   document_.load(scene);
   say("run", NoticeBar::Level::info, note);
+}
+
+void LabWindow::offerUnsaved() {
+  for (const QString& file : Autosave::found()) {
+    const QString kind = "unsaved " + QFileInfo(file).fileName();
+    const QString when = QLocale().toString(QFileInfo(file).lastModified(), QLocale::ShortFormat);
+    notice_->show(
+        kind, NoticeBar::Level::warning,
+        tr("Clothlab ended without saving. Changes of %1 were kept.").arg(when),
+        {{tr("Restore"), [this, file] { restore(file); }}, {tr("Discard"), [file] { QFile::remove(file); }}});
+  }
+}
+
+void LabWindow::restore(const QString& file) {
+  const bool is_comparison = type_of(file) == FileType::comparison;
+  const OpenedScene scene = is_comparison ? OpenedScene() : open_scene(file);
+  const OpenedComparison comparison = is_comparison ? open_comparison(file) : OpenedComparison();
+  if (!isSound(tr("document"), scene.problems + comparison.problems) || !mayLoseChanges()) return;
+  if (is_comparison)
+    document_.load(*comparison.comparison, {}, true);
+  else
+    document_.load(*scene.scene, {}, true);
+  QFile::remove(file);  // from here on this window keeps it
 }
 
 void LabWindow::openWithDialog() {
@@ -228,6 +253,7 @@ void LabWindow::quit() {
 
 void open_first_window(const QString& name) {
   LabWindow* window = LabWindow::showNew();
+  window->offerUnsaved();
   const bool replaces = type_of(name) == FileType::scene || type_of(name) == FileType::comparison;
   if (!name.isEmpty() && replaces && window->open(name)) return;
   window->document().load(*open_scene(cloth::default_scene_name).scene);

@@ -3,9 +3,11 @@
 #include <QApplication>
 #include <QDBusConnection>
 #include <QDBusMessage>
+#include <QDBusPendingCallWatcher>
 #include <QEvent>
 #include <QFileInfo>
 #include <QTimer>
+#include <utility>
 
 #include "theme/theme.h"
 
@@ -17,6 +19,9 @@ const char* const path = "/org/freedesktop/portal/desktop";
 const char* const interface = "org.freedesktop.portal.Settings";
 const char* const appearance = "org.freedesktop.appearance";
 const char* const colour_scheme = "color-scheme";
+
+/// What the portal has answered last.
+std::optional<bool> portal_preference;
 
 /// Asking for the bus where there is none makes D-Bus try to start one, which takes its time and leaves a
 /// process.
@@ -34,29 +39,30 @@ QVariant unwrapped(QVariant value) {
 }  // namespace
 
 std::optional<bool> portal_prefers_dark() {
-  if (!has_session_bus()) return std::nullopt;
-  QDBusMessage question = QDBusMessage::createMethodCall(service, path, interface, "Read");
-  question << QString(appearance) << QString(colour_scheme);
-  // The window waits for this before it opens: a portal that is slow to start is taken for one that is not
-  // there.
-  constexpr int patience_ms = 500;
-  const QDBusMessage answer = QDBusConnection::sessionBus().call(question, QDBus::Block, patience_ms);
-  if (answer.type() != QDBusMessage::ReplyMessage || answer.arguments().isEmpty()) return std::nullopt;
-  switch (unwrapped(answer.arguments().constFirst()).toUInt()) {
-    case 1:
-      return true;
-    case 2:
-      return false;
-    default:
-      return std::nullopt;  // 0 is "no preference"
-  }
+  return portal_preference;
 }
 
 FollowDesktop::FollowDesktop(QApplication& application) : QObject(&application) {
   application.installEventFilter(this);
-  if (has_session_bus())
-    QDBusConnection::sessionBus().connect(service, path, interface, "SettingChanged", this,
-                                          SLOT(setting_changed(QString, QString, QDBusVariant)));
+  if (!has_session_bus()) return;
+  QDBusConnection::sessionBus().connect(service, path, interface, "SettingChanged", this,
+                                        SLOT(setting_changed(QString, QString, QDBusVariant)));
+  ask_portal();
+}
+
+void FollowDesktop::ask_portal() {
+  QDBusMessage question = QDBusMessage::createMethodCall(service, path, interface, "Read");
+  question << QString(appearance) << QString(colour_scheme);
+  auto* answer = new QDBusPendingCallWatcher(QDBusConnection::sessionBus().asyncCall(question), this);
+  connect(answer, &QDBusPendingCallWatcher::finished, this, [this, answer] {
+    answer->deleteLater();
+    const QDBusMessage message = answer->reply();
+    if (message.type() != QDBusMessage::ReplyMessage || message.arguments().isEmpty()) return;
+    const uint scheme = unwrapped(message.arguments().constFirst()).toUInt();
+    std::optional<bool> preference;  // 0 is "no preference"
+    if (scheme == 1 || scheme == 2) preference = scheme == 1;
+    if (std::exchange(portal_preference, preference) != preference) follow_soon();
+  });
 }
 
 bool FollowDesktop::eventFilter(QObject* watched, QEvent* event) {
@@ -67,7 +73,7 @@ bool FollowDesktop::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void FollowDesktop::setting_changed(const QString& group, const QString& key, const QDBusVariant&) {
-  if (group == appearance && key == colour_scheme) follow_soon();
+  if (group == appearance && key == colour_scheme) ask_portal();
 }
 
 /// Waits for the event loop, so that the news from all windows and from the portal together cost one change.

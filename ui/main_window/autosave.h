@@ -1,0 +1,44 @@
+// Saves a document with unsaved changes aside every half minute, so that it can be restored after a crash.
+#pragma once
+
+#include <QLockFile>
+#include <QObject>
+#include <QStringList>
+#include <QTimer>
+#include <memory>
+
+namespace clothlab {
+
+class LabDocument;
+
+class Autosave : public QObject {
+  Q_OBJECT
+
+ public:
+  /// The document must outlive it.
+  explicit Autosave(LabDocument& document, QObject* parent = nullptr);
+  /// Deletes the file: whoever closes in order has saved or discarded the changes.
+  ~Autosave() override;
+
+  void setInterval(int milliseconds) { timer_.setInterval(milliseconds); }
+  QString file() const { return file_; }  ///< empty: nothing is kept
+
+  /// Files of processes that have ended without deleting them, the oldest first.
+  static QStringList found();
+  static QString folder();
+
+ Q_SIGNALS:
+  void failed(const QString& problem);  ///< once, until it works again
+
+ private:
+  void save();
+  void forget();
+
+  LabDocument& document_;
+  QTimer timer_;
+  std::unique_ptr<QLockFile> lock_;  ///< held while there is a file: it is not a dead process's
+  QString file_;
+  bool has_failed_ = false;
+};
+
+}  // namespace clothlab

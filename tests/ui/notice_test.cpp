@@ -265,6 +265,18 @@ class NoticeTest : public QObject {
     }
   }
 
+  void buttons_of_a_message_stand_side_by_side() {
+    TooLongStep bench;
+    play_until_it_diverges(bench);
+    const QWidget* notice = notice_in(bench.window, "divergence");
+    QVERIFY(notice);
+    QTest::qWait(50);
+    const auto buttons = notice->findChildren<QPushButton*>();
+    QCOMPARE(buttons.size(), 2);
+    QCOMPARE(buttons[0]->y(), buttons[1]->y());
+    QVERIFY(buttons[1]->x() - buttons[0]->geometry().right() <= 2 * spacing);
+  }
+
   void a_pane_that_stops_again_says_so_again() {
     CompareBench bench(with_a_pane_that_diverges({"verlet", "rk4"}, 0.01));
     PaneView& pane = bench.window.panes().pane(1);

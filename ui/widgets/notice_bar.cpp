@@ -125,7 +125,7 @@ void NoticeRow::suitWidth(int width) {
   if (room - beside >= least_text)
     cells_->addLayout(buttons_, 0, 2);
   else
-    cells_->addLayout(buttons_, 1, is_narrow ? 0 : 1, 1, is_narrow ? 4 : 3);
+    cells_->addLayout(buttons_, 1, is_narrow ? 0 : 1, 1, is_narrow ? 4 : 3, Qt::AlignLeft);
   buttons_->setDirection(room >= beside ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
 }
 

@@ -4,8 +4,10 @@
 #include <QDockWidget>
 #include <QLabel>
 #include <QLayout>
+#include <QListWidget>
 #include <QProgressBar>
 #include <QScrollArea>
+#include <QStyleOptionViewItem>
 #include <thread>
 
 #include "charts/live_chart.h"
@@ -271,6 +273,25 @@ class StudiesDockTest : public QObject {
     area->ensureVisible(0, bench.plot().height());
     const QPoint last = bench.plot().placeOf(7).center().toPoint();
     QVERIFY(bench.plot().rect().contains(last));
+  }
+
+  void names_of_methods_are_whole() {
+    DockBench bench("pendulum");
+    bench.window.resize(small_window);
+    QTest::qWait(100);
+    auto* methods = bench.part<QListWidget>("studyMethods");
+    QStyleOptionViewItem option;
+    option.initFrom(methods);
+    option.features = QStyleOptionViewItem::HasCheckIndicator | QStyleOptionViewItem::HasDisplay;
+    for (int row = 0; row < methods->count(); ++row) {
+      const QListWidgetItem* item = methods->item(row);
+      option.rect = methods->visualItemRect(item);
+      option.text = item->text();
+      const QRect room = methods->style()->subElementRect(QStyle::SE_ItemViewItemText, &option, methods);
+      QVERIFY2(room.width() >= methods->fontMetrics().horizontalAdvance(item->text()),
+               qPrintable(QStringLiteral("%1: %2 px").arg(item->text()).arg(room.width())));
+      QVERIFY(methods->viewport()->rect().contains(option.rect));
+    }
   }
 
   void fields_of_the_form_begin_at_one_edge() {

@@ -31,7 +31,7 @@ namespace clothlab {
 namespace {
 
 constexpr int poll_interval = 100;  // ms
-constexpr int choices_width = 330;  // px
+constexpr int choices_width = 346;  // px
 
 QString time_text(double seconds) {
   const int whole = static_cast<int>(std::ceil(seconds));

@@ -7,6 +7,7 @@
 #include <QListWidget>
 #include <QLocale>
 #include <QScopedValueRollback>
+#include <QSpacerItem>
 #include <QSpinBox>
 #include <algorithm>
 
@@ -22,7 +23,7 @@
 namespace clothlab {
 namespace {
 
-constexpr int method_rows = 5, method_height = 22, method_width = 152;  // px
+constexpr int method_rows = 5, method_height = 22, method_width = 164;  // px
 const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
@@ -132,6 +133,8 @@ void StudyChoices::makeRows() {
   form_->addRow(tr("Periods"), periods_);
   form_->addRow(tr("Cases"), cases_);
   form_->addRow(tr("Folder"), folder_);
+  form_->setItem(form_->rowCount(), QFormLayout::SpanningRole,
+                 new QSpacerItem(0, 0, QSizePolicy::Minimum, QSizePolicy::Expanding));
   for (QWidget* field : {static_cast<QWidget*>(repeats_), static_cast<QWidget*>(periods_)})
     field->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }

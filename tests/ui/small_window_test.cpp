@@ -10,6 +10,7 @@
 #include "compare_bench.h"
 #include "listed_test.h"
 #include "params/panel_parts.h"
+#include "studies/studies_panel.h"
 #include "theme/theme.h"
 #include "window_bench.h"
 
@@ -160,6 +161,18 @@ class SmallWindowTest : public QObject {
       QVERIFY2(whole.startsWith(shown.chopped(1).trimmed()), qPrintable(shown));
       QVERIFY2(tip_of(*method).contains(whole), qPrintable(tip_of(*method)));
     }
+  }
+
+  void studies_of_a_comparison_leave_the_window_as_large_as_it_is() {
+    apply_theme(*qApp, false);
+    CompareBench bench(panes_of({"verlet", "semi-implicit-euler", "rk4", "implicit-midpoint"}));
+    resize_to(bench.window, {1000, 650});
+    QTest::keyClick(&bench.window, Qt::Key_T, Qt::ControlModifier);
+    QTest::qWait(200);
+    QCOMPARE(bench.window.size(), QSize(1000, 650));
+    QVERIFY(bench.window.studies().isVisible());
+    for (std::size_t pane = 0; pane < 4; ++pane)
+      QVERIFY(bench.window.panes().pane(pane).view().height() >= 20);
   }
 
   void a_roomy_pane_has_its_step_beside_the_method_and_a_narrow_one_below() {

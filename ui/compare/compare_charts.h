@@ -22,7 +22,7 @@ class CompareCharts : public ChartArea {
   LiveChart* chart(const QString& key) const;
 
   QSize sizeHint() const override { return {400, 600}; }
-  QSize minimumSizeHint() const override { return {230, 320}; }
+  QSize minimumSizeHint() const override { return {230, 280}; }
 
  private:
   struct Curves {

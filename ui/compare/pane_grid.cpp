@@ -123,8 +123,16 @@ void PaneGrid::layOut() {
   grid_->setContentsMargins(margin, margin, margin, margin);
   for (PaneView* pane : panes_) {
     pane->setAlone(isOne());
+    pane->setLow(is_low_);
     pane->view().setSmoothAtRest(isOne() || !playing_);
   }
+}
+
+void PaneGrid::setLow(bool low) {
+  is_low_ = low;
+  for (PaneView* pane : panes_) pane->setLow(low);
+  for (QWidget* widget = this; widget && !widget->isWindow(); widget = widget->parentWidget())
+    if (widget->layout()) widget->layout()->activate();  // at once: nothing grows for the height before
 }
 
 void PaneGrid::followCamera(const ClothView& moved, const CameraPose& pose) {

@@ -66,6 +66,7 @@ class PaneGrid : public QWidget {
   void setMode(ViewMode mode, Colouring colouring = Colouring::strain);
   ViewMode mode() const { return mode_; }
   void setContact(const ContactChoice& choice);
+  void setLow(bool low);                                             ///< PaneView::setLow()
   void setPreset(CameraPreset preset) { view().setPreset(preset); }  ///< the others follow
   void frameAll() { view().frameAll(); }
 
@@ -110,6 +111,7 @@ class PaneGrid : public QWidget {
   bool playing_ = false;
   std::int64_t starts_ = 0;  ///< of the comparison, that the results are from
   Tool tool_ = Tool::pull;
+  bool is_low_ = false;
   ViewMode mode_ = ViewMode::textured;
   Colouring colouring_ = Colouring::strain;
   ContactChoice contact_;

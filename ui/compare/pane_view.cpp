@@ -153,9 +153,15 @@ void PaneView::setAlone(bool alone) {
   const int margin = alone ? 0 : frame_width;
   layout()->setContentsMargins(margin, margin, margin, margin);
   header_->setVisible(!alone);
-  view_->setMinimumSize(alone ? QSize(320, 160) : QSize(160, 56));
+  setLow(is_low_);
   if (alone) forgetStop();  // the window says it
   update();
+}
+
+void PaneView::setLow(bool low) {
+  is_low_ = low;
+  view_->setMinimumSize(is_alone_ ? QSize(320, 160) : QSize(160, low ? 24 : 56));
+  layout()->activate();
 }
 
 void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow) {

@@ -35,6 +35,8 @@ class PaneView : public QFrame {
   void showPane(const cloth::Comparison& comparison, std::size_t pane, bool can_grow);
   /// Whether it is the only one: without a head and a frame.
   void setAlone(bool alone);
+  /// Whether there is little height for the panes of a comparison: their views may be very low.
+  void setLow(bool low);
   /// Shows the pane's measurements and its state.
   void showResult(const cloth::PaneResult& result, bool has_reference);
   /// Says over the view why the pane stopped and what may help; if it was closed, again.
@@ -68,7 +70,7 @@ class PaneView : public QFrame {
   void suitWidth();
 
   int style_ = 0;
-  bool is_alone_ = false;
+  bool is_alone_ = false, is_low_ = false;
   cloth::Scene scene_;
   std::optional<cloth::Divergence> stop_;
   ClothView* view_;

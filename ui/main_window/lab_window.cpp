@@ -97,13 +97,17 @@ void LabWindow::makeDocks() {
   ranking_dock_ = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
   ranking_dock_->hide();
   studies_dock_ = addDock(tr("Studies"), "studiesDock", studies_, Qt::BottomDockWidgetArea);
+  tabifyDockWidget(ranking_dock_, studies_dock_);
   studies_dock_->hide();
-  connect(studies_dock_, &QDockWidget::visibilityChanged, this, &LabWindow::placeCorners);
+  connect(studies_dock_, &QDockWidget::visibilityChanged, this,
+          [this] { placeCorners(!studies_dock_->isHidden()); });
 }
 
-/// Studies take the whole width; the ranking leaves form and charts of a comparison their height.
-void LabWindow::placeCorners() {
-  const bool whole = !shows_comparison_ || studies_dock_->isVisible();
+/// Studies take the whole width, and in a low window the height of the panes; the ranking leaves form and
+/// charts of a comparison their height.
+void LabWindow::placeCorners(bool studies) {
+  const bool whole = !shows_comparison_ || studies;
+  grid_->setLow(studies);
   setCorner(Qt::BottomLeftCorner, whole ? Qt::BottomDockWidgetArea : Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, whole ? Qt::BottomDockWidgetArea : Qt::RightDockWidgetArea);
 }
@@ -156,6 +160,7 @@ void LabWindow::resizeEvent(QResizeEvent* event) {
 
 void LabWindow::showStudies() {
   const bool was_hidden = studies_dock_->isHidden();
+  placeCorners(true);  // before the dock needs its place
   studies_dock_->show();
   studies_dock_->raise();
   // The upper half of a low window keeps the larger part.
@@ -352,7 +357,7 @@ void LabWindow::showKind() {
   shows_comparison_ = document_.isComparison();
   charts_->setVisible(!shows_comparison_);
   pane_charts_->setVisible(shows_comparison_);
-  placeCorners();
+  placeCorners(!studies_dock_->isHidden());
   setWidths();
   ranking_dock_->setVisible(shows_comparison_);
   ranking_dock_->toggleViewAction()->setVisible(shows_comparison_);

@@ -100,7 +100,7 @@ class LabWindow : public QMainWindow {
   void followEdit(const SceneChange& change);
   void showDocument();
   void showKind();
-  void placeCorners();
+  void placeCorners(bool studies);
   void readStability();
   void noteKeyframes();
   void brush(const cloth::BrushGust& gust);

@@ -48,7 +48,7 @@ class ParameterPanel : public QWidget {
   bool reveal(const std::string& path);
 
   QSize sizeHint() const override { return {320, 640}; }
-  QSize minimumSizeHint() const override { return {280, 240}; }
+  QSize minimumSizeHint() const override { return {280, 200}; }
 
  Q_SIGNALS:
   void noteButtonClicked(const std::string& path);

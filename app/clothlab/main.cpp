@@ -7,6 +7,7 @@
 
 #include "io/machine.h"
 #include "io/process.h"
+#include "main_window/autosave.h"
 #include "main_window/lab_window.h"
 #include "main_window/stop_signals.h"
 #include "theme/theme.h"
@@ -67,8 +68,11 @@ int run(int argc, char** argv) {
   const clothlab::StopSignals stop_signals([] { QApplication::exit(130); });
   clothlab::open_first_window(parser.positionalArguments().value(0));
   const int exit_code = QApplication::exec();
-  // A signal leaves windows open: they finish recordings and studies.
-  for (const clothlab::LabWindow* window : clothlab::LabWindow::all()) delete window;
+  // A signal leaves windows open: they save changes aside and finish recordings and studies.
+  for (clothlab::LabWindow* window : clothlab::LabWindow::all()) {
+    window->autosave().save();
+    delete window;
+  }
   return exit_code;
 }
 

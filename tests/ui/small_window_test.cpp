@@ -145,6 +145,24 @@ class SmallWindowTest : public QObject {
     QVERIFY2(trouble_with_buttons(charts).isEmpty(), qPrintable(trouble_with_buttons(charts)));
   }
 
+  void a_comparison_opens_in_a_small_window_without_making_it_larger() {
+    apply_theme(*qApp, false);
+    WindowBench bench("corners-free");
+    resize_to(bench.window, {1000, 650});
+    for (const std::size_t panes : {2U, 3U, 4U}) {
+      QTest::keyClick(&bench.window, Qt::Key_D, Qt::ControlModifier);  // Ctrl+D adds a pane
+      if (panes > 2) bench.window.document().duplicatePane(0);
+      bench.settle();
+      QTest::qWait(100);
+      QCOMPARE(bench.window.panes().paneCount(), panes);
+      QCOMPARE(bench.window.size(), QSize(1000, 650));
+    }
+    bench.window.openComparison("report-methods");
+    bench.settle();
+    QTest::qWait(100);
+    QCOMPARE(bench.window.size(), QSize(1000, 650));
+  }
+
   void a_panes_method_is_whole_or_its_tooltip_is_data() { sizes_and_looks(); }
   void a_panes_method_is_whole_or_its_tooltip_is() {
     QFETCH(const QSize, size);

@@ -36,10 +36,6 @@ Autosave::Autosave(LabDocument& document, QObject* parent) : QObject(parent), do
   });
 }
 
-Autosave::~Autosave() {
-  forget();
-}
-
 QString Autosave::folder() {
   return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/unsaved";
 }

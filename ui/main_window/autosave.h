@@ -17,8 +17,10 @@ class Autosave : public QObject {
  public:
   /// The document must outlive it.
   explicit Autosave(LabDocument& document, QObject* parent = nullptr);
-  /// Deletes the file: whoever closes in order has saved or discarded the changes.
-  ~Autosave() override;
+  /// Saves the changes aside now, as before the process ends by a signal.
+  void save();
+  /// Deletes the file: the changes were saved or discarded.
+  void forget();
 
   void setInterval(int milliseconds) { timer_.setInterval(milliseconds); }
   QString file() const { return file_; }  ///< empty: nothing is kept
@@ -31,9 +33,6 @@ class Autosave : public QObject {
   void failed(const QString& problem);  ///< once, until it works again
 
  private:
-  void save();
-  void forget();
-
   LabDocument& document_;
   QTimer timer_;
   std::unique_ptr<QLockFile> lock_;  ///< held while there is a file: it is not a dead process's

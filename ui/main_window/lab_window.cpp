@@ -340,9 +340,11 @@ void LabWindow::followEdit(const SceneChange& change) {
   if (was_playing) link_.send(command::Play{});
 }
 
-/// What of the document the panes, their charts, tabs and ranking show.
+/// What of the document the panes, their charts, tabs and ranking show. The panes come when the wider charts
+/// of a scene have gone, and go before these come: a small window has no room for both.
 void LabWindow::showDocument() {
   const cloth::Comparison& comparison = document_.comparison();
+  if (document_.isComparison() && !shows_comparison_) showKind();
   grid_->showComparison(comparison);
   if (document_.isComparison()) {
     pane_charts_->setPanes(comparison);

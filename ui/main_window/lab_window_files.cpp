@@ -109,7 +109,8 @@ void LabWindow::restore(const QString& file) {
     document_.load(*comparison.comparison, {}, true);
   else
     document_.load(*scene.scene, {}, true);
-  QFile::remove(file);  // from here on this window keeps it
+  autosave_->save();  // from here on this window keeps it
+  QFile::remove(file);
 }
 
 void LabWindow::openWithDialog() {
@@ -222,6 +223,7 @@ void LabWindow::closeEvent(QCloseEvent* event) {
   link_.send(command::Pause{});
   link_.send(command::StopRecording{});
   studies_->stop();
+  autosave_->forget();
   remember();
   event->accept();
 }

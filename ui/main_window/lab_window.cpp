@@ -6,7 +6,6 @@
 #include <QToolBar>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "compare/scope_tabs.h"
@@ -22,9 +21,7 @@ namespace {
 
 constexpr QSize pleasant_size{1440, 900};
 constexpr int title_bar_height = 32;  // px, at least what a desktop puts above a window
-/// px, of form and charts; the panes of a comparison need more room than one.
-constexpr std::array widths_of_scene{330, 400}, widths_of_comparison{284, 330};
-constexpr int studies_height = 400, ranking_height = 200;  // px
+constexpr int ranking_height = 230;   // px
 
 }  // namespace
 
@@ -77,94 +74,6 @@ void LabWindow::makeLayout() {
   addToolBar(Qt::BottomToolBarArea, bottom);
   makeDocks();
   view().setFocus();
-}
-
-void LabWindow::makeDocks() {
-  auto* form = new QWidget(this);
-  auto* rows = spaced(new QVBoxLayout(form), 0);
-  scopes_ = new ScopeTabs(document_, *parameters_, form);
-  rows->addWidget(scopes_);
-  rows->addWidget(parameters_, 1);
-  auto* charts = new QWidget(this);
-  auto* one_of_two = spaced(new QVBoxLayout(charts), 0);
-  one_of_two->addWidget(charts_);
-  one_of_two->addWidget(pane_charts_);
-
-  parameters_dock_ = addDock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
-  charts_dock_ = addDock(tr("Charts"), "chartsDock", charts, Qt::RightDockWidgetArea);
-  parameters_dock_->installEventFilter(this);
-  charts_dock_->installEventFilter(this);
-  ranking_dock_ = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
-  ranking_dock_->hide();
-  studies_dock_ = addDock(tr("Studies"), "studiesDock", studies_, Qt::BottomDockWidgetArea);
-  tabifyDockWidget(ranking_dock_, studies_dock_);
-  studies_dock_->hide();
-  connect(studies_dock_, &QDockWidget::visibilityChanged, this,
-          [this] { placeCorners(!studies_dock_->isHidden()); });
-}
-
-/// Studies take the whole width, and in a low window the height of the panes; the ranking leaves form and
-/// charts of a comparison their height.
-void LabWindow::placeCorners(bool studies) {
-  const bool whole = !shows_comparison_ || studies;
-  grid_->setLow(studies);
-  setCorner(Qt::BottomLeftCorner, whole ? Qt::BottomDockWidgetArea : Qt::LeftDockWidgetArea);
-  setCorner(Qt::BottomRightCorner, whole ? Qt::BottomDockWidgetArea : Qt::RightDockWidgetArea);
-}
-
-QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
-                                Qt::DockWidgetArea area) {
-  auto* dock = named(name, new QDockWidget(title, this));
-  dock->setWidget(content);
-  addDockWidget(area, dock);
-  return dock;
-}
-
-/// Docks at the sides get the widths of a scene or of a comparison, but for those that the user made wider or
-/// narrower. They get them back when the window was narrower meanwhile.
-void LabWindow::setWidths() {
-  const auto& now = shows_comparison_ ? widths_of_comparison : widths_of_scene;
-  const auto& before = shows_comparison_ ? widths_of_scene : widths_of_comparison;
-  const QList<QDockWidget*> docks{parameters_dock_, charts_dock_};
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    int& wanted = wanted_widths_[docks[static_cast<qsizetype>(k)]];
-    if (wanted == 0 || wanted == before[k]) wanted = now[k];
-  }
-  resizeDocks(docks, {wanted_widths_[parameters_dock_], wanted_widths_[charts_dock_]}, Qt::Horizontal);
-}
-
-/// A dock whose edge a hand drags is wanted as wide as it becomes.
-bool LabWindow::eventFilter(QObject* watched, QEvent* event) {
-  if (event->type() == QEvent::Resize && QApplication::mouseButtons() != Qt::NoButton)
-    if (auto* dock = qobject_cast<QDockWidget*>(watched); dock && wanted_widths_.contains(dock))
-      wanted_widths_[dock] = dock->width();
-  return QMainWindow::eventFilter(watched, event);
-}
-
-/// Docks that a narrower window has squeezed get their widths back, as far as the middle can spare it.
-void LabWindow::resizeEvent(QResizeEvent* event) {
-  QMainWindow::resizeEvent(event);
-  if (!centralWidget()) return;
-  int spare = centralWidget()->width() - centralWidget()->minimumSizeHint().width();
-  QList<QDockWidget*> docks;
-  QList<int> widths;
-  for (auto [dock, wanted] : wanted_widths_.asKeyValueRange()) {
-    if (!dock->isVisible() || dock->isFloating() || dock->width() >= wanted || spare <= 0) continue;
-    const int more = std::min(wanted - dock->width(), spare);
-    docks << dock;
-    widths << dock->width() + more;
-    spare -= more;
-  }
-  if (!docks.isEmpty()) resizeDocks(docks, widths, Qt::Horizontal);
-}
-
-void LabWindow::showStudies() {
-  const bool was_hidden = studies_dock_->isHidden();
-  placeCorners(true);  // before the dock needs its place
-  studies_dock_->show();
-  studies_dock_->raise();
-  // The upper half of a low window keeps the larger part.
-  if (was_hidden) resizeDocks({studies_dock_}, {std::min(studies_height, height() * 9 / 20)}, Qt::Vertical);
 }
 
 void LabWindow::connectDocument() {
@@ -340,11 +249,11 @@ void LabWindow::followEdit(const SceneChange& change) {
   if (was_playing) link_.send(command::Play{});
 }
 
-/// What of the document the panes, their charts, tabs and ranking show. The panes come when the wider charts
-/// of a scene have gone, and go before these come: a small window has no room for both.
+/// What of the document the panes, their charts, tabs and ranking show.
 void LabWindow::showDocument() {
   const cloth::Comparison& comparison = document_.comparison();
-  if (document_.isComparison() && !shows_comparison_) showKind();
+  const QSize before = size();
+  const std::size_t panes_before = grid_->paneCount();
   grid_->showComparison(comparison);
   if (document_.isComparison()) {
     pane_charts_->setPanes(comparison);
@@ -352,6 +261,10 @@ void LabWindow::showDocument() {
   }
   scopes_->refresh();
   if (shows_comparison_ != document_.isComparison()) showKind();
+  if (grid_->paneCount() == panes_before) return;
+  // A small window had to hold more panes before its docks gave way, and grew.
+  QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+  resize(before);
 }
 
 /// Arranges the widgets for a scene or for a comparison.

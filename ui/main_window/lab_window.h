@@ -85,9 +85,6 @@ class LabWindow : public QMainWindow {
  private:
   // lab_window.cpp
   void makeLayout();
-  void makeDocks();
-  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
-  void setWidths();
   void connectDocument();
   void connectHand();
   void connectPanes();
@@ -100,7 +97,6 @@ class LabWindow : public QMainWindow {
   void followEdit(const SceneChange& change);
   void showDocument();
   void showKind();
-  void placeCorners(bool studies);
   void readStability();
   void noteKeyframes();
   void brush(const cloth::BrushGust& gust);
@@ -108,6 +104,12 @@ class LabWindow : public QMainWindow {
   void startObstacleMove(int obstacle);
   void moveObstacle(int obstacle, const cloth::Vec3& by);
   void endObstacleMove(int obstacle, bool kept);
+
+  // lab_window_docks.cpp
+  void makeDocks();
+  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
+  void setWidths();
+  void placeCorners(bool studies);
 
   // lab_window_follow.cpp
   void followStatus(const WorkerStatus& status);

@@ -1,5 +1,5 @@
 # Compiles resources/FOLDER/*.KIND.json into the core, so that what is built in needs no files at run time.
-# `header` declares `struct`, {name, text}, and `list`, which returns them all.
+# `header` declares `struct`, {name, title, text}, and `list`, which returns them all.
 function(clothlab_embed output folder kind header struct list)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/resources/${folder}/*.${kind}.json)
   list(SORT files)
@@ -9,7 +9,8 @@ function(clothlab_embed output folder kind header struct list)
     get_filename_component(name ${file} NAME)
     string(REPLACE ".${kind}.json" "" name ${name})
     file(READ ${file} text)
-    string(APPEND code "      {\"${name}\", R\"json(${text})json\"},\n")
+    string(JSON title GET "${text}" title)
+    string(APPEND code "      {\"${name}\", R\"json(${title})json\", R\"json(${text})json\"},\n")
   endforeach()
   string(APPEND code "  };\n  return all;\n}\n\n}  // namespace cloth\n")
   file(CONFIGURE OUTPUT ${output} CONTENT "${code}" @ONLY)

@@ -38,9 +38,8 @@ int list_comparisons(bool as_json) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
   for (const cloth::BuiltinComparison& builtin : cloth::builtin_comparisons()) {
-    const cloth::Comparison comparison = cloth::builtin_comparison(builtin.name);
-    list.push_back({{"name", builtin.name}, {"title", comparison.title}});
-    text += fmt::format("{:<20} {}\n", builtin.name, comparison.title);
+    list.push_back({{"name", builtin.name}, {"title", builtin.title}});
+    text += fmt::format("{:<20} {}\n", builtin.name, builtin.title);
   }
   return print(as_json ? nlohmann::ordered_json{{"comparisons", list}}.dump(2) + "\n" : text);
 }

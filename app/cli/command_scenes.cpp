@@ -27,9 +27,8 @@ int scenes(const ScenesArguments& arguments) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
-    const std::string title = cloth::builtin_scene(scene.name).title;
-    list.push_back({{"name", scene.name}, {"title", title}});
-    text += fmt::format("{:<20} {}\n", scene.name, title);
+    list.push_back({{"name", scene.name}, {"title", scene.title}});
+    text += fmt::format("{:<20} {}\n", scene.name, scene.title);
   }
   return print(arguments.json ? nlohmann::ordered_json{{"scenes", list}}.dump(2) + "\n" : text);
 }

@@ -10,6 +10,7 @@ namespace cloth {
 
 struct BuiltinComparison {
   std::string name;
+  std::string title;  ///< That of the text, known without building the comparison's meshes.
   std::string text;  ///< JSON
 };
 

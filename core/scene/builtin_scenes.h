@@ -10,6 +10,7 @@ namespace cloth {
 
 struct BuiltinScene {
   std::string name;
+  std::string title;  ///< That of the text, known without building the scene's meshes.
   std::string text;  ///< JSON
 };
 

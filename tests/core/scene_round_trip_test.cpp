@@ -42,6 +42,7 @@ TEST(BuiltinScenes, AllReadAndKeepEveryRule) {
     EXPECT_TRUE(find_problems(*reading.scene).empty());
     EXPECT_EQ(*reading.scene, builtin_scene(builtin.name));
     EXPECT_FALSE(reading.scene->title.empty()) << builtin.name;
+    EXPECT_EQ(builtin.title, reading.scene->title);
   }
 }
 

@@ -2,8 +2,6 @@
 #include <QAction>
 #include <QApplication>
 #include <QDockWidget>
-#include <QJsonDocument>
-#include <QJsonObject>
 #include <QMenuBar>
 #include <QToolBar>
 #include <QToolButton>
@@ -20,15 +18,6 @@
 #include "widgets/building.h"
 
 namespace clothlab {
-namespace {
-
-/// Without building what the text describes, which takes its time for meshes.
-QString title_in(const std::string& text) {
-  return QJsonDocument::fromJson(QByteArray::fromStdString(text)).object().value("title").toString();
-}
-
-}  // namespace
-
 /// An action of this window; its tooltip contains the shortcut.
 QAction* LabWindow::makeAction(const char* icon_name, const QString& text, const QString& tip,
                                const QKeySequence& key, const char* name) {
@@ -98,7 +87,7 @@ void LabWindow::makeMenus() {
   QMenu* builtin = compare->addMenu(tr("Built-in comparisons"));
   for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
     const QString name = QString::fromStdString(comparison.name);
-    builtin->addAction(title_in(comparison.text), this, [this, name] { open(name); });
+    builtin->addAction(QString::fromStdString(comparison.title), this, [this, name] { open(name); });
   }
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
@@ -121,8 +110,8 @@ void LabWindow::fillFileMenu(QMenu& file) {
   builtin_menu_ = file.addMenu(tr("Built-in scenes"));
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
     const QString name = QString::fromStdString(scene.name);
-    QAction* entry = builtin_menu_->addAction(QString::fromStdString(cloth::builtin_scene(scene.name).title),
-                                              this, [this, name] { openScene(name); });
+    QAction* entry = builtin_menu_->addAction(QString::fromStdString(scene.title), this,
+                                              [this, name] { openScene(name); });
     entry->setObjectName("scene:" + name);
   }
   recent_menu_ = file.addMenu(tr("Recent"));

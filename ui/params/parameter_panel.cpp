@@ -50,8 +50,7 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
   setObjectName("parameterPanel");
   setAccessibleName(tr("Parameters"));
   auto* column = spaced(new QVBoxLayout(this), 0);
-  column->addWidget(makeHead());
-  makeSearch();
+  makeHead();
   makeScrollArea();
   column->addWidget(scroll_, 1);
   rebuild();
@@ -62,14 +61,36 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
   connect(&document, &LabDocument::scopeChanged, this, &ParameterPanel::rebuild);
 }
 
-QWidget* ParameterPanel::makeHead() {
-  auto* head = new QWidget(this);
-  auto* row = new QHBoxLayout(head);
-  row->setContentsMargins(2 * spacing, spacing, spacing, spacing);
-  auto* title = new QLabel(tr("Parameters"), head);
-  title->setProperty("heading", true);
-  row->addWidget(title, 1);
-  add_ = named("add", new QToolButton(head));
+/// The search field and, beside it, what can be added.
+void ParameterPanel::makeHead() {
+  auto* rows = new QVBoxLayout;
+  rows->setContentsMargins(2 * spacing, spacing, spacing, spacing);
+  auto* row = new QHBoxLayout;
+  row->addWidget(makeSearch(), 1);
+  row->addWidget(makeAdd());
+  rows->addLayout(row);
+  nothing_ = named("nothing", new QLabel(this));
+  nothing_->setProperty("muted", true);
+  nothing_->setTextFormat(Qt::PlainText);
+  nothing_->setWordWrap(true);
+  nothing_->hide();
+  rows->addWidget(nothing_);
+  static_cast<QVBoxLayout*>(layout())->addLayout(rows);
+}
+
+QWidget* ParameterPanel::makeSearch() {
+  search_ = named("search", new QLineEdit(this));
+  search_->setPlaceholderText(tr("Search (Ctrl+F)"));
+  search_->setAccessibleName(tr("Search the parameters"));
+  search_->setToolTip(tr("Words of a parameter's title, path or help text"));
+  search_->setClearButtonEnabled(true);
+  search_->installEventFilter(this);
+  connect(search_, &QLineEdit::textChanged, this, &ParameterPanel::filter);
+  return search_;
+}
+
+QWidget* ParameterPanel::makeAdd() {
+  add_ = named("add", new QToolButton(this));
   add_->setText(tr("Add"));
   add_->setIcon(icon("add"));
   add_->setIconSize({16, 16});
@@ -80,28 +101,7 @@ QWidget* ParameterPanel::makeHead() {
   menu_ = named("addMenu", new QMenu(add_));
   menu_->setToolTipsVisible(true);
   add_->setMenu(menu_);
-  row->addWidget(add_);
-  return head;
-}
-
-void ParameterPanel::makeSearch() {
-  search_ = named("search", new QLineEdit(this));
-  search_->setPlaceholderText(tr("Search (Ctrl+F)"));
-  search_->setAccessibleName(tr("Search the parameters"));
-  search_->setToolTip(tr("Words of a parameter's title, path or help text"));
-  search_->setClearButtonEnabled(true);
-  search_->installEventFilter(this);
-  connect(search_, &QLineEdit::textChanged, this, &ParameterPanel::filter);
-  nothing_ = named("nothing", new QLabel(this));
-  nothing_->setProperty("muted", true);
-  nothing_->setTextFormat(Qt::PlainText);
-  nothing_->setWordWrap(true);
-  nothing_->hide();
-  auto* rows = new QVBoxLayout;
-  rows->setContentsMargins(2 * spacing, 0, 2 * spacing, spacing);
-  rows->addWidget(search_);
-  rows->addWidget(nothing_);
-  static_cast<QVBoxLayout*>(layout())->addLayout(rows);
+  return add_;
 }
 
 void ParameterPanel::startSearch() {

@@ -58,8 +58,9 @@ class ParameterPanel : public QWidget {
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  QWidget* makeHead();
-  void makeSearch();
+  void makeHead();
+  QWidget* makeAdd();
+  QWidget* makeSearch();
   void filter();
   void focusFirstMatch();
   void makeScrollArea();

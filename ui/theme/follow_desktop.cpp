@@ -6,8 +6,8 @@
 #include <QDBusPendingCallWatcher>
 #include <QEvent>
 #include <QFileInfo>
+#include <QSettings>
 #include <QTimer>
-#include <utility>
 
 #include "theme/theme.h"
 
@@ -20,8 +20,8 @@ const char* const interface = "org.freedesktop.portal.Settings";
 const char* const appearance = "org.freedesktop.appearance";
 const char* const colour_scheme = "color-scheme";
 
-/// What the portal has answered last.
-std::optional<bool> portal_preference;
+/// What the portal has answered last, which is kept for the next start: 1 dark, 2 light, 0 no preference.
+const char* const scheme_key = "desktopColourScheme";
 
 /// Asking for the bus where there is none makes D-Bus try to start one, which takes its time and leaves a
 /// process.
@@ -39,7 +39,8 @@ QVariant unwrapped(QVariant value) {
 }  // namespace
 
 std::optional<bool> portal_prefers_dark() {
-  return portal_preference;
+  const uint scheme = has_session_bus() ? QSettings().value(scheme_key).toUInt() : 0;
+  return scheme == 1 || scheme == 2 ? std::optional(scheme == 1) : std::nullopt;
 }
 
 FollowDesktop::FollowDesktop(QApplication& application) : QObject(&application) {
@@ -59,9 +60,9 @@ void FollowDesktop::ask_portal() {
     const QDBusMessage message = answer->reply();
     if (message.type() != QDBusMessage::ReplyMessage || message.arguments().isEmpty()) return;
     const uint scheme = unwrapped(message.arguments().constFirst()).toUInt();
-    std::optional<bool> preference;  // 0 is "no preference"
-    if (scheme == 1 || scheme == 2) preference = scheme == 1;
-    if (std::exchange(portal_preference, preference) != preference) follow_soon();
+    if (scheme == QSettings().value(scheme_key).toUInt()) return;
+    QSettings().setValue(scheme_key, scheme);
+    follow_soon();
   });
 }
 

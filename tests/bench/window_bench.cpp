@@ -26,7 +26,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <QStandardPaths>
+#include <QTemporaryDir>
 #include <QTimer>
 #include <algorithm>
 #include <cmath>
@@ -305,8 +305,10 @@ int run(TimedApplication& application, const Options& options) {
 }  // namespace clothlab
 
 int main(int argc, char** argv) {
+  const QTemporaryDir home;  // what an earlier window remembered is not measured
+  qputenv("XDG_CONFIG_HOME", home.filePath("config").toUtf8());
+  qputenv("XDG_DATA_HOME", home.filePath("data").toUtf8());
   TimedApplication application(argc, argv);
-  QStandardPaths::setTestModeEnabled(true);
   clothlab::Options options;
   CLI::App app{"What a drawing takes in the window."};
   app.add_option("--sides", options.sides, "Particles per side; 0: only the comparisons")

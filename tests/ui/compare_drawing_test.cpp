@@ -2,7 +2,6 @@
 #include <QAction>
 #include <QOpenGLContext>
 #include <QOpenGLFunctions>
-#include <QStandardPaths>
 #include <map>
 
 #include "compare_bench.h"
@@ -112,9 +111,6 @@ class CompareDrawingTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-compare-drawing-test");
     apply_theme(*qApp, false);
     if (!gl_abilities().usable || !gl_abilities().software) QSKIP("the processor does not draw here");
   }

@@ -4,7 +4,6 @@
 #include <QLabel>
 #include <QMenu>
 #include <QPushButton>
-#include <QStandardPaths>
 #include <QTemporaryDir>
 #include <cmath>
 
@@ -42,9 +41,6 @@ class CompareTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-compare-test");
     apply_theme(*qApp, false);
   }
 

@@ -80,9 +80,6 @@ class ContactViewTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-contact-view-test");
     apply_theme(*qApp, false);
   }
 

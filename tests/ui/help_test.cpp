@@ -17,9 +17,6 @@ class HelpTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-help-test");
     apply_theme(*qApp, false);
   }
 

@@ -49,7 +49,6 @@ class IdleTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
     apply_theme(*qApp, false);
   }
 

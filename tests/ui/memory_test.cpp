@@ -4,7 +4,6 @@
 #include <QDockWidget>
 #include <QMenu>
 #include <QSettings>
-#include <QStandardPaths>
 #include <QTemporaryDir>
 
 #include "charts/live_chart.h"
@@ -35,9 +34,6 @@ class MemoryTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-memory-test");
     QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
     QApplication::setQuitOnLastWindowClosed(false);
     apply_theme(*qApp, false);

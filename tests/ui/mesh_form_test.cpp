@@ -125,9 +125,6 @@ class MeshFormTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-mesh-form-test");
     QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
     apply_theme(*qApp, false);
   }

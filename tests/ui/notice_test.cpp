@@ -2,7 +2,6 @@
 #include <QComboBox>
 #include <QFile>
 #include <QPushButton>
-#include <QStandardPaths>
 #include <cmath>
 
 #include "compare_bench.h"
@@ -84,9 +83,6 @@ class NoticeTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-notice-test");
     apply_theme(*qApp, false);
   }
 

@@ -49,9 +49,6 @@ class PanesTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-panes-test");
     apply_theme(*qApp, false);
   }
 

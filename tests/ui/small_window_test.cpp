@@ -4,7 +4,6 @@
 #include <QDockWidget>
 #include <QHelpEvent>
 #include <QMenu>
-#include <QStandardPaths>
 #include <QToolTip>
 
 #include "compare_bench.h"
@@ -67,12 +66,6 @@ class SmallWindowTest : public QObject {
   Q_OBJECT
 
  private Q_SLOTS:
-  void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-small-window-test");
-  }
-
   void buttons_of_the_charts_lie_side_by_side_data() { sizes_and_looks(); }
   void buttons_of_the_charts_lie_side_by_side() {
     QFETCH(const QSize, size);

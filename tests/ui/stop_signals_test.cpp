@@ -29,7 +29,6 @@ class StopSignalsTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
     apply_theme(*qApp, false);
   }
 

@@ -119,9 +119,6 @@ class StudiesDockTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-studies-dock-test");
     apply_theme(*qApp, false);
     QVERIFY(folder_.isValid());
   }

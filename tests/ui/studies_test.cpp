@@ -31,9 +31,6 @@ class StudiesTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-studies-test");
     apply_theme(*qApp, false);
     QVERIFY(folder_.isValid());
   }

@@ -59,9 +59,6 @@ class TimelineTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-timeline-test");
     QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
     apply_theme(*qApp, false);
   }

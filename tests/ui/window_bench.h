@@ -4,7 +4,6 @@
 #include <QAction>
 #include <QApplication>
 #include <QSignalSpy>
-#include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QToolButton>
 #include <QtTest>

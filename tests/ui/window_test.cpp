@@ -52,9 +52,6 @@ class WindowTest : public QObject {
 
  private Q_SLOTS:
   void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QApplication::setOrganizationName("Clothlab");
-    QApplication::setApplicationName("clothlab-window-test");
     apply_theme(*qApp, false);
   }
 

@@ -53,6 +53,10 @@ std::vector<Pane> panes_for(const std::vector<std::string>& methods);
 
 /// A scene as a comparison of one pane, A, which no file describes: the window's document of a scene.
 Comparison comparison_of_one(Scene scene, const std::string& reference = controlled_reference);
+/// Whether it is such a one.
+inline bool is_scene(const Comparison& comparison) {
+  return comparison.panes.size() == 1;
+}
 
 /// The shared scene with the pane's own values. A value for a parameter that the scene lacks is left out.
 Scene scene_of(const Comparison& comparison, std::size_t pane);

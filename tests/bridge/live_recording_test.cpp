@@ -21,7 +21,7 @@ std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path&
   return table.rows;
 }
 
-void steps(SimulationWorker& worker, int count) {
+void steps(RunWorker& worker, int count) {
   for (int n = 0; n < count; ++n) worker.send(command::SingleStep{});
   worker.wait_until_idle();
 }
@@ -32,7 +32,7 @@ TEST(LiveRecording, HasTheSameRowsAsARunOfTheCommandLine) {
   const cloth::RunResult run = cloth::run_scene(scene, {.folder = folder / "cli", .progress = {}});
   ASSERT_FALSE(run.io_error);
   {
-    SimulationWorker worker;
+    RunWorker worker;
     worker.send(command::Load{scene});
     worker.send(command::Speed{std::numeric_limits<double>::infinity()});
     worker.send(command::StartRecording{folder / "window"});
@@ -50,7 +50,7 @@ TEST(LiveRecording, HasTheSameRowsAsARunOfTheCommandLine) {
 TEST(LiveRecording, LogsEveryEditWithItsStep) {
   const ScratchFolder folder;
   cloth::Scene scene = small_scene();
-  SimulationWorker worker;
+  RunWorker worker;
   worker.send(command::Load{scene});
   worker.send(command::StartRecording{folder / "r"});
   steps(worker, 3);
@@ -74,7 +74,7 @@ TEST(LiveRecording, LogsEveryEditWithItsStep) {
 TEST(LiveRecording, GoesOnInANewFileWhenTheStagesChange) {
   const ScratchFolder folder;
   cloth::Scene scene = small_scene();
-  SimulationWorker worker;
+  RunWorker worker;
   worker.send(command::Load{scene});
   worker.send(command::StartRecording{folder / "r"});
   worker.wait_until_idle();
@@ -91,7 +91,7 @@ TEST(LiveRecording, GoesOnInANewFileWhenTheStagesChange) {
 
 TEST(LiveRecording, ThatBeginsLaterKeepsTheStateItBeganFrom) {
   const ScratchFolder folder;
-  SimulationWorker worker;
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   steps(worker, 5);
   worker.send(command::StartRecording{folder / "r"});
@@ -105,7 +105,7 @@ TEST(LiveRecording, ThatBeginsLaterKeepsTheStateItBeganFrom) {
 TEST(LiveRecording, IntoAFolderThatCannotBeMadeIsAnErrorAndTheRunGoesOn) {
   const ScratchFolder folder;
   cloth::write_text_file(folder / "file", "not a folder");
-  SimulationWorker worker;
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   worker.send(command::StartRecording{folder / "file/inside"});
   steps(worker, 2);
@@ -117,7 +117,7 @@ TEST(LiveRecording, IntoAFolderThatCannotBeMadeIsAnErrorAndTheRunGoesOn) {
 TEST(LiveRecording, IsWholeWhenTheWorkerIsDestroyedInMidRun) {
   const ScratchFolder folder;
   {
-    SimulationWorker worker;
+    RunWorker worker;
     worker.send(command::Load{small_scene()});
     worker.send(command::Speed{std::numeric_limits<double>::infinity()});
     worker.send(command::StartRecording{folder / "r"});

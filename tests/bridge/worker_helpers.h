@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-#include "bridge/simulation_worker.h"
+#include "bridge/run_worker.h"
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 

@@ -1,4 +1,4 @@
-// Samples that a worker sends to the live charts. NaN marks a quantity that the sample does not have; its
+// Samples that the worker sends to the live charts. NaN marks a quantity that the sample does not have; its
 // curve has a gap there.
 #pragma once
 

@@ -1,8 +1,7 @@
-// The commands that windows send to their workers. Workers carry them out in order, between steps.
+// The commands that a window sends to its worker, which carries them out in order, between steps.
 #pragma once
 
 #include <filesystem>
-#include <future>
 #include <optional>
 #include <variant>
 
@@ -17,23 +16,22 @@ namespace clothlab {
 enum class Colouring { strain, difference };
 
 namespace command {
-/// Starts a scene or a comparison at t = 0, paused.
-template <class Content>
+/// Starts a comparison, or a scene as a comparison of one, at t = 0, paused.
 struct Load {
-  Content content;
+  cloth::Comparison content;
+  explicit Load(cloth::Comparison comparison) : content(std::move(comparison)) {}
+  explicit Load(cloth::Scene scene) : content(cloth::comparison_of_one(std::move(scene))) {}
 };
-template <class Content>
-Load(Content) -> Load<Content>;
 
 /// Replaces the scene by one with other live parameters or pins, or replaces the comparison. A comparison
 /// that cannot be applied during a run (see cloth::acts_at_once) starts again at t = 0. A playing run
-/// continues to play.
-template <class Content>
+/// continues to play. Where a scene becomes a comparison, or a comparison a scene, the run goes on at its
+/// present state and with its history, paused and without its recording; it starts again where none fits.
 struct Edit {
-  Content content;
+  cloth::Comparison content;
+  explicit Edit(cloth::Comparison comparison) : content(std::move(comparison)) {}
+  explicit Edit(cloth::Scene scene) : content(cloth::comparison_of_one(std::move(scene))) {}
 };
-template <class Content>
-Edit(Content) -> Edit<Content>;
 
 struct Restart {};  ///< starts the present scene or comparison again at t = 0, paused
 struct Play {};
@@ -70,19 +68,6 @@ struct Colour {
   Colouring by;
 };
 
-/// Gives the run away, at its present state and with its history, to what takes it: an empty one if it runs
-/// nothing that goes on as `scene`. A comparison gives the run of the first pane that does.
-struct GiveRun {
-  cloth::Scene scene;
-  std::shared_ptr<std::promise<cloth::RunWithHistory>> to;
-};
-/// Goes on with a run that another worker gives away; loads the content if it gives none.
-template <class Content>
-struct TakeRun {
-  Content content;
-  std::shared_ptr<std::future<cloth::RunWithHistory>> from;
-};
-
 /// Whether the variant holds one of these kinds of command.
 template <class... Kinds, class Variant>
 bool is_one_of(const Variant& command) {
@@ -90,13 +75,10 @@ bool is_one_of(const Variant& command) {
 }
 }  // namespace command
 
-/// Every worker accepts all of them and ignores those of the other kind of content.
 using Command =
-    std::variant<command::Load<cloth::Scene>, command::Edit<cloth::Scene>, command::Load<cloth::Comparison>,
-                 command::Edit<cloth::Comparison>, command::Restart, command::Play, command::Pause,
+    std::variant<command::Load, command::Edit, command::Restart, command::Play, command::Pause,
                  command::SingleStep, command::Speed, command::Brush, command::Pull, command::StartRecording,
                  command::StopRecording, command::GoTo, command::PlayAgain, command::SaveSession,
-                 command::OpenSession, command::ShowContact, command::Colour, command::GiveRun,
-                 command::TakeRun<cloth::Scene>, command::TakeRun<cloth::Comparison>>;
+                 command::OpenSession, command::ShowContact, command::Colour>;
 
 }  // namespace clothlab

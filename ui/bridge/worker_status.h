@@ -1,4 +1,4 @@
-// The workers' state that windows show besides frames and samples.
+// The worker's state that the window shows besides frames and samples.
 #pragma once
 
 #include <filesystem>

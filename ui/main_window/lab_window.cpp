@@ -206,25 +206,9 @@ void LabWindow::startRun() {
   if (session_) {
     link_.send(command::OpenSession{*std::exchange(session_, std::nullopt)});
     link_.send(command::PlayAgain{});
-  } else if (document_.isComparison()) {
-    link_.send(command::Load{document_.comparison()});
   } else {
-    link_.send(command::Load{document_.scene()});
+    link_.send(command::Load{document_.comparison()});
   }
-  readStability();
-}
-
-/// As a comparison or as a scene, which the document has just become.
-void LabWindow::continueRun() {
-  beginRun();
-  const cloth::Comparison& comparison = document_.comparison();
-  const cloth::Comparison one = cloth::comparison_of_one(comparison.scene, cloth::no_reference);
-  if (!document_.isComparison())
-    link_.continueAs(document_.scene());
-  else if (acts_at_once(one, comparison))
-    link_.continueAs(comparison);
-  else
-    link_.send(command::Load{comparison});
   readStability();
 }
 
@@ -235,14 +219,12 @@ void LabWindow::followEdit(const SceneChange& change) {
   if (document_.presentDrag() == 0) forgetPinch();
   paused_again_ = false;
   const bool was_playing = shown_status_.playing;
-  if (was_comparison != document_.isComparison()) {
-    continueRun();
-  } else if (document_.isComparison()) {
+  const bool is_other_kind = was_comparison != document_.isComparison();
+  if (is_other_kind) beginRun();
+  if (is_other_kind || document_.isComparison() || change.effect == SceneChange::Effect::live) {
     link_.send(command::Edit{document_.comparison()});
-    return readStability();
-  } else if (change.effect == SceneChange::Effect::live) {
-    link_.send(command::Edit{document_.scene()});
-    return readStability();
+    readStability();
+    if (!is_other_kind) return;
   } else {
     startRun();
   }

@@ -1,11 +1,11 @@
 // The window: the panes in the middle, parameters and charts beside them, timeline and studies below. It
 // shows one document, a scene in one pane or a comparison in two to four. It owns the document and the link
-// to the workers and connects their signals to the widgets.
+// to the worker and connects its signals to the widgets.
 #pragma once
 
 #include <QMainWindow>
 
-#include "bridge/worker_link.h"
+#include "bridge/run_link.h"
 #include "charts/chart_panel.h"
 #include "compare/compare_charts.h"
 #include "compare/pane_grid.h"
@@ -93,7 +93,6 @@ class LabWindow : public QMainWindow {
   void restart();
   void beginRun();
   void startRun();
-  void continueRun();
   void followEdit(const SceneChange& change);
   void showDocument();
   void showKind();

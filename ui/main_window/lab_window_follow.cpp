@@ -1,4 +1,4 @@
-// LabWindow: updates the window from the workers' status.
+// LabWindow: updates the window from the worker's status.
 #include <QAction>
 #include <QDesktopServices>
 #include <QStringList>

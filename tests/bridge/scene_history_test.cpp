@@ -6,12 +6,12 @@
 #include "simulation/session_json.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test::worker_history_test {
+namespace clothlab::test::scene_history_test {
 namespace {
 
 constexpr double fastest = std::numeric_limits<double>::infinity();
 
-class WorkerHistory : public testing::Test {
+class SceneHistory : public testing::Test {
  protected:
   void load(const cloth::Scene& scene) {
     scene_ = scene;
@@ -66,12 +66,12 @@ class WorkerHistory : public testing::Test {
   }
 
   ScratchFolder folder_;
-  SimulationWorker worker_;
+  RunWorker worker_;
   cloth::Scene scene_;
   std::vector<float> shown_;
 };
 
-TEST_F(WorkerHistory, IsShownWithItsEndsAndItsMemory) {
+TEST_F(SceneHistory, IsShownWithItsEndsAndItsMemory) {
   load(small_scene());
   steps(30);
   const HistoryStatus history = status().history;
@@ -82,7 +82,7 @@ TEST_F(WorkerHistory, IsShownWithItsEndsAndItsMemory) {
   EXPECT_LT(history.bytes, history.max_bytes);
 }
 
-TEST_F(WorkerHistory, MarksWhatWasDoneUntilItIsCutOff) {
+TEST_F(SceneHistory, MarksWhatWasDoneUntilItIsCutOff) {
   do_everything();
   using Kind = HistoryMark::Kind;
   const auto marks = [&] {
@@ -106,7 +106,7 @@ TEST_F(WorkerHistory, MarksWhatWasDoneUntilItIsCutOff) {
   EXPECT_TRUE(marks().empty());
 }
 
-TEST_F(WorkerHistory, ShowsAStepOfThePastAndPauses) {
+TEST_F(SceneHistory, ShowsAStepOfThePastAndPauses) {
   load(small_scene());
   steps(13);
   const auto then = positions();
@@ -119,7 +119,7 @@ TEST_F(WorkerHistory, ShowsAStepOfThePastAndPauses) {
   EXPECT_GT(status().history.last_step, 100);
 }
 
-TEST_F(WorkerHistory, GivesTheSameBitsWhenItPlaysAgain) {
+TEST_F(SceneHistory, GivesTheSameBitsWhenItPlaysAgain) {
   do_everything();
   const auto end = positions();
   const cloth::Session session = saved();
@@ -132,7 +132,7 @@ TEST_F(WorkerHistory, GivesTheSameBitsWhenItPlaysAgain) {
   EXPECT_EQ(saved().final_state_hash, session.final_state_hash);
 }
 
-TEST_F(WorkerHistory, OfASessionSavedIsReplayedToTheBit) {
+TEST_F(SceneHistory, OfASessionSavedIsReplayedToTheBit) {
   do_everything();
   const cloth::Session session = saved();
   EXPECT_EQ(session.steps, 45);
@@ -142,14 +142,14 @@ TEST_F(WorkerHistory, OfASessionSavedIsReplayedToTheBit) {
   EXPECT_EQ(result.agrees, true);
 }
 
-TEST_F(WorkerHistory, OfASessionSavedAfterGoingBackIsTheWholeOne) {
+TEST_F(SceneHistory, OfASessionSavedAfterGoingBackIsTheWholeOne) {
   do_everything();
   const std::string whole = cloth::write_session(saved());
   go_to(20);
   EXPECT_EQ(cloth::write_session(saved()), whole);
 }
 
-TEST_F(WorkerHistory, IsCutWhereSomethingNewBegins) {
+TEST_F(SceneHistory, IsCutWhereSomethingNewBegins) {
   do_everything();
   go_to(20);
   EXPECT_EQ(status().history.last_step, 45);
@@ -161,7 +161,7 @@ TEST_F(WorkerHistory, IsCutWhereSomethingNewBegins) {
   EXPECT_EQ(cloth::replay(session, {}).agrees, true);
 }
 
-TEST_F(WorkerHistory, IsCutByAHandAndByAnEditButNotByLettingGoOfNothing) {
+TEST_F(SceneHistory, IsCutByAHandAndByAnEditButNotByLettingGoOfNothing) {
   load(small_scene());
   steps(30);
   go_to(10);
@@ -174,7 +174,7 @@ TEST_F(WorkerHistory, IsCutByAHandAndByAnEditButNotByLettingGoOfNothing) {
   EXPECT_EQ(cloth::replay(saved(), {}).agrees, true);
 }
 
-TEST_F(WorkerHistory, TellsTheSceneThatIsInForceAgain) {
+TEST_F(SceneHistory, TellsTheSceneThatIsInForceAgain) {
   load(small_scene());
   steps(10);
   const double before = scene_.springs->structural;
@@ -187,7 +187,7 @@ TEST_F(WorkerHistory, TellsTheSceneThatIsInForceAgain) {
   EXPECT_GT(status().jumps, jumps);
 }
 
-TEST_F(WorkerHistory, TellsTheChartsWhatIsGoneOnlyWhenItIs) {
+TEST_F(SceneHistory, TellsTheChartsWhatIsGoneOnlyWhenItIs) {
   load(small_scene());
   worker_.send(command::Play{});
   ASSERT_TRUE(eventually([&] { return worker_.status().time > 0.2; }));
@@ -209,7 +209,7 @@ TEST_F(WorkerHistory, TellsTheChartsWhatIsGoneOnlyWhenItIs) {
   for (std::size_t n = 1; n < samples.size(); ++n) EXPECT_GT(samples[n].time_s, samples[n - 1].time_s);
 }
 
-TEST_F(WorkerHistory, GivesNoSampleTwice) {
+TEST_F(SceneHistory, GivesNoSampleTwice) {
   load(small_scene());
   steps(60);
   go_to(10);
@@ -220,7 +220,7 @@ TEST_F(WorkerHistory, GivesNoSampleTwice) {
   for (std::size_t n = 1; n < samples.size(); ++n) EXPECT_GT(samples[n].time_s, samples[n - 1].time_s);
 }
 
-TEST_F(WorkerHistory, IsLeftOnALongWayForANewerGoal) {
+TEST_F(SceneHistory, IsLeftOnALongWayForANewerGoal) {
   cloth::Scene scene = small_scene();
   scene.cloth.columns = scene.cloth.rows = 40;
   cloth::Session session{.scene = scene};
@@ -234,7 +234,7 @@ TEST_F(WorkerHistory, IsLeftOnALongWayForANewerGoal) {
   ASSERT_TRUE(eventually([&] { return worker_.status().step > 12; }));
 }  // and the worker ends in mid-way
 
-TEST_F(WorkerHistory, OfAnOpenedSessionIsGoneThrough) {
+TEST_F(SceneHistory, OfAnOpenedSessionIsGoneThrough) {
   do_everything();
   const auto end = positions();
   saved();
@@ -253,7 +253,7 @@ TEST_F(WorkerHistory, OfAnOpenedSessionIsGoneThrough) {
   EXPECT_EQ(status().session_agrees, true);
 }
 
-TEST_F(WorkerHistory, OfASessionThatComesOutOtherwiseSaysSo) {
+TEST_F(SceneHistory, OfASessionThatComesOutOtherwiseSaysSo) {
   do_everything();
   cloth::Session session = saved();
   session.commands.front().step = 6;
@@ -262,7 +262,7 @@ TEST_F(WorkerHistory, OfASessionThatComesOutOtherwiseSaysSo) {
   EXPECT_EQ(status().session_agrees, false);
 }
 
-TEST_F(WorkerHistory, OfASessionWithErrorsLeavesTheRunAsItIs) {
+TEST_F(SceneHistory, OfASessionWithErrorsLeavesTheRunAsItIs) {
   load(small_scene());
   steps(5);
   cloth::write_text_file(folder_ / "bad.session.json", "{\n  \"steps\": x");
@@ -281,7 +281,7 @@ TEST_F(WorkerHistory, OfASessionWithErrorsLeavesTheRunAsItIs) {
   EXPECT_EQ(status().history.last_step, 4);
 }
 
-TEST_F(WorkerHistory, KeepsTheLastGoodStatesOfADivergence) {
+TEST_F(SceneHistory, KeepsTheLastGoodStatesOfADivergence) {
   cloth::Scene scene = small_scene();
   scene.deformation.reset();
   load(scene);
@@ -299,7 +299,7 @@ TEST_F(WorkerHistory, KeepsTheLastGoodStatesOfADivergence) {
   EXPECT_TRUE(eventually([&] { return worker_.status().step > 60; }));
 }
 
-TEST_F(WorkerHistory, EndsARecordingWhenItGoesBack) {
+TEST_F(SceneHistory, EndsARecordingWhenItGoesBack) {
   load(small_scene());
   worker_.send(command::StartRecording{folder_ / "r"});
   steps(40);
@@ -308,7 +308,7 @@ TEST_F(WorkerHistory, EndsARecordingWhenItGoesBack) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "r" / "summary.json"));
 }
 
-TEST_F(WorkerHistory, BeginsAnewWithARestart) {
+TEST_F(SceneHistory, BeginsAnewWithARestart) {
   do_everything();
   worker_.send(command::Restart{});
   EXPECT_EQ(status().history.last_step, 0);
@@ -320,4 +320,4 @@ TEST_F(WorkerHistory, BeginsAnewWithARestart) {
 }
 
 }  // namespace
-}  // namespace clothlab::test::worker_history_test
+}  // namespace clothlab::test::scene_history_test

@@ -1,4 +1,4 @@
-#include "bridge/simulation_worker.h"
+#include "bridge/run_worker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include "support/slow_disk.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test::simulation_worker_test {
+namespace clothlab::test::scene_run_test {
 namespace {
 
 constexpr double fastest = std::numeric_limits<double>::infinity();
 
-TEST(SimulationWorker, ShowsTheStartOfASceneAndWaits) {
-  SimulationWorker worker;
+TEST(SceneRun, ShowsTheStartOfASceneAndWaits) {
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   worker.wait_until_idle();
   const auto frame = worker.take_frame();
@@ -26,15 +26,15 @@ TEST(SimulationWorker, ShowsTheStartOfASceneAndWaits) {
   EXPECT_FALSE(worker.status().playing);
 }
 
-TEST(SimulationWorker, IsAsleepWhilePaused) {
-  SimulationWorker worker;
+TEST(SceneRun, IsAsleepWhilePaused) {
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   worker.wait_until_idle();
   EXPECT_FALSE(worker.is_busy());
 }
 
-TEST(SimulationWorker, ASingleStepIsOneStep) {
-  SimulationWorker worker;
+TEST(SceneRun, ASingleStepIsOneStep) {
+  RunWorker worker;
   const cloth::Scene scene = small_scene();
   worker.send(command::Load{scene});
   worker.send(command::SingleStep{});
@@ -43,8 +43,8 @@ TEST(SimulationWorker, ASingleStepIsOneStep) {
   EXPECT_EQ(worker.status().time, cloth::resolved_time_step(scene).value());
 }
 
-TEST(SimulationWorker, DoesNotRunAheadOfTheClock) {
-  SimulationWorker worker;
+TEST(SceneRun, DoesNotRunAheadOfTheClock) {
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   const auto start = std::chrono::steady_clock::now();
   worker.send(command::Play{});
@@ -54,8 +54,8 @@ TEST(SimulationWorker, DoesNotRunAheadOfTheClock) {
   EXPECT_LE(simulated, clock);
 }
 
-TEST(SimulationWorker, GivesOneSampleForEveryRecordInterval) {
-  SimulationWorker worker;
+TEST(SceneRun, GivesOneSampleForEveryRecordInterval) {
+  RunWorker worker;
   const cloth::Scene scene = small_scene();
   worker.send(command::Load{scene});
   worker.send(command::Speed{fastest});
@@ -70,8 +70,8 @@ TEST(SimulationWorker, GivesOneSampleForEveryRecordInterval) {
   EXPECT_EQ(worker.status().lost_samples, 0);
 }
 
-TEST(SimulationWorker, AnEditActsOnTheRunningSimulationWithoutARestart) {
-  SimulationWorker worker;
+TEST(SceneRun, AnEditActsOnTheRunningSimulationWithoutARestart) {
+  RunWorker worker;
   cloth::Scene scene = small_scene();
   worker.send(command::Load{scene});
   worker.send(command::SingleStep{});
@@ -86,8 +86,8 @@ TEST(SimulationWorker, AnEditActsOnTheRunningSimulationWithoutARestart) {
   EXPECT_GT(worker.take_frame()->positions[3 * 80 + 1], before);  // now it falls upwards
 }
 
-TEST(SimulationWorker, RefusesASceneWithoutAStableStepAndSaysWhy) {
-  SimulationWorker worker;
+TEST(SceneRun, RefusesASceneWithoutAStableStepAndSaysWhy) {
+  RunWorker worker;
   cloth::Scene scene = small_scene();
   scene.damping.reset();
   scene.integrator = {"explicit-euler", std::nullopt};
@@ -98,8 +98,8 @@ TEST(SimulationWorker, RefusesASceneWithoutAStableStepAndSaysWhy) {
   EXPECT_FALSE(worker.status().playing);
 }
 
-TEST(SimulationWorker, ADivergingRunStopsShowsTheLastGoodStateAndCanGoOnAfterAnEdit) {
-  SimulationWorker worker;
+TEST(SceneRun, ADivergingRunStopsShowsTheLastGoodStateAndCanGoOnAfterAnEdit) {
+  RunWorker worker;
   cloth::Scene scene = small_scene();
   scene.deformation.reset();  // it would hold the cloth together at any step
   scene.integrator = {"semi-implicit-euler", 3 * cloth::resolved_time_step(scene).value()};
@@ -118,8 +118,8 @@ TEST(SimulationWorker, ADivergingRunStopsShowsTheLastGoodStateAndCanGoOnAfterAnE
   EXPECT_TRUE(eventually([&] { return worker.status().time > stopped_at + 0.2; }));
 }
 
-TEST(SimulationWorker, RestartGoesBackToTheFirstFrame) {
-  SimulationWorker worker;
+TEST(SceneRun, RestartGoesBackToTheFirstFrame) {
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   worker.wait_until_idle();
   const auto first = worker.take_frame()->positions;
@@ -130,10 +130,10 @@ TEST(SimulationWorker, RestartGoesBackToTheFirstFrame) {
   EXPECT_EQ(worker.take_frame()->positions, first);
 }
 
-TEST(SimulationWorker, IsDestroyedInMidRunWithoutWaiting) {
+TEST(SceneRun, IsDestroyedInMidRunWithoutWaiting) {
   const auto start = std::chrono::steady_clock::now();
   for (int round = 0; round < 20; ++round) {
-    SimulationWorker worker;
+    RunWorker worker;
     worker.send(command::Load{small_scene()});
     worker.send(command::Speed{fastest});
     worker.send(command::Play{});
@@ -141,8 +141,8 @@ TEST(SimulationWorker, IsDestroyedInMidRunWithoutWaiting) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-TEST(SimulationWorker, TakesCommandsFromTheWindowWhileItRuns) {
-  SimulationWorker worker;
+TEST(SceneRun, TakesCommandsFromTheWindowWhileItRuns) {
+  RunWorker worker;
   cloth::Scene scene = small_scene();
   worker.send(command::Load{scene});
   worker.send(command::Speed{fastest});
@@ -162,8 +162,8 @@ TEST(SimulationWorker, TakesCommandsFromTheWindowWhileItRuns) {
   EXPECT_FALSE(worker.status().divergence);
 }
 
-TEST(SimulationWorker, AHandOutsideTheClothIsIgnored) {
-  SimulationWorker worker;
+TEST(SceneRun, AHandOutsideTheClothIsIgnored) {
+  RunWorker worker;
   worker.send(command::Load{small_scene()});
   worker.send(command::Pull{cloth::Pull{.particle = 81, .target = {0, 0, 0}}});
   worker.send(command::Pull{cloth::Pull{.particle = -1, .target = {0, 0, 0}}});
@@ -172,12 +172,12 @@ TEST(SimulationWorker, AHandOutsideTheClothIsIgnored) {
   EXPECT_EQ(worker.status().step, 1);
 }
 
-TEST(SimulationWorker, CarriesOutWhatWaitsWhenItEnds) {
+TEST(SceneRun, CarriesOutWhatWaitsWhenItEnds) {
   const ScratchFolder folder;
   SlowDisk disk("first.session.json");
   std::thread letting_go;
   {
-    SimulationWorker worker;
+    RunWorker worker;
     worker.send(command::Load{small_scene()});
     worker.send(command::SaveSession{folder / "first.session.json"});
     ASSERT_TRUE(eventually([&] { return disk.is_waited_for(); }));
@@ -194,4 +194,4 @@ TEST(SimulationWorker, CarriesOutWhatWaitsWhenItEnds) {
 }
 
 }  // namespace
-}  // namespace clothlab::test::simulation_worker_test
+}  // namespace clothlab::test::scene_run_test

@@ -1,5 +1,5 @@
 // Panes in the worker: what they show is what LockStep computes, and nothing that is sent is lost.
-#include "bridge/compare_worker.h"
+#include "bridge/run_worker.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "io/csv.h"
 #include "worker_helpers.h"
 
-namespace clothlab::test::compare_worker_test {
+namespace clothlab::test::panes_run_test {
 namespace {
 
 constexpr double fastest = std::numeric_limits<double>::infinity();
@@ -26,7 +26,7 @@ cloth::Comparison small_comparison(const std::vector<std::string>& methods = {"v
 }
 
 /// To the end of the duration.
-WorkerStatus play_to_the_end(CompareWorker& worker) {
+WorkerStatus play_to_the_end(RunWorker& worker) {
   worker.send(command::Speed{fastest});
   worker.send(command::Play{});
   worker.wait_until_idle();
@@ -55,11 +55,11 @@ std::vector<std::vector<std::string>> timeless_rows(const std::filesystem::path&
   return rows;
 }
 
-TEST(CompareWorker, ShowsWhatLockStepComputesToTheBitOnAnyNumberOfThreads) {
+TEST(PanesRun, ShowsWhatLockStepComputesToTheBitOnAnyNumberOfThreads) {
   for (const int threads : {1, 3}) {
     cloth::LockStep expected(small_comparison());
     for (std::int64_t k = 1; k <= expected.last_index(); ++k) ASSERT_TRUE(expected.advance(k));
-    CompareWorker worker(threads);
+    RunWorker worker(threads);
     worker.send(command::Load{small_comparison()});
     const WorkerStatus end = play_to_the_end(worker);
     EXPECT_EQ(end.time, expected.time_of(expected.last_index()));
@@ -74,11 +74,11 @@ TEST(CompareWorker, ShowsWhatLockStepComputesToTheBitOnAnyNumberOfThreads) {
   }
 }
 
-TEST(CompareWorker, GivesASampleOfEveryCommonTimeInOrder) {
-  CompareWorker worker;
+TEST(PanesRun, GivesASampleOfEveryCommonTimeInOrder) {
+  RunWorker worker;
   worker.send(command::Load{small_comparison()});
   play_to_the_end(worker);
-  const auto samples = worker.take_samples();
+  const auto samples = worker.take_pane_samples();
   ASSERT_EQ(samples.size(), 21u);
   EXPECT_TRUE(samples.front().is_start);
   for (std::size_t k = 1; k < samples.size(); ++k) {
@@ -90,8 +90,8 @@ TEST(CompareWorker, GivesASampleOfEveryCommonTimeInOrder) {
   }
 }
 
-TEST(CompareWorker, ASingleStepIsOneCommonTime) {
-  CompareWorker worker;
+TEST(PanesRun, ASingleStepIsOneCommonTime) {
+  RunWorker worker;
   worker.send(command::Load{small_comparison()});
   worker.send(command::SingleStep{});
   worker.send(command::SingleStep{});
@@ -100,24 +100,24 @@ TEST(CompareWorker, ASingleStepIsOneCommonTime) {
   EXPECT_FALSE(worker.status().playing);
 }
 
-TEST(CompareWorker, APaneThatDivergesStopsWithItsCauseAndTheOthersGoOn) {
+TEST(PanesRun, APaneThatDivergesStopsWithItsCauseAndTheOthersGoOn) {
   cloth::Comparison comparison = small_comparison({"rk4", "explicit-euler"});
   comparison.scene.deformation.reset();  // a limited cloth cannot diverge
   cloth::set_own(comparison.panes[1], "integrator.time_step", 0.005);
-  CompareWorker worker;
+  RunWorker worker;
   worker.send(command::Load{comparison});
   const WorkerStatus end = play_to_the_end(worker);
   EXPECT_FALSE(end.panes[0].divergence);
   ASSERT_TRUE(end.panes[1].divergence);
   EXPECT_FALSE(end.panes[1].divergence->cause.empty());
   EXPECT_EQ(end.panes[0].simulated, end.duration);
-  const auto samples = worker.take_samples();
+  const auto samples = worker.take_pane_samples();
   EXPECT_TRUE(std::isnan(samples.back().panes[1].total_J));
   EXPECT_TRUE(std::isfinite(samples.back().panes[0].total_J));
 }
 
-TEST(CompareWorker, AnEditWhileItPlaysActsAtACommonTime) {
-  CompareWorker worker;
+TEST(PanesRun, AnEditWhileItPlaysActsAtACommonTime) {
+  RunWorker worker;
   cloth::Comparison comparison = small_comparison();
   comparison.scene.duration = 1000;
   worker.send(command::Load{comparison});
@@ -135,8 +135,8 @@ TEST(CompareWorker, AnEditWhileItPlaysActsAtACommonTime) {
   EXPECT_EQ(status.panes[1].time_step, 0.0005);
 }
 
-TEST(CompareWorker, ACopiedPaneJoinsTheRunAndARemovedOneLeavesIt) {
-  CompareWorker worker;
+TEST(PanesRun, ACopiedPaneJoinsTheRunAndARemovedOneLeavesIt) {
+  RunWorker worker;
   cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
   comparison.scene.duration = 1000;
   worker.send(command::Load{comparison});
@@ -156,7 +156,7 @@ TEST(CompareWorker, ACopiedPaneJoinsTheRunAndARemovedOneLeavesIt) {
   EXPECT_EQ(worker.status().new_starts, 0);
   worker.send(command::Pause{});
   worker.wait_until_idle();
-  const auto samples = worker.take_samples();
+  const auto samples = worker.take_pane_samples();
   ASSERT_FALSE(samples.empty());
   EXPECT_EQ(samples.front().time_s, 0) << "the run goes on";
   EXPECT_GT(samples.back().time_s, 0.05);
@@ -165,8 +165,8 @@ TEST(CompareWorker, ACopiedPaneJoinsTheRunAndARemovedOneLeavesIt) {
   EXPECT_EQ(std::count_if(samples.begin(), samples.end(), [](const auto& s) { return s.is_start; }), 1);
 }
 
-TEST(CompareWorker, APaneWithoutAPastStartsAllAnewAndGoesOnPlaying) {
-  CompareWorker worker;
+TEST(PanesRun, APaneWithoutAPastStartsAllAnewAndGoesOnPlaying) {
+  RunWorker worker;
   cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
   comparison.scene.duration = 1000;
   worker.send(command::Load{comparison});
@@ -181,13 +181,13 @@ TEST(CompareWorker, APaneWithoutAPastStartsAllAnewAndGoesOnPlaying) {
   EXPECT_EQ(worker.status().new_starts, 1);
   worker.send(command::Pause{});
   worker.wait_until_idle();
-  const auto samples = worker.take_samples();
+  const auto samples = worker.take_pane_samples();
   ASSERT_FALSE(samples.empty());
   EXPECT_TRUE(samples.front().is_start) << "samples of the run before are gone";
 }
 
-TEST(CompareWorker, PausedShowsTheTimeAtWhichItPauses) {
-  CompareWorker worker;
+TEST(PanesRun, PausedShowsTheTimeAtWhichItPauses) {
+  RunWorker worker;
   cloth::Comparison comparison = small_comparison();
   comparison.scene.duration = 1000;
   worker.send(command::Load{comparison});
@@ -206,9 +206,9 @@ TEST(CompareWorker, PausedShowsTheTimeAtWhichItPauses) {
   }
 }
 
-TEST(CompareWorker, LogsBesideTheRowsWhatWasDoneMeanwhile) {
+TEST(PanesRun, LogsBesideTheRowsWhatWasDoneMeanwhile) {
   const ScratchFolder folder;
-  CompareWorker worker;
+  RunWorker worker;
   cloth::Comparison comparison = small_comparison({"verlet", "rk4"});
   worker.send(command::Load{comparison});
   worker.send(command::StartRecording{folder / "recording"});
@@ -227,17 +227,17 @@ TEST(CompareWorker, LogsBesideTheRowsWhatWasDoneMeanwhile) {
   EXPECT_EQ(timeless_rows(folder / "recording" / "C-2.csv").size(), 1u) << "more panes: the next part";
 }
 
-TEST(CompareWorker, WithoutEditsARecordingHasNoLogOfThem) {
+TEST(PanesRun, WithoutEditsARecordingHasNoLogOfThem) {
   const ScratchFolder folder;
-  CompareWorker worker;
+  RunWorker worker;
   worker.send(command::Load{small_comparison()});
   worker.send(command::StartRecording{folder / "recording"});
   play_to_the_end(worker);
   EXPECT_FALSE(std::filesystem::exists(folder / "recording" / "edits.jsonl"));
 }
 
-TEST(CompareWorker, RefusesWhatHasProblemsAndKeepsWhatRuns) {
-  CompareWorker worker;
+TEST(PanesRun, RefusesWhatHasProblemsAndKeepsWhatRuns) {
+  RunWorker worker;
   worker.send(command::Load{small_comparison()});
   cloth::Comparison broken = small_comparison();
   broken.scene.springs->structural = -1;
@@ -250,9 +250,9 @@ TEST(CompareWorker, RefusesWhatHasProblemsAndKeepsWhatRuns) {
   EXPECT_TRUE(worker.status().refusal.empty());
 }
 
-TEST(CompareWorker, RecordsTheRowsOfTheCommandLine) {
+TEST(PanesRun, RecordsTheRowsOfTheCommandLine) {
   const ScratchFolder folder;
-  CompareWorker worker(2);
+  RunWorker worker(2);
   worker.send(command::Load{small_comparison()});
   worker.send(command::StartRecording{folder / "window"});
   const WorkerStatus end = play_to_the_end(worker);
@@ -268,8 +268,8 @@ TEST(CompareWorker, RecordsTheRowsOfTheCommandLine) {
   EXPECT_EQ(text_of(folder / "window" / "comparison.json"), text_of(folder / "alone" / "comparison.json"));
 }
 
-TEST(CompareWorker, ColoursByTheDistanceFromTheReferenceOnRequest) {
-  CompareWorker worker;
+TEST(PanesRun, ColoursByTheDistanceFromTheReferenceOnRequest) {
+  RunWorker worker;
   worker.send(command::Load{small_comparison()});
   worker.send(command::Colour{Colouring::difference});
   play_to_the_end(worker);
@@ -281,12 +281,12 @@ TEST(CompareWorker, ColoursByTheDistanceFromTheReferenceOnRequest) {
                   static_cast<float>(*worker.status().panes[1].largest));
 }
 
-TEST(CompareWorker, EndsWithinAStepHoweverLongTheIntervalIs) {
+TEST(PanesRun, EndsWithinAStepHoweverLongTheIntervalIs) {
   cloth::Comparison comparison = small_comparison();
   comparison.scene.record.interval = 1000;
   comparison.scene.duration = 1000;
   comparison.scene.integrator.time_step = 0.001;
-  auto worker = std::make_unique<CompareWorker>();
+  auto worker = std::make_unique<RunWorker>();
   worker->send(command::Load{comparison});
   worker->send(command::Speed{fastest});
   worker->send(command::Play{});
@@ -297,4 +297,4 @@ TEST(CompareWorker, EndsWithinAStepHoweverLongTheIntervalIs) {
 }
 
 }  // namespace
-}  // namespace clothlab::test::compare_worker_test
+}  // namespace clothlab::test::panes_run_test

@@ -274,7 +274,7 @@ class WindowTest : public QObject {
   void changing_the_scene_replaces_cloth_and_forms() {
     WindowBench bench;
     bench.play_until(0.02);
-    bench.action("scene:pendulum")->trigger();
+    bench.window.openScene("pendulum");
     bench.settle();
     QCOMPARE(bench.window.view().frame()->rows, 2);
     QCOMPARE(bench.status().step, 0);

@@ -132,6 +132,7 @@ class LabWindow : public QMainWindow {
   void fillFileMenu(QMenu& file);
   void makeEditMenu();
   void makeToolBar();
+  void chooseScene(const QString& selected);
   void fillRecentMenu();
   void fillThemeMenu(QMenu& menu);
   void compareMethods();
@@ -171,8 +172,8 @@ class LabWindow : public QMainWindow {
 
   QAction *play_, *play_again_, *step_, *reset_, *record_, *save_plots_, *save_picture_, *save_cloth_,
       *save_session_, *duplicate_;
-  QAction *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
-  QMenu *builtin_menu_ = nullptr, *recent_menu_ = nullptr;
+  QAction *scenes_ = nullptr, *open_ = nullptr, *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr;
+  QMenu* recent_menu_ = nullptr;
 
   Autosave* autosave_ = nullptr;
   PaneGrid* grid_ = nullptr;

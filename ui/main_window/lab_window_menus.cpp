@@ -6,7 +6,6 @@
 #include <QToolBar>
 #include <QToolButton>
 
-#include "compare/builtin_comparisons.h"
 #include "document/result_files.h"
 #include "help/help_window.h"
 #include "main_window/lab_files.h"
@@ -14,6 +13,7 @@
 #include "main_window/undo_history.h"
 #include "main_window/view_bar.h"
 #include "scene/builtin_scenes.h"
+#include "scenes/scene_chooser.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 
@@ -84,11 +84,8 @@ void LabWindow::makeMenus() {
       compare->addAction(tr("Compare methods"), QKeySequence("Ctrl+M"), this, &LabWindow::compareMethods);
   methods->setObjectName("compareMethods");
   methods->setToolTip(tr("This scene by its method and by two others, side by side, in a new window"));
-  QMenu* builtin = compare->addMenu(tr("Built-in comparisons"));
-  for (const cloth::BuiltinComparison& comparison : cloth::builtin_comparisons()) {
-    const QString name = QString::fromStdString(comparison.name);
-    builtin->addAction(QString::fromStdString(comparison.title), this, [this, name] { open(name); });
-  }
+  compare->addAction(tr("Built-in comparisons…"), this, [this] { chooseScene("report-methods"); })
+      ->setObjectName("builtinComparisons");
 
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view_bar_->fillMenu(*view);
@@ -107,13 +104,10 @@ void LabWindow::fillFileMenu(QMenu& file) {
       ->setObjectName("newWindow");
   open_ = file.addAction(icon("open"), tr("Open…"), QKeySequence::Open, this, &LabWindow::openWithDialog);
   open_->setToolTip(tr("Open a scene, a session, a comparison, a mesh or a study (Ctrl+O)"));
-  builtin_menu_ = file.addMenu(tr("Built-in scenes"));
-  for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) {
-    const QString name = QString::fromStdString(scene.name);
-    QAction* entry = builtin_menu_->addAction(QString::fromStdString(scene.title), this,
-                                              [this, name] { openScene(name); });
-    entry->setObjectName("scene:" + name);
-  }
+  scenes_ = named("scenes", file.addAction(icon("cloth"), tr("Scenes…"), QKeySequence("Ctrl+B"), this,
+                                           [this] { chooseScene({}); }));
+  scenes_->setIconText(tr("Scenes"));
+  scenes_->setToolTip(tr("Choose a built-in scene or comparison (Ctrl+B)"));
   recent_menu_ = file.addMenu(tr("Recent"));
   connect(recent_menu_, &QMenu::aboutToShow, this, &LabWindow::fillRecentMenu);
   file.addSeparator();
@@ -154,19 +148,25 @@ void LabWindow::makeToolBar() {
   bar->setObjectName("mainToolBar");
   bar->setMovable(false);
   bar->setIconSize({20, 20});
-  auto* scenes = named("scenesButton", new QToolButton(bar));
-  scenes->setIcon(icon("cloth"));
-  scenes->setText(tr("Scenes"));
+  QToolButton* scenes = make_action_button(scenes_, bar);
   scenes->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  scenes->setMenu(builtin_menu_);
-  scenes->setPopupMode(QToolButton::InstantPopup);
-  scenes->setToolTip(tr("Open a built-in scene"));
   bar->addWidget(scenes);
   bar->addActions({open_, save_});
   bar->addSeparator();
   bar->addActions({undo_, redo_});
   bar->addSeparator();
   bar->addAction(save_plots_);
+}
+
+void LabWindow::chooseScene(const QString& selected) {
+  auto* chooser = new SceneChooser(selected, this);
+  connect(chooser, &SceneChooser::chosen, this, [this](const QString& name) {
+    if (cloth::find_builtin_scene(name.toStdString()))
+      openScene(name);
+    else
+      openComparison(name);
+  });
+  chooser->open();
 }
 
 void LabWindow::fillRecentMenu() {

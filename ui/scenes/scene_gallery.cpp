@@ -1,0 +1,63 @@
+#include "scenes/scene_gallery.h"
+
+#include <QCoreApplication>
+
+#include "compare/builtin_comparisons.h"
+#include "scene/builtin_scenes.h"
+
+namespace clothlab {
+namespace {
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("SceneGallery", text);
+}
+
+}  // namespace
+
+std::vector<GalleryGroup> scene_gallery() {
+  return {
+      {tr("A first look"),
+       {{"flag", tr("Waves run along the cloth and swell with each gust"), 2.6, "front"},
+        {"tablecloth", tr("Folds form where the cloth hangs down at the corners"), 0.6},
+        {"ball", tr("Contact with friction: folds, slides and comes to rest"), 0.6}}},
+      {tr("Springs, damping and methods"),
+       {{"corners-free", tr("Plain springs: change stiffness, damping or method"), 0.3},
+        {"pendulum", tr("The smallest cloth: errors and orders are easy to see"), 0.2},
+        {"free-fall", tr("Known in closed form: a check of gravity and method"), 0.3}}},
+      {tr("Deformation rate: a limit on stretching"),
+       {{"corners-structural", tr("Only threads are limited: diagonals still give way"), 1.0},
+        {"corners-shear", tr("Diagonals are limited too: hangs like woven cloth"), 0.7}}},
+      {tr("Wind"),
+       {{"wind", tr("Each gust lifts the free edge again"), 0.3},
+        {"curtain", tr("A wide cloth on many pins in slow gusts"), 0.25}}},
+      {tr("Falling on obstacles"),
+       {{"cube", tr("Straight edges, met particle by particle"), 0.6},
+        {"rectangle", tr("Velocities are reflected; half of the cloth hangs beside the box"), 0.42, "left"},
+        {"disc", tr("The cloth is a mesh instead of a grid"), 0.6},
+        {"bunny", tr("The obstacle is a mesh with hollows and ears"), 0.6}}},
+      {tr("Continuous contact: edges, spikes and speed"),
+       {{"corner", tr("The corner does not come through between particles"), 0.7},
+        {"spikes", tr("64 tips touch the cloth at once"), 0.5},
+        {"slope", tr("Friction holds: the cloth must stay where it lies"), 0.5},
+        {"fast-ball", tr("Extreme: centimetres in each step, and no contact is missed"), 0.026}}},
+      {tr("Self-contact: a cloth on itself"),
+       {{"fold", tr("Layer comes to lie on layer"), 0.6},
+        {"twist", tr("Friction winds the cloth up into folds"), 2.0}}},
+      {tr("Methods side by side"),
+       {{"report-methods", tr("Semi-implicit Euler, Verlet and Runge-Kutta 4, the same step"), 0.3},
+        {"explicit-implicit", tr("Which stays stable, and what a long step costs in error"), 0.3}}},
+  };
+}
+
+QString gallery_title(const QString& name) {
+  if (const auto* scene = cloth::find_builtin_scene(name.toStdString()))
+    return QString::fromStdString(scene->title);
+  const auto* comparison = cloth::find_builtin_comparison(name.toStdString());
+  return comparison ? QString::fromStdString(comparison->title) : name;
+}
+
+QString gallery_picture(const QString& name, bool dark) {
+  return QStringLiteral(":/clothlab/gallery/%1/%2.jpg").arg(dark ? "dark" : "light", name);
+}
+
+}  // namespace clothlab

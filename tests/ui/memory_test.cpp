@@ -128,7 +128,7 @@ class MemoryTest : public QObject {
     QVERIFY(bench.window.autosave().file().isEmpty());  // nothing was changed
     bench.window.document().setParameter("springs.structural", 123.0);
     QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
-    QVERIFY(Autosave::found().isEmpty());  // its process lives
+    QVERIFY(Autosave::found().empty());  // its process lives
     const QString kept = bench.window.autosave().file();
     bench.action("undo")->trigger();
     QVERIFY(!QFile::exists(kept));
@@ -144,9 +144,11 @@ class MemoryTest : public QObject {
       QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
       left = bench.window.autosave().file();
     }
-    QCOMPARE(Autosave::found(), QStringList(left));
+    QCOMPARE(Autosave::found().size(), size_t(1));
+    QCOMPARE(Autosave::found().front().path, left);
     WindowBench bench("corners-free");
     bench.window.offerUnsaved();
+    QVERIFY(Autosave::found().empty());  // nobody else offers it until this offer is answered
     QVERIFY2(bench.window.notice().text().contains("without saving"),
              qPrintable(bench.window.notice().text()));
     for (auto* button : bench.window.notice().findChildren<QAbstractButton*>())
@@ -156,9 +158,32 @@ class MemoryTest : public QObject {
     QCOMPARE(bench.window.document().scene().springs->structural, 123.0);
     QVERIFY(!QFile::exists(left));
     QVERIFY(QFile::exists(bench.window.autosave().file()));  // this window keeps it at once
-    QVERIFY(Autosave::found().isEmpty());
+    QVERIFY(Autosave::found().empty());
     bench.window.close();
     QVERIFY(!QFile::exists(bench.window.autosave().file()));
+  }
+
+  void an_offer_that_is_closed_unanswered_is_made_again_by_the_next_window() {
+    QDir(Autosave::folder()).removeRecursively();
+    {
+      WindowBench ended("corners-free");
+      ended.window.document().setParameter("springs.structural", 123.0);
+      ended.window.autosave().save();
+    }
+    WindowBench first("corners-free");
+    first.window.offerUnsaved();
+    WindowBench second("corners-free");
+    second.window.offerUnsaved();
+    QVERIFY(second.window.notice().text().isEmpty());
+    auto* close = first.window.notice().findChild<QAbstractButton*>("noticeClose");
+    QVERIFY(close);
+    QTest::mouseClick(close, Qt::LeftButton);
+    QTRY_COMPARE(Autosave::found().size(), size_t(1));
+    second.window.offerUnsaved();
+    QVERIFY(second.window.notice().text().contains("without saving"));
+    for (auto* button : second.window.notice().findChildren<QAbstractButton*>())
+      if (button->text() == "Discard") QTest::mouseClick(button, Qt::LeftButton);
+    QTRY_VERIFY(QDir(Autosave::folder()).isEmpty());
   }
 
   void docks_have_title_bars_to_move_them_by() {

@@ -40,13 +40,15 @@ QString Autosave::folder() {
   return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/unsaved";
 }
 
-QStringList Autosave::found() {
-  QStringList files;
+std::vector<LeftFile> Autosave::found() {
+  std::vector<LeftFile> files;
   const QDir folder(Autosave::folder(), "*.json", QDir::Time | QDir::Reversed, QDir::Files);
   for (const QString& name : folder.entryList()) {
-    QLockFile lock(lock_of(folder.filePath(name)));
-    lock.setStaleLockTime(0);  // however old: only whether its process lives counts
-    if (lock.tryLock(0)) files << folder.filePath(name);
+    const QString path = folder.filePath(name);
+    auto lock = std::make_shared<QLockFile>(lock_of(path));
+    lock->setStaleLockTime(0);  // however old: only whether its process lives counts
+    // Between listing and locking, another program may have restored or discarded the file.
+    if (lock->tryLock(0) && QFile::exists(path)) files.push_back({path, lock});
   }
   return files;
 }
@@ -58,11 +60,9 @@ void Autosave::save() {
   const QString suffix = document_.isComparison() ? ".compare.json" : ".scene.json";
   if (!file_.endsWith(suffix)) {
     forget();
-    file_ = QStringLiteral("%1/%2-%3%4")
-                .arg(folder())
-                .arg(QCoreApplication::applicationPid())
-                .arg(++windows)
-                .arg(suffix);
+    const QString process = QStringLiteral("%1/%2-").arg(folder()).arg(QCoreApplication::applicationPid());
+    do file_ = process + QString::number(++windows) + suffix;
+    while (QFile::exists(file_));  // left by an earlier process of the same number
     lock_ = std::make_unique<QLockFile>(lock_of(file_));
     lock_->setStaleLockTime(0);
     lock_->tryLock(0);

@@ -3,13 +3,19 @@
 
 #include <QLockFile>
 #include <QObject>
-#include <QStringList>
 #include <QTimer>
 #include <memory>
+#include <vector>
 
 namespace clothlab {
 
 class LabDocument;
+
+/// A file that a process left when it ended. As long as a copy of this lives no other program finds the file.
+struct LeftFile {
+  QString path;
+  std::shared_ptr<QLockFile> lock;
+};
 
 class Autosave : public QObject {
   Q_OBJECT
@@ -26,7 +32,7 @@ class Autosave : public QObject {
   QString file() const { return file_; }  ///< empty: nothing is kept
 
   /// Files of processes that have ended without deleting them, the oldest first.
-  static QStringList found();
+  static std::vector<LeftFile> found();
   static QString folder();
 
  Q_SIGNALS:

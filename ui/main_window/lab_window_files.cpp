@@ -90,13 +90,14 @@ void LabWindow::openRun(const cloth::Scene& scene, const QString& note) {
 }
 
 void LabWindow::offerUnsaved() {
-  for (const QString& file : Autosave::found()) {
-    const QString kind = "unsaved " + QFileInfo(file).fileName();
-    const QString when = QLocale().toString(QFileInfo(file).lastModified(), QLocale::ShortFormat);
-    notice_->show(
-        kind, NoticeBar::Level::warning,
-        tr("Clothlab ended without saving. Changes of %1 were kept.").arg(when),
-        {{tr("Restore"), [this, file] { restore(file); }}, {tr("Discard"), [file] { QFile::remove(file); }}});
+  for (const LeftFile& file : Autosave::found()) {
+    const QFileInfo left(file.path);
+    const QString kind = "unsaved " + left.fileName();
+    const QString when = QLocale().toString(left.lastModified(), QLocale::ShortFormat);
+    notice_->show(kind, NoticeBar::Level::warning,
+                  tr("Clothlab ended without saving. Changes of %1 were kept.").arg(when),
+                  {{tr("Restore"), [this, file] { restore(file.path); }},
+                   {tr("Discard"), [file] { QFile::remove(file.path); }}});
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cstddef>
 #include <new>
+#include <utility>
 
 namespace clothlab {
 
@@ -10,24 +11,24 @@ namespace clothlab {
 struct FrameExchange::Slot {
   static constexpr std::size_t count_size = 128;  // bytes; checked at compile time below
   ClothFrame frame;
+  std::unique_ptr<Slot> next;  ///< in the list of idle slots
   alignas(std::max_align_t) std::byte count[count_size];
 };
 
 /// Slots are given back when their count is, which a shared_ptr does last of all.
 struct FrameExchange::Pool {
   std::mutex mutex;
-  std::vector<std::unique_ptr<Slot>> idle;
+  std::unique_ptr<Slot> idle;  ///< the first of a list, as giving back must not allocate
 
   std::unique_ptr<Slot> take() {
     const std::lock_guard lock(mutex);
-    if (idle.empty()) return std::make_unique<Slot>();
-    std::unique_ptr<Slot> slot = std::move(idle.back());
-    idle.pop_back();
-    return slot;
+    if (!idle) return std::make_unique<Slot>();
+    return std::exchange(idle, std::move(idle->next));
   }
   void give_back(std::unique_ptr<Slot> slot) {
     const std::lock_guard lock(mutex);
-    idle.push_back(std::move(slot));
+    slot->next = std::exchange(idle, nullptr);
+    idle = std::move(slot);
   }
 };
 

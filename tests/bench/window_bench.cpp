@@ -3,9 +3,10 @@
 //
 //     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain]
 //                           [--panes 2 4] [--pane-side 128] [--study-rounds 0] [--study-side 33]
-//                           [--seconds 4] [--idle 5] [--json]
+//                           [--starts 5] [--seconds 4] [--idle 5] [--json]
 //
-// For each size and look, while the simulation runs beside it as fast as it goes:
+// First what a start takes, see start_row.h. For each size and look, while the simulation runs beside it as
+// fast as it goes:
 //   drawings/s  how often a new picture of the cloth is in the window
 //   interval    ms between two pictures: median, and 95th percentile (p95)
 //   drawing     ms until a picture is complete: median
@@ -22,7 +23,7 @@
 //   most cpu    ms of the event that the thread was busiest in
 //   load        of the machine in the last minute: above its cores, "longest" is also what others took
 // and with --study-rounds the interval between two pictures, and the time of a step, of a run at real time,
-// alone and beside a study. --sides 0 leaves out all but comparisons and study.
+// alone and beside a study. --sides 0 leaves out all but start, comparisons and study.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -37,6 +38,7 @@
 #include "main_window/lab_window.h"
 #include "pane_rows.h"
 #include "scene/builtin_scenes.h"
+#include "start_row.h"
 #include "study_rows.h"
 #include "support/timed_application.h"
 #include "theme/theme.h"
@@ -58,7 +60,7 @@ struct Options {
   std::vector<std::string> looks{"textured", "wireframe", "strain"};
   std::vector<int> panes{2, 4};
   int pane_side = 128;
-  int study_side = 33, study_rounds = 0;
+  int study_side = 33, study_rounds = 0, starts = 5;
   double seconds = 4, idle = 5;
   bool json = false;
 };
@@ -291,6 +293,10 @@ void measure_panes(TimedApplication& application, const Options& options, json& 
 
 int run(TimedApplication& application, const Options& options) {
   json result{{"renderer", gl_abilities().renderer.toStdString()}, {"rows", json::array()}};
+  if (options.starts > 0) {
+    result["start"] = start_row(options.starts);
+    if (!options.json) print_start_row(result["start"]);
+  }
   if (options.sides != std::vector{0}) measure_window(application, options, result);
   measure_panes(application, options, result);
   if (options.study_rounds > 0) {
@@ -305,6 +311,7 @@ int run(TimedApplication& application, const Options& options) {
 }  // namespace clothlab
 
 int main(int argc, char** argv) {
+  if (const int exit_code = clothlab::one_start(argc, argv); exit_code >= 0) return exit_code;
   const QTemporaryDir home;  // what an earlier window remembered is not measured
   qputenv("XDG_CONFIG_HOME", home.filePath("config").toUtf8());
   qputenv("XDG_DATA_HOME", home.filePath("data").toUtf8());
@@ -322,6 +329,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1000));
   app.add_option("--study-side", options.study_side, "Particles per side of that run")
       ->check(CLI::Range(2, 2048));
+  app.add_option("--starts", options.starts, "Starts of the window; 0: none")->check(CLI::Range(0, 1000));
   app.add_option("--seconds", options.seconds, "Seconds of each row")->check(CLI::Range(0.2, 600.0));
   app.add_option("--idle", options.idle, "Seconds of the paused window")->check(CLI::Range(0.2, 600.0));
   app.add_flag("--json", options.json, "Give the result as one JSON object");

@@ -88,7 +88,7 @@ TEST(FillContact, AllocatesNothingOnceItHasBeenAsMuch) {
   ClothFrame frame;
   cloth::Vec3Field scratch;
   const auto fill = [&] {
-    fill_frame(simulation, scratch, frame);
+    fill_frame(simulation, simulation.state(), scratch, frame);
     filler.fill(simulation, {.marks = true, .box_level = 3}, frame);
   };
   for (int warm_up = 0; warm_up < 2; ++warm_up) fill();

@@ -16,7 +16,7 @@ TEST(FillFrame, NormalsAreOfUnitLengthAndStrainsLargestIsTheLargest) {
   for (int i = 0; i < 5; ++i) simulation.step();
   cloth::Vec3Field scratch;
   ClothFrame frame;
-  fill_frame(simulation, scratch, frame);
+  fill_frame(simulation, simulation.state(), scratch, frame);
   const std::size_t particles = simulation.state().position.size();
   ASSERT_EQ(frame.positions.size(), 3 * particles);
   ASSERT_EQ(frame.normals.size(), 3 * particles);
@@ -37,7 +37,7 @@ TEST(FillFrame, AFrameGoesFromTheSimulationToItsReaderWithoutAllocating) {
   std::shared_ptr<const ClothFrame> shown;
   const auto round = [&] {
     const auto frame = exchange.blank();
-    fill_frame(simulation, scratch, *frame);
+    fill_frame(simulation, simulation.state(), scratch, *frame);
     exchange.publish(frame);
     if (auto newest = exchange.take()) shown = std::move(newest);
   };

@@ -104,6 +104,16 @@ class ViewTest : public ViewFixture {
     QVERIFY(step_across(255, 0) <= 1.1 * largest_inside);
   }
 
+  void mipmaps_keep_the_light() {
+    QImage chequered(4, 4, QImage::Format_RGBA8888);
+    for (int i = 0; i < 16; ++i)
+      chequered.setPixelColor(i % 4, i / 4, (i + i / 4) % 2 == 0 ? QColor(255, 200, 0) : QColor(0, 200, 0));
+    const std::vector<QImage> levels = mipmaps_of(chequered);
+    QCOMPARE(levels.size(), std::size_t{3});
+    QCOMPARE(levels.back().size(), QSize(1, 1));
+    QCOMPARE(levels.back().pixelColor(0, 0), QColor(188, 200, 0));  // sRGB of half the light, not 128
+  }
+
   void modes_look_different() {
     QList<QImage> looks;
     for (const ViewMode mode : {ViewMode::textured, ViewMode::wireframe, ViewMode::strain}) {

@@ -39,10 +39,6 @@ float largest_of(const std::vector<float>& strain) {
 
 }  // namespace
 
-void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame) {
-  fill_frame(simulation, simulation.state(), normals, frame);
-}
-
 void show_difference(const std::vector<float>& distance, ClothFrame& frame) {
   frame.shows_difference = true;
   if (distance.empty())

@@ -10,11 +10,10 @@
 namespace clothlab {
 
 /// Fills all members except `topology`, which the worker counts, and `shows_difference`. `state` may be an
-/// earlier state of the simulation. `normals` is scratch memory. Neither overload allocates while the size of
-/// the cloth stays the same.
+/// earlier state of the simulation. `normals` is scratch memory. Does not allocate while the size of the
+/// cloth stays the same.
 void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& state,
                 cloth::Vec3Field& normals, ClothFrame& frame);
-void fill_frame(const cloth::Simulation& simulation, cloth::Vec3Field& normals, ClothFrame& frame);
 
 /// Stores the distances from a reference (m, one for each particle) in `frame.strain`; empty: no distance is
 /// known.

@@ -129,6 +129,7 @@ void LabDocument::load(Scene scene, const QString& path, bool unsaved) {
 
 void LabDocument::load(Comparison comparison, const QString& path, bool unsaved) {
   drag_ = 0;
+  loaded_ = true;
   comparison_ = std::move(comparison);
   scope_.reset();
   scene_ = comparison_.scene;

@@ -39,6 +39,7 @@ class LabDocument : public QObject {
   // --- Content ---
 
   const cloth::Comparison& comparison() const { return comparison_; }
+  bool isLoaded() const { return loaded_; }  ///< false until the first load()
   std::size_t paneCount() const { return comparison_.panes.size(); }
   bool isComparison() const { return paneCount() > 1; }
   /// The scene that the form edits: that of the scope.
@@ -125,7 +126,7 @@ class LabDocument : public QObject {
 
   QString path_;
   bool path_is_comparison_ = false;
-  bool unsaved_ = false;
+  bool unsaved_ = false, loaded_ = false;
   QUndoStack undo_stack_;
   cloth::Comparison comparison_;
   std::optional<std::size_t> scope_;

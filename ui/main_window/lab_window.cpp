@@ -31,12 +31,7 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
   setDockNestingEnabled(true);
   resize(pleasant_size.boundedTo(screen()->availableSize() - QSize(0, title_bar_height)));
   grid_ = new PaneGrid(this);
-  charts_ = new ChartPanel(this);
-  pane_charts_ = new CompareCharts(this);
-  ranking_ = new RankingPanel(this);
-  parameters_ = new ParameterPanel(document_, this);
   notice_ = new NoticeBar(this);
-  studies_ = new StudiesPanel(document_, this);
   autosave_ = new Autosave(document_, this);
   makeActions();
   makeLayout();

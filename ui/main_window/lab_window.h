@@ -106,7 +106,7 @@ class LabWindow : public QMainWindow {
 
   // lab_window_docks.cpp
   void makeDocks();
-  QDockWidget* addDock(const QString& title, const char* name, QWidget* content, Qt::DockWidgetArea area);
+  QDockWidget* addDock(const QString& title, const char* name, Qt::DockWidgetArea area);
   void setWidths();
   void placeCorners(bool studies);
 

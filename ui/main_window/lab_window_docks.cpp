@@ -20,24 +20,32 @@ constexpr int studies_height = 400;  // px
 
 }  // namespace
 
+/// Every part is made where it will be: a widget that gets another parent is styled anew with all that is in
+/// it.
 void LabWindow::makeDocks() {
-  auto* form = new QWidget(this);
+  parameters_dock_ = addDock(tr("Parameters"), "parametersDock", Qt::LeftDockWidgetArea);
+  auto* form = new QWidget(parameters_dock_);
+  parameters_dock_->setWidget(form);
   auto* rows = spaced(new QVBoxLayout(form), 0);
+  parameters_ = new ParameterPanel(document_, form);
   scopes_ = new ScopeTabs(document_, *parameters_, form);
   rows->addWidget(scopes_);
   rows->addWidget(parameters_, 1);
-  auto* charts = new QWidget(this);
-  auto* one_of_two = spaced(new QVBoxLayout(charts), 0);
-  one_of_two->addWidget(charts_);
-  one_of_two->addWidget(pane_charts_);
 
-  parameters_dock_ = addDock(tr("Parameters"), "parametersDock", form, Qt::LeftDockWidgetArea);
-  charts_dock_ = addDock(tr("Charts"), "chartsDock", charts, Qt::RightDockWidgetArea);
+  charts_dock_ = addDock(tr("Charts"), "chartsDock", Qt::RightDockWidgetArea);
+  auto* charts = new QWidget(charts_dock_);
+  charts_dock_->setWidget(charts);
+  auto* one_of_two = spaced(new QVBoxLayout(charts), 0);
+  one_of_two->addWidget(charts_ = new ChartPanel(charts));
+  one_of_two->addWidget(pane_charts_ = new CompareCharts(charts));
+
   parameters_dock_->installEventFilter(this);
   charts_dock_->installEventFilter(this);
-  ranking_dock_ = addDock(tr("Ranking"), "rankingDock", ranking_, Qt::BottomDockWidgetArea);
+  ranking_dock_ = addDock(tr("Ranking"), "rankingDock", Qt::BottomDockWidgetArea);
+  ranking_dock_->setWidget(ranking_ = new RankingPanel(ranking_dock_));
   ranking_dock_->hide();
-  studies_dock_ = addDock(tr("Studies"), "studiesDock", studies_, Qt::BottomDockWidgetArea);
+  studies_dock_ = addDock(tr("Studies"), "studiesDock", Qt::BottomDockWidgetArea);
+  studies_dock_->setWidget(studies_ = new StudiesPanel(document_, studies_dock_));
   tabifyDockWidget(ranking_dock_, studies_dock_);
   studies_dock_->hide();
   connect(studies_dock_, &QDockWidget::visibilityChanged, this,
@@ -53,10 +61,8 @@ void LabWindow::placeCorners(bool studies) {
   setCorner(Qt::BottomRightCorner, whole ? Qt::BottomDockWidgetArea : Qt::RightDockWidgetArea);
 }
 
-QDockWidget* LabWindow::addDock(const QString& title, const char* name, QWidget* content,
-                                Qt::DockWidgetArea area) {
+QDockWidget* LabWindow::addDock(const QString& title, const char* name, Qt::DockWidgetArea area) {
   auto* dock = named(name, new QDockWidget(title, this));
-  dock->setWidget(content);
   addDockWidget(area, dock);
   return dock;
 }

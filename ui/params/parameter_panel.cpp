@@ -53,7 +53,7 @@ ParameterPanel::ParameterPanel(LabDocument& document, QWidget* parent)
   makeHead();
   makeScrollArea();
   column->addWidget(scroll_, 1);
-  rebuild();
+  if (document.isLoaded()) rebuild();
 
   connect(&document, &LabDocument::parameterChanged, this, &ParameterPanel::follow);
   connect(&document, &LabDocument::blocksChanged, this, &ParameterPanel::rebuild);

@@ -82,10 +82,6 @@ void ParameterSection::setCollapsed(bool collapsed) {
   head_->setChecked(!collapsed);
 }
 
-bool ParameterSection::isCollapsed() const {
-  return !head_->isChecked();
-}
-
 void ParameterSection::setRemovable(bool removable) {
   removable_ = removable;
   if (cross_) cross_->setVisible(removable);

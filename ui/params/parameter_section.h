@@ -28,7 +28,6 @@ class ParameterSection : public QWidget {
   bool shows(const cloth::Block& block) const;
 
   void setCollapsed(bool collapsed);
-  bool isCollapsed() const;
   /// Shows the cross of a block that may go, or hides it; likewise what makes another block of it.
   void setRemovable(bool removable);
 

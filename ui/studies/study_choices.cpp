@@ -158,10 +158,6 @@ StudyChoices::Kind StudyChoices::kind() const {
   return static_cast<Kind>(kind_->currentIndex());
 }
 
-void StudyChoices::setKind(Kind kind) {
-  kind_->setCurrentIndex(static_cast<int>(kind));
-}
-
 void StudyChoices::follow() {
   const Kind now = kind();
   purpose_->setText(purpose_of(now));

@@ -30,7 +30,6 @@ class StudyChoices : public QWidget {
   /// Suggests what the user has not set.
   void setScene(const cloth::Scene& scene);
   Kind kind() const;
-  void setKind(Kind kind);
 
   /// The order, or a sentence that says which choice breaks a rule.
   std::variant<StudyOrder, QString> order() const;

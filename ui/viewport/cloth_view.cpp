@@ -42,7 +42,7 @@ ClothView::ClothView(QWidget* parent) : ClothView(suitable_canvas(), parent) {}
 
 ClothView::ClothView(CanvasKind canvas, QWidget* parent) : QWidget(parent) {
   load_viewport_resources();
-  begin_shared_weave_tile();
+  begin_shared_weave();
   setMinimumSize(160, 120);
   setMouseTracking(true);
   setFocusPolicy(Qt::ClickFocus);

@@ -55,15 +55,10 @@ bool RendererKit::build_programs(QString* problem) {
 }
 
 void RendererKit::make_textures() {
-  const QImage& tile = shared_weave_tile();
   glGenTextures(texture_count, textures);
-  glBindTexture(GL_TEXTURE_2D, textures[weave]);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, tile.width(), tile.height(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               tile.constBits());
-  glGenerateMipmap(GL_TEXTURE_2D);
+  give(weave, GL_SRGB8_ALPHA8, shared_weave());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   // The extension's numbers: OpenGL 3.3's own headers do not have them (core since 4.6).
   constexpr GLenum texture_max_anisotropy = 0x84FE, max_texture_max_anisotropy = 0x84FF;
   if (!frugal_ && QOpenGLContext::currentContext()->hasExtension("GL_EXT_texture_filter_anisotropic")) {
@@ -72,47 +67,30 @@ void RendererKit::make_textures() {
     glTexParameterf(GL_TEXTURE_2D, texture_max_anisotropy, std::min(most, 8.0F));
   }
 
-  std::array<std::uint8_t, 4 * strain_colour_count> row{};
-  for (std::size_t i = 0; i < strain_colours().size(); ++i) {
-    const QColor& c = strain_colours()[i];
-    row[4 * i] = static_cast<std::uint8_t>(c.red());
-    row[4 * i + 1] = static_cast<std::uint8_t>(c.green());
-    row[4 * i + 2] = static_cast<std::uint8_t>(c.blue());
-    row[4 * i + 3] = 255;
-  }
-  glBindTexture(GL_TEXTURE_2D, textures[palette]);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, strain_colour_count, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               row.data());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  QImage colours(strain_colour_count, 1, QImage::Format_RGBA8888);
+  for (int i = 0; i < strain_colour_count; ++i)
+    colours.setPixelColor(i, 0, strain_colours()[static_cast<std::size_t>(i)]);
+  give(palette, GL_SRGB8_ALPHA8, {colours});
   if (frugal_) {
-    store(weave, stored_weave);
-    store(palette, stored_palette);
+    give(stored_weave, GL_RGBA8, shared_weave());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);  // half the work
+    give(stored_palette, GL_RGBA8, {colours});
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // 256 colours are smooth enough
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   }
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-/// The same texture with all its levels, but sampled as it is stored. Leaves it bound.
-void RendererKit::store(Texture decoded, Texture stored) {
-  std::vector<std::uint8_t> values;
-  for (GLint level = 0;; ++level) {
-    GLint width = 0, height = 0;
-    glBindTexture(GL_TEXTURE_2D, textures[decoded]);
-    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_WIDTH, &width);
-    glGetTexLevelParameteriv(GL_TEXTURE_2D, level, GL_TEXTURE_HEIGHT, &height);
-    if (width == 0 || height == 0) break;
-    values.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    glGetTexImage(GL_TEXTURE_2D, level, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
-    glBindTexture(GL_TEXTURE_2D, textures[stored]);
-    glTexImage2D(GL_TEXTURE_2D, level, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
-  }
-  glBindTexture(GL_TEXTURE_2D, textures[stored]);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);  // half the work
+/// Its mipmaps are given too: a processor that draws compiles a program for each that it makes itself. Leaves
+/// the texture bound. One without mipmaps does not repeat.
+void RendererKit::give(Texture texture, GLint format, const std::vector<QImage>& levels) {
+  glBindTexture(GL_TEXTURE_2D, textures[texture]);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    glTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(i), format, levels[i].width(), levels[i].height(), 0,
+                 GL_RGBA, GL_UNSIGNED_BYTE, levels[i].constBits());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  if (levels.size() == 1) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
 }
 
 }  // namespace clothlab

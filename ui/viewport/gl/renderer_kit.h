@@ -2,10 +2,12 @@
 // once for each context.
 #pragma once
 
+#include <QImage>
 #include <QOpenGLFunctions_3_3_Core>
 #include <QOpenGLShaderProgram>
 #include <array>
 #include <memory>
+#include <vector>
 
 namespace clothlab {
 
@@ -33,7 +35,7 @@ class RendererKit : protected QOpenGLFunctions_3_3_Core {
 
   bool build_programs(QString* problem);
   void make_textures();
-  void store(Texture decoded, Texture stored);
+  void give(Texture texture, GLint format, const std::vector<QImage>& levels);
 
   bool frugal_;
 };

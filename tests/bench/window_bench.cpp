@@ -3,7 +3,7 @@
 //
 //     clothlab-window-bench [--sides 33 128 256] [--looks textured wireframe strain]
 //                           [--panes 2 4] [--pane-side 128] [--study-rounds 0] [--study-side 33]
-//                           [--starts 5] [--seconds 4] [--idle 5] [--json]
+//                           [--starts 5] [--answers 20] [--answer-side 256] [--seconds 4] [--idle 5] [--json]
 //
 // First what a start takes, see start_row.h. For each size and look, while the simulation runs beside it as
 // fast as it goes:
@@ -34,6 +34,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "answer_row.h"
 #include "bench_tools.h"
 #include "main_window/lab_window.h"
 #include "pane_rows.h"
@@ -61,6 +62,7 @@ struct Options {
   std::vector<int> panes{2, 4};
   int pane_side = 128;
   int study_side = 33, study_rounds = 0, starts = 5;
+  int answer_side = 256, answers = 20;
   double seconds = 4, idle = 5;
   bool json = false;
 };
@@ -298,6 +300,10 @@ int run(TimedApplication& application, const Options& options) {
     if (!options.json) print_start_row(result["start"]);
   }
   if (options.sides != std::vector{0}) measure_window(application, options, result);
+  if (options.answers > 0) {
+    result["answers"] = answer_row(options.answer_side, options.answers);
+    if (!options.json) print_answer_row(result["answers"]);
+  }
   measure_panes(application, options, result);
   if (options.study_rounds > 0) {
     result["study"] = study_row(options.study_side, options.seconds, options.study_rounds);
@@ -330,6 +336,9 @@ int main(int argc, char** argv) {
   app.add_option("--study-side", options.study_side, "Particles per side of that run")
       ->check(CLI::Range(2, 2048));
   app.add_option("--starts", options.starts, "Starts of the window; 0: none")->check(CLI::Range(0, 1000));
+  app.add_option("--answers", options.answers, "Answers to a hand; 0: none")->check(CLI::Range(0, 1000));
+  app.add_option("--answer-side", options.answer_side, "Particles per side of the cloth beside them")
+      ->check(CLI::Range(2, 2048));
   app.add_option("--seconds", options.seconds, "Seconds of each row")->check(CLI::Range(0.2, 600.0));
   app.add_option("--idle", options.idle, "Seconds of the paused window")->check(CLI::Range(0.2, 600.0));
   app.add_flag("--json", options.json, "Give the result as one JSON object");

@@ -82,9 +82,7 @@ class NoticeTest : public QObject {
   Q_OBJECT
 
  private Q_SLOTS:
-  void initTestCase() {
-    apply_theme(*qApp, false);
-  }
+  void initTestCase() { apply_theme(*qApp, false); }
 
   void a_message_leaves_those_of_other_kinds_and_is_closed_alone() {
     TooLongStep bench;
@@ -204,7 +202,7 @@ class NoticeTest : public QObject {
     WindowBench bench(path);
     go_as_fast_as_possible(bench.window);
     const double step = bench.status().time_step;
-    const QStringList expected{"Halve the time step and restart", "Use Implicit Euler and restart"};
+    const QStringList expected{"Halve the time step and restart", "Use implicit Euler and restart"};
     play_until_it_diverges(bench);
     QCOMPARE(offers(bench.window, "divergence"), expected);
     click_offer(bench.window, "divergence", expected[0]);

@@ -6,6 +6,8 @@
 #include <QMenu>
 #include <QToolTip>
 
+#include "charts/live_chart.h"
+#include "charts/plot_scene.h"
 #include "compare_bench.h"
 #include "listed_test.h"
 #include "params/panel_parts.h"
@@ -174,16 +176,42 @@ class SmallWindowTest : public QObject {
     }
   }
 
+  void a_new_window_has_no_button_that_a_scene_does_not_need() {
+    const LabWindow window;
+    QVERIFY(window.findChild<QWidget*>("modeDifferenceButton")->isHidden());
+  }
+
+  void studies_of_a_comparison_leave_the_window_as_large_as_it_is_data() {
+    QTest::addColumn<bool>("by_menu");
+    QTest::addRow("by their key") << false;
+    QTest::addRow("from the menu View") << true;
+  }
   void studies_of_a_comparison_leave_the_window_as_large_as_it_is() {
+    QFETCH(const bool, by_menu);
     apply_theme(*qApp, false);
     CompareBench bench(panes_of({"verlet", "semi-implicit-euler", "rk4", "implicit-midpoint"}));
     resize_to(bench.window, {1000, 650});
-    QTest::keyClick(&bench.window, Qt::Key_T, Qt::ControlModifier);
+    auto* dock = bench.window.findChild<QDockWidget*>("studiesDock");
+    if (by_menu)
+      dock->toggleViewAction()->trigger();
+    else
+      QTest::keyClick(&bench.window, Qt::Key_T, Qt::ControlModifier);
     QTest::qWait(200);
     QCOMPARE(bench.window.size(), QSize(1000, 650));
     QVERIFY(bench.window.studies().isVisible());
-    for (std::size_t pane = 0; pane < 4; ++pane)
-      QVERIFY(bench.window.panes().pane(pane).view().height() >= 20);
+    for (std::size_t pane = 0; pane < 4; ++pane)  // which has the rows of gauge and difference
+      QVERIFY(bench.window.panes().pane(pane).view().height() >= 60);
+    const CompareCharts& charts = bench.window.paneCharts();
+    for (const char* key : {"compare_energy", "compare_strain", "compare_step_time", "compare_difference"}) {
+      LiveChart* chart = charts.chart(key);
+      QVERIFY2(charts.rect().contains(chart->geometry()), key);
+      QVERIFY2(chart->scene().map().plot.height() >= 10, key);
+    }
+    dock->toggleViewAction()->trigger();
+    QTest::qWait(50);
+    QVERIFY(!bench.window.studies().isVisible());
+    resize_to(bench.window, {1500, 900});
+    QVERIFY(bench.part<QWidget>(0, "difference")->isVisible() && bench.part<QWidget>(0, "cost")->isVisible());
   }
 
   void a_roomy_pane_has_its_step_beside_the_method_and_a_narrow_one_below() {

@@ -10,7 +10,7 @@ namespace clothlab {
 namespace {
 
 constexpr int chart_gap = spacing / 2;
-constexpr int smallest_plot = 10;  // px
+constexpr int smallest_plot = 10, low_plot = 40;  // px
 constexpr double smallest_gutter_px = 30;
 constexpr double gutter_slack_px = 12;  // a narrower gutter must save this much before the plots move
 
@@ -73,14 +73,22 @@ void ChartStack::follow() {
 
 void ChartStack::lay_out(const QRect& room) {
   int left = static_cast<int>(charts_.size());
-  int plots = room.height() - (left - 1) * chart_gap;
-  for (const LiveChart* chart : charts_) plots -= chart->height_beside_plot(room.width());
+  const auto height_of_plots = [&] {
+    int height = room.height() - (left - 1) * chart_gap;
+    for (const LiveChart* chart : charts_) height -= chart->height_beside_plot(room.width());
+    return height;
+  };
+  for (LiveChart* chart : charts_) chart->set_low(false);
+  if (height_of_plots() < left * low_plot)
+    for (LiveChart* chart : charts_) chart->set_low(true);
+  int plots = height_of_plots();
   int top = room.top();
   for (LiveChart* chart : charts_) {
     const int plot = std::max(smallest_plot, plots / left--);
     plots -= plot;
     const int height = chart->height_beside_plot(room.width()) + plot;
     chart->setGeometry(room.left(), top, room.width(), height);
+    chart->lay_out();
     top += height + chart_gap;
   }
 }

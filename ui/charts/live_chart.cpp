@@ -116,6 +116,7 @@ bool LiveChart::has_room_for_names(int width) const {
 }
 
 void LiveChart::name_curves(bool in_full) {
+  named_elsewhere_ = !in_full;
   for (std::size_t i = 0; i < legend_.size(); ++i)
     legend_[i]->setName(in_full ? spec_.curves[i].name : spec_.curves[i].short_name, spec_.curves[i].name);
   lay_out();
@@ -248,6 +249,7 @@ bool LiveChart::legend_beside_title(int width) const {
 
 std::vector<std::vector<LegendEntry*>> LiveChart::legend_rows(int width) const {
   if (legend_beside_title(width)) return {entries()};
+  if (is_low_ && named_elsewhere_) return {};
   std::vector<std::vector<LegendEntry*>> rows;
   int x = width;  // the first one begins a row
   for (LegendEntry* entry : entries()) {
@@ -268,17 +270,21 @@ int LiveChart::header_height(int width) const {
   return row * (title_rows + static_cast<int>(legend_rows(width).size()));
 }
 
+/// A low chart has no title of its time axis.
+double LiveChart::height_below_plot() const {
+  if (!time_labels_) return label_overhang(title_->font());
+  return std::floor(time_axis_height(title_->font()) / (is_low_ ? 2 : 1));
+}
+
 int LiveChart::height_beside_plot(int width) const {
   const double above = label_overhang(title_->font());
-  const double below = time_labels_ ? time_axis_height(title_->font()) : above;
-  return header_height(width) + static_cast<int>(above + std::floor(below));
+  return header_height(width) + static_cast<int>(above + std::floor(height_below_plot()));
 }
 
 QRectF LiveChart::plot_rect(double gutter) const {
   const double above = label_overhang(title_->font());
-  const double below = time_labels_ ? std::floor(time_axis_height(title_->font())) : above;
   return {gutter, above, std::max(1.0, view_->width() - gutter - plot_right_margin),
-          std::max(1.0, view_->height() - above - below)};
+          std::max(1.0, view_->height() - above - height_below_plot())};
 }
 
 void LiveChart::lay_out() {
@@ -289,7 +295,9 @@ void LiveChart::lay_out() {
   title_->setGeometry(spacing, 0, std::min(title_->sizeHint().width(), log_button_->x() - 2 * spacing), row);
   const bool beside_title = legend_beside_title(width());
   int y = beside_title ? 0 : row;
-  for (const auto& line : legend_rows(width())) {
+  const auto rows = legend_rows(width());
+  for (LegendEntry* entry : legend_) entry->setVisible(!rows.empty());
+  for (const auto& line : rows) {
     int x = legend_margin;
     if (beside_title) {
       x = log_button_->x() - spacing / 2;

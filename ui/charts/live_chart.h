@@ -41,8 +41,12 @@ class LiveChart : public QWidget {
   bool has_room_for_names(int width) const;
   /// Shows the curves' names in the legend, or their short names.
   void name_curves(bool in_full);
+  /// A low chart gives the title of its time axis to the plot, and the rows of its legend where the curves'
+  /// names stand elsewhere.
+  void set_low(bool low) { is_low_ = low; }
   void show_curve(std::size_t curve, bool shown) { legend_[curve]->setChecked(shown); }
 
+  void lay_out();
   /// Rows of the header at a width, and the whole height that is not plot (px).
   int height_beside_plot(int width) const;
   /// What is drawn now, for an exported picture.
@@ -62,10 +66,10 @@ class LiveChart : public QWidget {
   std::vector<std::vector<LegendEntry*>> legend_rows(int width) const;
   bool legend_beside_title(int width) const;
   int header_height(int width) const;
-  void lay_out();
   Range automatic_y(const ChartRecord& record);
   Range data_range(const ChartRecord& record, bool positive) const;
   void choose_ticks(PlotFrame& frame, QSizeF plot_size) const;
+  double height_below_plot() const;
   QRectF plot_rect(double gutter) const;
 
   const ChartSpec& spec_;
@@ -76,7 +80,7 @@ class LiveChart : public QWidget {
   FlatButton* log_button_;
   PlotScene* scene_;
   PlotView* view_;
-  bool logarithmic_ = false;
+  bool logarithmic_ = false, named_elsewhere_ = false, is_low_ = false;
   std::optional<Range> own_y_;  ///< in axis coordinates
   StickyRange sticky_;
   PlotFrame frame_;

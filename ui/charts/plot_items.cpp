@@ -239,10 +239,11 @@ void OverlayItem::paint(QPainter* painter, const QStyleOptionGraphicsItem*, QWid
   painter->save();
   painter->setFont(font_);
   painter->setRenderHint(QPainter::Antialiasing);
-  if (!message_.isEmpty()) {
+  constexpr int wrapped = Qt::AlignCenter | Qt::TextWordWrap;
+  const QRectF inside = map_.plot.adjusted(spacing, 0, -spacing, 0);
+  if (!message_.isEmpty() && painter->boundingRect(inside, wrapped, message_).height() <= inside.height()) {
     painter->setPen(theme_->muted_text);
-    painter->drawText(map_.plot.adjusted(spacing, 0, -spacing, 0), Qt::AlignCenter | Qt::TextWordWrap,
-                      message_);
+    painter->drawText(inside, wrapped, message_);
   }
   if (!note_.isEmpty()) paint_note(*painter);
   if (read_out_) paint_read_out(*painter);

@@ -104,6 +104,7 @@ void PlotScene::drawBackground(QPainter* painter, const QRectF&) {
   painter->fillRect(map_.plot, field_);
   if (!time_labels_) return;
   const QRectF below(map_.plot.left(), map_.plot.bottom(), map_.plot.width(), time_axis_height(font()));
+  if (below.bottom() > sceneRect().bottom() + 1) return;  // a low chart
   painter->setFont(font());
   painter->setPen(title_colour_);
   painter->drawText(below.adjusted(0, 0, 0, -spacing / 2.0), Qt::AlignHCenter | Qt::AlignBottom,

@@ -27,6 +27,8 @@ namespace {
 constexpr int frame_width = 2;    // px
 constexpr int step_width = 80;    // px
 constexpr int least_width = 222;  // px: letter, half of a method's name and the menu; step and gauge below
+/// px: a lower view takes the row of the difference, which the ranking says too; and then that of the gauge.
+constexpr int view_below_difference = 96, view_below_gauge = 60;
 
 void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
@@ -234,7 +236,18 @@ void PaneView::changeEvent(QEvent* event) {
 
 QSize PaneView::minimumSizeHint() const {
   if (is_alone_) return QFrame::minimumSizeHint();
-  return {least_width, QFrame::minimumSizeHint().height()};
+  return {least_width, 2 * frame_width + headerHeight(3) + view_->minimumHeight()};
+}
+
+/// With so many rows: method; step and gauge; difference.
+int PaneView::headerHeight(int rows) const {
+  const int heights[]{method_->sizeHint().height(),
+                      std::max(gauge_->sizeHint().height(), is_roomy_ ? 0 : step_->sizeHint().height()),
+                      difference_->sizeHint().height()};
+  const QMargins margins = header_->layout()->contentsMargins();
+  int height = margins.top() + margins.bottom() + (rows - 1) * header_->layout()->spacing();
+  for (int row = 0; row < rows; ++row) height += heights[row];
+  return height;
 }
 
 /// At which the longest name of a method is whole with the step beside it.
@@ -247,23 +260,29 @@ int PaneView::roomyWidth() const {
   return around + badge_->sizeHint().width() + method + step_width + more_->sizeHint().width();
 }
 
-/// Where the window is narrow, the step stands before the gauge, and the ranking alone says the cost.
-void PaneView::suitWidth() {
-  const bool roomy = width() >= roomyWidth(), was_roomy = first_row_->indexOf(step_) >= 0;
-  if (roomy == was_roomy) return;
-  if (roomy) {
-    second_row_->removeWidget(step_);
-    first_row_->insertWidget(first_row_->indexOf(method_) + 1, step_);
-  } else {
-    first_row_->removeWidget(step_);
-    second_row_->insertWidget(0, step_);
+/// Where the window is narrow, the step stands before the gauge, and the ranking alone says the cost. Where
+/// it is low, the cloth has the room of the lower rows.
+void PaneView::suitSize() {
+  const bool roomy = width() >= roomyWidth();
+  if (roomy != is_roomy_) {
+    (roomy ? second_row_ : first_row_)->removeWidget(step_);
+    if (roomy)
+      first_row_->insertWidget(first_row_->indexOf(method_) + 1, step_);
+    else
+      second_row_->insertWidget(0, step_);
+    is_roomy_ = roomy;
   }
-  cost_->setVisible(roomy);
+  const auto view_below = [this](int rows) { return height() - 2 * frame_width - headerHeight(rows); };
+  const bool has_gauge = view_below(2) >= view_below_gauge;
+  gauge_->setVisible(has_gauge);
+  step_->setVisible(has_gauge || roomy);
+  cost_->setVisible(has_gauge && roomy);
+  difference_->setVisible(has_gauge && view_below(3) >= view_below_difference);
 }
 
 void PaneView::resizeEvent(QResizeEvent* event) {
   QFrame::resizeEvent(event);
-  suitWidth();
+  suitSize();
 }
 
 void PaneView::paintEvent(QPaintEvent*) {

@@ -67,10 +67,12 @@ class PaneView : public QFrame {
   void takeStep(const QString& text);
   void dress();
   int roomyWidth() const;  ///< px
-  void suitWidth();
+  int headerHeight(int rows) const;
+  void suitSize();
 
   int style_ = 0;
   bool is_alone_ = false, is_low_ = false;
+  bool is_roomy_ = true;  ///< the step stands beside the method
   cloth::Scene scene_;
   std::optional<cloth::Divergence> stop_;
   ClothView* view_;

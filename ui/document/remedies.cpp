@@ -2,7 +2,6 @@
 
 #include <QCoreApplication>
 
-#include "scene/method_facts.h"
 #include "simulation/time_step.h"
 
 namespace clothlab {
@@ -12,7 +11,7 @@ constexpr char step_path[] = "integrator.time_step", method_path[] = "integrator
 constexpr double clearly_shorter = 0.99;
 const std::string automatic = "auto";
 
-/// Its damping grows with stiffness and step: nothing swings up.
+/// Implicit Euler: its damping grows with stiffness and step, and nothing swings up.
 const std::string steadiest_method = "implicit-euler";
 
 QString words(const char* text) {
@@ -43,8 +42,7 @@ std::vector<Remedy> remedies_for(const cloth::Scene& scene, const cloth::Diverge
     remedies.push_back(shorter_step(scene, divergence.time_step));
   if (scene.integrator.method != steadiest_method)
     remedies.push_back(
-        {words("Use %1 and restart").arg(QString::fromStdString(cloth::facts_of(steadiest_method).title)),
-         {{method_path, steadiest_method}, {step_path, automatic}}});
+        {words("Use implicit Euler and restart"), {{method_path, steadiest_method}, {step_path, automatic}}});
   return remedies;
 }
 

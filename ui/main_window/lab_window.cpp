@@ -229,8 +229,9 @@ void LabWindow::followEdit(const SceneChange& change) {
 /// What of the document the panes, their charts, tabs and ranking show.
 void LabWindow::showDocument() {
   const cloth::Comparison& comparison = document_.comparison();
-  const QSize before = size();
-  const std::size_t panes_before = grid_->paneCount();
+  const bool other_panes = comparison.panes.size() != grid_->paneCount();
+  // A small window would grow to hold more panes before its docks give way.
+  if (other_panes) setMinimumSize(size());
   grid_->showComparison(comparison);
   if (document_.isComparison()) {
     pane_charts_->setPanes(comparison);
@@ -238,10 +239,10 @@ void LabWindow::showDocument() {
   }
   scopes_->refresh();
   if (shows_comparison_ != document_.isComparison()) showKind();
-  if (grid_->paneCount() == panes_before) return;
-  // A small window had to hold more panes before its docks gave way, and grew.
+  if (!other_panes) return;
   QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
-  resize(before);
+  setMinimumSize(0, 0);  // as the layout says
+  layout()->invalidate();
 }
 
 /// Arranges the widgets for a scene or for a comparison.

@@ -50,6 +50,10 @@ void LabWindow::makeDocks() {
   studies_dock_->hide();
   connect(studies_dock_, &QDockWidget::visibilityChanged, this,
           [this] { placeCorners(!studies_dock_->isHidden()); });
+  QAction* entry = studies_dock_->toggleViewAction();
+  entry->disconnect(studies_dock_);  // its place is made before it is shown
+  connect(entry, &QAction::triggered, this,
+          [this](bool on) { on ? showStudies() : static_cast<void>(studies_dock_->close()); });
 }
 
 /// Studies take the whole width, and in a low window the height of the panes; the ranking leaves form and

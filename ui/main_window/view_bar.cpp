@@ -33,6 +33,7 @@ ViewBar::ViewBar(PaneGrid& panes, QAction* save_picture, QWidget* parent) : QFra
   row->addStretch(1);
   addCamera();
   keepLast(make_action_button(save_picture, this));
+  showComparison(false);  // before the window says how small it can be
 }
 
 void ViewBar::addTools() {

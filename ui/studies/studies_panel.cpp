@@ -125,7 +125,7 @@ void StudiesPanel::makeDiagram(QWidget* right) {
                       right);
   empty_->setAlignment(Qt::AlignCenter);
   empty_->setWordWrap(true);
-  empty_->setMargin(2 * spacing);
+  empty_->setMargin(spacing);
   empty_->setProperty("muted", true);
   empty_->setObjectName("studyEmpty");
   earlier_ = named("studyEarlier", new QLabel(tr("An earlier study: the form has other values now."), right));

@@ -1,4 +1,5 @@
-// Fusion with our icons for what Qt's own dialogs show: folders, files and the buttons of file dialogs.
+// Fusion with our icons for what Qt's own dialogs show: folders, files and the buttons of file dialogs; and
+// with columns of tables that keep no more room than the mark of the sorted one needs.
 #pragma once
 
 #include <QProxyStyle>
@@ -13,6 +14,8 @@ class LabStyle : public QProxyStyle {
 
   QIcon standardIcon(StandardPixmap which, const QStyleOption* option = nullptr,
                      const QWidget* widget = nullptr) const override;
+  QSize sizeFromContents(ContentsType type, const QStyleOption* option, const QSize& size,
+                         const QWidget* widget) const override;
 };
 
 }  // namespace clothlab

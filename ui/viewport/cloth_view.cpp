@@ -23,8 +23,6 @@ static void load_viewport_resources() {
 namespace clothlab {
 namespace {
 
-constexpr int room_for_mode = 160;  // px: in a small pane of many its name would cover the cloth
-
 bool sizes_agree(const ClothFrame& frame) {
   if (frame.rows < 0 || frame.columns < 0) return false;
   const std::size_t count = static_cast<std::size_t>(frame.rows) * static_cast<std::size_t>(frame.columns);
@@ -294,7 +292,7 @@ void ClothView::paintOverlays(QPainter& painter) {
   const auto quantity = frame_->shows_difference ? Overlay::Quantity::difference : Overlay::Quantity::strain;
   if (mode_ == ViewMode::strain && !colour_maximum_)
     overlay_.colour_bar(painter, size(), look, colourMaximum(), frame_->deformation_rate);
-  if (height() >= room_for_mode) overlay_.mode_name(painter, look, mode_, quantity);
+  if (showsMode()) overlay_.mode_name(painter, look, mode_, quantity);
   paintContactNote(painter);
   if (clothIsOutOfSight())
     overlay_.hint(painter, size(), look, tr("The cloth has left the picture. Press F to see it."));

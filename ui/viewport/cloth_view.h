@@ -154,6 +154,7 @@ class ClothView : public QWidget {
   void paintHand(QPainter& painter);
   void paintHandle(QPainter& painter);
   void paintContactNote(QPainter& painter);
+  bool showsMode() const;
   QPointF screenPoint(int particle) const;
 
   void startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers);

@@ -79,11 +79,18 @@ void ClothView::paintHandle(QPainter& painter) {
                   static_cast<int>(handle_part_) - 1);
 }
 
+/// In a small pane of many the name of the mode would cover the cloth.
+bool ClothView::showsMode() const {
+  constexpr int room_for_mode = 160;  // px
+  return height() >= room_for_mode;
+}
+
 /// The number of contact marks.
 void ClothView::paintContactNote(QPainter& painter) {
   if (!contact_.marks || !frame_->contact.has_marks) return;
   constexpr std::size_t floats_of_mark = 7;
-  overlay_.contact_note(painter, theme(), static_cast<int>(frame_->contact.marks.size() / floats_of_mark));
+  overlay_.contact_note(painter, theme(), static_cast<int>(frame_->contact.marks.size() / floats_of_mark),
+                        showsMode());
 }
 
 }  // namespace clothlab

@@ -183,10 +183,12 @@ void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quant
             [&](QPainter& p) { text_card(p, area, theme, font, theme.muted_text, name); });
 }
 
-void Overlay::contact_note(QPainter& view, const Theme& theme, int touches) {
+void Overlay::contact_note(QPainter& view, const Theme& theme, int touches, bool below_mode) {
   const QString note = touches == 1 ? tr("1 touch") : tr("%1 touches").arg(touches);
   const QSizeF size = card_size(view, note_font(view), note);
-  const QRectF area(QPointF(2 * spacing, 3 * spacing + size.height()), size);
+  const QPointF corner(below_mode ? QPointF(2 * spacing, 3 * spacing + size.height())
+                                  : QPointF(spacing, spacing));
+  const QRectF area(corner, size);
   contact_.lay(view, area, {static_cast<double>(touches)},
                [&](QPainter& p) { text_card(p, area, theme, note_font(view), theme.text, note); });
 }

@@ -56,8 +56,8 @@ class Overlay {
   void brush(QPainter& view, const Theme& theme, const Brush& brush);
   void ring(QPainter& view, const Theme& theme, QPointF at, Ring ring);
   void pull_line(QPainter& view, const Theme& theme, QPointF particle, QPointF cursor);
-  /// How many places touch, under the mode's name.
-  void contact_note(QPainter& view, const Theme& theme, int touches);
+  /// How many places touch: in the corner, or under the mode's name where that is shown.
+  void contact_note(QPainter& view, const Theme& theme, int touches, bool below_mode);
   /// A ring with arrows along x, y and z; `active`: 0 the ring, 1 to 3 an arrow, else none.
   void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
   /// The way that keyframes lead, from key to key, and beside the handle at `at` what a drag of it moves.

@@ -95,6 +95,9 @@ QString StabilityGauge::text_within(int px) const {
   if (reading_.stable_step > 0)
     wordings << QStringLiteral("%1, %2").arg(step_text(reading_.time_step), percent_text(reading_))
              << percent_text(reading_);
+  else if (reading_.level == StabilityReading::Level::unlimited)
+    wordings << tr("%1, no limit").arg(step_text(reading_.time_step)) << tr("No limit")
+             << percent_text(reading_);
   for (const QString& wording : wordings)
     if (fontMetrics().horizontalAdvance(wording) <= px) return wording;
   return fontMetrics().elidedText(wordings.last(), Qt::ElideRight, px);

@@ -49,7 +49,7 @@ void expect_survives(const cloth::Comparison& content, const Work& work) {
     if (!has_failed) break;
   }
   EXPECT_GT(failures, 20);
-  EXPECT_GT(messages, failures / 2);  // others need no message: of a thread that was not to be had, say
+  EXPECT_GT(messages, failures / 4);  // elsewhere a later command has started anew, or a thread less was had
 }
 
 void steps(RunWorker& worker, int count) {

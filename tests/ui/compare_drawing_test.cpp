@@ -77,7 +77,7 @@ class OneColour {
   explicit OneColour(QColor colour) : colour_(colour) {
     canvas_ = make_memory_canvas(&window_, {.initialise = [] {},
                                             .resized = [](int, int) {},
-                                            .draw = [this](bool) { clear(); },
+                                            .draw = [this](bool, double) { clear(); },
                                             .paint_over = [](QPainter&) {},
                                             .shown = [this](double) { ++shown_; }});
     window_.resize(60, 40);

@@ -49,14 +49,14 @@ ClothView::ClothView(CanvasKind canvas, QWidget* parent) : QWidget(parent) {
     fail(gl_abilities().problem);
     return;
   }
-  canvas_ = make_canvas(
-      canvas, this,
-      {[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
-       [this](bool quick) { drawGl(quick); }, [this](QPainter& painter) { paintOverlays(painter); },
-       [this](double milliseconds) {
-         last_draw_ = milliseconds;
-         Q_EMIT frameDrawn(milliseconds);
-       }});
+  canvas_ = make_canvas(canvas, this,
+                        {[this] { initialiseGl(); }, [this](int w, int h) { resizeGl(w, h); },
+                         [this](bool quick, double fineness) { drawGl(quick, fineness); },
+                         [this](QPainter& painter) { paintOverlays(painter); },
+                         [this](double milliseconds) {
+                           last_draw_ = milliseconds;
+                           Q_EMIT frameDrawn(milliseconds);
+                         }});
 }
 
 ClothView::~ClothView() {
@@ -245,14 +245,14 @@ void ClothView::advanceTime() {
   if (flight_.flying()) redraw();
 }
 
-Shot ClothView::shot() const {
+Shot ClothView::shot(double fineness) const {
   Shot shot;
   shot.world_to_clip = camera_.projection() * camera_.view();
   shot.eye = camera_.eye();
   shot.right = camera_.right();
   shot.up = camera_.up();
   shot.forward = camera_.forward();
-  shot.pixel_ratio = devicePixelRatioF();
+  shot.pixel_ratio = fineness * devicePixelRatioF();
   shot.metres_per_pixel = camera_.metres_per_pixel() / shot.pixel_ratio;
   shot.mode = mode_;
   shot.strain_maximum = colourMaximum();
@@ -262,7 +262,7 @@ Shot ClothView::shot() const {
   return shot;
 }
 
-void ClothView::drawGl(bool quick) {
+void ClothView::drawGl(bool quick, double fineness) {
   if (!renderer_) return;
   advanceTime();
   last_upload_ = 0;
@@ -274,7 +274,7 @@ void ClothView::drawGl(bool quick) {
     last_upload_ = 1e-6 * static_cast<double>(timer.nsecsElapsed());
     frame_uploaded_ = true;
   }
-  Shot seen = shot();
+  Shot seen = shot(fineness);
   seen.quick = quick;
   renderer_->draw(seen, theme());
 }

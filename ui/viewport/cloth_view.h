@@ -135,7 +135,7 @@ class ClothView : public QWidget {
 
   void initialiseGl();
   void resizeGl(int width, int height);
-  void drawGl(bool quick);
+  void drawGl(bool quick, double fineness);
   void redraw() {
     if (canvas_) canvas_->redraw();
   }
@@ -148,7 +148,7 @@ class ClothView : public QWidget {
   void fitUnmovedCamera();
   void flyTo(const CameraPose& pose);
   void advanceTime();
-  Shot shot() const;
+  Shot shot(double fineness) const;  ///< see GlCanvas::Callbacks::draw
   double colourMaximum() const { return colour_maximum_.value_or(strain_range_.maximum()); }
   void paintOverlays(QPainter& painter);
   void paintHand(QPainter& painter);

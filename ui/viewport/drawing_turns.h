@@ -2,6 +2,7 @@
 // event waits for at most one drawing.
 #pragma once
 
+#include <QDeadlineTimer>
 #include <QObject>
 #include <QTimer>
 #include <deque>
@@ -28,12 +29,16 @@ class DrawingTurns : public QObject {
   void ask(Drawer* drawer);
   /// Removes `drawer` from the queue.
   void leave(Drawer* drawer);
+  /// No turn begins for so long: other events go first.
+  void leaveFree(double milliseconds);
 
  private:
   explicit DrawingTurns(QObject* parent);
   void next();
+  void startTimer();
 
   std::deque<Drawer*> waiting_;
+  QDeadlineTimer free_until_;
   QTimer timer_;  ///< runs only while a drawer is queued
 };
 

@@ -37,7 +37,7 @@ class WindowCanvas : public QOpenGLWidget, public GlCanvas {
   void paintGL() override {
     QElapsedTimer timer;
     timer.start();
-    callbacks_.draw(false);
+    callbacks_.draw(false, 1);
     {
       QPainter painter(this);
       callbacks_.paint_over(painter);

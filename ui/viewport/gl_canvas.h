@@ -6,6 +6,7 @@
 //           and put into the window like any other widget's. It is kept, too: what lies over it changes
 //           without drawing it again, and several views take turns. And as multisampling costs a third of a
 //           frame there, a running cloth is drawn without and quickly, and once properly when it rests.
+//           Drawings that take long give way to everything else, see DrawingPace.
 //
 // Either is a child of the view and shows the same picture.
 #pragma once
@@ -30,9 +31,10 @@ class GlCanvas {
   struct Callbacks {
     std::function<void()> initialise;                    ///< with a current context, or none: it failed
     std::function<void(int width, int height)> resized;  ///< device-independent px
-    std::function<void(bool quick)> draw;                ///< draws into the bound framebuffer
-    std::function<void(QPainter& painter)> paint_over;   ///< what lies over the picture
-    std::function<void(double milliseconds)> shown;      ///< the picture is complete; how long it took, ms
+    /// Draws into the bound framebuffer, whose width and height are that part of the view's device pixels.
+    std::function<void(bool quick, double fineness)> draw;
+    std::function<void(QPainter& painter)> paint_over;  ///< what lies over the picture
+    std::function<void(double milliseconds)> shown;     ///< the picture is complete; how long it took, ms
   };
 
   virtual ~GlCanvas() = default;

@@ -13,6 +13,7 @@
 
 #include "theme/theme.h"
 #include "viewport/cloth_view.h"
+#include "viewport/drawing_pace.h"
 #include "viewport/drawing_turns.h"
 #include "viewport/gl_canvas.h"
 
@@ -81,6 +82,8 @@ class MemoryCanvas : public QWidget, public GlCanvas, private DrawingTurns::Draw
   GLsync fence_ = nullptr;  // of a picture that is being drawn
   Quality drawing_ = Quality::quick;
   QElapsedTimer drawing_time_;
+  DrawingPace pace_;  // of the quick drawings
+  QSize drawn_;       // the part of the target that the picture fills, px
   QTimer fence_timer_;
 
   QImage picture_;
@@ -189,7 +192,10 @@ void MemoryCanvas::fetchPicture() {
   update();
   if (drawing_ == Quality::smooth) return;
   if (!stale_ && smooth_at_rest_) rest_timer_.start();
-  callbacks_.shown(1e-6 * static_cast<double>(drawing_time_.nsecsElapsed()));
+  const double taken = 1e-6 * static_cast<double>(drawing_time_.nsecsElapsed());
+  pace_.drew(taken);
+  DrawingTurns::ofTheApplication().leaveFree(pace_.pause());
+  callbacks_.shown(taken);
 }
 
 void MemoryCanvas::dropFence() {
@@ -215,16 +221,17 @@ void MemoryCanvas::submit(Quality quality) {
   if (smooth && !multisampled_) multisampled_ = make_target(pixels(), smooth_samples);
   stale_ = false;  // before drawing, which may ask for the next picture
   (smooth ? multisampled_ : plain_)->bind();
-  shared_->context.functions()->glViewport(0, 0, plain_->width(), plain_->height());
-  callbacks_.draw(!smooth);
+  const double fineness = smooth ? 1 : pace_.fineness();
+  drawn_ = (QSizeF(plain_->size()) * fineness).toSize().expandedTo({1, 1});
+  shared_->context.functions()->glViewport(0, 0, drawn_.width(), drawn_.height());
+  callbacks_.draw(!smooth, fineness);
   if (smooth) QOpenGLFramebufferObject::blitFramebuffer(plain_.get(), multisampled_.get());
 }
 
 /// Another canvas may have drawn meanwhile, and have left its framebuffer bound.
 void MemoryCanvas::readPicture() {
   plain_->bind();
-  if (picture_.size() != plain_->size()) picture_ = QImage(plain_->size(), QImage::Format_RGB32);
-  picture_.setDevicePixelRatio(devicePixelRatioF());
+  if (picture_.size() != drawn_) picture_ = QImage(drawn_, QImage::Format_RGB32);
   QOpenGLFunctions* gl = shared_->context.functions();
   gl->glPixelStorei(GL_PACK_ALIGNMENT, 4);
   if (top_row_first_) gl->glPixelStorei(gl_pack_invert_mesa, GL_TRUE);
@@ -244,6 +251,7 @@ void MemoryCanvas::paintEvent(QPaintEvent*) {
     empty.setColorAt(1, theme().view_bottom);
     painter.fillRect(rect(), empty);
   } else {
+    painter.setRenderHint(QPainter::SmoothPixmapTransform, picture_.size() != pixels());
     painter.drawImage(QRectF(rect()), picture_);  // of another size until its turn comes
     callbacks_.paint_over(painter);
   }
@@ -266,6 +274,7 @@ QImage MemoryCanvas::grab() {
     readPicture();
   }
   QImage picture = picture_;
+  picture.setDevicePixelRatio(devicePixelRatioF());
   {
     QPainter painter(&picture);
     callbacks_.paint_over(painter);

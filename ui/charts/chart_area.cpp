@@ -39,8 +39,9 @@ QString ChartArea::exportSvg(const QString& path, QSize size) {
   return save_svg(path, size == QSize() ? export_size_ : size, {record_, stack_.charts(), font()});
 }
 
-QString ChartArea::exportCsv(const QString& path) const {
-  return save_csv(path, record_, csv_columns(), stack_.shown_times());
+std::function<QString(const std::stop_token&)> ChartArea::csvWriter(const QString& path) const {
+  return [path, record = record_, columns = csv_columns(), times = stack_.shown_times()](
+             const std::stop_token& stop) { return save_csv(path, record, columns, times, stop); };
 }
 
 QString ChartArea::save(const QString& path) {

@@ -8,6 +8,7 @@
 
 #include <QTimer>
 #include <QWidget>
+#include <functional>
 #include <map>
 
 #include "charts/chart_export.h"
@@ -30,7 +31,9 @@ class ChartArea : public QWidget {
   QString exportSvg(const QString& path, QSize size = {});
   /// The recorded points of the times shown, 17 significant digits, one header row with units (see
   /// chart_export.h).
-  QString exportCsv(const QString& path) const;
+  QString exportCsv(const QString& path) const { return csvWriter(path)({}); }
+  /// Does that with a copy of the points, in any thread; see save_csv().
+  std::function<QString(const std::stop_token& stop)> csvWriter(const QString& path) const;
   /// Saves as PNG, SVG or CSV, by the path's suffix; empty, or what went wrong.
   QString save(const QString& path);
   static std::vector<FileKind> kinds();  ///< those three

@@ -160,7 +160,7 @@ std::vector<CsvColumn> run_columns() {
 }
 
 QString save_csv(const QString& path, const ChartRecord& record, const std::vector<CsvColumn>& columns,
-                 Range time) {
+                 Range time, const std::stop_token& stop) {
   QByteArray csv("time_s");
   for (const CsvColumn& column : columns) csv += ',' + column.name;
   csv += '\n';
@@ -169,6 +169,7 @@ QString save_csv(const QString& path, const ChartRecord& record, const std::vect
   std::size_t s = samples.lower_bound(time.low), d = draws.lower_bound(time.low);
   const std::size_t s_end = samples.upper_bound(time.high), d_end = draws.upper_bound(time.high);
   while (s < s_end || d < d_end) {
+    if (stop.stop_requested()) return tr("It was stopped.");
     const bool sample_first = d == d_end || (s < s_end && samples.time(s) <= draws.time(d));
     const bool draw_first = s == s_end || (d < d_end && draws.time(d) <= samples.time(s));
     const double t = sample_first ? samples.time(s) : draws.time(d);

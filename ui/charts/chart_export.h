@@ -6,6 +6,7 @@
 #include <QFont>
 #include <QSize>
 #include <QString>
+#include <stop_token>
 #include <vector>
 
 #include "charts/chart_record.h"
@@ -37,8 +38,9 @@ std::vector<CsvColumn> run_columns();
 
 /// RFC 4180, lines ended by LF as in record.csv, one header row: time_s and the columns. Every recorded point
 /// of `time` with 17 significant digits and a decimal point whatever the locale; an empty field is a quantity
-/// that this point does not have. A drawing that falls on no sample's time has a row of its own.
+/// that this point does not have. A drawing that falls on no sample's time has a row of its own. Stopped, it
+/// writes nothing.
 QString save_csv(const QString& path, const ChartRecord& record, const std::vector<CsvColumn>& columns,
-                 Range time);
+                 Range time, const std::stop_token& stop = {});
 
 }  // namespace clothlab

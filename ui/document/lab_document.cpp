@@ -43,6 +43,15 @@ bool have_same_panes(const Comparison& one, const Comparison& other) {
                     [](const cloth::Pane& a, const cloth::Pane& b) { return a.name == b.name; });
 }
 
+bool names_unread_mesh(const Scene& scene) {
+  const auto is_unread = [](const cloth::MeshChoice& mesh) {
+    return !mesh.file.empty() && !mesh.is_loaded();
+  };
+  return is_unread(scene.cloth.mesh) ||
+         std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                     [&](const cloth::Obstacle& obstacle) { return is_unread(obstacle.mesh); });
+}
+
 }  // namespace
 
 /// A comparison is a small value, so a command keeps it whole before and after: undo is exact by
@@ -169,6 +178,13 @@ QString LabDocument::resetParameter(const std::string& path) {
   return change(path, *value, tr("Reset %1"));
 }
 
+/// Why the meshes cannot be used, or nothing.
+QString LabDocument::readMeshes(cloth::Scene& edited) const {
+  const bool here = !mesh_reader_ || !names_unread_mesh(edited);
+  const auto problems = here ? load_meshes(edited, &scene_) : mesh_reader_(edited, scene_);
+  return problems.empty() ? QString() : QString::fromStdString(problems.front().rule);
+}
+
 QString LabDocument::change(const std::string& path, const ParameterValue& value, const QString& verb) {
   const auto parameter = find_parameter(scene_, path);
   if (!parameter) return tr("is not a parameter of this scene");
@@ -181,8 +197,7 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
   Scene edited = is_own ? scene_of(after, *scope_) : after.scene;
   const cloth::ClothSheet before = edited.cloth;
   parameter->set(edited, value);
-  if (const auto problems = load_meshes(edited, &scene_); !problems.empty())
-    return QString::fromStdString(problems.front().rule);
+  if (const QString rule = readMeshes(edited); !rule.isEmpty()) return rule;
   QString text = verb.arg(in_sentence(parameter->info.label));
   if (is_own) {
     set_own(after.panes[*scope_], path, value);
@@ -236,8 +251,7 @@ QString LabDocument::setClothMesh(const std::string& file) {
     after.cloth = grid_in_place_of(shared.cloth);
   } else {
     after.cloth.mesh.file = file;
-    if (const auto problems = load_meshes(after, &shared); !problems.empty())
-      return QString::fromStdString(problems.front().rule);
+    if (const QString rule = readMeshes(after); !rule.isEmpty()) return rule;
     after.cloth.pins.clear();
     after.cloth.origin = middle_of(shared.cloth) - after.cloth.mesh.loaded->bounds.center();
   }

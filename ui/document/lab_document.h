@@ -8,6 +8,7 @@
 
 #include <QObject>
 #include <QUndoStack>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -68,6 +69,12 @@ class LabDocument : public QObject {
   void endDrag() { drag_ = 0; }
   int presentDrag() const { return drag_; }  ///< number of the present drag; 0: none
 
+  /// Reads the meshes that an edit newly names, in place of cloth::load_meshes(): as that does, or beside the
+  /// window.
+  using MeshReader =
+      std::function<std::vector<cloth::Problem>(cloth::Scene& scene, const cloth::Scene& known)>;
+  void setMeshReader(MeshReader reader) { mesh_reader_ = std::move(reader); }
+
   // --- Edits of what all panes share ---
 
   /// Adds the block of a cloth::BlockOffer with this path ("air", "sphere"); false if the scene has no such
@@ -116,6 +123,7 @@ class LabDocument : public QObject {
  private:
   class EditCommand;
 
+  QString readMeshes(cloth::Scene& edited) const;
   QString change(const std::string& path, const cloth::ParameterValue& value, const QString& verb);
   cloth::Comparison comparisonBefore(const std::string& path) const;
   void pushShared(const QString& text, cloth::Scene after, SceneChange change, int drag = 0);
@@ -128,6 +136,7 @@ class LabDocument : public QObject {
   bool path_is_comparison_ = false;
   bool unsaved_ = false, loaded_ = false;
   QUndoStack undo_stack_;
+  MeshReader mesh_reader_;
   cloth::Comparison comparison_;
   std::optional<std::size_t> scope_;
   cloth::Scene scene_;  ///< of the scope

@@ -72,6 +72,8 @@ void LabWindow::makeLayout() {
 }
 
 void LabWindow::connectDocument() {
+  document_.setMeshReader(
+      [this](cloth::Scene& scene, const cloth::Scene& known) { return readMeshes(scene, known); });
   connect(&document_, &LabDocument::sceneChanged, this, &LabWindow::followEdit);
   connect(&document_, &LabDocument::blocksChanged, this, &LabWindow::noteKeyframes);
   connect(&document_, &LabDocument::scopeChanged, this, [this] {

@@ -151,12 +151,16 @@ class LabWindow : public QMainWindow {
   bool loadStudy(const QString& folder);
   void restore(const QString& file);
   void openRun(const cloth::Scene& scene, const QString& note);
+  template <class Opened>
+  Opened readBeside(const QString& name, Opened (*read)(const QString& name));
+  std::vector<cloth::Problem> readMeshes(cloth::Scene& scene, const cloth::Scene& known);
   bool isSound(const QString& what, const QString& problems);
   QString what() const { return document_.isComparison() ? tr("comparison") : tr("scene"); }
   bool save() { return document_.path().isEmpty() ? saveAs() : saveTo(document_.path()); }
   bool saveAs();
   void saveSessionAs();
   void saveCharts();
+  QString writePoints(std::function<QString(const std::stop_token&)> write);
   bool saveByDialog(const QString& what, const std::vector<FileKind>& kinds,
                     const std::function<QString(const QString& path)>& write);
   bool saySaved(const QString& what, const QString& path, const QString& problem);

@@ -15,7 +15,9 @@
 #include "main_window/lab_window.h"
 #include "params/mesh_button.h"
 #include "scene/builtin_scenes.h"
+#include "scene/scene_mesh.h"
 #include "studies/studies_panel.h"
+#include "widgets/beside.h"
 
 namespace clothlab {
 
@@ -33,14 +35,47 @@ bool LabWindow::open(const QString& name) {
   return false;
 }
 
+/// What `read` gives, beside the window; a scene may have large meshes. Before the first one is shown there
+/// is nothing to go on with.
+template <class Opened>
+Opened LabWindow::readBeside(const QString& name, Opened (*read)(const QString& name)) {
+  if (!document_.isLoaded()) return read(name);
+  const auto opened = std::make_shared<Opened>();
+  const BesideResult result =
+      beside_the_window(this, tr("Reading %1").arg(QFileInfo(name).fileName()),
+                        [opened, name, read](const std::stop_token&) { *opened = read(name); });
+  if (!result.stopped && result.failure.isEmpty()) return std::move(*opened);
+  Opened none;
+  none.problems = result.stopped ? tr("Reading it was stopped.") : result.failure;
+  return none;
+}
+
 bool LabWindow::openScene(const QString& name) {
-  const OpenedScene opened = open_scene(name);
+  const OpenedScene opened = readBeside(name, open_scene);
   return isSound(tr("scene"), opened.problems) && load(opened);
 }
 
 bool LabWindow::openComparison(const QString& name) {
-  const OpenedComparison opened = open_comparison(name);
+  const OpenedComparison opened = readBeside(name, open_comparison);
   return isSound(tr("comparison"), opened.problems) && load(opened);
+}
+
+/// As cloth::load_meshes() does, beside the window.
+std::vector<cloth::Problem> LabWindow::readMeshes(cloth::Scene& scene, const cloth::Scene& known) {
+  if (!document_.isLoaded()) return load_meshes(scene, &known);
+  struct Reading {
+    cloth::Scene scene, known;
+    std::vector<cloth::Problem> problems;
+  };
+  const auto reading = std::make_shared<Reading>(Reading{scene, known, {}});
+  const BesideResult result =
+      beside_the_window(this, tr("Reading a mesh"), [reading](const std::stop_token&) {
+        reading->problems = load_meshes(reading->scene, &reading->known);
+      });
+  if (result.stopped) return {{{}, {}, tr("was not read: it was stopped").toStdString()}};
+  if (!result.failure.isEmpty()) return {{{}, {}, "cannot be read: " + result.failure.toStdString()}};
+  scene = std::move(reading->scene);
+  return std::move(reading->problems);
 }
 
 /// Whether what was read has no problems; says them.
@@ -159,7 +194,18 @@ void LabWindow::saveSession(const QString& path) {
 
 void LabWindow::saveCharts() {
   ChartArea* shown = shows_comparison_ ? static_cast<ChartArea*>(pane_charts_) : charts_;
-  saveByDialog(tr("charts"), ChartArea::kinds(), [shown](const QString& path) { return shown->save(path); });
+  saveByDialog(tr("charts"), ChartArea::kinds(), [this, shown](const QString& path) {
+    return suffix_of(path) == ".csv" ? writePoints(shown->csvWriter(path)) : shown->save(path);
+  });
+}
+
+/// There may be a million of them. Empty, or what went wrong.
+QString LabWindow::writePoints(std::function<QString(const std::stop_token&)> write) {
+  const auto problem = std::make_shared<QString>();
+  const BesideResult result = beside_the_window(
+      this, tr("Writing the points of the charts"),
+      [problem, write = std::move(write)](const std::stop_token& stop) { *problem = write(stop); });
+  return result.stopped ? tr("It was stopped.") : result.failure.isEmpty() ? *problem : result.failure;
 }
 
 /// Asks for a path, calls `write` and shows where it wrote, or the error that it returned. `what`: "picture".

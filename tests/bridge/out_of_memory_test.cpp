@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "bridge/run_worker.h"
+#include "bridge/study_runner.h"
 #include "support/count_allocations.h"
 #include "worker_helpers.h"
 
@@ -117,6 +118,44 @@ TEST(OutOfMemory, ASceneThatBecomesPanesAndAPaneThatBecomesAScene) {
     worker.send(command::Edit{scene_of_this_size()});
     steps(worker, 1);
   });
+}
+
+/// A cell that has no memory may be a result of its own; the thread ends and the next study runs.
+TEST(OutOfMemory, AStudy) {
+  const ScratchFolder folder;
+  StudyOrder order;
+  order.scene = scene_of_this_size();
+  cloth::StabilityOptions options;
+  options.methods = {"verlet"};
+  options.x = cloth::default_time_axis(order.scene, options.methods);
+  options.y = cloth::default_stiffness_axis(order.scene);
+  options.x.count = options.y.count = 2;
+  options.criterion.periods = 1;
+  order.options = options;
+  long failures = 0, messages = 0;
+  bool has_failed = true;
+  for (long number = 1; has_failed; number *= 4) {
+    SCOPED_TRACE(number);
+    order.folder = folder / std::to_string(number).c_str();
+    StudyRunner runner;
+    {
+      const RefusedAllocation refused(number, field_bytes);
+      runner.start(order);
+      runner.wait();
+      has_failed = refused.has_happened();
+    }
+    EXPECT_FALSE(runner.is_running());
+    failures += has_failed ? 1 : 0;
+    messages += runner.status().problem.empty() ? 0 : 1;
+    if (number > 1) continue;
+    order.folder = folder / "next";
+    runner.start(order);
+    runner.wait();
+    EXPECT_EQ(runner.status().problem, "");
+    EXPECT_EQ(runner.status().fraction, 1);
+  }
+  EXPECT_GT(failures, 2);
+  EXPECT_GT(messages, 0);
 }
 
 }  // namespace

@@ -78,6 +78,25 @@ class BesideTest : public QObject {
     QVERIFY(!progress_of(bench.window));
   }
 
+  void a_window_that_waits_does_not_close() {
+    WindowBench bench("wind");
+    auto enough = std::make_shared<std::binary_semaphore>(0);
+    QTimer close;
+    connect(&close, &QTimer::timeout, this, [&] {
+      if (!progress_of(bench.window)) return;
+      close.stop();
+      bench.action("quit")->trigger();  // as another window's Quit does
+      QVERIFY(!bench.window.close());
+      QVERIFY(bench.window.isVisible());
+      enough->release();
+    });
+    close.start(10);
+    const BesideResult result = beside_the_window(&bench.window, "Waiting for a try to close",
+                                                  [enough](const std::stop_token&) { enough->acquire(); });
+    QVERIFY(!result.stopped);
+    QVERIFY(bench.window.close());
+  }
+
   void stop_returns_at_once_and_is_told_to_the_work() {
     WindowBench bench;
     const Stopper stopper(bench.window);

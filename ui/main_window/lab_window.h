@@ -168,7 +168,8 @@ class LabWindow : public QMainWindow {
   void updateTitle();
   bool mayLoseChanges();
   bool mayStopStudy();
-  bool mayClose() { return mayStopStudy() && mayLoseChanges(); }
+  bool mayClose() { return !isWaiting() && mayStopStudy() && mayLoseChanges(); }
+  bool isWaiting() const;
   void comeForward();
 
   LabDocument document_;

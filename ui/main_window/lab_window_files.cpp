@@ -60,14 +60,19 @@ bool LabWindow::openComparison(const QString& name) {
   return isSound(tr("comparison"), opened.problems) && load(opened);
 }
 
+/// For work beside the window, which its message says and offers to stop.
+bool LabWindow::isWaiting() const {
+  return findChild<QDialog*>("beside");
+}
+
 /// As cloth::load_meshes() does, beside the window.
 std::vector<cloth::Problem> LabWindow::readMeshes(cloth::Scene& scene, const cloth::Scene& known) {
   if (!document_.isLoaded()) return load_meshes(scene, &known);
-  struct Reading {
+  struct Meshes {
     cloth::Scene scene, known;
     std::vector<cloth::Problem> problems;
   };
-  const auto reading = std::make_shared<Reading>(Reading{scene, known, {}});
+  const auto reading = std::make_shared<Meshes>(Meshes{scene, known, {}});
   const BesideResult result =
       beside_the_window(this, tr("Reading a mesh"), [reading](const std::stop_token&) {
         reading->problems = load_meshes(reading->scene, &reading->known);

@@ -88,7 +88,7 @@ void LabWindow::followComparison(const WorkerStatus& status) {
 /// The run is at a time when something else was in force: the document becomes that, unless it has edits of
 /// its own on the way.
 void LabWindow::adoptRun(const WorkerStatus& status) {
-  if (!status.comparison || !link_.isUpToDate() || !status.refusal.empty()) return;
+  if (!status.comparison || !link_.isUpToDate() || !status.refusal.empty() || isWaiting()) return;
   const double interval = status.comparison->scene.record.interval;
   timeline_->track().setStep(std::max(interval, status.time_step));
   if (std::exchange(followed_, status.comparison) != status.comparison || status.jumps != shown_status_.jumps)

@@ -32,7 +32,8 @@ struct ShownQuantity {
 inline constexpr int all_digits = 0;
 
 /// The prefix nearest to none by which the number is at least 0.1 and under 1000 (0.909 ms, 500 N/m,
-/// 54.3 kN/m). Nothing is larger than the second and the kilogram; degrees have no prefix.
+/// 54.3 kN/m); `unit` may have one itself. Nothing is larger than the second and the kilogram; degrees have
+/// no prefix.
 ShownQuantity shown_quantity(double value, const std::string& unit, int digits);
 
 /// The shortest form with at most so many significant digits: 0.1, 1e-5, 123457.

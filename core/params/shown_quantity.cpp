@@ -31,6 +31,15 @@ Decimal decimal_of(double value, int digits) {
   return out;
 }
 
+/// The power of ten of the unit's prefix, and what stands after it: "kg" is 3 and "g".
+std::pair<int, std::string> without_prefix(const std::string& unit) {
+  if (!known_unit(unit))
+    for (const Prefix& prefix : prefixes)
+      if (unit.starts_with(prefix.name) && known_unit(unit.substr(prefix.name.size())))
+        return {prefix.tens, unit.substr(prefix.name.size())};
+  return {0, unit};
+}
+
 /// "0.0981", "9.81", "981", "98100"
 std::string fixed_text(Decimal decimal, bool is_negative) {
   std::string& digits = decimal.digits;
@@ -66,17 +75,15 @@ std::string shown_number(double value, int digits) {
 ShownQuantity shown_quantity(double value, const std::string& unit, int digits) {
   const ShownQuantity bare{shown_number(value, digits), shown_unit(unit)};
   const std::size_t end = std::min(unit.find_first_of(" /^"), unit.size());
-  const bool is_mass = unit.substr(0, end) == "kg";
-  const std::string symbol = is_mass ? "g" : unit.substr(0, end);
+  const auto [own, symbol] = without_prefix(unit.substr(0, end));
   const KnownUnit* known = known_unit(symbol);
   const bool is_power = end < unit.size() && unit[end] == '^';
   if (!known || !known->takes_prefix || is_power || value == 0 || !std::isfinite(value)) return bare;
-  const int own = is_mass ? 3 : 0;
-  const bool grows = !is_mass && symbol != "s";
+  const int largest = symbol == "s" ? 0 : symbol == "g" ? 3 : 12;
   Decimal decimal = decimal_of(value, digits);
   for (const int tens : {0, -3, 3, -6, 6, -9, 9, -12, 12}) {
     const int exponent = decimal.exponent - tens;
-    if (exponent < -1 || exponent > 2 || (tens > 0 && !grows)) continue;
+    if (exponent < -1 || exponent > 2 || tens + own > largest) continue;
     const auto prefix = std::find_if(prefixes.begin(), prefixes.end(), [&](const Prefix& one) {
       return one.is_shown && one.tens == tens + own;
     });

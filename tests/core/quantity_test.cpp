@@ -111,6 +111,9 @@ TEST(ShownQuantities, HaveThePrefixNearestToNone) {
   EXPECT_EQ(shown(0.2, "kg"), "0.2 kg");
   EXPECT_EQ(shown(2000, "kg"), "2000 kg");
   EXPECT_EQ(shown(3e-7, "m"), "0.3 µm");
+  EXPECT_EQ(shown(7.25, "ms"), "7.25 ms");
+  EXPECT_EQ(shown(0.0123, "mm"), "12.3 µm");
+  EXPECT_EQ(shown(5000, "ms"), "5 s");
   EXPECT_EQ(shown(-9.81, "m/s^2"), "-9.81 m/s²");
   EXPECT_EQ(shown(0.001, "deg"), "0.001 deg");
   EXPECT_EQ(shown(1e-5, ""), "1e-5");

@@ -10,6 +10,7 @@
 #include "chart_bench.h"
 #include "listed_test.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab::test::chart_test {
 
@@ -252,9 +253,9 @@ void ChartTest::the_read_out_names_the_nearest_sample() {
   const ChartSample expected = run_of(40)[200];
   const auto& energy = bench.chart("energy").scene().overlay().read_out()->rows;
   QCOMPARE(energy.size(), std::size_t{4});
-  QCOMPARE(energy[0].value, reading(expected.kinetic_J) + " J");
+  QCOMPARE(energy[0].value, quantity_text(expected.kinetic_J, "J", 4));
   QCOMPARE(bench.chart("strain").scene().overlay().read_out()->rows[0].value,
-           reading(100 * expected.max_strain) + " %");
+           quantity_text(100 * expected.max_strain, "%", 4));
   QCOMPARE(bench.chart("frame_time").scene().overlay().read_out()->rows[1].value, QString("7.25 ms"));
   QEvent leave(QEvent::Leave);
   QApplication::sendEvent(&bench.chart("strain").view(), &leave);

@@ -119,15 +119,15 @@ class FormTest : public FormFixture {
     QVERIFY(!part<QLabel>("springs.structural", "rule")->isVisible());
   }
 
-  void a_decimal_comma_is_taken_where_the_locale_has_one_and_a_point_everywhere() {
+  void a_decimal_comma_is_shown_and_taken_where_the_locale_has_one_and_a_point_is_taken_everywhere() {
     const QLocale before;
     QLocale::setDefault(QLocale(QLocale::German, QLocale::Germany));
     doc().load(plain_scene());
     type(field("deformation.rate"), "0.25", Qt::Key_Tab);
     QCOMPARE(doc().scene().deformation->rate, 0.25);
-    QCOMPARE(field("deformation.rate")->text(), QString("0.25"));
+    QCOMPARE(field("deformation.rate")->text(), QString("0,25"));
     doc().setParameter("springs.structural", 54321.5);
-    QCOMPARE(field("springs.structural")->text(), QString("54.3215"));  // kN/m
+    QCOMPARE(field("springs.structural")->text(), QString("54,3215"));  // kN/m
     type(field("deformation.rate"), "0,5");
     QCOMPARE(doc().scene().deformation->rate, 0.5);
     QLocale::setDefault(before);

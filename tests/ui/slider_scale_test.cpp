@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "listed_test.h"
-#include "params/wording.h"
 #include "scene/scene_parameters.h"
+#include "widgets/numbers.h"
 
 namespace clothlab::test::slider_scale_test {
 

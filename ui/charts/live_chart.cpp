@@ -5,12 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "widgets/numbers.h"
+
 namespace clothlab {
 
 namespace {
 
 constexpr double y_tick_distance = 28, time_tick_distance = 45;
 constexpr double smallest_log_span = 1e-3;
+constexpr int read_digits = 4;
 constexpr int legend_margin = spacing / 2;
 constexpr double noise = 1e-12;  // in any unit shown: rounding of what is zero, which gets no axis of its own
 
@@ -223,14 +226,15 @@ void LiveChart::read(const ChartRecord& record, std::optional<double> time_s) {
     const double value = series.value(curve.column, series.nearest(*time_s)) * curve.scale;
     ReadOut::Row row{&curve, tr("none"), std::nullopt};
     if (std::isfinite(value)) {
-      row.value = reading(value) + " " + spec_.unit;
+      row.value = quantity_text(value, spec_.unit.toStdString(), read_digits);
       if (!logarithmic_ || value > 0) row.y = logarithmic_ ? std::log10(value) : value;
     }
     out.rows.push_back(row);
   }
   if (limit_on(record)) {
     const double percent = *record.deformation_rate * limit_spec().scale;
-    out.rows.push_back({&limit_spec(), reading(percent) + " " + spec_.unit, std::nullopt});
+    out.rows.push_back(
+        {&limit_spec(), quantity_text(percent, spec_.unit.toStdString(), read_digits), std::nullopt});
   }
   scene_->overlay().set_read_out(std::move(out), time_labels_);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/round_numbers.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 
@@ -12,15 +13,8 @@ namespace {
 /// Sixteen decades below the largest value there is only rounding noise.
 constexpr double max_automatic_decades = 16;
 
-QString without_exponent_padding(QString number) {
-  const qsizetype e = number.indexOf(u'e');
-  if (e < 0) return number;
-  const int exponent = number.mid(e + 1).toInt();
-  return number.left(e + 1) + QString::number(exponent);
-}
-
 QString power_of_ten(int exponent) {
-  if (exponent >= -3 && exponent <= 3) return QString::number(std::pow(10.0, exponent), 'g', 4);
+  if (exponent >= -3 && exponent <= 3) return number_text(std::pow(10.0, exponent), 4);
   static const QString superscripts = QStringLiteral("⁰¹²³⁴⁵⁶⁷⁸⁹");
   QString label = QStringLiteral("10");
   for (const QChar c : QString::number(exponent))
@@ -32,7 +26,7 @@ void add_multiples(std::vector<Tick>& ticks, Range logarithms, int multiple) {
   for (int decade = static_cast<int>(std::floor(logarithms.low)); decade <= logarithms.high; ++decade) {
     const double value = multiple * std::pow(10.0, decade);
     const double position = std::log10(value);
-    if (logarithms.contains(position)) ticks.push_back({position, reading(value, 2)});
+    if (logarithms.contains(position)) ticks.push_back({position, number_text(value, 2)});
   }
 }
 
@@ -97,13 +91,9 @@ QString tick_label(double value, double step) {
   if (std::abs(value) < 1e-9 * step) return QStringLiteral("0");
   const double size = std::abs(value);
   const int step_exponent = static_cast<int>(std::floor(std::log10(step) + 1e-9));
-  if (size < 99999.5 && step_exponent >= -4) return QString::number(value, 'f', std::max(0, -step_exponent));
+  if (size < 99999.5 && step_exponent >= -4) return fixed_text(value, std::max(0, -step_exponent));
   const int digits = static_cast<int>(std::floor(std::log10(size) + 1e-9)) - step_exponent + 1;
-  return without_exponent_padding(QString::number(value, 'g', std::clamp(digits, 1, 15)));
-}
-
-QString reading(double value, int digits) {
-  return without_exponent_padding(QString::number(value, 'g', digits));
+  return number_text(value, std::clamp(digits, 1, 15));
 }
 
 Range StickyRange::linear(Range data, int intervals) {

@@ -30,11 +30,8 @@ Range nice_range(Range data, int intervals);
 std::vector<Tick> linear_ticks(Range range, int intervals);
 std::vector<Tick> log_ticks(Range logarithms, int intervals);
 
-/// A number as an axis writes it whose ticks are `step` apart ("0", "0.25", "1.2e-6"), always with a decimal
-/// point.
+/// A number as an axis writes it whose ticks are `step` apart ("0", "0.25", "1.2e-6").
 QString tick_label(double value, double step);
-/// A number with at most `digits` significant digits for reading.
-QString reading(double value, int digits = 4);
 
 /// An automatic range with hysteresis: it grows at once when the data leave it and shrinks only when they
 /// fill less than some 40 % of it, so that labels do not flicker.

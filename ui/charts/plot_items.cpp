@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "widgets/numbers.h"
+
 namespace clothlab {
 
 namespace {
@@ -318,7 +320,7 @@ void OverlayItem::paint_values(QPainter& painter, double x) const {
 /// The sample's own time, on the time axis.
 void OverlayItem::paint_time(QPainter& painter, double x) const {
   const QFontMetricsF metrics(font_);
-  const QString text = reading(read_out_->time_s, 9) + QStringLiteral(" s");
+  const QString text = quantity_text(read_out_->time_s, "s", 9);
   QRectF box(0, 0, metrics.horizontalAdvance(text) + spacing * 1.5, metrics.height() + 3);
   box.moveTop(map_.plot.bottom() + 3);
   box.moveLeft(

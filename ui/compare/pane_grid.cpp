@@ -7,6 +7,7 @@
 
 #include "theme/theme.h"
 #include "viewport/strain_scale.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -250,8 +251,8 @@ void ColourBar::paintEvent(QPaintEvent*) {
   const QRectF bar(spacing / 2.0, head.bottom() + spacing + line / 2.0, bar_width,
                    height() - head.bottom() - 2 * spacing - line);
   paint_colour_scale(
-      painter, bar, maximum_, label_room,
-      [this](double value) { return QString::number(factor_ * value, 'g', 3); }, theme());
+      painter, bar, maximum_, label_room, [this](double value) { return number_text(factor_ * value, 3); },
+      theme());
   if (limit_ < 0 || limit_ > maximum_) return;
   painter.setPen(QPen(theme().limit, 2));
   const double y = bar.bottom() - bar.height() * limit_ / maximum_;

@@ -18,6 +18,7 @@
 #include "theme/theme.h"
 #include "widgets/building.h"
 #include "widgets/notice_bar.h"
+#include "widgets/numbers.h"
 #include "widgets/reading.h"
 #include "widgets/stability_gauge.h"
 
@@ -34,17 +35,18 @@ void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
 }
 
-QString millimetres(double metres) {
-  return QString::number(1e3 * metres, 'g', 3);
+QString metres_text(double metres) {
+  constexpr int digits = 3;
+  return quantity_text(metres, "m", digits);
 }
 
 QString difference_from_reference(const cloth::PaneResult& result, bool has_reference) {
-  if (result.divergence) return PaneView::tr("Stopped at %1 s").arg(result.simulated, 0, 'g', 4);
+  if (result.divergence) return PaneView::tr("Stopped at %1").arg(quantity_text(result.simulated, "s", 4));
   if (result.is_reference) return PaneView::tr("Reference");
   if (!has_reference) return PaneView::tr("No reference");
   if (!result.rms) return PaneView::tr("No difference measured");
   const QString text =
-      PaneView::tr("RMS %1 mm, largest %2 mm").arg(millimetres(*result.rms), millimetres(*result.largest));
+      PaneView::tr("RMS %1, largest %2").arg(metres_text(*result.rms), metres_text(*result.largest));
   return result.below_floor ? PaneView::tr("%1 (as close as the reference can tell)").arg(text) : text;
 }
 
@@ -53,8 +55,7 @@ QString difference_text(const cloth::PaneResult& result, bool has_reference) {
   const QString text = difference_from_reference(result, has_reference);
   if (!result.energy.is_doubtful_so_far()) return text;
   return PaneView::tr("%1; energy error %2 % of the exchanged")
-      .arg(text)
-      .arg(100 * result.energy.share(), 0, 'g', 2);
+      .arg(text, number_text(100 * result.energy.share(), 2));
 }
 
 }  // namespace
@@ -195,11 +196,11 @@ void PaneView::showPane(const cloth::Comparison& comparison, std::size_t pane, b
 }
 
 void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
-  cost_->setText(result.simulated > 0 ? tr("%1 s/s").arg(result.cost(), 0, 'g', 3) : QString());
+  cost_->setText(result.simulated > 0 ? tr("%1 s/s").arg(number_text(result.cost(), 3)) : QString());
   set_text(*difference_, difference_text(result, has_reference));
   QStringList notices;
-  if (!result.notice.empty()) notices << QString::fromStdString(result.notice);
-  if (result.energy.is_doubtful_so_far()) notices << QString::fromStdString(describe(result.energy));
+  if (!result.notice.empty()) notices << sentence_text(result.notice);
+  if (result.energy.is_doubtful_so_far()) notices << sentence_text(describe(result.energy));
   difference_->setToolTip(notices.isEmpty() ? difference_->text() : notices.join('\n'));
   if (result.divergence.has_value() == stop_.has_value()) return;
   stop_ = result.divergence;
@@ -208,15 +209,15 @@ void PaneView::showResult(const cloth::PaneResult& result, bool has_reference) {
 
 void PaneView::sayStop() {
   if (!stop_) return notice_->withdraw("divergence");
-  const QString what = stop_->pinched         ? tr("Pinched at %1 s: %2.")
-                       : stop_->solver_failed ? tr("Stopped at %1 s: %2.")
-                                              : tr("Diverged at %1 s: %2.");
+  const QString what = stop_->pinched         ? tr("Pinched at %1: %2.")
+                       : stop_->solver_failed ? tr("Stopped at %1: %2.")
+                                              : tr("Diverged at %1: %2.");
   std::vector<NoticeAction> help;
   for (const Remedy& remedy : remedies_for(scene_, *stop_))
     help.push_back({remedy.text, [this, remedy] { Q_EMIT remedyChosen(remedy); }});
   notice_->show("divergence", NoticeBar::Level::error,
-                what.arg(stop_->time, 0, 'g', 4).arg(QString::fromStdString(stop_->cause)), std::move(help),
-                tr("The pane %1.").arg(QString::fromStdString(cloth::describe(*stop_))));
+                what.arg(quantity_text(stop_->time, "s", 4), sentence_text(stop_->cause)), std::move(help),
+                tr("The pane %1.").arg(sentence_text(cloth::describe(*stop_))));
 }
 
 void PaneView::forgetStop() {

@@ -8,6 +8,7 @@
 #include "compare/pane_style.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -52,7 +53,7 @@ void RankingPanel::showComparison(const cloth::Comparison& comparison) {
 }
 
 void RankingPanel::showResults(const WorkerStatus& status) {
-  reference_->setToolTip(tr("Differences are from: %1").arg(QString::fromStdString(status.reference)));
+  reference_->setToolTip(tr("Differences are from: %1").arg(sentence_text(status.reference)));
   const bool news = status.time != shown_time_ || static_cast<int>(status.panes.size()) != table_->rowCount();
   if (status.playing && !(news && since_results_.elapsed() > refill_interval)) return;
   table_->showResults(status.panes);

@@ -7,12 +7,14 @@
 #include <limits>
 
 #include "compare/pane_style.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
 
 constexpr double last = std::numeric_limits<double>::infinity();  // what is missing sorts behind all values
 
+constexpr int copied_digits = 9;
 constexpr int key_role = Qt::UserRole, style_role = Qt::UserRole + 1;
 
 enum Column {
@@ -35,12 +37,17 @@ struct Cell {
 };
 
 Cell number(double value, int digits = 3) {
-  return {QString::number(value, 'g', digits), value};
+  return {number_text(value, digits), value};
 }
 
-Cell millimetres(const std::optional<double>& metres, bool is_reference) {
+/// The key is in the unit of the copied table, thousandths of the shown one.
+Cell quantity(double value, const std::string& unit, int digits = 3) {
+  return {quantity_text(value, unit, digits), 1e3 * value};
+}
+
+Cell metres(const std::optional<double>& value, bool is_reference) {
   if (is_reference) return {RankingTable::tr("reference"), -1};
-  return metres ? number(1e3 * *metres) : Cell{QStringLiteral("–"), last};
+  return value ? quantity(*value, "m") : Cell{QStringLiteral("–"), last};
 }
 
 Cell rank_cell(int rank) {
@@ -54,13 +61,13 @@ Cell cell_of(const cloth::PaneResult& r, int column, std::size_t place) {
     case method:
       return {QString::fromStdString(r.title), static_cast<double>(place)};
     case step:
-      return number(1e3 * r.time_step, 4);
+      return quantity(r.time_step, "s", 4);
     case rms:
-      return millimetres(r.rms, r.is_reference);
+      return metres(r.rms, r.is_reference);
     case largest:
-      return millimetres(r.largest, r.is_reference);
+      return metres(r.largest, r.is_reference);
     case rms_over_time:
-      return millimetres(r.rms_over_time, r.is_reference);
+      return metres(r.rms_over_time, r.is_reference);
     case by_error: {
       if (r.divergence) return {RankingTable::tr("stopped"), last};
       if (r.is_reference) return {QStringLiteral("–"), 0};
@@ -71,7 +78,7 @@ Cell cell_of(const cloth::PaneResult& r, int column, std::size_t place) {
     case by_cost:
       return rank_cell(r.cost_rank);
     default:
-      return {QString::number(r.evaluations_each_second(), 'f', 0), r.evaluations_each_second()};
+      return {count_text(r.evaluations_each_second()), r.evaluations_each_second()};
   }
 }
 
@@ -89,8 +96,8 @@ RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
   setObjectName("rankingTable");
   setAccessibleName(tr("Panes ranked by error and by cost"));
   setColumnCount(columns);
-  setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("By error"), tr("RMS [mm]"), tr("Largest [mm]"),
-                             tr("By cost"), tr("Cost [s/s]"), tr("Step [ms]"), tr("Over time [mm]"),
+  setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("By error"), tr("RMS"), tr("Largest"),
+                             tr("By cost"), tr("Cost [s/s]"), tr("Step"), tr("Over time"),
                              tr("Evaluations/s")});
   const QString tips[columns] = {
       {},
@@ -149,11 +156,19 @@ void RankingTable::showResults(const std::vector<cloth::PaneResult>& results) {
 
 QString RankingTable::asText() const {
   QStringList lines, head;
-  for (int c = 0; c < columns; ++c) head << horizontalHeaderItem(c)->text();
+  for (int c = 0; c < columns; ++c) {
+    const bool is_length = c == rms || c == largest || c == rms_over_time;
+    head << horizontalHeaderItem(c)->text() + (is_length ? " [mm]" : c == step ? " [ms]" : "");
+  }
   lines << head.join('\t');
   for (int row = 0; row < rowCount(); ++row) {
     QStringList cells;
-    for (int c = 0; c < columns; ++c) cells << item(row, c)->text();
+    for (int c = 0; c < columns; ++c) {
+      const QString text = item(row, c)->text();
+      const bool is_number = c > method && text.at(0).isDigit();
+      cells << (is_number ? QString::number(item(row, c)->data(key_role).toDouble(), 'g', copied_digits)
+                          : text);
+    }
     lines << cells.join('\t');
   }
   return lines.join('\n') + '\n';

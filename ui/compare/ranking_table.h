@@ -1,5 +1,5 @@
 // The panes ranked by error and by cost. Click on a head to sort by another column; Ctrl+C copies the table
-// as text with tabs.
+// as text with tabs: numbers with decimal points, units in the heads.
 #pragma once
 
 #include <QTableWidget>

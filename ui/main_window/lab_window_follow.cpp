@@ -9,13 +9,14 @@
 #include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
 
 /// Notices come a line each, worded to follow a program's name on the command line.
 QString as_sentences(const std::string& notices) {
-  QStringList lines = QString::fromStdString(notices).split('\n', Qt::SkipEmptyParts);
+  QStringList lines = sentence_text(notices).split('\n', Qt::SkipEmptyParts);
   const QString mark = lines.size() > 1 ? QStringLiteral("\u2022 ") : QString();
   for (QString& line : lines)
     line = mark + line.at(0).toUpper() + line.mid(1) + (line.endsWith('.') ? "" : ".");
@@ -28,8 +29,7 @@ QString rate_breaches(const std::vector<cloth::PaneResult>& panes) {
     if (auto breach = pane.rate_breach) {
       breach->steps = 1;  // a notice that does not change with every step
       breaches << LabWindow::tr("Pane %1: %2")
-                      .arg(QString::fromStdString(pane.name),
-                           QString::fromStdString(cloth::describe(*breach)));
+                      .arg(QString::fromStdString(pane.name), sentence_text(cloth::describe(*breach)));
     }
   return breaches.join('\n');
 }
@@ -54,7 +54,7 @@ void LabWindow::followStatus(const WorkerStatus& status) {
   step_->setEnabled(status.refusal.empty());
   play_again_->setEnabled(status.refusal.empty() && !status.playing &&
                           status.step < status.history.last_step);
-  notice_->showState("refusal", NoticeBar::Level::error, QString::fromStdString(status.refusal));
+  notice_->showState("refusal", NoticeBar::Level::error, sentence_text(status.refusal));
   if (status.is_comparison())
     followComparison(status);
   else
@@ -74,11 +74,10 @@ void LabWindow::followScene(const WorkerStatus& status) {
 void LabWindow::followComparison(const WorkerStatus& status) {
   grid_->showResults(status);
   ranking_->showResults(status);
-  notice_->showState(
-      "reference", NoticeBar::Level::warning,
-      status.reference_failure.empty()
-          ? QString()
-          : tr("The reference stopped: it %1").arg(QString::fromStdString(status.reference_failure)));
+  notice_->showState("reference", NoticeBar::Level::warning,
+                     status.reference_failure.empty()
+                         ? QString()
+                         : tr("The reference stopped: it %1").arg(sentence_text(status.reference_failure)));
   notice_->showState("rate", NoticeBar::Level::warning, rate_breaches(status.panes));
   if (shown_status_.is_comparison() && status.new_starts != shown_status_.new_starts)
     notice_->show("new-start", NoticeBar::Level::info,
@@ -118,9 +117,9 @@ void LabWindow::followSession(const WorkerStatus& status) {
                     tr("Session: %1").arg(QString::fromStdString(status.session_error)));
     if (link_.isUpToDate()) saving_session_.clear();
   } else if (!saving_session_.isEmpty() && link_.isUpToDate()) {
-    notice_->show(
-        "session", NoticeBar::Level::info,
-        tr("Saved the session of %1 s in %2").arg(status.history.last_time, 0, 'f', 3).arg(saving_session_));
+    notice_->show("session", NoticeBar::Level::info,
+                  tr("Saved the session of %1 in %2")
+                      .arg(quantity_text(status.history.last_time, "s", 4), saving_session_));
     recent_sessions.remember(std::exchange(saving_session_, QString()));
   }
   if (!status.session_agrees || status.session_agrees == shown_status_.session_agrees) return;
@@ -148,7 +147,7 @@ void LabWindow::followDivergence(const WorkerStatus& status) {
 void LabWindow::sayDivergence(bool is_new) {
   notice_->withdraw("stability");                        // what it warned of has happened
   if (!is_new && !notice_->shows("divergence")) return;  // it was closed
-  const QString what = QString::fromStdString(cloth::describe(*divergence_));
+  const QString what = sentence_text(cloth::describe(*divergence_));
   notice_->show("divergence", NoticeBar::Level::error,
                 divergence_->pinched
                     ? tr("The run %1. Move the obstacle elsewhere or free the cloth, and play on.").arg(what)

@@ -9,28 +9,19 @@
 
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
 
 constexpr double as_fast_as_possible = std::numeric_limits<double>::infinity();
 
-QString grouped(double value) {
-  const QString digits = QString::number(value, 'f', 0);
-  QString text;
-  for (int i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += QChar(0x202f);  // narrow no-break space
-    text += digits[i];
-  }
-  return text;
-}
-
 }  // namespace
 
 TransportBar::TransportBar(const QList<QAction*>& actions, QWidget* parent)
     : QFrame(parent),
       speed_(new QComboBox(this)),
-      time_(new Reading("000.000 of 00.00 s", Reading::Look::bold, this)),
+      time_(new Reading("000.000 s of 00.00 s", Reading::Look::bold, this)),
       rate_(new Reading("000 000 steps/s, 0.00x real time", Reading::Look::muted, this)),
       recording_(new Reading("000 000 rows", Reading::Look::plain, this)),
       gauge_(new StabilityGauge(this)) {
@@ -71,7 +62,7 @@ void TransportBar::fillSpeeds() {
   speed_->setToolTip(tr("Speed: simulated seconds per second"));
   speed_->setAccessibleName(tr("Speed"));
   for (const double factor : {0.01, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0})
-    speed_->addItem(tr("%1x").arg(factor), factor);
+    speed_->addItem(tr("%1x").arg(number_text(factor, 3)), factor);
   speed_->addItem(tr("Fastest"), as_fast_as_possible);
   speed_->setCurrentIndex(4);
   connect(speed_, &QComboBox::currentIndexChanged, this,
@@ -99,28 +90,29 @@ void TransportBar::suitDuration(double seconds) {
 }
 
 void TransportBar::showStatus(const WorkerStatus& status) {
+  const QString time =
+      time_text(status.time, status.comparison ? status.comparison->scene.record.interval : 1);
   if (status.is_comparison() && status.time <= status.duration)  // else played on beyond its end
-    time_->setText(tr("%1 of %2 s").arg(status.time, 0, 'f', 3).arg(status.duration, 0, 'g', 4));
+    time_->setText(tr("%1 of %2").arg(time, quantity_text(status.duration, "s", 4)));
   else
-    time_->setText(tr("%1 s").arg(status.time, 0, 'f', 3));
+    time_->setText(time);
   rate_->setText(rateText(status));
   recording_->setVisible(status.recording);
   if (status.recording)
-    recording_->setText(tr("%1 rows").arg(grouped(static_cast<double>(status.recorded_rows))));
+    recording_->setText(tr("%1 rows").arg(count_text(static_cast<double>(status.recorded_rows))));
 }
 
 QString TransportBar::rateText(const WorkerStatus& status) const {
   if (status.divergence) return status.divergence->pinched ? tr("Stopped: pinched") : tr("Stopped: diverged");
   if (status.playing && status.is_comparison())
-    return tr("%1x real time").arg(status.real_time_factor, 0, 'f', 2);
+    return tr("%1x real time").arg(fixed_text(status.real_time_factor, 2));
   if (status.playing && status.steps_per_second > 0)
     return tr("%1 steps/s, %2x real time")
-        .arg(grouped(status.steps_per_second))
-        .arg(status.real_time_factor, 0, 'f', 2);
+        .arg(count_text(status.steps_per_second), fixed_text(status.real_time_factor, 2));
   if (status.playing) return tr("Running");
   if (status.step == 0) return tr("Ready");
   if (!status.is_comparison())
-    return tr("Paused after %1 steps").arg(grouped(static_cast<double>(status.step)));
+    return tr("Paused after %1 steps").arg(count_text(static_cast<double>(status.step)));
   return status.time >= status.duration ? tr("Finished") : tr("Paused");
 }
 

@@ -8,6 +8,7 @@
 #include "params/panel_parts.h"
 #include "params/wording.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -75,9 +76,9 @@ void ExactField::updateMargins() {
 void ExactField::showValue(double value) {
   constexpr int short_digits = 6;
   const cloth::ShownQuantity shown = cloth::shown_quantity(value, unit_, short_digits);
-  short_ = QString::fromStdString(shown.number);
+  short_ = localised(QString::fromStdString(shown.number));
   short_unit_ = QString::fromStdString(shown.unit);
-  exact_ = QString::fromStdString(cloth::shown_number(value, cloth::all_digits));
+  exact_ = number_text(value, cloth::all_digits);
   setPlaceholderText({});
   abandonEdit();
 }

@@ -1,11 +1,11 @@
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QLocale>
 #include <QVBoxLayout>
 
 #include "params/editors.h"
 #include "params/mesh_button.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -20,11 +20,6 @@ const cloth::LoadedMesh* mesh_at(const cloth::Scene& scene, const std::string& p
   return nullptr;
 }
 
-QString grouped(std::size_t count) {
-  QString text = QLocale(QLocale::English).toString(static_cast<qulonglong>(count));
-  return text.replace(',', QChar(0x202f));  // narrow no-break space
-}
-
 }  // namespace
 
 bool names_mesh(const cloth::Parameter& parameter) {
@@ -34,13 +29,15 @@ bool names_mesh(const cloth::Parameter& parameter) {
 
 QString mesh_report(const cloth::LoadedMesh& mesh, bool is_cloth) {
   QString text = QObject::tr("%1 vertices, %2 triangles, ")
-                     .arg(grouped(mesh.surface.vertices.size()), grouped(mesh.surface.triangles.size()));
+                     .arg(count_text(static_cast<double>(mesh.surface.vertices.size())),
+                          count_text(static_cast<double>(mesh.surface.triangles.size())));
   if (mesh.open_edges == 0)
     text += QObject::tr("closed.");
   else if (is_cloth)
-    text += QObject::tr("%1 edges at its border.").arg(grouped(mesh.open_edges));
+    text += QObject::tr("%1 edges at its border.").arg(count_text(static_cast<double>(mesh.open_edges)));
   else
-    text += QObject::tr("%1 open edges: it has a border, and no inside.").arg(grouped(mesh.open_edges));
+    text += QObject::tr("%1 open edges: it has a border, and no inside.")
+                .arg(count_text(static_cast<double>(mesh.open_edges)));
   for (const std::string& notice : mesh.notices)
     text += QStringLiteral("\n%1.").arg(QString::fromStdString(notice));
   return text;

@@ -7,6 +7,7 @@
 #include "params/exact_field.h"
 #include "params/value_slider.h"
 #include "params/wording.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {

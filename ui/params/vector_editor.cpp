@@ -8,6 +8,7 @@
 #include "params/wording.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {

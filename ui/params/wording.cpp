@@ -1,11 +1,11 @@
 #include "params/wording.h"
 
-#include <QLocale>
 #include <QStringList>
 #include <map>
 #include <string>
 
 #include "integrators/registry.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 
@@ -20,7 +20,7 @@ QString typographic(const QString& text) {
   shown.replace(">=", QStringLiteral("≥"))
       .replace("<=", QStringLiteral("≤"))
       .replace("->", QStringLiteral("→"));
-  return shown;
+  return localised(shown);
 }
 
 QString choice_text(const std::string& word) {
@@ -51,8 +51,8 @@ struct InWords {
   QString operator()(std::int64_t value) const { return with_unit(QString::number(value)); }
   QString operator()(const cloth::Vec3& v) const {
     QStringList parts;
-    for (const double part : v) parts << QString::fromStdString(cloth::shown_number(part, cloth::all_digits));
-    return with_unit('(' + parts.join(", ") + ')');
+    for (const double part : v) parts << number_text(part, cloth::all_digits);
+    return with_unit('(' + parts.join(has_decimal_comma() ? "; " : ", ") + ')');
   }
   QString operator()(const std::string& word) const {
     return info.kind == Kind::choice ? choice_text(word) : QString::fromStdString(word);
@@ -98,14 +98,6 @@ QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth:
   if (info.cost == cloth::EditCost::restart) text += row("An edit", "restarts the simulation");
   text += row("Path", QString::fromStdString(parameter.path));
   return text + "</table>";
-}
-
-QString quantity_text(double value, const std::string& unit, int digits) {
-  return QString::fromStdString(cloth::shown_quantity(value, unit, digits).text());
-}
-
-cloth::Quantity typed_quantity(const QString& text, const std::string& unit) {
-  return cloth::quantity_from(text.trimmed().toStdString(), unit, QLocale().decimalPoint() == ",");
 }
 
 }  // namespace clothlab

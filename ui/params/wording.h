@@ -1,5 +1,4 @@
-// Converts the declarations' ASCII to displayed text. Numbers are shown with a decimal point in every locale,
-// as the files have them; what is typed may have the locale's decimal comma.
+// Converts the declarations' ASCII to displayed text.
 #pragma once
 
 #include <QString>
@@ -7,7 +6,6 @@
 #include <string>
 
 #include "params/parameter.h"
-#include "params/quantity.h"
 #include "scene/scene_parameters.h"
 
 namespace clothlab {
@@ -15,7 +13,7 @@ namespace clothlab {
 /// "m/s^2" -> "m/s²", "N s/m" -> "N·s/m"
 QString unit_text(const std::string& unit);
 
-/// ">=" -> "≥", "<=" -> "≤", and so on.
+/// ">=" -> "≥", "<=" -> "≤", and so on; numbers as the locale has them.
 QString typographic(const QString& text);
 
 /// "semi-implicit-euler" -> "Semi-implicit Euler"
@@ -29,11 +27,5 @@ QString value_in_words(const cloth::ParameterInfo& info, const cloth::ParameterV
 
 /// Meaning, formula, range, default, unit, cost and path of a parameter, as rich text.
 QString tooltip_of(const cloth::Parameter& parameter, const std::optional<cloth::ParameterValue>& fallback);
-
-/// A number and its unit with a prefix: "0.909 ms".
-QString quantity_text(double value, const std::string& unit, int digits);
-
-/// What a person typed into a field of this unit.
-cloth::Quantity typed_quantity(const QString& text, const std::string& unit);
 
 }  // namespace clothlab

@@ -13,20 +13,17 @@
 
 #include "params/panel_parts.h"
 #include "params/wording.h"
-#include "report/svg.h"
 #include "scene/scene_parameters.h"
 #include "study/stability_map.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
 
 constexpr int usual_count = 12;
-
-QString number_text(double value) {
-  return QString::fromStdString(cloth::short_number(value, 3));
-}
+constexpr int digits = 3;
 
 double number_of(const QLineEdit& field, const std::string& unit) {
   const cloth::Quantity typed = typed_quantity(field.text(), unit);
@@ -134,9 +131,9 @@ void AxisChoice::offer(std::vector<Offer> offers, std::size_t shown) {
 void AxisChoice::suggest(const cloth::StudyAxis& axis) {
   const QScopedValueRollback suggesting(suggesting_, true);
   if (!own_.range) {
-    low_->setText(number_text(axis.low));
+    low_->setText(number_text(axis.low, digits));
     low_->setCursorPosition(0);
-    high_->setText(number_text(axis.high));
+    high_->setText(number_text(axis.high, digits));
     high_->setCursorPosition(0);
   }
   if (!own_.count) count_->setValue(axis.count);

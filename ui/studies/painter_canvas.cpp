@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -101,7 +102,7 @@ void PainterCanvas::draw(const QPainterPath& shape, const cloth::SvgStyle& own, 
   painter_.drawPath(shape);
   painter_.restore();
   const bool answers = !tip.text.empty() && (groups_.empty() || !groups_.back().untouchable);
-  if (answers) touches_.push_back({shape.boundingRect(), QString::fromStdString(tip.text), tip.tag});
+  if (answers) touches_.push_back({shape.boundingRect(), sentence_text(tip.text), tip.tag});
 }
 
 void PainterCanvas::path(const std::string& data, const cloth::SvgStyle& style, const cloth::SvgTip& tip) {
@@ -121,7 +122,9 @@ void PainterCanvas::marker(cloth::Marker marker, cloth::SvgPoint centre, double 
 }
 
 void PainterCanvas::text(cloth::SvgPoint baseline, const cloth::SvgText& text) {
-  const QString words = QString::fromStdString(text.text), raised = QString::fromStdString(text.superscript);
+  QString words = QString::fromStdString(text.text);
+  if (look_ == Look::theme) words = localised(words);  // files have decimal points
+  const QString raised = QString::fromStdString(text.superscript);
   const QFont font = sized(font_, text.size, text.bold),
               small = sized(font_, std::max(least_text, 0.75 * text.size), text.bold);
   const double width = QFontMetricsF(font).horizontalAdvance(words);

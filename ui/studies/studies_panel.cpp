@@ -26,6 +26,7 @@
 #include "study/work_precision_report.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -255,7 +256,7 @@ void StudiesPanel::showStatus(const StudyStatus& status) {
             .arg(QString::fromStdString(status.earlier_problem)),
         true);
   } else if (status.running) {
-    QString text = status.stopping && computing ? tr("stopping") : QString::fromStdString(status.text);
+    QString text = status.stopping && computing ? tr("stopping") : sentence_text(status.text);
     if (computing) text += tr(" – %1 %").arg(static_cast<int>(100 * status.fraction));
     if (status.left && !status.stopping) text += tr(", about %1 left").arg(time_text(*status.left));
     say(text);
@@ -294,7 +295,7 @@ void StudiesPanel::refreshDiagram() {
 void StudiesPanel::openRun(int run) {
   if (!table_) return;
   if (const auto found = cloth::run_of(*table_, run))
-    Q_EMIT runOpened(found->scene, QString::fromStdString(found->note));
+    Q_EMIT runOpened(found->scene, sentence_text(found->note));
 }
 
 void StudiesPanel::openFolder(const QString& folder) {

@@ -5,7 +5,6 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
-#include <QLocale>
 #include <QScopedValueRollback>
 #include <QSpacerItem>
 #include <QSpinBox>
@@ -19,6 +18,7 @@
 #include "study/stability_report.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -186,8 +186,7 @@ void StudyChoices::checkMethods(const std::vector<std::string>& names) {
 
 void StudyChoices::setScene(const cloth::Scene& scene) {
   scene_ = scene;
-  horizon_->setPlaceholderText(
-      QLocale::c().toString(cloth::default_horizon(cloth::studied_scene(scene)), 'g', 4));
+  horizon_->setPlaceholderText(number_text(cloth::default_horizon(cloth::studied_scene(scene)), 4));
   x_->setScene(scene, cloth::default_time_axis(scene, cloth::methods_with_a_limit()));
   y_->setScene(scene, cloth::default_stiffness_axis(scene));
   Q_EMIT changed();

@@ -11,6 +11,7 @@
 
 #include "document/result_files.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {

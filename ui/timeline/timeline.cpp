@@ -8,6 +8,7 @@
 #include "theme/theme.h"
 #include "timeline/timeline_keys.h"
 #include "widgets/building.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -16,7 +17,7 @@ constexpr int pleasant_track = 200;  // px
 
 QString size_text(std::size_t bytes) {
   const double megabytes = static_cast<double>(bytes) / (1 << 20);
-  return Timeline::tr("%1 MB").arg(megabytes, 0, 'f', megabytes < 9.95 ? 1 : 0);
+  return Timeline::tr("%1 MB").arg(fixed_text(megabytes, megabytes < 9.95 ? 1 : 0));
 }
 
 /// "12 MB of 256 MB, 96 states".
@@ -27,7 +28,7 @@ QString memory_text(const HistoryStatus& history) {
 }
 
 QString later_text(double seconds) {
-  return Timeline::tr("Play drops the later %1 s").arg(seconds, 0, 'f', 2);
+  return Timeline::tr("Play drops the later %1").arg(quantity_text(seconds, "s", 3));
 }
 
 QString nothing_text() {

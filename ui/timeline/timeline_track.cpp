@@ -8,6 +8,7 @@
 
 #include "theme/theme.h"
 #include "timeline/timeline.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -22,12 +23,8 @@ QFont caption_font(QFont font) {
   return font;
 }
 
-QString time_text(double time) {
-  return TimelineTrack::tr("%1 s").arg(time, 0, 'f', 3);
-}
-
 /// "Edited (Structural stiffness) at 0.120 s", "Pulled from 0.120 s to 0.300 s".
-QString mark_text(const HistoryMark& mark) {
+QString mark_text(const HistoryMark& mark, double step) {
   const auto what = [&] {
     switch (mark.kind) {
       case HistoryMark::Kind::pull:
@@ -41,9 +38,10 @@ QString mark_text(const HistoryMark& mark) {
     }
     return TimelineTrack::tr("Edited (%1)").arg(QString::fromStdString(mark.what));
   };
-  if (time_text(mark.from) == time_text(mark.to))
-    return TimelineTrack::tr("%1 at %2").arg(what(), time_text(mark.from));
-  return TimelineTrack::tr("%1 from %2 to %3").arg(what(), time_text(mark.from), time_text(mark.to));
+  if (time_text(mark.from, step) == time_text(mark.to, step))
+    return TimelineTrack::tr("%1 at %2").arg(what(), time_text(mark.from, step));
+  return TimelineTrack::tr("%1 from %2 to %3")
+      .arg(what(), time_text(mark.from, step), time_text(mark.to, step));
 }
 
 }  // namespace
@@ -106,7 +104,7 @@ QString TimelineTrack::marksAt(double x) const {
   QStringList lines;
   for (const HistoryMark& mark : *marks_) {
     const QRectF place = placeOf(mark);
-    if (x >= place.left() - mark_reach && x <= place.right() + mark_reach) lines << mark_text(mark);
+    if (x >= place.left() - mark_reach && x <= place.right() + mark_reach) lines << mark_text(mark, step_);
   }
   if (lines.size() > most_lines) {
     const auto more = lines.size() - most_lines + 1;
@@ -130,7 +128,7 @@ void TimelineTrack::want(double time) {
 }
 
 void TimelineTrack::describe() {
-  setAccessibleDescription(last_ > 0 ? tr("%1 of %2").arg(time_text(present_), time_text(last_))
+  setAccessibleDescription(last_ > 0 ? tr("%1 of %2").arg(time_text(present_, step_), time_text(last_, step_))
                                      : tr("Nothing was played yet"));
 }
 
@@ -245,7 +243,7 @@ void TimelineTrack::paintMarks(QPainter& painter) const {
 void TimelineTrack::paintCaption(QPainter& painter, double time, double x) const {
   painter.setFont(caption_font(font()));
   painter.setPen(theme().muted_text);
-  const QString text = time_text(time);
+  const QString text = time_text(time, step_);
   const double half = painter.fontMetrics().horizontalAdvance(text) / 2.0;
   const double left = std::clamp(x - half, 0.0, std::max(0.0, width() - 2 * half));
   painter.drawText(QPointF(left, painter.fontMetrics().ascent()), text);

@@ -1,6 +1,5 @@
 #include "viewport/overlay.h"
 
-#include <QLocale>
 #include <QPainterPath>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "theme/theme.h"
 #include "viewport/obstacle_handle.h"
 #include "viewport/strain_scale.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -50,7 +50,7 @@ void text_card(QPainter& painter, const QRectF& area, const Theme& theme, const 
 }
 
 QString percent(double strain) {
-  return QLocale::c().toString(100 * strain, 'g', 4);
+  return number_text(100 * strain, 4);
 }
 
 /// A line that stands out from light and dark alike: a soft dark or light edge under the colour.
@@ -239,7 +239,7 @@ void Overlay::motion(QPainter& view, QSizeF size, const Theme& theme, const QPol
 void Overlay::brush(QPainter& view, const Theme& theme, const Brush& brush) {
   const QLineF drag(brush.start, brush.cursor);
   const bool has_arrow = brush.blowing && drag.length() > 4;
-  const QString speed = tr("%1 m/s").arg(brush.speed, 0, 'f', 1);
+  const QString speed = tr("%1 m/s").arg(fixed_text(brush.speed, 1));
   const QFont font = font_of(view, 0.9, QFont::DemiBold);
   const QRectF label(brush.cursor + QPointF(14, 14), card_size(view, font, speed));
   const double r = brush.radius + 3;

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "measure/stability_limit.h"
-#include "params/quantity.h"
 #include "simulation/time_step.h"
 #include "theme/theme.h"
+#include "widgets/numbers.h"
 
 namespace clothlab {
 namespace {
@@ -17,7 +17,7 @@ constexpr double bar_maximum = 1.25;           // of the limit, at the bar's rig
 
 QString step_text(double seconds) {
   constexpr int digits = 3;
-  return QString::fromStdString(cloth::shown_quantity(seconds, "s", digits).text());
+  return quantity_text(seconds, "s", digits);
 }
 
 QString percent_text(const StabilityReading& reading) {

@@ -69,7 +69,7 @@ PaneView::PaneView(QWidget* parent)
       step_(new ExactField(this)),
       more_(new QToolButton(this)),
       gauge_(new StabilityGauge(this)),
-      cost_(new Reading("0.000 s/s", Reading::Look::muted, this)),
+      cost_(new Reading("0.0000 s/s", Reading::Look::muted, this)),
       difference_(new ElidedLabel(this)),
       notice_(new NoticeBar(this)) {
   auto* column = spaced(new QVBoxLayout(this), 0);

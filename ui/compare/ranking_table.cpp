@@ -4,6 +4,7 @@
 #include <QGuiApplication>
 #include <QHeaderView>
 #include <QKeyEvent>
+#include <QStyledItemDelegate>
 #include <limits>
 
 #include "compare/pane_style.h"
@@ -90,12 +91,25 @@ class KeyedItem : public QTableWidgetItem {
   }
 };
 
+/// The unit stands behind the number in a right-to-left layout too.
+class NumberDelegate : public QStyledItemDelegate {
+ public:
+  using QStyledItemDelegate::QStyledItemDelegate;
+
+ protected:
+  void initStyleOption(QStyleOptionViewItem* option, const QModelIndex& index) const override {
+    QStyledItemDelegate::initStyleOption(option, index);
+    if (index.column() > method) option->direction = Qt::LeftToRight;
+  }
+};
+
 }  // namespace
 
 RankingTable::RankingTable(QWidget* parent) : QTableWidget(parent) {
   setObjectName("rankingTable");
   setAccessibleName(tr("Panes ranked by error and by cost"));
   setColumnCount(columns);
+  setItemDelegate(new NumberDelegate(this));
   setHorizontalHeaderLabels({tr("Pane"), tr("Method"), tr("By error"), tr("RMS"), tr("Largest"),
                              tr("By cost"), tr("Cost [s/s]"), tr("Step"), tr("Over time"),
                              tr("Evaluations/s")});

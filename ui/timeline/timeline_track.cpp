@@ -246,6 +246,7 @@ void TimelineTrack::paintCaption(QPainter& painter, double time, double x) const
   const QString text = time_text(time, step_);
   const double half = painter.fontMetrics().horizontalAdvance(text) / 2.0;
   const double left = std::clamp(x - half, 0.0, std::max(0.0, width() - 2 * half));
+  painter.setLayoutDirection(Qt::LeftToRight);  // the unit stands behind the number in every layout
   painter.drawText(QPointF(left, painter.fontMetrics().ascent()), text);
 }
 

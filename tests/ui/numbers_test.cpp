@@ -5,6 +5,7 @@
 
 #include "compare_bench.h"
 #include "listed_test.h"
+#include "widgets/reading.h"
 #include "window_bench.h"
 
 namespace clothlab::test::numbers_test {
@@ -54,6 +55,15 @@ class NumbersTest : public QObject {
     QCOMPARE(count_text(123), QString("123"));
     QCOMPARE(count_text(1234567).remove(QChar(0x202f)), QString("1234567"));
     QCOMPARE(count_text(1234567).size(), 9);
+  }
+
+  void a_reading_has_room_for_its_widest_text() {
+    for (const QString text : {"0.0000 s/s", "0.000 s/s", "8.888 of 88 s", "88.88 ms"}) {
+      Reading reading(text, Reading::Look::muted, nullptr);
+      reading.ensurePolished();
+      const int room = reading.sizeHint().width() - spacing;
+      QCOMPARE(reading.fontMetrics().elidedText(text, Qt::ElideRight, room), text);
+    }
   }
 
   void time_is_in_milliseconds_where_a_scene_lasts_some() {

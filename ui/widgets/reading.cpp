@@ -26,7 +26,7 @@ QFont Reading::textFont() const {
 
 QSize Reading::sizeHint() const {
   const QFontMetrics metrics(textFont());
-  return {metrics.horizontalAdvance(widest_) + spacing, metrics.height()};
+  return {metrics.horizontalAdvance(widest_) + 1 + spacing, metrics.height()};  // it rounds
 }
 
 void Reading::paintEvent(QPaintEvent*) {

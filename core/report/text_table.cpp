@@ -5,6 +5,12 @@
 namespace cloth {
 namespace {
 
+/// Characters, not bytes, of UTF-8 text.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 std::string cell_of(const std::vector<std::string>& row, std::size_t column) {
   return column < row.size() ? row[column] : "";
 }
@@ -14,7 +20,32 @@ bool is_used(const TextTable& table, std::size_t column) {
                      [&](const auto& row) { return !cell_of(row, column).empty(); });
 }
 
+std::string padded(const std::string& text, std::size_t width, bool is_right) {
+  const std::string space(width - std::min(width, width_of(text)), ' ');
+  return is_right ? space + text : text + space;
+}
+
 }  // namespace
+
+std::string to_text(const TextTable& table) {
+  std::vector<std::string> lines(table.rows.size() + 1);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (!is_used(table, c)) continue;
+    const TextColumn& column = table.columns[c];
+    std::size_t width = width_of(column.header);
+    for (const auto& row : table.rows) width = std::max(width, width_of(cell_of(row, c)));
+    for (std::size_t line = 0; line < lines.size(); ++line) {
+      const std::string& text = line == 0 ? column.header : cell_of(table.rows[line - 1], c);
+      lines[line] += (lines[line].empty() ? "" : "  ") + padded(text, width, column.is_right);
+    }
+  }
+  std::string text;
+  for (std::string& line : lines) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
 
 std::string to_markdown(const TextTable& table) {
   std::string head = "|", rule = "|";

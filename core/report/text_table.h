@@ -1,4 +1,4 @@
-// A table as Markdown.
+// A table for a terminal, its columns aligned, or the same as Markdown.
 #pragma once
 
 #include <string>
@@ -16,7 +16,8 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;  ///< missing cells are empty
 };
 
-/// Columns that are empty in every row are left out.
+/// Two spaces between columns, none at the end of a line. Columns that are empty in every row are left out.
+std::string to_text(const TextTable& table);
 std::string to_markdown(const TextTable& table);
 
 }  // namespace cloth

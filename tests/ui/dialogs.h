@@ -55,8 +55,12 @@ class Answers {
     });
   }
 
-  /// Whether each came, in this order, and no other dialog.
-  bool came_true() const { return steps_.empty() && unexpected_.isEmpty(); }
+  /// Whether each came, in this order, and no other dialog. Then waits until a window is active again, so
+  /// that it takes the next key.
+  bool came_true() const {
+    const auto has_active_window = [] { return QApplication::activeWindow() != nullptr; };
+    return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(has_active_window);
+  }
   QString what_went_wrong() const {
     return QStringLiteral("%1 answers are left; unexpected: %2")
         .arg(steps_.size())

@@ -210,6 +210,7 @@ class StudiesDockTest : public QObject {
     std::thread disk_in_a_second;
     {
       WindowBench bench("pendulum");
+      auto end_of_a_failure = qScopeGuard([&disk] { disk.let_go(); });
       for (const QString& file : files) {
         Answers answers;
         answers.type(file);
@@ -218,6 +219,7 @@ class StudiesDockTest : public QObject {
         QTRY_VERIFY(disk.is_waited_for());
       }
       QVERIFY(bench.window.close());
+      end_of_a_failure.dismiss();
       disk_in_a_second = std::thread([&disk] {
         std::this_thread::sleep_for(std::chrono::seconds(1));
         disk.let_go();

@@ -9,6 +9,7 @@
 #include <QMessageBox>
 #include <QTimer>
 #include <QtTest>
+#include <algorithm>
 #include <deque>
 #include <functional>
 
@@ -55,11 +56,15 @@ class Answers {
     });
   }
 
-  /// Whether each came, in this order, and no other dialog. Then waits until a window is active again, so
-  /// that it takes the next key.
+  /// Whether each came, in this order, and no other dialog. Then waits until a window, if one is left,
+  /// is active again and takes the next key.
   bool came_true() const {
-    const auto has_active_window = [] { return QApplication::activeWindow() != nullptr; };
-    return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(has_active_window);
+    const auto takes_keys = [] {
+      const QWidgetList windows = QApplication::topLevelWidgets();
+      const auto is_visible = [](const QWidget* window) { return window->isVisible(); };
+      return QApplication::activeWindow() || std::none_of(windows.begin(), windows.end(), is_visible);
+    };
+    return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(takes_keys);
   }
   QString what_went_wrong() const {
     return QStringLiteral("%1 answers are left; unexpected: %2")

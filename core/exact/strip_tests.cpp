@@ -19,17 +19,22 @@ struct Shot {
   ElasticaPoint end() const { return end_of_elastica(start, load, length); }
 };
 
-/// A half from its first point to the plane of symmetry, whose y follows. Shot from both ends and met in the
-/// middle: between them cloth under tension hangs nearly straight, and the error of a shot grows there
-/// exponentially.
+/// A half from its first point to the plane of symmetry, whose y follows. Shot from both ends and met between
+/// them: under tension cloth hangs nearly straight, and the error of a shot grows there exponentially, like
+/// exp(integral of sqrt(tension)). As the tension falls from Gamma/2 to 0, they meet above the middle.
 struct Half {
   ElasticaPoint first, last;
   ElasticaLoad load;  ///< at the first point
 
-  std::vector<ElasticaPoint> upper() const { return integrate_elastica(first, load, half / 2); }
+  static constexpr int upper_steps = 1400, steps = 4000;
+  static constexpr double upper_part = half * upper_steps / steps;
+
+  std::vector<ElasticaPoint> upper() const {
+    return integrate_elastica(first, load, upper_part, upper_steps);
+  }
   std::vector<ElasticaPoint> lower() const {
     const ElasticaLoad at_last{load.horizontal, load.vertical + load.weight * half, load.weight};
-    return integrate_elastica(last, at_last, -half / 2);
+    return integrate_elastica(last, at_last, upper_part - half, steps - upper_steps);
   }
   VectorXd gap() const {
     const ElasticaPoint above = upper().back(), below = lower().back();

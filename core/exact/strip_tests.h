@@ -5,7 +5,8 @@
 //
 // Gamma = mu g L^3/B >= 0, and lengths are in L, which every function says. Empty: the strip would touch
 // itself, which these equations do not know, or no solution was found from the weightless shape on (loops:
-// beyond a Gamma of some 3000). Contact is without friction. Heights and widths are good to six digits.
+// beyond a Gamma of some 10000, the hanging wrinkle: 6000). Contact is without friction. Heights and widths
+// are good to six digits.
 //
 //     pear_loop(20)->drop   // from the clamp to the lowest point, over the strip's length
 #pragma once

@@ -92,6 +92,7 @@ TEST(AStripsShape, IsInEquilibriumAndInextensible) {
       ASSERT_TRUE(found) << name << " " << gamma;
       expect_equilibrium(*found, name);
     }
+  expect_equilibrium(pear_loop(1e4).value(), "very limp pear loop");
   expect_equilibrium(free_fold().value(), "free fold");
   expect_equilibrium(standing_wrinkle(200).value(), "standing wrinkle");
 }

@@ -27,7 +27,12 @@ constexpr double look_interval = 0.1;  ///< s
 struct Column {
   const char* name;
   bool (*present)(const Quantities&);
-  std::string (*text)(const Measurement&);
+  double (*value)(const Measurement&);
+  bool is_count = false;  ///< a whole number
+
+  std::string text(const Measurement& m) const {
+    return is_count ? std::to_string(static_cast<std::int64_t>(value(m))) : csv_number(value(m));
+  }
 };
 
 constexpr auto always = [](const Quantities&) { return true; };
@@ -36,41 +41,40 @@ constexpr auto always = [](const Quantities&) { return true; };
 const std::vector<Column>& columns() {
   using M = const Measurement&;
   using Q = const Quantities&;
-  const auto family = [](M m, SpringFamily f) {
-    return csv_number(m.strain.largest[static_cast<std::size_t>(f)]);
+  static const auto strain_of = [](M m, SpringFamily f) {
+    return m.strain.largest[static_cast<std::size_t>(f)];
   };
-  static const auto strain_of = family;
   static const std::vector<Column> all{
-      {"time_s", always, [](M m) { return csv_number(m.time); }},
-      {"step", always, [](M m) { return std::to_string(m.step); }},
-      {"kinetic_J", always, [](M m) { return csv_number(m.energy.kinetic); }},
-      {"elastic_J", always, [](M m) { return csv_number(m.energy.elastic); }},
-      {"gravity_J", always, [](M m) { return csv_number(m.energy.gravity); }},
-      {"total_J", always, [](M m) { return csv_number(m.energy.total()); }},
-      {"damping_loss_J", [](Q q) { return q.damping; },
-       [](M m) { return csv_number(m.ledger.forces.damping_loss); }},
-      {"air_work_J", [](Q q) { return q.air; }, [](M m) { return csv_number(m.ledger.forces.air); }},
-      {"brush_work_J", [](Q q) { return q.brush; }, [](M m) { return csv_number(m.ledger.forces.brush); }},
-      {"pull_work_J", [](Q q) { return q.pull; }, [](M m) { return csv_number(m.ledger.forces.pull); }},
-      {"limiter_work_J", [](Q q) { return q.limiter; }, [](M m) { return csv_number(m.ledger.limiter); }},
-      {"contact_work_J", [](Q q) { return q.contact; }, [](M m) { return csv_number(m.ledger.contact); }},
-      {"energy_error_J", always, [](M m) { return csv_number(m.energy_error()); }},
-      {"max_strain", always, [](M m) { return csv_number(m.strain.maximum()); }},
+      {"time_s", always, [](M m) { return m.time; }},
+      {"step", always, [](M m) { return static_cast<double>(m.step); }, true},
+      {"kinetic_J", always, [](M m) { return m.energy.kinetic; }},
+      {"elastic_J", always, [](M m) { return m.energy.elastic; }},
+      {"gravity_J", always, [](M m) { return m.energy.gravity; }},
+      {"total_J", always, [](M m) { return m.energy.total(); }},
+      {"damping_loss_J", [](Q q) { return q.damping; }, [](M m) { return m.ledger.forces.damping_loss; }},
+      {"air_work_J", [](Q q) { return q.air; }, [](M m) { return m.ledger.forces.air; }},
+      {"brush_work_J", [](Q q) { return q.brush; }, [](M m) { return m.ledger.forces.brush; }},
+      {"pull_work_J", [](Q q) { return q.pull; }, [](M m) { return m.ledger.forces.pull; }},
+      {"limiter_work_J", [](Q q) { return q.limiter; }, [](M m) { return m.ledger.limiter; }},
+      {"contact_work_J", [](Q q) { return q.contact; }, [](M m) { return m.ledger.contact; }},
+      {"energy_error_J", always, [](M m) { return m.energy_error(); }},
+      {"max_strain", always, [](M m) { return m.strain.maximum(); }},
       {"max_strain_structural", [](Q q) { return q.structural; },
        [](M m) { return strain_of(m, SpringFamily::structural); }},
       {"max_strain_shear", [](Q q) { return q.shear; },
        [](M m) { return strain_of(m, SpringFamily::shear); }},
-      {"limiter_sweeps", [](Q q) { return q.limiter; }, [](M m) { return std::to_string(m.limiter_sweeps); }},
-      {"limiter_excess", [](Q q) { return q.limiter; }, [](M m) { return csv_number(m.limiter_excess); }},
-      {"contacts", [](Q q) { return q.contact; }, [](M m) { return std::to_string(m.contacts); }},
+      {"limiter_sweeps", [](Q q) { return q.limiter; },
+       [](M m) { return static_cast<double>(m.limiter_sweeps); }, true},
+      {"limiter_excess", [](Q q) { return q.limiter; }, [](M m) { return m.limiter_excess; }},
+      {"contacts", [](Q q) { return q.contact; }, [](M m) { return static_cast<double>(m.contacts); }, true},
       {"held_back", [](Q q) { return q.continuous_contact; },
-       [](M m) { return std::to_string(m.held_back); }},
+       [](M m) { return static_cast<double>(m.held_back); }, true},
       {"contact_impulse_x_Ns", [](Q q) { return q.continuous_contact; },
-       [](M m) { return csv_number(m.contact_impulse.x()); }},
+       [](M m) { return m.contact_impulse.x(); }},
       {"contact_impulse_y_Ns", [](Q q) { return q.continuous_contact; },
-       [](M m) { return csv_number(m.contact_impulse.y()); }},
+       [](M m) { return m.contact_impulse.y(); }},
       {"contact_impulse_z_Ns", [](Q q) { return q.continuous_contact; },
-       [](M m) { return csv_number(m.contact_impulse.z()); }},
+       [](M m) { return m.contact_impulse.z(); }},
   };
   return all;
 }
@@ -197,6 +201,7 @@ class Run {
     const double mean = steps_since_row_ > 0 ? wall_since_row_ / static_cast<double>(steps_since_row_) : 0;
     steps_since_row_ = 0;
     wall_since_row_ = 0;
+    if (options_.row) options_.row(simulation_, measurement);
     return !record_.is_open() || keep(record_.add(measurement, simulation_.quantities(), mean));
   }
 
@@ -264,6 +269,13 @@ std::vector<std::string> record_columns(const Quantities& quantities) {
     if (column.present(quantities)) names.emplace_back(column.name);
   names.emplace_back("step_time_us");
   return names;
+}
+
+std::optional<double> recorded_value(const std::string& column, const Measurement& measurement,
+                                     const Quantities& quantities) {
+  for (const Column& known : columns())
+    if (known.name == column && known.present(quantities)) return known.value(measurement);
+  return std::nullopt;
 }
 
 std::vector<std::string> record_row(const Measurement& measurement, const Quantities& quantities,

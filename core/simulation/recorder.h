@@ -19,6 +19,11 @@ std::vector<std::string> record_columns(const Quantities& quantities);
 std::vector<std::string> record_row(const Measurement& measurement, const Quantities& quantities,
                                     double step_time);
 
+/// The number that record.csv has in a column; nullopt where it has no such column of these quantities, and
+/// for step_time_us, which is of the machine.
+std::optional<double> recorded_value(const std::string& column, const Measurement& measurement,
+                                     const Quantities& quantities);
+
 /// When a row is due: every `stride` steps from `origin`.
 struct RowClock {
   std::int64_t origin = 0, stride = 1;
@@ -60,6 +65,8 @@ struct RunOptions {
   std::filesystem::path folder;  ///< empty: leave nothing on disk
   /// Called some ten times a second with the simulated time; false stops the run.
   std::function<bool(double time)> progress;
+  /// Called with every row of the recording, whether it is written or not.
+  std::function<void(const Simulation& simulation, const Measurement& row)> row{};
   int threads = 1;                              ///< that a step may use
   std::vector<std::filesystem::path> inputs{};  ///< files that the folder must not replace, beside the meshes
 };

@@ -8,6 +8,7 @@
 #include "scene/scene_json.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
+#include "study/grid_convergence_report.h"
 #include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
@@ -50,6 +51,11 @@ json contents(const ExtremesTable& table) {
   return {{"options", {{"methods", table.methods}, {"cases", cases}}}};
 }
 
+json contents(const GridConvergence& study) {
+  return {
+      {"options", {{"cells", study.cells}, {"outputs", study.outputs}, {"time_s", study.scene.duration}}}};
+}
+
 /// What its numbers depend on beside scene and options.
 json maker() {
   return {{"version", version()},
@@ -62,12 +68,13 @@ json maker() {
 const Scene* scene_of(const StudyTable& table) {
   if (const auto* study = std::get_if<WorkPrecision>(&table)) return &study->scene;
   if (const auto* map = std::get_if<StabilityMap>(&table)) return &map->scene;
+  if (const auto* study = std::get_if<GridConvergence>(&table)) return &study->scene;
   const auto& scene = std::get<ExtremesTable>(table).scene;
   return scene ? &*scene : nullptr;
 }
 
 const char* kind_of(const StudyTable& table) {
-  constexpr const char* names[] = {"work-precision", "stability", "extremes"};
+  constexpr const char* names[] = {"work-precision", "stability", "extremes", "convergence"};
   return names[table.index()];
 }
 
@@ -81,7 +88,7 @@ bool is_complete(const StudyTable& table) {
 }
 
 const char* csv_name(const StudyTable& table) {
-  constexpr const char* names[] = {"work_precision.csv", "stability.csv", "extremes.csv"};
+  constexpr const char* names[] = {"work_precision.csv", "stability.csv", "extremes.csv", "convergence.csv"};
   return names[table.index()];
 }
 
@@ -118,6 +125,7 @@ std::vector<std::string> study_files(const StudyTable& table) {
   std::vector<std::string> names{"study.json", csv_name(table), "report.html"};
   if (std::holds_alternative<WorkPrecision>(table))
     names.insert(names.end(), {samples_name, reference_states_name});
+  if (std::holds_alternative<GridConvergence>(table)) names.emplace_back(grid_errors_name);
   names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
   return names;
 }

@@ -13,6 +13,7 @@
 #include "io/file_digest.h"
 #include "io/text_file.h"
 #include "study/extremes.h"
+#include "study/grid_convergence.h"
 #include "study/stability_map.h"
 #include "study/work_precision.h"
 
@@ -20,7 +21,7 @@ namespace cloth {
 
 inline constexpr const char* study_format = "clothlab/study/1";
 
-using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable>;
+using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable, GridConvergence>;
 
 struct Study {
   StudyTable table;
@@ -28,7 +29,7 @@ struct Study {
   double wall = 0;      ///< s
 };
 
-/// "work-precision", "stability", "extremes": the command's name.
+/// "work-precision", "stability", "extremes", "convergence": the command's name.
 const char* kind_of(const StudyTable& table);
 
 /// The scene that is studied; null for the fixed list of cases.

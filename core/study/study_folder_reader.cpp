@@ -13,6 +13,7 @@
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "study/extremes_report.h"
+#include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
 #include "study/work_precision_report.h"
@@ -163,6 +164,29 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry
   return table;
 }
 
+GridConvergence read_convergence(const std::filesystem::path& folder, const JsonEntry& root) {
+  const Scene scene = read_scene_of(root, folder);
+  const JsonEntry& from = root.at("options");
+  GridConvergenceOptions options{.outputs = from.at("outputs").texts(), .time = from.at("time_s").number()};
+  for (const JsonEntry& cells : from.at("cells").entries())
+    options.cells.push_back(static_cast<int>(cells.whole<std::int64_t>(1, 1e6)));
+  if (options.outputs.empty()) throw from.at("outputs").bad("must not be empty");
+  if (options.cells.empty()) throw from.at("cells").bad("must not be empty");
+  const auto problems = find_problems(scene, options);
+  if (!problems.empty()) throw from.bad(problems.front().text());
+  GridConvergence study = plan_grid_convergence(scene, options);
+  const Rows rows(folder, csv_name(study), root);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::string cells = rows.text(row, "cells");
+    if (study.is_complete() || cells != std::to_string(study.cells[row]))
+      throw rows.bad(row, "cells", cells, "is not the grid that study.json has here");
+    GridRun run = run_to_make(study, study.cells[row]);
+    read_row(rows, row, run, study);
+    study.runs.push_back(std::move(run));
+  }
+  return study;
+}
+
 /// The tables that are not those that study.json describes, a clause each. One that is not there at all is
 /// said by who reads it.
 std::string find_disagreements(const std::filesystem::path& folder, const JsonEntry& root) {
@@ -183,7 +207,8 @@ StudyTable read_table(const std::filesystem::path& folder, const JsonEntry& root
   if (kind == "work-precision") return read_work_precision(folder, root);
   if (kind == "stability") return read_stability(folder, root);
   if (kind == "extremes") return read_extremes(folder, root);
-  throw root.at("kind").bad("must be work-precision, stability or extremes");
+  if (kind == "convergence") return read_convergence(folder, root);
+  throw root.at("kind").bad("must be work-precision, stability, extremes or convergence");
 }
 
 }  // namespace

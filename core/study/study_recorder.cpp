@@ -8,6 +8,7 @@
 #include "io/text_file.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
+#include "study/grid_convergence_report.h"
 #include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
@@ -147,6 +148,9 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
       }
       limits_kept_ += map->methods[m].measured.size();
     }
+  } else if (const auto* grids = std::get_if<GridConvergence>(&table)) {
+    kept = table_of(*grids);
+    rows_kept_ = {grids->runs.size()};
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
     kept = table_of(extremes);
@@ -208,6 +212,12 @@ std::optional<IoError> StudyRecorder::keep(const ExtremesTable& so_far) {
   return rows_.flush();
 }
 
+std::optional<IoError> StudyRecorder::keep(const GridConvergence& so_far) {
+  for (std::size_t& k = rows_kept_.front(); k < so_far.runs.size(); ++k)
+    if (auto error = rows_.add(written(so_far.runs[k], so_far).texts)) return error;
+  return rows_.flush();
+}
+
 std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) {
   if (earlier_) wall += earlier_->wall;
   if (auto error = rows_.close()) return error;
@@ -227,6 +237,9 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
   const std::string page = std::visit([&](const auto& of) { return study_page(of, command_, wall); }, table);
   const std::string svg_name = std::filesystem::path(csv_name(table)).replace_extension("svg").string();
   if (auto error = folder_.write(svg_name, svg)) return error;
+  if (const auto* grids = std::get_if<GridConvergence>(&table))
+    if (auto error = folder_.write(grid_errors_name, to_svg(study_plot(*grids, GridPlot::errors))))
+      return error;
   if (auto error = folder_.write("report.html", page)) return error;
   return folder_.finish("study.json",
                         study_index(folder_.path(), table, command_, wall, folder_.digests(), states_));

@@ -63,6 +63,16 @@ std::optional<StudyRun> run_at(const ExtremesTable& table, std::size_t number) {
   return found;
 }
 
+std::optional<StudyRun> run_at(const GridConvergence& study, std::size_t number) {
+  if (number >= study.runs.size()) return std::nullopt;
+  const GridRun& run = study.runs[number];
+  if (run.status == GridRunStatus::refused) return std::nullopt;
+  return StudyRun{.name = fmt::format("{} x {} cells", run.columns - 1, run.rows - 1),
+                  .status = name_of(run.status),
+                  .scene = scene_of(study, run),
+                  .note = {}};
+}
+
 }  // namespace
 
 std::optional<StudyRun> run_of(const StudyTable& table, int number) {
@@ -82,6 +92,8 @@ int finished_runs(const StudyTable& table) {
   else if (const auto* map = std::get_if<StabilityMap>(&table))
     for (const MethodMap& method : map->methods)
       for (const StabilityCell& cell : method.cells) count += cell.status != CellStatus::not_run ? 1 : 0;
+  else if (const auto* grids = std::get_if<GridConvergence>(&table))
+    count = grids->runs.size();
   else
     count = std::get<ExtremesTable>(table).cells.size();
   return static_cast<int>(count);

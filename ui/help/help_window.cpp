@@ -37,6 +37,7 @@ std::vector<Page> pages() {
           {"studies/work-precision.md", HelpWindow::tr("Study: error and time")},
           {"studies/stability.md", HelpWindow::tr("Study: stability")},
           {"studies/extremes.md", HelpWindow::tr("Study: extreme cases")},
+          {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
           {"parameters.md", HelpWindow::tr("Parameters")},
           {"scene-format.md", HelpWindow::tr("Scene files")},
           {"sessions.md", HelpWindow::tr("Sessions")},

@@ -10,6 +10,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QSignalBlocker>
 #include <QStackedWidget>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -21,6 +22,7 @@
 #include "params/panel_parts.h"
 #include "studies/study_library.h"
 #include "study/extremes_report.h"
+#include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/work_precision_report.h"
@@ -47,19 +49,33 @@ bool is_timed(const cloth::WorkPrecision& study) {
   });
 }
 
-Diagram diagram_of(const cloth::StudyTable& table, cloth::PlotAgainst against) {
+/// What the box above the diagram offers of a kind of study; nothing: it has one diagram.
+QStringList diagrams_of(const cloth::StudyTable& table) {
+  if (std::holds_alternative<cloth::WorkPrecision>(table))
+    return {QObject::tr("against run time"), QObject::tr("against step"),
+            QObject::tr("against force evaluations")};
+  if (std::holds_alternative<cloth::GridConvergence>(table))
+    return {QObject::tr("values"), QObject::tr("errors")};
+  return {};
+}
+
+/// `which` of diagrams_of the table.
+Diagram diagram_of(const cloth::StudyTable& table, int which) {
   if (const auto* study = std::get_if<cloth::WorkPrecision>(&table)) {
     // Before the first timing there is nothing to show against the time.
+    const auto against = static_cast<cloth::PlotAgainst>(which);
     const bool timed = against != cloth::PlotAgainst::run_time || is_timed(*study);
     return cloth::study_plot(*study, timed ? against : cloth::PlotAgainst::force_evaluations);
   }
   if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::study_plot(*map);
+  if (const auto* grids = std::get_if<cloth::GridConvergence>(&table))
+    return cloth::study_plot(*grids, static_cast<cloth::GridPlot>(which));
   return cloth::study_plot(std::get<cloth::ExtremesTable>(table));
 }
 
 QString kind_title(const cloth::StudyTable& table) {
   const QString titles[] = {QObject::tr("Work-precision"), QObject::tr("Stability map"),
-                            QObject::tr("Extreme cases")};
+                            QObject::tr("Extreme cases"), QObject::tr("Grid convergence")};
   return titles[table.index()];
 }
 
@@ -148,7 +164,6 @@ QWidget* StudiesPanel::makeRight() {
   title_ = named("studyTitle", new ElidedLabel(right));
   title_->setProperty("heading", true);
   against_ = named("against", new QComboBox(right));
-  against_->addItems({tr("against run time"), tr("against step"), tr("against force evaluations")});
   save_ = named("saveStudy", new QToolButton(right));
   save_->setIcon(icon("export-plot"));
   save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
@@ -247,7 +262,7 @@ void StudiesPanel::showStatus(const StudyStatus& status) {
   save_->setEnabled(table_ != nullptr);
   bar_->setVisible(status.running);
   bar_->setValue(static_cast<int>(1000 * status.fraction));
-  against_->setVisible(table_ && std::holds_alternative<cloth::WorkPrecision>(*table_));
+  against_->setVisible(table_ && against_->count() > 0);
   title_->setText(
       table_ ? tr("%1: %2").arg(kind_title(*table_), QString::fromStdString(cloth::title_of(*table_)))
              : QString());
@@ -277,6 +292,7 @@ QString StudiesPanel::summary() const {
 
 void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {
   table_ = std::move(table);
+  offerDiagrams();
   refreshDiagram();
   compareWithForm();
   stack_->setCurrentIndex(1);
@@ -287,9 +303,19 @@ void StudiesPanel::compareWithForm() {
   earlier_->setVisible(table_ && !choices_->describes(*table_));
 }
 
+/// The choice stays while the kind of study does.
+void StudiesPanel::offerDiagrams() {
+  const QStringList diagrams = diagrams_of(*table_);
+  if (against_->count() == diagrams.size() &&
+      (diagrams.isEmpty() || against_->itemText(0) == diagrams.front()))
+    return;
+  const QSignalBlocker quiet(against_);
+  against_->clear();
+  against_->addItems(diagrams);
+}
+
 void StudiesPanel::refreshDiagram() {
-  if (table_)
-    plot_->setDiagram(diagram_of(*table_, static_cast<cloth::PlotAgainst>(against_->currentIndex())));
+  if (table_) plot_->setDiagram(diagram_of(*table_, std::max(0, against_->currentIndex())));
 }
 
 void StudiesPanel::openRun(int run) {

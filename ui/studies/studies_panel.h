@@ -56,6 +56,7 @@ class StudiesPanel : public QWidget {
   void start();
   void poll();
   void show(std::shared_ptr<const cloth::StudyTable> table);
+  void offerDiagrams();
   void refreshDiagram();
   void compareWithForm();
   void showStatus(const StudyStatus& status);

@@ -10,6 +10,7 @@
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
+#include "scene/scene_cloth.h"
 #include "simulation/stages.h"
 #include "simulation/time_step.h"
 
@@ -47,8 +48,7 @@ struct Explanation {
 
 std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vector<MethodLimit>& methods) {
   std::vector<LinearSolve> solves;
-  const cloth::ClothSystem system =
-      cloth::make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
+  const cloth::ClothSystem system = cloth::make_cloth(scene);
   for (const MethodLimit& method : methods) {
     const auto weight = method.facts.stage_weight;
     const auto step = scene.integrator.time_step ? scene.integrator.time_step : method.auto_step;
@@ -62,9 +62,9 @@ std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vec
 
 Explanation explain_scene(const cloth::Scene& scene) {
   Explanation e{.scene = scene, .stages = cloth::explain_stages(scene), .methods = {}, .linear_solves = {}};
-  if (scene.springs) {
-    e.largest_frequency = cloth::largest_frequency(scene.cloth, *scene.springs);
-    e.guaranteed_frequency = cloth::guaranteed_frequency(scene.cloth, *scene.springs);
+  if (cloth::has_stiffness(scene)) {
+    e.largest_frequency = cloth::largest_frequency(scene);
+    e.guaranteed_frequency = cloth::guaranteed_frequency(scene);
   }
   e.provot_step = cloth::provot_step(scene);
   for (const cloth::MethodFacts& facts : cloth::integrator_facts()) {
@@ -147,8 +147,7 @@ std::string to_json(const Explanation& e) {
     root["notices"] = notices;
   for (const cloth::StageInfo& stage : e.stages)
     root["stages"].push_back({{"name", stage.name}, {"in", stage.present}, {"reason", stage.reason}});
-  const cloth::ClothSystem system =
-      cloth::make_cloth(e.scene.cloth, e.scene.springs.value_or(cloth::SpringMaterial{}));
+  const cloth::ClothSystem system = cloth::make_cloth(e.scene);
   for (const cloth::SpringFamily family : cloth::spring_families)
     root["springs"][cloth::name_of(family)] = system.spring_count(family);
   root["largest_frequency_per_s"] = e.largest_frequency;

@@ -10,6 +10,7 @@
 #include "picture_option.h"
 #include "progress.h"
 #include "scene/scene_checks.h"
+#include "scene/scene_cloth.h"
 #include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 #include "simulation/run_summary.h"
@@ -75,7 +76,7 @@ std::optional<cloth::IoError> misplaced(const Output& output, const RunArguments
 std::optional<cloth::IoError> write_outputs(const RunArguments& arguments, const cloth::Scene& scene,
                                             const cloth::ClothState& state) {
   if (outputs_of(arguments).empty()) return std::nullopt;
-  const cloth::ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(cloth::SpringMaterial{}));
+  const cloth::ClothSystem system = make_cloth(scene);
   if (!arguments.obj.empty())
     if (auto error = cloth::write_user_file(
             arguments.obj, cloth_obj(system, state, cloth::title_at(scene.title, state.time))))

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cloth/bending.h"
 #include "cloth/spring_runs.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/vec3_field.h"
@@ -16,6 +17,7 @@ struct ClothSystem {
   int rows = 0, columns = 0;
   std::vector<Triangle> triangles;   ///< of a mesh; none: a grid, whose cells triangles_of() cuts in two
   SpringRuns springs;                ///< in the order structural, shear, flexion
+  BendingRuns bending;               ///< of a material
   std::vector<double> mass;          ///< kg, one of each particle
   std::vector<double> inverse_mass;  ///< 1/kg; 0 where pinned
   std::vector<std::uint8_t> pinned;  ///< 1 where pinned

@@ -11,6 +11,7 @@
 #include "geometry/at.h"
 #include "geometry/box_tree.h"
 #include "geometry/triangle_intersection.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -114,7 +115,7 @@ void check_own_distance(const TriangleMesh& cloth, const Vec3Field& position, do
 std::vector<Problem> find_start_problems(const Scene& scene) {
   const bool is_continuous = has_continuous_contact(scene);
   if (!is_continuous && scene.obstacles.empty()) return {};
-  const ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}));
+  const ClothSystem system = make_cloth(scene);
   if (!is_continuous) return find_particles_inside(scene, system);
   TriangleMesh cloth{{}, triangles_of(system)};
   for (std::size_t i = 0; i < system.start.size(); ++i) cloth.vertices.push_back(system.start[i]);

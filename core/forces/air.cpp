@@ -16,6 +16,20 @@ Vec3 wind_at(const Air& air, double time) {
   return air.wind * (1 + air.gust->amplitude * std::sin(2 * std::numbers::pi * air.gust->frequency * time));
 }
 
+Air wind_of(const Scene& scene) {
+  return scene.air.value_or(Air{});
+}
+
+NodeCoefficient drag_along_normal(const Scene& scene) {
+  if (const auto& m = scene.material) return {0, m->drag_normal / m->areal_density};
+  return {scene.air ? scene.air->drag : 0, 0};
+}
+
+NodeCoefficient drag_along_cloth(const Scene& scene) {
+  if (const auto& m = scene.material) return {0, m->drag_tangential / m->areal_density};
+  return {scene.air ? scene.air->skin_friction : 0, 0};
+}
+
 double brush_falloff(const BrushGust& brush, const Vec3& position) {
   const Eigen::Vector4d clip =
       brush.world_to_screen * Eigen::Vector4d(position.x(), position.y(), position.z(), 1);
@@ -43,11 +57,13 @@ double brush_falloff_change(const BrushGust& brush, const Vec3& position, const 
 
 class AirForce : public Force {
  public:
-  explicit AirForce(const Air& air) : air_(air) {}
+  /// `system` must outlive the force.
+  AirForce(const Air& air, const NodeCoefficient& drag, const ClothSystem& system)
+      : air_(air), drag_(drag), mass_(&system.mass) {}
 
   void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
   KernelCoverage join(SweepTerms& terms) const override {
-    if (brush_) return KernelCoverage::none;
+    if (brush_ || drag_.per_mass > 0) return KernelCoverage::none;
     terms.air = &air_;
     return KernelCoverage::whole_steps;
   }
@@ -60,7 +76,7 @@ class AirForce : public Force {
     double *fx = force.x(), *fy = force.y(), *fz = force.z();
     if (wind_.squaredNorm() > 0) {
       for (std::size_t i = 0; i < position.size(); ++i) {
-        const double push = air_.drag * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
+        const double push = drag(i) * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
         fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
       }
     }
@@ -71,29 +87,33 @@ class AirForce : public Force {
     const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
     double *px = product.x(), *py = product.y(), *pz = product.z();
     for (std::size_t i = 0; i < velocity.size(); ++i) {
-      const double drag = air_.drag * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
-      px[i] += drag * nx[i], py[i] += drag * ny[i], pz[i] += drag * nz[i];
+      const double along = drag(i) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+      px[i] += along * nx[i], py[i] += along * ny[i], pz[i] += along * nz[i];
     }
   }
   bool add_node_damping(NodeDamping& damping) const override {
-    damping.along_normal += air_.drag;
+    damping.along_normal.each += drag_.each, damping.along_normal.per_mass += drag_.per_mass;
     damping.normal = &normal_;
     return true;
   }
   void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
     const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
     const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
-    power.air += air_.drag * ordered_sum(velocity.size(), [=, u = wind_](std::size_t i) {
-                   const double along = nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i];
-                   return along * (nx[i] * u.x() + ny[i] * u.y() + nz[i] * u.z() - along);
-                 });
+    const auto of_particle = [=, u = wind_](std::size_t i) {
+      const double along = nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i];
+      return along * (nx[i] * u.x() + ny[i] * u.y() + nz[i] * u.z() - along);
+    };
+    if (drag_.each > 0) power.air += drag_.each * ordered_sum(velocity.size(), of_particle);
+    if (drag_.per_mass > 0)
+      power.air += drag_.per_mass *
+                   ordered_sum(velocity.size(), [&](std::size_t i) { return (*mass_)[i] * of_particle(i); });
     if (brush_ && brush_force_.size() == velocity.size())
       power.brush += dot(brush_force_.flat(), velocity.flat());
   }
   void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                          Linearisation& to) const override {
-    const double along = weights.velocity * air_.drag;
-    for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(0, along, normal_[i]));
+    for (std::size_t i = 0; i < to.nodes.size(); ++i)
+      to.nodes.add(i, block_along(0, weights.velocity * drag(i), normal_[i]));
   }
   bool has_asymmetric_part() const override { return true; }
   /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
@@ -108,7 +128,7 @@ class AirForce : public Force {
         w += brush_falloff(*brush_, position[i]) * brush_->velocity;
         dw = brush_falloff_change(*brush_, position[i], direction[i]) * brush_->velocity;
       }
-      product.add(i, -air_.drag * ((dn.dot(w) + n.dot(dw)) * n + n.dot(w) * dn));
+      product.add(i, -drag(i) * ((dn.dot(w) + n.dot(dw)) * n + n.dot(w) * dn));
     }
   }
 
@@ -117,13 +137,17 @@ class AirForce : public Force {
     if (brush_force_.size() != position.size()) brush_force_ = Vec3Field(position.size());
     for (std::size_t i = 0; i < position.size(); ++i) {
       const Vec3 n = normal_[i];
-      const Vec3 push = air_.drag * brush_falloff(*brush_, position[i]) * n.dot(brush_->velocity) * n;
+      const Vec3 push = drag(i) * brush_falloff(*brush_, position[i]) * n.dot(brush_->velocity) * n;
       brush_force_.set(i, push);
       force.add(i, push);
     }
   }
 
+  double drag(std::size_t i) const { return drag_.of((*mass_)[i]); }
+
   Air air_;
+  NodeCoefficient drag_;
+  const std::vector<double>* mass_;
   std::optional<BrushGust> brush_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
@@ -131,8 +155,9 @@ class AirForce : public Force {
 };
 
 StageInfo wind_stage(const Scene& scene) {
-  if (!scene.air || !(scene.air->drag > 0 || scene.air->skin_friction > 0))
+  if (drag_along_normal(scene).is_zero() && drag_along_cloth(scene).is_zero())
     return {"wind", false, "there is no air to blow"};
+  if (!scene.air) return {"wind", false, "the scene has no \"air\": the air only drags"};
   if (!(scene.air->wind.squaredNorm() > 0)) return {"wind", false, "air.wind is 0: the air only drags"};
   const bool gusts = scene.air->gust && scene.air->gust->amplitude > 0;
   return {"wind", true,
@@ -142,14 +167,16 @@ StageInfo wind_stage(const Scene& scene) {
 }  // namespace
 
 ForceEntry air_entry() {
-  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
-            if (!scene.air || !(scene.air->drag > 0)) return nullptr;
-            return std::make_unique<AirForce>(*scene.air);
+  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+            const NodeCoefficient drag = drag_along_normal(scene);
+            if (drag.is_zero()) return nullptr;
+            return std::make_unique<AirForce>(wind_of(scene), drag, system);
           },
           .work = &Work::air,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("air drag", scene, "air.drag"), wind_stage(scene)};
+                return std::vector{coefficient_stage("air drag", scene, normal_drag_path(scene)),
+                                   wind_stage(scene)};
               }};
 }
 

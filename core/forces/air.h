@@ -9,6 +9,7 @@
 // Runge-Kutta steppers compute drag on grids within their pass (kernels/grid_air.h).
 #pragma once
 
+#include "forces/force.h"
 #include "forces/hand.h"
 #include "scene/scene.h"
 
@@ -20,5 +21,21 @@ Vec3 wind_at(const Air& air, double time);
 /// The part of the brush's velocity that a particle at `position` in m feels: cos(pi/2 * r/radius) within the
 /// radius, r in pixels on the screen; else 0.
 double brush_falloff(const BrushGust& brush, const Vec3& position);
+
+/// The wind of a scene; without "air" none.
+Air wind_of(const Scene& scene);
+
+/// c_a and c_t: of "air" for each particle, of a material for each area, which is its mass over its areal
+/// density.
+NodeCoefficient drag_along_normal(const Scene& scene);
+NodeCoefficient drag_along_cloth(const Scene& scene);
+
+/// The parameter that they are given by.
+inline const char* normal_drag_path(const Scene& scene) {
+  return scene.material ? "material.drag_normal" : "air.drag";
+}
+inline const char* cloth_drag_path(const Scene& scene) {
+  return scene.material ? "material.drag_tangential" : "air.skin_friction";
+}
 
 }  // namespace cloth

@@ -9,6 +9,7 @@
 // Forces are made from a scene by forces/registry.h and summed by ForceModel (forces/force_model.h).
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "cloth/cloth_system.h"
@@ -36,17 +37,31 @@ struct Work {
   }
 };
 
+/// A damping coefficient of every particle: the same for each, and a part in proportion to its mass.
+struct NodeCoefficient {
+  double each = 0;      ///< N s/m
+  double per_mass = 0;  ///< 1/s
+  double of(double mass) const { return each + per_mass * mass; }
+  bool is_zero() const { return each == 0 && per_mass == 0; }
+  NodeCoefficient scaled(double factor) const { return {factor * each, factor * per_mass}; }
+  /// Without what is negative.
+  NodeCoefficient positive() const { return {std::max(each, 0.0), std::max(per_mass, 0.0)}; }
+  NodeCoefficient negative() const { return {std::min(each, 0.0), std::min(per_mass, 0.0)}; }
+  bool operator==(const NodeCoefficient&) const = default;
+};
+
 /// The part of D that does not couple particles: the block isotropic * I + along_normal * n n^T of every
-/// particle, and what the hand adds for the particle that it holds. `along_springs` is the coefficient of the
-/// part that does couple particles.
+/// particle, and what the hand adds for the particle that it holds.
 struct NodeDamping {
-  double isotropic = 0;     ///< N s/m
-  double along_normal = 0;  ///< N s/m
+  NodeCoefficient isotropic, along_normal;
   const Vec3Field* normal = nullptr;
   int held_particle = -1;
   double held_isotropic = 0;  ///< N s/m, in addition
   double held_stiffness = 0;  ///< N/m, of the spring to the hand
-  double along_springs = 0;   ///< N s/m of every spring; the part of D that couples particles
+  // The parts of D that couple particles: of every spring, per stiffness of it, and per K of bending.
+  double along_springs = 0;  ///< N s/m
+  double stretch_time = 0;   ///< s
+  double bending_time = 0;   ///< s
 };
 
 /// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the

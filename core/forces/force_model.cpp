@@ -63,7 +63,8 @@ void ForceModel::sort_forces() {
     if (!in_steps) apart_from_steps_.push_back(force.get());
     NodeDamping damping;
     const bool coupled = !force->add_node_damping(damping);
-    if (coupled || damping.isotropic > 0 || damping.along_normal > 0) has_damping_ = has_power_ = true;
+    if (coupled || !damping.isotropic.is_zero() || !damping.along_normal.is_zero())
+      has_damping_ = has_power_ = true;
   }
   if (!takes_air) swept_.air = nullptr;
 }
@@ -211,6 +212,7 @@ void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights
     result.nodes.set(i, {m, 0, 0, m, 0, m});
   }
   result.springs.assign(system_->springs.spring_count(), {});
+  result.bending = 0;
   result.has_compressed = false;
   for_each_force([&](Force& force) { force.add_linearisation(*system_, position, weights, result); });
 }

@@ -76,6 +76,7 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
       spring += static_cast<std::size_t>(count);
     }
   }
+  if (bending > 0) add_bending_product(system.bending, bending, direction, product);
 }
 
 void Linearisation::multiply(const ClothSystem& system, const Vec3Field& direction,

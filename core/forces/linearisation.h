@@ -1,6 +1,7 @@
 // The symmetric matrix of a linearised step, A = M + weight_velocity D + weight_position K, K the symmetric
 // part of -dp/dx. It is stored as one 3x3 block for every particle and one, B, for every spring between
-// particles i and j: A = diag(node) + sum over springs of (e_i - e_j) B (e_i - e_j)^T. The asymmetric part of
+// particles i and j: A = diag(node) + sum over springs of (e_i - e_j) B (e_i - e_j)^T,
+// and to that a multiple of the constant matrix K of a material's bending. The asymmetric part of
 // -df/dx (drag whose normal turns, a damper that turns) is not stored; Force::add_asymmetric_product
 // multiplies with it.
 #pragma once
@@ -63,6 +64,7 @@ class SymmetricBlocks {
 struct Linearisation {
   SymmetricBlocks nodes;        ///< one of each particle
   SymmetricBlocks springs;      ///< run after run, in the order of ClothSystem::springs
+  double bending = 0;           ///< s^2: what multiplies K of ClothSystem::bending
   bool has_compressed = false;  ///< some spring is shorter than its rest length, so that clamping changes A
 
   /// product = A direction; pinned particles get 0.

@@ -50,19 +50,19 @@ inline double dot(const Strip<const double>& a, const Strip<double>& b) {
 }
 
 /// The blocks L = (m + w a) I + w b n n^T: w the weight in s, a and b the coefficients `isotropic` and
-/// `along_normal` of NodeDamping in N s/m, n the unit normal, or zero where there is none.
+/// `along_normal` of NodeDamping, n the unit normal, or zero where there is none.
 class NodeMatrix {
  public:
   /// `inverse` is used as scratch. All arguments must outlive the matrix.
   NodeMatrix(const ClothSystem& system, double weight, const NodeDamping& damping,
              std::vector<double>& inverse)
       : mass_(system.mass.data()),
-        isotropic_(weight * damping.isotropic),
-        along_(weight * damping.along_normal),
+        isotropic_(damping.isotropic.scaled(weight)),
+        along_(damping.along_normal.scaled(weight)),
         normal_(damping.normal) {
     inverse.resize(system.mass.size());
     for (std::size_t i = 0; i < inverse.size(); ++i)
-      inverse[i] = system.inverse_mass[i] == 0 ? 0 : 1 / (mass_[i] + isotropic_);
+      inverse[i] = system.inverse_mass[i] == 0 ? 0 : 1 / (mass_[i] + isotropic_.of(mass_[i]));
     inverse_ = inverse.data();
   }
 
@@ -78,7 +78,7 @@ class NodeMatrix {
     const double *nx = normal_->x() + first, *ny = normal_->y() + first, *nz = normal_->z() + first;
     double *vx = v.axis[0], *vy = v.axis[1], *vz = v.axis[2];
     for (std::size_t i = 0; i < v.count; ++i) {
-      const double share = along_ * inverse[i];
+      const double share = along_.of(mass_[first + i]) * inverse[i];
       const double correction = share / (1 + share) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
       vx[i] -= correction * nx[i], vy[i] -= correction * ny[i], vz[i] -= correction * nz[i];
     }
@@ -92,14 +92,14 @@ class NodeMatrix {
       const double *from = d.axis[axis], *product = q.axis[axis];
       double* to = r.axis[axis];
       for (std::size_t i = 0; i < r.count; ++i)
-        to[i] -= length * ((mass[i] + isotropic_) * from[i] + weight * product[i]);
+        to[i] -= length * ((mass[i] + isotropic_.of(mass[i])) * from[i] + weight * product[i]);
     }
     if (!normal_) return;
     const double *nx = normal_->x() + first, *ny = normal_->y() + first, *nz = normal_->z() + first;
     const double *dx = d.axis[0], *dy = d.axis[1], *dz = d.axis[2];
     double *rx = r.axis[0], *ry = r.axis[1], *rz = r.axis[2];
     for (std::size_t i = 0; i < r.count; ++i) {
-      const double along = length * along_ * (nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i]);
+      const double along = length * along_.of(mass[i]) * (nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i]);
       rx[i] -= along * nx[i], ry[i] -= along * ny[i], rz[i] -= along * nz[i];
     }
   }
@@ -108,20 +108,20 @@ class NodeMatrix {
   double square(std::size_t first, const Strip<const double>& d) const {
     const double *dx = d.axis[0], *dy = d.axis[1], *dz = d.axis[2];
     double sum = ordered_sum(d.count, [=, mass = mass_ + first, a = isotropic_](std::size_t i) {
-      return (mass[i] + a) * (dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+      return (mass[i] + a.of(mass[i])) * (dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
     });
     if (normal_)
-      sum += along_ * ordered_sum(d.count, [=, nx = normal_->x() + first, ny = normal_->y() + first,
-                                            nz = normal_->z() + first](std::size_t i) {
-               const double along = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
-               return along * along;
-             });
+      sum += ordered_sum(d.count, [=, mass = mass_ + first, b = along_, nx = normal_->x() + first,
+                                   ny = normal_->y() + first, nz = normal_->z() + first](std::size_t i) {
+        const double along = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
+        return b.of(mass[i]) * along * along;
+      });
     return sum;
   }
 
  private:
   const double *mass_, *inverse_;
-  double isotropic_, along_;
+  NodeCoefficient isotropic_, along_;
   const Vec3Field* normal_;
 };
 

@@ -11,8 +11,9 @@ namespace {
 
 class SkinFriction : public Force {
  public:
-  /// air.skin_friction is c_t in N s/m, of every particle.
-  explicit SkinFriction(const Air& air) : air_(air) {}
+  /// `friction` is c_t of every particle; `system` must outlive the force.
+  SkinFriction(const Air& air, const NodeCoefficient& friction, const ClothSystem& system)
+      : air_(air), friction_(friction), mass_(&system.mass) {}
 
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
@@ -25,8 +26,8 @@ class SkinFriction : public Force {
     for (std::size_t i = 0; i < velocity.size(); ++i) product.add(i, across(i, velocity[i]));
   }
   bool add_node_damping(NodeDamping& damping) const override {
-    damping.isotropic += air_.skin_friction;
-    damping.along_normal -= air_.skin_friction;
+    damping.isotropic.each += friction_.each, damping.isotropic.per_mass += friction_.per_mass;
+    damping.along_normal.each -= friction_.each, damping.along_normal.per_mass -= friction_.per_mass;
     damping.normal = &normal_;
     return true;
   }
@@ -36,8 +37,10 @@ class SkinFriction : public Force {
   }
   void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                          Linearisation& to) const override {
-    const double c = weights.velocity * air_.skin_friction;
-    for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes.add(i, block_along(c, -c, normal_[i]));
+    for (std::size_t i = 0; i < to.nodes.size(); ++i) {
+      const double c = weights.velocity * friction(i);
+      to.nodes.add(i, block_along(c, -c, normal_[i]));
+    }
   }
   bool has_asymmetric_part() const override { return true; }
   /// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
@@ -47,17 +50,21 @@ class SkinFriction : public Force {
     particle_normal_changes(system, position, direction, turned);
     for (std::size_t i = 0; i < position.size(); ++i) {
       const Vec3 n = normal_[i], dn = turned[i], w = wind_ - velocity[i];
-      product.add(i, air_.skin_friction * (dn.dot(w) * n + n.dot(w) * dn));
+      product.add(i, friction(i) * (dn.dot(w) * n + n.dot(w) * dn));
     }
   }
 
  private:
   /// c_t times the part of `v` across the normal of particle i.
   Vec3 across(std::size_t i, const Vec3& v) const {
-    return air_.skin_friction * (v - normal_[i].dot(v) * normal_[i]);
+    return friction(i) * (v - normal_[i].dot(v) * normal_[i]);
   }
 
+  double friction(std::size_t i) const { return friction_.of((*mass_)[i]); }
+
   Air air_;
+  NodeCoefficient friction_;
+  const std::vector<double>* mass_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
 };
@@ -65,14 +72,15 @@ class SkinFriction : public Force {
 }  // namespace
 
 ForceEntry skin_friction_entry() {
-  return {.make = [](const Scene& scene, const ClothSystem&) -> std::unique_ptr<Force> {
-            if (!scene.air || !(scene.air->skin_friction > 0)) return nullptr;
-            return std::make_unique<SkinFriction>(*scene.air);
+  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+            const NodeCoefficient friction = drag_along_cloth(scene);
+            if (friction.is_zero()) return nullptr;
+            return std::make_unique<SkinFriction>(wind_of(scene), friction, system);
           },
           .work = &Work::air,
           .explain =
               [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("skin friction", scene, "air.skin_friction")};
+                return std::vector{coefficient_stage("skin friction", scene, cloth_drag_path(scene))};
               }};
 }
 

@@ -8,6 +8,7 @@
 #include "cloth/grid.h"
 #include "cloth/sums.h"
 #include "forces/registry.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -126,13 +127,16 @@ class SpringForce : public Force {
   }
 };
 
-/// F_i = k_d ((v_j - v_i) . d/|d|) d/|d| on every spring; 0 where |d| = 0.
+/// F_i = k_d ((v_j - v_i) . d/|d|) d/|d| on every spring; 0 where |d| = 0. k_d is the same for all springs,
+/// or a damping time times the spring's stiffness.
 class SpringDamping : public Force {
  public:
-  /// `damping` in N s/m; `system` must outlive the force.
-  SpringDamping(const ClothSystem& system, double damping) : system_(&system), damping_(damping) {}
+  /// `damping` in N s/m, `time` in s; `system` must outlive the force.
+  SpringDamping(const ClothSystem& system, double damping, double time)
+      : system_(&system), damping_(damping), time_(time) {}
 
   KernelCoverage join(SweepTerms& terms) const override {
+    if (time_ > 0) return KernelCoverage::none;
     terms.spring_damping = damping_;
     return KernelCoverage::every_pass;
   }
@@ -141,47 +145,69 @@ class SpringDamping : public Force {
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override {
     Chunk g;
     for_each_chunk(*system_, [&](const SpringRun& run, int first, int count) {
-      damper_chunk(run, first, count, position, velocity, damping_, g);
+      damper_chunk(run, first, count, position, velocity, of(run), g);
       add_to_ends(g, first, run.offset, count, product);
     });
   }
   bool add_node_damping(NodeDamping& damping) const override {
     damping.along_springs += damping_;
+    damping.stretch_time += time_;
     return false;
   }
   void add_power(const Vec3Field& position, const Vec3Field& velocity, Work& power) const override {
     for (const SpringRun& run : system_->springs)
-      power.damping_loss += damping_ * squared_rates(run, position, velocity);
+      power.damping_loss += of(run) * squared_rates(run, position, velocity);
   }
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override {
-    const double along = weights.velocity * damping_;
-    for_each_spring(system.springs, [&](const SpringRun&, std::size_t spring, std::size_t i, std::size_t j) {
-      to.springs.add(spring, block_along(0, along, direction(position[j] - position[i])));
-    });
+    for_each_spring(system.springs,
+                    [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t j) {
+                      const double along = weights.velocity * of(run);
+                      to.springs.add(spring, block_along(0, along, direction(position[j] - position[i])));
+                    });
   }
   bool has_asymmetric_part() const override { return true; }
   /// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+    for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
       const double length = (position[j] - position[i]).norm();
       if (!(length > 0)) return;
       const Vec3 e = (position[j] - position[i]) / length, u = velocity[j] - velocity[i],
                  dd = direction[j] - direction[i];
       const Vec3 de = (dd - e.dot(dd) * e) / length;
-      const Vec3 change = damping_ * (u.dot(de) * e + u.dot(e) * de);  // of F_i
+      const Vec3 change = of(run) * (u.dot(de) * e + u.dot(e) * de);  // of F_i
       product.add(i, -change);
       product.add(j, change);
     });
   }
 
  private:
+  double of(const SpringRun& run) const { return damping_ + time_ * run.stiffness; }
+
   const ClothSystem* system_;
   double damping_;  ///< N s/m
+  double time_;     ///< s
 };
 
+/// Of a material.
+StageInfo material_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
+  const std::string name = fmt::format("{} springs", name_of(family));
+  const auto count = system.spring_count(family);
+  if (count == 0 && family == SpringFamily::flexion)
+    return {name, false, "a material bends by its own elements"};
+  if (count == 0) return {name, false, "the material's stiffness for them is 0"};
+  const CellSides cell = cell_sides(scene.cloth);
+  const CellSprings k = cell_springs(*scene.material, cell.across, cell.down);
+  if (family == SpringFamily::shear)
+    return {name, true, fmt::format("{} springs of {:.6g} N/m", count, k.diagonal)};
+  return {name, true,
+          fmt::format("{} springs of {:.6g} N/m across and {:.6g} N/m down, half of that at the borders",
+                      count, k.across, k.down)};
+}
+
 StageInfo family_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
+  if (scene.material) return material_stage(scene, system, family);
   const std::string name = fmt::format("{} springs", name_of(family));
   if (auto absent = absent_stage(name, scene, "springs")) return *absent;
   const double stiffness = stiffness_of(*scene.springs, family);
@@ -216,15 +242,19 @@ ForceEntry spring_entry() {
 }
 
 ForceEntry spring_damping_entry() {
-  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
-            if (system.springs.empty() || !(scene.springs->damping > 0)) return nullptr;
-            return std::make_unique<SpringDamping>(system, scene.springs->damping);
-          },
-          .work = &Work::damping_loss,
-          .explain =
-              [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("spring damping", scene, "springs.damping")};
-              }};
+  return {
+      .make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+        const double damping = scene.springs ? scene.springs->damping : 0,
+                     time = scene.material ? scene.material->stretch_damping : 0;
+        if (system.springs.empty() || !(damping + time > 0)) return nullptr;
+        return std::make_unique<SpringDamping>(system, damping, time);
+      },
+      .work = &Work::damping_loss,
+      .explain =
+          [](const Scene& scene, const ClothSystem&) {
+            return std::vector{coefficient_stage(
+                "spring damping", scene, scene.material ? "material.stretch_damping" : "springs.damping")};
+          }};
 }
 
 }  // namespace cloth

@@ -78,8 +78,9 @@ void VelocitySolver::solve_by_particle(const ClothSystem& system, const Vec3Fiel
   });
   if (holds) {
     const Vec3 n = damping.normal ? (*damping.normal)[held] : Vec3::Zero();
-    const double diagonal = system.mass[held] + weight * (damping.isotropic + damping.held_isotropic);
-    const double along = weight * damping.along_normal;
+    const double diagonal =
+        system.mass[held] + weight * (damping.isotropic.of(system.mass[held]) + damping.held_isotropic);
+    const double along = weight * damping.along_normal.of(system.mass[held]);
     velocity.set(held, (of_held - along / (diagonal + along) * n.dot(of_held) * n) / diagonal);
   }
 }

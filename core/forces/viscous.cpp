@@ -19,7 +19,7 @@ class ViscousDamping : public Force {
     for (std::size_t k = 0; k < v.size(); ++k) out[k] += coefficient_ * v[k];
   }
   bool add_node_damping(NodeDamping& damping) const override {
-    damping.isotropic += coefficient_;
+    damping.isotropic.each += coefficient_;
     return true;
   }
   void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
@@ -44,10 +44,10 @@ ForceEntry viscous_damping_entry() {
             return std::make_unique<ViscousDamping>(*scene.damping);
           },
           .work = &Work::damping_loss,
-          .explain =
-              [](const Scene& scene, const ClothSystem&) {
-                return std::vector{coefficient_stage("viscous damping", scene, "damping")};
-              }};
+          .explain = [](const Scene& scene, const ClothSystem&) -> std::vector<StageInfo> {
+            if (scene.material) return {};  // mass_damping.cpp
+            return {coefficient_stage("viscous damping", scene, "damping")};
+          }};
 }
 
 }  // namespace cloth

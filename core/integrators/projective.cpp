@@ -6,25 +6,38 @@
 #include "geometry/at.h"
 
 namespace cloth {
+namespace {
+
+NodeCoefficient sum_of(const NodeCoefficient& a, const NodeCoefficient& b) {
+  return {a.each + b.each, a.per_mass + b.per_mass};
+}
+
+}  // namespace
 
 bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
-  if (!factored_ || pinned_ != system.pinned || springs_ != system.springs) {
+  if (!factored_ || pinned_ != system.pinned || springs_ != system.springs || bending_ != system.bending) {
     rows_ = analyse_free_rows(system, factors_);
     residual_.resize(3 * rows_.particle.size());
   }
-  coefficients_ = c, springs_ = system.springs, mass_ = system.mass, pinned_ = system.pinned;
+  coefficients_ = c, springs_ = system.springs, bending_ = system.bending, mass_ = system.mass,
+  pinned_ = system.pinned;
 
   const double h = c.step;
   std::vector<double> diagonal(rows_.particle.size()), off_diagonal;
   const auto add = [&](std::size_t particle, double value) {
     if (const int row = rows_.row[particle]; row >= 0) diagonal[at(row)] += value;
   };
-  for (const int i : rows_.particle) add(at(i), mass_[at(i)] + h * c.node_damping);
+  for (const int i : rows_.particle) add(at(i), mass_[at(i)] + h * c.node_damping.of(mass_[at(i)]));
   if (c.held_particle >= 0) add(at(c.held_particle), h * c.held_damping + h * h * c.held_stiffness);
-  for_each_spring(springs_, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
-    const double weight = h * c.spring_damping + h * h * run.stiffness;
+  const auto couple = [&](std::size_t i, std::size_t j, double weight) {
     add(i, weight), add(j, weight);
     if (rows_.row[i] >= 0 && rows_.row[j] >= 0) off_diagonal.push_back(-weight);
+  };
+  for_each_spring(springs_, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+    couple(i, j, h * c.spring_damping + h * (h + c.stretch_time) * run.stiffness);
+  });
+  for_each_bending_pair(bending_, [&](std::size_t i, std::size_t j, double stiffness) {
+    couple(i, j, h * (h + c.bending_time) * stiffness);
   });
   return factored_ = factors_.factorise(diagonal, off_diagonal);
 }
@@ -59,13 +72,15 @@ IntegratorReport Projective::step(ForceModel& forces, const StepTimes& times, Cl
 
   const NodeDamping parts = forces.damping_parts();
   const Coefficients numbers{.step = h,
-                             .node_damping = parts.isotropic + std::max(parts.along_normal, 0.0),
+                             .node_damping = sum_of(parts.isotropic, parts.along_normal.positive()),
                              .spring_damping = parts.along_springs,
+                             .stretch_time = parts.stretch_time,
+                             .bending_time = parts.bending_time,
                              .held_particle = parts.held_particle,
                              .held_damping = parts.held_isotropic,
                              .held_stiffness = parts.held_stiffness};
-  if (!factored_ || coefficients_ != numbers || springs_ != system.springs || mass_ != system.mass ||
-      pinned_ != system.pinned) {
+  if (!factored_ || coefficients_ != numbers || springs_ != system.springs || bending_ != system.bending ||
+      mass_ != system.mass || pinned_ != system.pinned) {
     ++report.factorisations;
     if (!factorise(system, numbers)) {
       report.failure = SolverFailure{0, "the constant matrix could not be factored"};

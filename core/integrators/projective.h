@@ -11,7 +11,8 @@
 // nearest vector of the rest length) the step equation is the linear system A x' = ... of Liu et al. (the
 // global step), and its solution is exactly the iteration above. D_max bounds D whatever the shape: viscous
 // damping and air on the diagonal (n n^T <= I), spring damping as the Laplacian weighted by it (d d^T <= I),
-// the hand's spring and damping on its particle.
+// the hand's spring and damping on its particle. A material's bending is linear, so that its matrix is in A
+// exactly.
 //
 // So A is never less than the derivative of r by springs and damping, and an iteration lowers the incremental
 // potential wherever it is one. Wind is left out of A: its force changes with the normals, but is bounded
@@ -34,7 +35,8 @@ class Projective : public Integrator {
   /// What A consists of beside springs, masses and pins. Units as in NodeDamping.
   struct Coefficients {
     double step = 0;
-    double node_damping = 0, spring_damping = 0;
+    NodeCoefficient node_damping;
+    double spring_damping = 0, stretch_time = 0, bending_time = 0;
     int held_particle = -1;
     double held_damping = 0, held_stiffness = 0;
     bool operator==(const Coefficients&) const = default;
@@ -47,6 +49,7 @@ class Projective : public Integrator {
   bool factored_ = false;  ///< `factors_` are those of A with these:
   Coefficients coefficients_;
   SpringRuns springs_;
+  BendingRuns bending_;
   std::vector<double> mass_;
   std::vector<std::uint8_t> pinned_;
   FreeRows rows_;

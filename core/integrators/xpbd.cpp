@@ -1,5 +1,6 @@
 #include "integrators/xpbd.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -18,12 +19,13 @@ double largest_squared_speed(const Vec3Field& velocity) {
 void Xpbd::predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity) {
   const NodeDamping parts = forces.damping_parts();
   const Vec3Field& force = forces.position_force();
-  const double along = h * parts.along_normal;
-  spring_damping_ = parts.along_springs;
+  spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
+  bending_time_ = parts.bending_time;
   mobility_.assign(velocity.size(), {});
   for (std::size_t i = 0; i < mobility_.size(); ++i) {
     if (system.inverse_mass[i] == 0) continue;
-    double mass = system.mass[i] + h * parts.isotropic;
+    const double along = h * parts.along_normal.of(system.mass[i]);
+    double mass = system.mass[i] + h * parts.isotropic.of(system.mass[i]);
     if (parts.held_particle == static_cast<int>(i))
       mass += h * parts.held_isotropic + h * h * parts.held_stiffness;
     Mobility& mobility = mobility_[i];
@@ -68,10 +70,10 @@ double Xpbd::visit(const SpringRun& run, std::size_t i, const Vec3Field& start, 
   const double give = d.dot(speed_by(d));
   const double rate = d.dot(speed + speed_by(across - impulse));
   const double stretch = d.dot(first) + h * rate - run.rest_length;
-  const double lambda = std::isinf(run.stiffness)
-                            ? -stretch / (h * give)
-                            : -h * (run.stiffness * stretch + spring_damping_ * rate) /
-                                  (1 + h * (h * run.stiffness + spring_damping_) * give);
+  const double damping = spring_damping_ + stretch_time_ * run.stiffness;
+  const double lambda = std::isinf(run.stiffness) ? -stretch / (h * give)
+                                                  : -h * (run.stiffness * stretch + damping * rate) /
+                                                        (1 + h * (h * run.stiffness + damping) * give);
 
   const Vec3 next = lambda * d + across;
   const Vec3 speed_i = a.times(next - impulse), speed_j = b.times(next - impulse);
@@ -86,7 +88,44 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, V
   for_each_spring(system.springs, [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t) {
     if (run.stiffness > 0) largest = std::max(largest, visit(run, i, start, h, impulse_[spring], velocity));
   });
+  std::size_t element = system.springs.spring_count();
+  for (const BendingRun& run : system.bending)
+    for (int e = run.first; e < run.first + run.count; ++e, ++element)
+      largest = std::max(largest, visit(run, e, start, h, impulse_[element], velocity));
   return largest;
+}
+
+/// With s = sum c x at the start and u = sum c v without the element's impulse P, the latter is linear in P:
+/// P = -k (h s + (h^2 + h t) (u + G P)), G = sum c^2 W.
+double Xpbd::visit(const BendingRun& run, int first, const Vec3Field& start, double h, Vec3& impulse,
+                   Vec3Field& velocity) const {
+  Vec3 s = Vec3::Zero(), u = Vec3::Zero();
+  Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
+  const auto point = [&](std::size_t p) { return static_cast<std::size_t>(first + run.offset[p]); };
+  for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) {
+    const double c = run.coefficient[p];
+    s += c * start[point(p)];
+    u += c * velocity[point(p)];
+    give += c * c * mobility_[point(p)].matrix();
+  }
+  u -= give * impulse;
+  const double weight = run.stiffness * h * (h + bending_time_);
+  const Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity() + weight * give;
+  const Vec3 next = -matrix.llt().solve(run.stiffness * h * s + weight * u);
+  double largest = 0;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) {
+    const Vec3 change = run.coefficient[p] * mobility_[point(p)].times(next - impulse);
+    velocity.add(point(p), change);
+    largest = std::max(largest, change.squaredNorm());
+  }
+  impulse = next;
+  return largest;
+}
+
+std::size_t Xpbd::element_count(const ClothSystem& system) {
+  std::size_t count = system.springs.spring_count();
+  for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
+  return count;
 }
 
 IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
@@ -102,7 +141,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
     if (constraint_) constraint_->before_kick(h, h, state);
     predict(system, forces, h, state.velocity);
 
-    impulse_.assign(system.springs.spring_count(), Vec3::Zero());
+    impulse_.assign(element_count(system), Vec3::Zero());
     double changed = 0;
     for (int k = 0; k < iterations_; ++k) changed = pass(system, state.position, h, state.velocity);
     report.iterations += iterations_;

@@ -19,6 +19,9 @@
 // they were. Where springs turn within a substep its passes then converge to something beside the implicit
 // Euler step. Here a visit turns the whole of P into the present direction, so that the limit is that step
 // (with normals and wind at the start); on a straight line both are the same.
+//
+// A bending element (cloth/bending.h) has the impulse P on s = sum c x, linear in s: P = -h k (s' + t sum c
+// v').
 #pragma once
 
 #include "integrators/integrator.h"
@@ -41,20 +44,28 @@ class Xpbd : public Integrator {
   struct Mobility {
     double isotropic = 0, along_normal = 0;
     Vec3 normal{0, 0, 0};
+    Eigen::Matrix3d matrix() const {
+      return isotropic * Eigen::Matrix3d::Identity() - along_normal * normal * normal.transpose();
+    }
     Vec3 times(const Vec3& v) const { return isotropic * v - along_normal * normal.dot(v) * normal; }
   };
 
   void predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity);
-  /// Over all springs, once; returns the largest squared change of a particle's velocity by a visit.
+  /// Over all springs and bending elements, once; returns the largest squared change of a particle's velocity
+  /// by a visit.
   double pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
   double visit(const SpringRun& run, std::size_t i, const Vec3Field& start, double h, Vec3& impulse,
                Vec3Field& velocity) const;
+  double visit(const BendingRun& run, int first, const Vec3Field& start, double h, Vec3& impulse,
+               Vec3Field& velocity) const;
+  static std::size_t element_count(const ClothSystem& system);
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
   std::vector<Mobility> mobility_;
-  std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run
+  std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run, then of every bending element
   double spring_damping_ = 0;  ///< N s/m
+  double stretch_time_ = 0, bending_time_ = 0;  ///< s
 };
 
 }  // namespace cloth

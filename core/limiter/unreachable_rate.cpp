@@ -71,10 +71,12 @@ bool are_where_they_started(const std::vector<int>& particles, const ClothSystem
 
 std::optional<UnreachableRate> find_unreachable_rate(const Scene& scene, const ClothSystem& system,
                                                      const Vec3Field& position) {
-  if (!scene.deformation || !scene.springs) return std::nullopt;
+  if (!scene.deformation) return std::nullopt;
   const Deformation& deformation = *scene.deformation;
-  const Links links{is_limited(deformation, SpringFamily::structural) && scene.springs->structural > 0,
-                    is_limited(deformation, SpringFamily::shear) && scene.springs->shear > 0};
+  const auto links_by = [&](SpringFamily family) {
+    return is_limited(deformation, family) && system.spring_count(family) > 0;
+  };
+  const Links links{links_by(SpringFamily::structural), links_by(SpringFamily::shear)};
   if (!links.structural && !links.shear) return std::nullopt;
   const bool is_mesh = system.is_mesh();
   const GridCell cell = is_mesh ? GridCell{} : cell_of(scene.cloth);

@@ -18,6 +18,8 @@ Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleratio
   energy.kinetic = kinetic_energy(system, state.velocity);
   energy.elastic_by_family = elastic_energy(system, state.position);
   for (const double part : energy.elastic_by_family) energy.elastic += part;
+  energy.bending = bending_energy(system.bending, state.position);
+  energy.elastic += energy.bending;
   energy.gravity = gravity_energy(system, gravity_acceleration, state.position);
   return energy;
 }

@@ -10,6 +10,8 @@
 namespace cloth {
 namespace {
 
+using Eigen::Index;
+
 /// u -> M^-1/2 L M^-1/2 u with one number for each particle; pinned ones do not move.
 class ScaledLaplacian {
  public:
@@ -26,6 +28,11 @@ class ScaledLaplacian {
       product[i] += force;
       product[j] -= force;
     });
+    for_each_bending_pair(system_.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+      const double force = stiffness * (u[Index(i)] - u[Index(j)]);
+      product[Index(i)] += force;
+      product[Index(j)] -= force;
+    });
     return scale_.cwiseProduct(product);
   }
 
@@ -35,6 +42,10 @@ class ScaledLaplacian {
     for_each_spring(system_.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
       stiffness[i] += (scale_[j] > 0 ? 2 : 1) * run.stiffness;
       stiffness[j] += (scale_[i] > 0 ? 2 : 1) * run.stiffness;
+    });
+    for_each_bending_pair(system_.bending, [&](std::size_t i, std::size_t j, double of_pair) {
+      stiffness[Index(i)] += of_pair + (scale_[Index(j)] > 0 ? std::abs(of_pair) : 0);
+      stiffness[Index(j)] += of_pair + (scale_[Index(i)] > 0 ? std::abs(of_pair) : 0);
     });
     return scale_.cwiseProduct(scale_).cwiseProduct(stiffness);
   }

@@ -32,6 +32,7 @@ class ScaledStiffness {
     for_each_spring(system_.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
       add_spring(run, i, j, u, product);
     });
+    add_bending(u, product);
     return scale_.cwiseProduct(product);
   }
 
@@ -52,6 +53,17 @@ class ScaledStiffness {
       product[axis * n + i] += force[axis];
       product[axis * n + j] -= force[axis];
     }
+  }
+
+  void add_bending(const VectorXd& u, VectorXd& product) const {
+    const auto n = position_.size();
+    for_each_bending_pair(system_.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+      for (std::size_t k = 0; k < 3 * n; k += n) {
+        const double force = stiffness * (u[Index(k + i)] - u[Index(k + j)]);
+        product[Index(k + i)] += force;
+        product[Index(k + j)] -= force;
+      }
+    });
   }
 
   const ClothSystem& system_;

@@ -11,6 +11,7 @@
 #include "measure/amplification.h"
 #include "measure/spectrum.h"
 #include "scene/method_facts.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -36,11 +37,12 @@ double wave_stiffness(const GridCell& cell, const SpringMaterial& material, doub
 
 /// The largest value over the Brillouin zone: a grid of waves, then ever smaller neighbourhoods of the best
 /// one.
-double scanned_stiffness(const GridCell& cell, const SpringMaterial& material) {
+template <class StiffnessOf>  // (qx, qy) in N/m
+double scanned_stiffness(const StiffnessOf& stiffness_of_wave) {
   constexpr int waves = 32;
   double best = 0, best_x = 0, best_y = 0;
   const auto consider = [&](double qx, double qy) {
-    const double value = wave_stiffness(cell, material, qx, qy);
+    const double value = stiffness_of_wave(qx, qy);
     if (value > best) best = value, best_x = qx, best_y = qy;
   };
   for (int i = 0; i <= waves; ++i)
@@ -96,6 +98,47 @@ double laplacian_stiffness(const SpringMaterial& material) {
   return largest;
 }
 
+/// The stiffness of a material's grid for plane waves, N/m.
+struct MaterialWaves {
+  CellSprings springs;
+  CellBending bending;
+  Vec3 across, down, diagonals[2];  ///< unit vectors
+
+  explicit MaterialWaves(const Scene& scene) {
+    const CellSides sides = cell_sides(scene.cloth);
+    const GridCell cell = cell_of(scene.cloth);
+    springs = cell_springs(*scene.material, sides.across, sides.down);
+    bending = cell_bending(*scene.material, sides.across, sides.down);
+    across = cell.across.normalized(), down = cell.down.normalized();
+    diagonals[0] = (cell.across + cell.down).normalized();
+    diagonals[1] = (cell.across - cell.down).normalized();
+  }
+
+  /// Of bending, for the cosines c and d of the phases across and down: as stiff in every direction.
+  double of_bending(double c, double d) const {
+    return 4 * (bending.across * (1 - c) * (1 - c) + bending.down * (1 - d) * (1 - d) +
+                bending.twist * (1 - c) * (1 - d));
+  }
+  /// Of the springs, were each as stiff in every direction.
+  double of_springs(double c, double d) const {
+    return 2 * springs.across * (1 - c) + 2 * springs.down * (1 - d) + 4 * springs.diagonal * (1 - c * d);
+  }
+  double most_of_springs() const {
+    return std::max({of_springs(-1, 1), of_springs(1, -1), of_springs(-1, -1)});
+  }
+  double most_of_bending() const { return of_bending(-1, -1); }
+  /// m omega^2 of the fastest of the three plane waves with these phases, of the flat grid at rest.
+  double at_rest(double qx, double qy) const {
+    const auto along = [](const Vec3& e) -> Eigen::Matrix3d { return e * e.transpose(); };
+    const Eigen::Matrix3d matrix = 2 * (springs.across * (1 - std::cos(qx)) * along(across) +
+                                        springs.down * (1 - std::cos(qy)) * along(down) +
+                                        springs.diagonal * ((1 - std::cos(qx + qy)) * along(diagonals[0]) +
+                                                            (1 - std::cos(qx - qy)) * along(diagonals[1])));
+    return of_bending(std::cos(qx), std::cos(qy)) +
+           Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  }
+};
+
 /// Whether `method` chooses its own steps in this scene, so that none that is given is too long: the
 /// one place that decides it.
 bool adapts_its_steps(const std::string& method, const Scene& scene) {
@@ -107,7 +150,10 @@ bool adapts_its_steps(const std::string& method, const Scene& scene) {
 double largest_frequency(const ClothSheet& sheet, const SpringMaterial& material) {
   if (sheet.is_mesh()) return resting_frequency(make_cloth(sheet, material));
   const GridCell cell = cell_of(sheet);
-  const double stiffness = is_square(cell) ? square_stiffness(material) : scanned_stiffness(cell, material);
+  const double stiffness =
+      is_square(cell)
+          ? square_stiffness(material)
+          : scanned_stiffness([&](double qx, double qy) { return wave_stiffness(cell, material, qx, qy); });
   return std::sqrt(stiffness / particle_mass(sheet));
 }
 
@@ -116,24 +162,91 @@ double guaranteed_frequency(const ClothSheet& sheet, const SpringMaterial& mater
   return std::sqrt(laplacian_stiffness(material) / particle_mass(sheet));
 }
 
+namespace {
+
+/// A corner of the material's grid, without pins: where springs at edges are weak, what lies at an edge or a
+/// corner oscillates faster than any wave inside.
+double frequency_at_edges(const Scene& scene) {
+  constexpr int size = 8;
+  Scene patch = scene;
+  patch.cloth.pins.clear();
+  patch.cloth.rows = std::min(scene.cloth.rows, size),
+  patch.cloth.columns = std::min(scene.cloth.columns, size);
+  patch.cloth.height *= double(patch.cloth.rows - 1) / (scene.cloth.rows - 1);
+  patch.cloth.width *= double(patch.cloth.columns - 1) / (scene.cloth.columns - 1);
+  const ClothSystem system = make_cloth(patch);
+  const Spectrum spectrum = measure_spectrum(system, system.start);
+  return std::sqrt(spectrum.largest + spectrum.largest_residual);
+}
+
+}  // namespace
+
+double largest_frequency(const Scene& scene) {
+  if (!scene.material) return scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  const MaterialWaves waves(scene);
+  const double inside = scanned_stiffness([&](double qx, double qy) { return waves.at_rest(qx, qy); });
+  if (!(inside > 0)) return 0;
+  return std::min(guaranteed_frequency(scene),
+                  std::max(std::sqrt(inside / particle_mass(scene)), frequency_at_edges(scene)));
+}
+
+double guaranteed_frequency(const Scene& scene) {
+  if (!scene.material) return scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
+  const MaterialWaves waves(scene);
+  return std::sqrt((waves.most_of_springs() + waves.most_of_bending()) / particle_mass(scene));
+}
+
+namespace {
+
+/// L + k e e^T has the largest eigenvalue at which k e^T (most - L)^-1 e = 1; over the waves of the grid.
+template <class WaveStiffness>  // (cosine across, cosine down) in N/m
+double greens_stiffness(double most, const WaveStiffness& stiffness_of_wave) {
+  constexpr int waves = 64;
+  double compliance = 0;
+  for (int i = 0; i < waves; ++i)
+    for (int j = 0; j < waves; ++j)
+      compliance +=
+          1 / (most - stiffness_of_wave(std::cos(pi * (i + 0.5) / waves), std::cos(pi * (j + 0.5) / waves)));
+  return waves * waves / compliance;
+}
+
+}  // namespace
+
 double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& material, double omega) {
   const double most = particle_mass(sheet) * omega * omega;
   const double largest = particle_mass(sheet) * std::pow(guaranteed_frequency(sheet, material), 2);
   if (!(most > largest)) return 0;
   if (sheet.is_mesh()) return most - largest;
-  // L + k e e^T has the largest eigenvalue at which k e^T (most - L)^-1 e = 1; over the waves of the grid.
-  constexpr int waves = 64;
-  double compliance = 0;
-  for (int i = 0; i < waves; ++i)
-    for (int j = 0; j < waves; ++j)
-      compliance += 1 / (most - laplacian_wave(material, std::cos(pi * (i + 0.5) / waves),
-                                               std::cos(pi * (j + 0.5) / waves)));
-  return waves * waves / compliance;
+  return greens_stiffness(most, [&](double c, double d) { return laplacian_wave(material, c, d); });
+}
+
+double strongest_held_spring(const Scene& scene, double omega) {
+  if (!scene.material)
+    return strongest_held_spring(scene.cloth, scene.springs.value_or(SpringMaterial{}), omega);
+  const MaterialWaves waves(scene);
+  const double most = particle_mass(scene) * omega * omega;
+  if (!(most > waves.most_of_springs() + waves.most_of_bending())) return 0;
+  return greens_stiffness(
+      most, [&](double c, double d) { return waves.of_springs(c, d) + waves.of_bending(c, d); });
 }
 
 namespace {
 
-using FrequencyOf = double (*)(const ClothSheet&, const SpringMaterial&);
+/// Which of the two frequencies a limit is of.
+struct Frequency {
+  double (*of_scene)(const Scene&);
+  double (*of_springs)(const ClothSheet&, const SpringMaterial&);
+};
+constexpr Frequency at_rest{largest_frequency, largest_frequency},
+    in_any_shape{guaranteed_frequency, guaranteed_frequency};
+
+/// Damping in proportion to stiffness, as a rate in 1/s: t omega^2 with the damping time t.
+double stiffness_damping(const Scene& scene) {
+  const MaterialWaves waves(scene);
+  return (scene.material->stretch_damping * waves.most_of_springs() +
+          scene.material->bending_damping * waves.most_of_bending()) /
+         particle_mass(scene);
+}
 
 /// The dampers as springs of stiffness k_d, in the families that exist.
 SpringMaterial dampers_of(const SpringMaterial& springs) {
@@ -141,33 +254,33 @@ SpringMaterial dampers_of(const SpringMaterial& springs) {
   return {weight(springs.structural), weight(springs.shear), weight(springs.flexion), 0};
 }
 
-DampingRates rates_of(const Scene& scene, FrequencyOf frequency) {
+DampingRates rates_of(const Scene& scene, const Frequency& frequency) {
   DampingRates rates;
-  const double mass = particle_mass(scene.cloth);
+  const double mass = particle_mass(scene);
   const NodeDamping damping = particle_damping(scene);
-  rates.least = damping.isotropic / mass + std::min(damping.along_normal, 0.0) / mass;
-  rates.most = damping.isotropic / mass + std::max(damping.along_normal, 0.0) / mass;
+  rates.least = damping.isotropic.of(mass) / mass + damping.along_normal.negative().of(mass) / mass;
+  rates.most = damping.isotropic.of(mass) / mass + damping.along_normal.positive().of(mass) / mass;
   if (scene.springs && scene.springs->damping > 0) {
     // Spring damping is the stiffness matrix of springs without rest length.
-    rates.most += std::pow(frequency(scene.cloth, dampers_of(*scene.springs)), 2);
+    rates.most += std::pow(frequency.of_springs(scene.cloth, dampers_of(*scene.springs)), 2);
   }
+  if (scene.material) rates.most += stiffness_damping(scene);
   return rates;
 }
 
-std::optional<double> step_below(const std::string& method, const Scene& scene, FrequencyOf frequency) {
+std::optional<double> step_below(const std::string& method, const Scene& scene, const Frequency& frequency) {
   if (adapts_its_steps(method, scene)) return infinity;
-  const double omega = scene.springs ? frequency(scene.cloth, *scene.springs) : 0;
-  return stable_step(method, omega, rates_of(scene, frequency));
+  return stable_step(method, frequency.of_scene(scene), rates_of(scene, frequency));
 }
 
 /// Semi-implicit Euler on x'' = -(K x + C x')/m does not grow while h^2 K + 2 h C < 4 m. Springs and dampers
 /// are bounded together here: the wave that is largest for the one need not be so for the other. s
 double joint_euler_step(const Scene& scene) {
-  const double mass = particle_mass(scene.cloth);
+  const double mass = particle_mass(scene);
   const SpringMaterial& springs = *scene.springs;
   const SpringMaterial dampers = dampers_of(springs);
   const NodeDamping damping = particle_damping(scene);
-  const double drag = damping.isotropic + std::max(damping.along_normal, 0.0);
+  const double drag = damping.isotropic.of(mass) + damping.along_normal.positive().of(mass);
   const auto is_stable = [&](double h) {
     const SpringMaterial both{h * h * springs.structural + 2 * h * dampers.structural,
                               h * h * springs.shear + 2 * h * dampers.shear,
@@ -183,10 +296,16 @@ double joint_euler_step(const Scene& scene) {
   return stable;
 }
 
+/// The same of a material, whose dampers are in proportion to its stiffness: h^2 omega^2 + 2 h c < 4.
+double joint_euler_step_of_material(const Scene& scene) {
+  const double square = std::pow(guaranteed_frequency(scene), 2), rate = rates_of(scene, in_any_shape).most;
+  return 4 / (rate + std::sqrt(rate * rate + 4 * square));
+}
+
 }  // namespace
 
 DampingRates damping_rates(const Scene& scene) {
-  return rates_of(scene, largest_frequency);
+  return rates_of(scene, at_rest);
 }
 
 bool stable_at_every_step(const std::string& method) {
@@ -219,11 +338,13 @@ std::optional<double> stable_step(const std::string& method, double largest_omeg
 }
 
 std::optional<double> stable_step(const std::string& method, const Scene& scene) {
-  return step_below(method, scene, largest_frequency);
+  return step_below(method, scene, at_rest);
 }
 
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene) {
-  const auto apart = step_below(method, scene, guaranteed_frequency);
+  const auto apart = step_below(method, scene, in_any_shape);
+  if (facts_of(method).bounds_jointly && scene.material && guaranteed_frequency(scene) > 0)
+    return joint_euler_step_of_material(scene);
   if (!facts_of(method).bounds_jointly || scene.cloth.is_mesh() || !scene.springs ||
       !(scene.springs->damping > 0))
     return apart;
@@ -231,15 +352,18 @@ std::optional<double> guaranteed_step(const std::string& method, const Scene& sc
 }
 
 double explicit_step_limit(const Scene& scene) {
-  const double omega = scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
+  const double omega = guaranteed_frequency(scene);
   return omega > 0 ? 2 / omega : infinity;
 }
 
 double provot_step(const Scene& scene) {
-  if (!scene.springs) return infinity;
-  const double stiffness =
-      std::max({scene.springs->structural, scene.springs->shear, scene.springs->flexion});
-  return stiffness > 0 ? pi * std::sqrt(particle_mass(scene.cloth) / stiffness) : infinity;
+  double stiffness = 0;
+  if (const auto& s = scene.springs) stiffness = std::max({s->structural, s->shear, s->flexion});
+  if (scene.material) {
+    const CellSprings k = MaterialWaves(scene).springs;
+    stiffness = std::max({k.across, k.down, k.diagonal});
+  }
+  return stiffness > 0 ? pi * std::sqrt(particle_mass(scene) / stiffness) : infinity;
 }
 
 }  // namespace cloth

@@ -22,10 +22,20 @@ double largest_frequency(const ClothSheet& sheet, const SpringMaterial& material
 /// its cells; for a mesh see spectrum.h. 0 without springs.
 double guaranteed_frequency(const ClothSheet& sheet, const SpringMaterial& material);
 
+/// The same of a scene, of springs or of a material; 0 where it has neither. Of a material the first is that
+/// of the wave that oscillates fastest, or of a motion at the edges of a small sheet of the same cells, the second 2 sqrt of the largest eigenvalue that a cell, a line and a
+/// twist alone have (Irons and Treharne 1971): 4/m max(k_x + 2 k_d, k_y + 2 k_d, k_x + k_y) of the springs,
+/// 16 (w_x + w_y + w_t)/m of the bending elements, m the mass of a particle inside.
+double largest_frequency(const Scene& scene);
+double guaranteed_frequency(const Scene& scene);
+
 /// The stiffest spring in N/m that may hold one particle to a fixed point so that no shape of the cloth has a
 /// frequency above `omega` in 1/s; 0 where the cloth alone may pass it. Of a grid by its Green's function,
 /// for a perturbation of rank one (Golub 1973); of a mesh by Weyl's inequality (1912), which is more careful.
 double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& material, double omega);
+
+/// The same of a scene with springs or a material, for a particle inside.
+double strongest_held_spring(const Scene& scene, double omega);
 
 /// Damping rates c = C/m in 1/s: x'' = -omega^2 x - c x'.
 struct DampingRates {

@@ -1,161 +1,14 @@
-// The blocks of a scene: their parameters, their texts and what the Add menu fills in, each declared once.
-// Designated initialisers keep the order of ParameterInfo's members.
+// The blocks of a scene: their texts and what the Add menu fills in, each declared once.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "params/field_builders.h"
+#include "scene/block_fields.h"
 #include "scene/blocks.h"
 
 namespace cloth {
 namespace {
-
-/// A force for each particle, or spring, and speed.
-ParameterInfo coefficient_info(const char* key, const char* label, const char* doc, const char* formula) {
-  return {.key = key,
-          .label = label,
-          .unit = "N s/m",
-          .doc = doc,
-          .formula = formula,
-          .scale = Scale::logarithmic,
-          .minimum = 0};
-}
-
-Fields<SpringMaterial> spring_fields() {
-  using S = SpringMaterial;
-  const auto stiffness = [](double S::*member, const char* key, const char* label, const char* doc) {
-    return field(member, {.key = key,
-                          .label = label,
-                          .unit = "N/m",
-                          .doc = doc,
-                          .formula = "F = k (|d| - L) d/|d|",
-                          .scale = Scale::logarithmic,
-                          .minimum = 0,
-                          .slider_maximum = 1e5});
-  };
-  return {
-      stiffness(&S::structural, "structural", "Structural stiffness",
-                "Resistance to stretching along rows and columns; 0 leaves these springs out."),
-      stiffness(&S::shear, "shear", "Shear stiffness",
-                "Resistance to shearing, along the diagonals of each cell; 0 leaves these springs out."),
-      stiffness(&S::flexion, "flexion", "Flexion stiffness",
-                "Resistance to bending, between particles two apart; 0 leaves these springs out."),
-      field(&S::damping,
-            coefficient_info(
-                "damping", "Spring damping",
-                "Resistance to the rate of stretching, along every spring; leaves free fall alone.",
-                "F = k_d ((v_j - v_i) . d/|d|) d/|d|")),
-  };
-}
-
-Fields<Gust> gust_fields() {
-  using G = Gust;
-  return {
-      field(&G::amplitude, {.key = "amplitude",
-                            .label = "Gust amplitude",
-                            .doc = "How far the wind's speed swings around its mean, as a fraction of it.",
-                            .formula = "wind * (1 + amplitude * sin(2 pi frequency t))",
-                            .minimum = 0,
-                            .slider_maximum = 2}),
-      field(&G::frequency, {.key = "frequency",
-                            .label = "Gust frequency",
-                            .unit = "Hz",
-                            .doc = "Swings of the wind per second.",
-                            .minimum = 0,
-                            .slider_maximum = 5}),
-  };
-}
-
-Fields<Air> air_fields() {
-  using A = Air;
-  return {
-      field(&A::drag, coefficient_info(
-                          "drag", "Air drag",
-                          "Force of the air per particle and speed along the normal; 0 leaves the air out.",
-                          "F = c_a (n . (u - v)) n")),
-      field(&A::skin_friction,
-            coefficient_info("skin_friction", "Skin friction",
-                             "Force of the air per particle and speed along the cloth; 0 leaves it out.",
-                             "F = c_t (I - n n^T) (u - v)")),
-      field(&A::wind, {.key = "wind",
-                       .label = "Wind",
-                       .unit = "m/s",
-                       .doc = "Mean velocity of the air.",
-                       .slider_minimum = -20,
-                       .slider_maximum = 20}),
-  };
-}
-
-Fields<Deformation> deformation_fields() {
-  using D = Deformation;
-  return {
-      field(&D::rate,
-            {.key = "rate",
-             .label = "Deformation rate",
-             .doc = "Largest elongation that limited springs may keep, as a fraction of the rest length.",
-             .formula = "|d| <= (1 + rate) L",
-             .scale = Scale::logarithmic,
-             .minimum = 0,
-             .slider_minimum = 0.001}),
-      field(&D::springs, {.key = "springs",
-                          .label = "Limited springs",
-                          .doc = "Which spring families the deformation rate limits.",
-                          .word_sets = {{}, {"structural"}, {"structural", "shear"}}}),
-      field(
-          &D::tolerance,
-          positive({.key = "tolerance",
-                    .label = "Tolerance",
-                    .doc = "Excess over the deformation rate that may be left, relative to the rest length.",
-                    .scale = Scale::logarithmic,
-                    .slider_minimum = 1e-6,
-                    .slider_maximum = 1e-2})),
-      field(&D::max_sweeps,
-            {.key = "max_sweeps",
-             .label = "Most sweeps",
-             .doc = "Of the solver \"sweeps\": how many per step before the rest is reported as excess.",
-             .scale = Scale::logarithmic,
-             .minimum = 1,
-             .maximum = 1000000,
-             .slider_minimum = 1,
-             .slider_maximum = 1000}),
-      field(&D::solver,
-            {.key = "solver",
-             .label = "Solver",
-             .doc = "How the rate is kept: by tensions of the limited springs (auto), by sweeps as "
-                    "Provot's, or by the nearest shape that obeys it.",
-             .choices = {"auto", "sweeps", "direct"}}),
-  };
-}
-
-ParameterInfo thickness_info(const char* doc) {
-  return positive({.key = "thickness",
-                   .label = "Thickness",
-                   .unit = "m",
-                   .doc = doc,
-                   .scale = Scale::logarithmic,
-                   .slider_minimum = 1e-4,
-                   .slider_maximum = 0.05});
-}
-
-Fields<ContactSettings> contact_fields() {
-  return {
-      field(&ContactSettings::thickness,
-            thickness_info("Distance that contact keeps between cloth and obstacles.")),
-  };
-}
-
-Fields<SelfContact> self_contact_fields() {
-  using S = SelfContact;
-  return {
-      field(&S::thickness,
-            thickness_info("Distance that contact keeps between two layers of the cloth; at most half "
-                           "of the shortest structural spring.")),
-      field(&S::friction, {.key = "friction",
-                           .label = "Friction",
-                           .doc = "Coefficient of friction of the cloth on itself.",
-                           .minimum = 0}),
-  };
-}
 
 Fields<Recording> recording_fields() {
   using R = Recording;
@@ -172,13 +25,6 @@ Fields<Recording> recording_fields() {
 
 Field<Scene> title_field() {
   return field(&Scene::title, {.key = "title", .label = "Title", .doc = "What the scene shows."});
-}
-
-Field<Scene> damping_field() {
-  return optional_field(
-      &Scene::damping,
-      coefficient_info("damping", "Viscous damping",
-                       "Resistance to every motion of a particle, free fall included.", "F = -c v"));
 }
 
 Field<Scene> gravity_field() {
@@ -273,7 +119,7 @@ BlockRow title_row() {
 
 BlockRow run_row() {
   BlockRow row{.path = "run",
-               .file_place = 12,
+               .file_place = 13,
                .title = "Run and record",
                .doc = "How long a run is and how often it is recorded."};
   std::vector<Parameter> parameters = bound<Scene>("", {duration_field()}, whole);
@@ -286,7 +132,7 @@ BlockRow run_row() {
 
 /// Its method decides which parameters it has.
 BlockRow integrator_row() {
-  BlockRow row{.path = "integrator", .file_place = 11, .title = "Integrator", .doc = "How time advances."};
+  BlockRow row{.path = "integrator", .file_place = 12, .title = "Integrator", .doc = "How time advances."};
   row.parameters = [](const Scene& scene) {
     return bound<IntegratorChoice>("integrator", integrator_fields(scene.integrator.method),
                                    [](Scene& s) -> IntegratorChoice& { return s.integrator; });
@@ -301,7 +147,12 @@ BlockRow cloth_row() {
                .title = "Cloth",
                .doc = "The sheet: how many particles, how large, how heavy.",
                .mesh_doc = "A mesh: its vertices are particles, its edges springs."};
-  row.parameters = [](const Scene& scene) { return cloth_parameters(scene.cloth.is_mesh()); };
+  row.parameters = [](const Scene& scene) {
+    std::vector<Parameter> parameters = cloth_parameters(scene.cloth.is_mesh());
+    if (scene.material)
+      std::erase_if(parameters, [](const Parameter& parameter) { return parameter.path == "cloth.mass"; });
+    return parameters;
+  };
   row.is_present = always(true);
   return row;
 }
@@ -317,7 +168,7 @@ BlockRow obstacles_row() {
 BlockRow contact_row() {
   BlockRow row = object_row<ContactSettings>(
       {.path = "contact",
-       .file_place = 9,
+       .file_place = 10,
        .title = "Contact",
        .doc = "Contact without gaps: no vertex, edge or face comes through."},
       contact_fields(), [](Scene& s) { return &s.contact; }, always(ContactSettings{}));
@@ -325,36 +176,62 @@ BlockRow contact_row() {
   return row;
 }
 
+/// A place for what scenes of a material do not have.
+template <class Value>
+auto without_material(std::optional<Value> Scene::*member) {
+  return [member](Scene& scene) { return scene.material ? nullptr : &(scene.*member); };
+}
+
+/// A material says in its own units what the air does to it.
+BlockRow air_row() {
+  BlockRow row = object_row<Air>(
+      {.path = "air",
+       .file_place = 6,
+       .title = "Air and wind",
+       .doc = "Air that drags and blows along the cloth's normals."},
+      air_fields(), [](Scene& s) { return &s.air; },
+      [](const Scene& scene) {
+        return Air{.drag = scene.material ? 0 : 0.01, .wind = {0, 0, 3}, .gust = std::nullopt};
+      });
+  row.parameters = [all = row.parameters](const Scene& scene) {
+    std::vector<Parameter> parameters = all(scene);
+    if (scene.material)
+      std::erase_if(parameters, [](const Parameter& parameter) { return parameter.path != "air.wind"; });
+    return parameters;
+  };
+  return row;
+}
+
 std::vector<BlockRow> force_rows() {
   return {
       object_row<SpringMaterial>(
           {.path = "springs", .file_place = 2, .title = "Springs", .doc = "What holds the cloth together."},
-          spring_fields(), [](Scene& s) { return &s.springs; },
+          spring_fields(), without_material(&Scene::springs),
           always(SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0})),
+      object_row<Material>(
+          {.path = "material",
+           .file_place = 3,
+           .title = "Material",
+           .doc = "What the cloth is made of, in units that do not depend on the grid; in place of springs."},
+          material_fields(), [](Scene& s) { return s.springs || s.damping ? nullptr : &s.material; },
+          always(starter_material())),
       object_row<Deformation>(
           {.path = "deformation",
-           .file_place = 7,
+           .file_place = 8,
            .title = "Deformation rate",
            .doc = "Provot's limit on how far springs may stretch."},
           deformation_fields(), [](Scene& s) { return &s.deformation; }, always(Deformation{})),
+      value_row({.path = "damping",
+                 .file_place = 4,
+                 .title = "Viscous damping",
+                 .doc = "Resistance to every motion."},
+                damping_field(), without_material(&Scene::damping), 0.001),
       value_row(
-          {.path = "damping",
-           .file_place = 3,
-           .title = "Viscous damping",
-           .doc = "Resistance to every motion."},
-          damping_field(), [](Scene& s) { return &s.damping; }, 0.001),
-      value_row(
-          {.path = "gravity", .file_place = 4, .title = "Gravity", .doc = "The weight of the cloth."},
+          {.path = "gravity", .file_place = 5, .title = "Gravity", .doc = "The weight of the cloth."},
           gravity_field(), [](Scene& s) { return &s.gravity; }, Vec3(0, -9.81, 0)),
-      object_row<Air>(
-          {.path = "air",
-           .file_place = 5,
-           .title = "Air and wind",
-           .doc = "Air that drags and blows along the cloth's normals."},
-          air_fields(), [](Scene& s) { return &s.air; },
-          always(Air{.drag = 0.01, .wind = {0, 0, 3}, .gust = std::nullopt})),
+      air_row(),
       object_row<Gust>(
-          {.path = "air.gust", .file_place = 6, .title = "Gusts", .doc = "A wind whose speed swings."},
+          {.path = "air.gust", .file_place = 7, .title = "Gusts", .doc = "A wind whose speed swings."},
           gust_fields(), [](Scene& s) { return s.air ? &s.air->gust : nullptr; }, always(Gust{})),
   };
 }
@@ -366,7 +243,7 @@ std::vector<BlockRow> all_rows() {
   rows.push_back(contact_row());
   rows.push_back(object_row<SelfContact>(
       {.path = "self_contact",
-       .file_place = 10,
+       .file_place = 11,
        .title = "Self-contact",
        .doc = "The cloth does not pass through itself."},
       self_contact_fields(), [](Scene& s) { return &s.self_contact; }, starter_self_contact));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cloth/cloth_sheet.h"
+#include "cloth/material.h"
 #include "params/parameter.h"
 #include "scene/scene_mesh.h"
 
@@ -109,8 +110,9 @@ struct Scene {
   std::string title;
   ClothSheet cloth;
   std::optional<SpringMaterial> springs;
-  std::optional<double> damping;  ///< viscous, N s/m per particle
-  std::optional<Vec3> gravity;    ///< m/s^2
+  std::optional<Material> material;  ///< in place of springs, damping, cloth.mass and the air's drag
+  std::optional<double> damping;     ///< viscous, N s/m per particle
+  std::optional<Vec3> gravity;       ///< m/s^2
   std::optional<Air> air;
   std::optional<Deformation> deformation;
   std::vector<Obstacle> obstacles;

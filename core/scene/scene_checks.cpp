@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scene/obstacle_shape.h"
+#include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -60,6 +61,34 @@ void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
   const Vec3& down = cloth.down;
   problems.push_back({"cloth.down", fmt::format("[{}, {}, {}]", down.x(), down.y(), down.z()),
                       "must not be parallel to cloth.across"});
+}
+
+/// A material becomes springs of cells that are rectangles, none of them negative.
+void check_material(const Scene& scene, std::vector<Problem>& problems) {
+  if (!scene.material) return;
+  const ClothSheet& cloth = scene.cloth;
+  if (cloth.is_mesh()) {
+    problems.push_back({"material", "", "is for grids: a cloth that is a mesh has springs"});
+    return;
+  }
+  if (!(cloth.across.norm() > 0) || !(cloth.down.norm() > 0)) return;  // said already
+  constexpr double largest_cosine = 1e-9;
+  if (std::abs(cloth.across.normalized().dot(cloth.down.normalized())) > largest_cosine) {
+    const Vec3& down = cloth.down;
+    problems.push_back({"cloth.down", fmt::format("[{}, {}, {}]", down.x(), down.y(), down.z()),
+                        "must be at right angles to cloth.across: the cells of a material are rectangles"});
+    return;
+  }
+  const CellSides cell = cell_sides(cloth);
+  const double most = largest_shear(*scene.material, cell.across, cell.down);
+  if (scene.material->shear <= most) return;
+  problems.push_back(
+      {"material.shear", fmt::format("{} N/m", scene.material->shear),
+       fmt::format("must be at most {:.6g} N/m: the diagonals of cells of {:.4g} m by {:.4g} m resist "
+                   "stretching too, by shear (across/down)^2 along the weft ({} N/m) and shear "
+                   "(down/across)^2 along the warp ({} N/m), which must be at least as much",
+                   most, cell.across, cell.down, scene.material->stretch_weft,
+                   scene.material->stretch_warp)});
 }
 
 void check_keyframes(const Scene& scene, std::vector<Problem>& problems) {
@@ -143,6 +172,7 @@ std::vector<Problem> find_problems(const Scene& scene) {
   check_meshes(scene, problems);
   check_pins(scene.cloth, problems);
   check_directions(scene.cloth, problems);
+  check_material(scene, problems);
   check_keyframes(scene, problems);
   check_self_contact(scene, problems);
   check_steps(scene, problems);

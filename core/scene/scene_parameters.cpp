@@ -50,6 +50,7 @@ Scene starter_scene(const Scene& like) {
   Scene scene;
   scene.cloth.mesh = like.cloth.mesh;
   if (like.cloth.is_mesh()) scene.cloth.origin.setZero();
+  if (like.material) scene.material.emplace();  // then it is what is added, not springs
   add_every_block(scene);
   scene.integrator.method = like.integrator.method;
   for (const Obstacle& obstacle : like.obstacles)

@@ -26,7 +26,7 @@ struct Parameter : Field<Scene> {
 std::vector<Parameter> cloth_parameters(bool is_mesh);
 
 /// A group of parameters that belongs to one piece of physics. `path` is its identity: "cloth", "springs",
-/// "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "contact",
+/// "material", "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "contact",
 /// "self_contact", "integrator", "run".
 struct Block {
   std::string path;

@@ -10,6 +10,7 @@
 #include "io/json_syntax.h"
 #include "io/printable.h"
 #include "scene/blocks.h"
+#include "scene/material_reading.h"
 #include "scene/obstacle_motion.h"
 #include "scene/obstacle_shape.h"
 #include "scene/scene_checks.h"
@@ -330,6 +331,7 @@ SceneReading read_scene(const std::string& text, const std::string& place,
       reader.problems.push_back(
           {override_.path, override_.value, "there is no such parameter in this scene"});
 
+  for (Problem& problem : settle_material(document)) reader.problems.push_back(std::move(problem));
   Scene scene = reader.read(document);
   scene.folder = meshes.folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()});
   for (Problem& problem : load_meshes(scene, meshes.known)) reader.problems.push_back(std::move(problem));

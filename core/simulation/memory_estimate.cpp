@@ -4,6 +4,7 @@
 
 #include "io/process.h"
 #include "scene/method_facts.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -39,7 +40,7 @@ double least_memory(const Scene& scene) {
   for (const MethodFacts& facts : integrator_facts())
     if (facts.name == scene.integrator.method) settings = facts.settings;
   const double particles = static_cast<double>(scene.cloth.rows) * scene.cloth.columns;
-  return particles * bytes_per_particle(settings, scene.springs.has_value());
+  return particles * bytes_per_particle(settings, has_stiffness(scene));
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ const std::vector<Column>& columns() {
       {"step", always, [](M m) { return static_cast<double>(m.step); }, true},
       {"kinetic_J", always, [](M m) { return m.energy.kinetic; }},
       {"elastic_J", always, [](M m) { return m.energy.elastic; }},
+      {"bending_J", [](Q q) { return q.bending; }, [](M m) { return m.energy.bending; }},
       {"gravity_J", always, [](M m) { return m.energy.gravity; }},
       {"total_J", always, [](M m) { return m.energy.total(); }},
       {"damping_loss_J", [](Q q) { return q.damping; }, [](M m) { return m.ledger.forces.damping_loss; }},

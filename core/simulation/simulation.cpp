@@ -12,6 +12,7 @@
 #include "kernels/worker_team.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
 #include "simulation/time_step.h"
 
@@ -25,9 +26,20 @@ double elastic_scale_of(const ClothSystem& system) {
   return energy;
 }
 
-/// Takes from `material` only what exists, so that an absent block is a material of zeros.
-SpringMaterial material_of(const Scene& scene) {
-  return scene.springs.value_or(SpringMaterial{});
+/// N/m: no hand need be stronger than what it pulls at.
+double strength_of(const Scene& scene) {
+  if (!scene.material) {
+    const SpringMaterial springs = scene.springs.value_or(SpringMaterial{});
+    return 2 * (springs.structural + springs.shear + springs.flexion);
+  }
+  const CellSides cell = cell_sides(scene.cloth);
+  const CellSprings k = cell_springs(*scene.material, cell.across, cell.down);
+  return 2 * (std::max(k.across, k.down) + k.diagonal);
+}
+
+/// kg, of a particle as the scene has it, whatever a preparation made of it.
+double mass_of_scene(const Scene& scene, const ClothSystem& system) {
+  return scene.material ? particle_mass(scene) : scene.cloth.mass / static_cast<double>(system.size());
 }
 
 /// Whether one integrator serves both: the step may differ, and settings that the method does not have.
@@ -43,7 +55,7 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
 
 Simulation::Simulation(const Scene& scene, Preparation prepare)
     : scene_(scene), prepare_(std::move(prepare)) {
-  system_ = make_cloth(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_);
   run_.state = starting_state(system_);
   if (prepare_) prepare_(system_, run_.state);
   take_step_of_scene();
@@ -79,6 +91,7 @@ void Simulation::assemble() {
                            .contact = contact_ != nullptr,
                            .structural = system_.spring_count(SpringFamily::structural) > 0,
                            .shear = system_.spring_count(SpringFamily::shear) > 0,
+                           .bending = !system_.bending.empty(),
                            .continuous_contact = has_continuous_contact()};
 
   strongest_pull_ = find_strongest_pull();
@@ -90,18 +103,15 @@ void Simulation::assemble() {
 /// takes the strongest hand.
 PullStrength Simulation::find_strongest_pull() const {
   const double mass = *std::min_element(system_.mass.begin(), system_.mass.end());
-  const SpringMaterial material = material_of(scene_);
-  const double omega = guaranteed_frequency(scene_.cloth, material);
+  const double omega = guaranteed_frequency(scene_);
   const double limit = guaranteed_step(scene_.integrator.method, scene_).value_or(0);
   const double step = run_.automatic.longest;
   const double allowed = limit > 0 && std::isfinite(limit) ? omega * limit / step : 1 / step;
-  const double strongest =
-      std::max(2 * (material.structural + material.shear + material.flexion), 1e3 * mass);
+  const double strongest = std::max(strength_of(scene_), 1e3 * mass);
   const bool unlimited = omega > 0 && std::isinf(limit);  // the method divides its steps by itself
   if (unlimited || stable_at_every_step(scene_.integrator.method))
     return {strongest, std::sqrt(strongest * mass)};
-  const double of_scene = scene_.cloth.mass / static_cast<double>(system_.size());
-  const double held = mass / of_scene * strongest_held_spring(scene_.cloth, material, allowed);
+  const double held = mass / mass_of_scene(scene_, system_) * strongest_held_spring(scene_, allowed);
   const double stiffness = std::clamp(0.5 * held, 0.0, strongest);
   return {stiffness, std::min(std::sqrt(stiffness * mass), 0.1 * mass / step)};
 }
@@ -232,7 +242,7 @@ void Simulation::edit(const Scene& scene) {
                                   : ThicknessTransition{};
   scene_ = scene;
   const Vec3Field start = std::move(system_.start);
-  system_ = make_cloth(scene_.cloth, material_of(scene_));
+  system_ = make_cloth(scene_);
   if (prepare_) {
     ClothState unused = starting_state(system_);
     prepare_(system_, unused);

@@ -48,7 +48,7 @@ struct Measurement {
 /// it.
 struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
-  bool structural = false, shear = false;
+  bool structural = false, shear = false, bending = false;
   bool continuous_contact = false;
   bool operator==(const Quantities&) const = default;
 };

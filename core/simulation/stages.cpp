@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "cloth/mesh_cloth.h"
 #include "contact/continuous_contact.h"
 #include "forces/registry.h"
 #include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -54,8 +54,7 @@ std::string evaluations_text(const MethodFacts& method) {
 }  // namespace
 
 std::vector<StageInfo> explain_stages(const Scene& scene) {
-  const SpringMaterial material = scene.springs.value_or(SpringMaterial{});
-  const ClothSystem system = make_cloth(scene.cloth, material);
+  const ClothSystem system = make_cloth(scene);
   const MethodFacts& method = facts_of(scene.integrator.method);
   const bool limits_within = make_integrator(scene.integrator)->set_drift_constraint(nullptr);
   const bool moved_later = contact_stage(scene).present || scene.self_contact ||

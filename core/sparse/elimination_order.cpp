@@ -21,6 +21,16 @@ struct GridPoint {
   }
 };
 
+/// visit(i, j) for the particles that a spring or a bending element joins; pairs may repeat.
+template <class Visit>
+void for_each_coupling(const ClothSystem& system, Visit visit) {
+  for (const SpringRun& run : system.springs)
+    for (int i = run.first; i < run.first + run.count; ++i) visit(i, i + run.offset);
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) {
+    visit(static_cast<int>(i), static_cast<int>(j));
+  });
+}
+
 /// Particles with along(direction) in [begin, begin + reach).
 struct Separator {
   std::size_t direction;
@@ -89,16 +99,13 @@ class Dissection {
 
 }  // namespace
 
-GridReach reach_of(const SpringRuns& springs, int columns) {
+GridReach reach_of(const ClothSystem& system) {
   GridReach reach{{1, 1, 1, 1}};
-  for (const SpringRun& run : springs) {
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int j = i + run.offset;
-      const GridPoint step{j / columns - i / columns, j % columns - i % columns};
-      for (std::size_t d = 0; d < directions; ++d)
-        reach.along[d] = std::max(reach.along[d], std::abs(step.along(d)));
-    }
-  }
+  for_each_coupling(system, [&](int i, int j) {
+    const GridPoint step{j / system.columns - i / system.columns, j % system.columns - i % system.columns};
+    for (std::size_t d = 0; d < directions; ++d)
+      reach.along[d] = std::max(reach.along[d], std::abs(step.along(d)));
+  });
   return reach;
 }
 
@@ -133,18 +140,15 @@ std::vector<int> elimination_order(const ClothSystem& system) {
     unknown[i] = static_cast<int>(free.size());
     free.push_back(static_cast<int>(i));
   }
-  const GridReach reach = reach_of(system.springs, system.columns);
+  const GridReach reach = reach_of(system);
   if (*std::max_element(reach.along.begin(), reach.along.end()) <= longest_reach)
     return nested_dissection(free, system.columns, reach);
 
   std::vector<Coupling> couplings;
-  for (const SpringRun& run : system.springs) {
-    for (int i = run.first; i < run.first + run.count; ++i) {
-      const int a = unknown[static_cast<std::size_t>(i)],
-                b = unknown[static_cast<std::size_t>(i + run.offset)];
-      if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
-    }
-  }
+  for_each_coupling(system, [&](int i, int j) {
+    const int a = unknown[static_cast<std::size_t>(i)], b = unknown[static_cast<std::size_t>(j)];
+    if (a >= 0 && b >= 0) couplings.emplace_back(a, b);
+  });
   std::vector<int> order = minimum_degree(static_cast<int>(free.size()), couplings);
   for (int& k : order) k = free[static_cast<std::size_t>(k)];
   return order;

@@ -22,8 +22,8 @@ struct GridReach {
   std::array<int, 4> along{};
 };
 
-/// The furthest reach among the springs of a grid of so many columns.
-GridReach reach_of(const SpringRuns& springs, int columns);
+/// The furthest reach among the springs and bending elements of a grid.
+GridReach reach_of(const ClothSystem& system);
 
 /// The given particles of a grid, numbered row by row, in the order of elimination.
 std::vector<int> nested_dissection(const std::vector<int>& particles, int columns, const GridReach& reach);
@@ -33,7 +33,8 @@ std::vector<int> nested_dissection(const std::vector<int>& particles, int column
 std::vector<int> minimum_degree(int size, const std::vector<Coupling>& couplings);
 
 /// The free particles of a cloth in the order of elimination for matrices that have a block where a spring
-/// is: nested dissection where springs reach no further than a grid's, minimum degree elsewhere.
+/// or a bending element joins two: nested dissection where springs reach no further than a grid's, minimum
+/// degree elsewhere.
 std::vector<int> elimination_order(const ClothSystem& system);
 
 }  // namespace cloth

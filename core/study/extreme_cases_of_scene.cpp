@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scene/scene_checks.h"
+#include "scene/scene_cloth.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 #include "study/extremes.h"
@@ -42,23 +43,27 @@ class CaseMaker {
   std::vector<ExtremeCase> cases_;
 };
 
-void add_springs(CaseMaker& make) {
+void add_stiffnesses(CaseMaker& make) {
   for (const double factor : {0.01, 10.0, 100.0, 1e4, 1e6})
-    make.add(fmt::format("stiffness-x{:g}", factor), fmt::format("All springs {:g} times as stiff.", factor),
-             [factor](Scene& scene) {
-               scene.springs->structural *= factor;
-               scene.springs->shear *= factor;
-               scene.springs->flexion *= factor;
-             });
+    make.add(fmt::format("stiffness-x{:g}", factor),
+             fmt::format("{:g} times as stiff in everything.", factor),
+             [factor](Scene& scene) { scale_stiffness(scene, factor); });
 }
 
 void add_damping(CaseMaker& make) {
-  make.add("no-damping", "Without viscous and spring damping.", [](Scene& scene) {
+  make.add("no-damping", "Without damping of motions, springs and bending.", [](Scene& scene) {
     scene.damping.reset();
     if (scene.springs) scene.springs->damping = 0;
+    if (Material* material = scene.material ? &*scene.material : nullptr)
+      material->stretch_damping = material->bending_damping = material->mass_damping = 0;
   });
   make.add("enormous-damping", "Viscous damping of 1e4 N s/m on every particle: nothing should move.",
-           [](Scene& scene) { scene.damping = 1e4; });
+           [](Scene& scene) {
+             if (scene.material)
+               scene.material->mass_damping = 1e4 / particle_mass(scene);
+             else
+               scene.damping = 1e4;
+           });
 }
 
 void add_rates(CaseMaker& make) {
@@ -80,16 +85,16 @@ std::vector<ExtremeCase> extreme_cases_of(const Scene& scene) {
   for (const double factor : {0.1, 2.0, 5.0, 20.0, 100.0})
     make.add(fmt::format("step-x{:g}", factor), fmt::format("Steps of {:.4g} s.", factor * make.step()),
              [factor](Scene& pushed) { *pushed.integrator.time_step *= factor; });
-  if (scene.springs) add_springs(make);
+  if (has_stiffness(scene)) add_stiffnesses(make);
   for (const double factor : {0.001, 1000.0})
     make.add(fmt::format("mass-x{:g}", factor), fmt::format("The cloth {:g} times as heavy.", factor),
-             [factor](Scene& pushed) { pushed.cloth.mass *= factor; });
+             [factor](Scene& pushed) { scale_mass(pushed, factor); });
   add_damping(make);
   make.add("hurricane", "A wind of 60 m/s along x and z.", [](Scene& pushed) {
     if (!pushed.air) pushed.air = Air{};
     pushed.air->wind = Vec3(60, 0, 60);
   });
-  if (scene.springs) add_rates(make);
+  if (has_stiffness(scene)) add_rates(make);
   return make.take();
 }
 

@@ -11,6 +11,7 @@
 #include "forces/force_model.h"
 #include "measure/energy.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_cloth.h"
 #include "simulation/step_batches.h"
 
 namespace cloth {
@@ -21,7 +22,7 @@ constexpr double collocation_phase = 0.3;  // step * fastest rate
 const char* const loop_method = "verlet";
 
 double fastest_rate(const Scene& scene) {
-  const double omega = scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  const double omega = largest_frequency(scene);
   return std::hypot(omega, damping_rates(scene).most);
 }
 
@@ -74,7 +75,7 @@ void finish(const ClothSystem& system, const std::vector<ClothState>& check, Ref
 
 bool is_smooth(const Scene& scene) {
   if (!scene.obstacles.empty()) return false;
-  const ClothSystem system = make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}));
+  const ClothSystem system = make_cloth(scene);
   return !(scene.deformation && DeformationLimiter::is_needed(*scene.deformation, system));
 }
 
@@ -89,8 +90,7 @@ struct ClothMotion::Forces {
 };
 
 ClothMotion::ClothMotion(const Scene& scene)
-    : system_(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}))),
-      forces_(std::make_unique<Forces>(scene, system_)) {}
+    : system_(make_cloth(scene)), forces_(std::make_unique<Forces>(scene, system_)) {}
 
 ClothMotion::~ClothMotion() = default;
 

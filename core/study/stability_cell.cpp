@@ -11,6 +11,7 @@
 #include "integrators/registry.h"
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
+#include "scene/scene_cloth.h"
 #include "simulation/step_batches.h"
 #include "simulation/time_step.h"
 #include "study/stability_map.h"
@@ -98,14 +99,14 @@ PredictedLimits predict_limits(const Scene& cell) {
                          .provot = provot_step(cell),
                          .spectrum = infinity};
   if (!std::isfinite(limits.predicted)) return limits;
-  const ClothSystem system = make_cloth(cell.cloth, cell.springs.value_or(SpringMaterial{}));
+  const ClothSystem system = make_cloth(cell);
   const double omega = measure_spectrum(system, system.start).largest_frequency();
   limits.spectrum = stable_step(method, omega, damping_rates(cell)).value_or(0);
   return limits;
 }
 
 std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCriterion& criterion) {
-  const double omega = cell.springs ? largest_frequency(cell.cloth, *cell.springs) : 0;
+  const double omega = largest_frequency(cell);
   double steps = criterion.least_steps;
   if (omega > 0)
     steps = std::max(steps, std::ceil(criterion.periods * 2 * std::numbers::pi / (omega * time_step)));

@@ -8,6 +8,7 @@
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
+#include "scene/scene_cloth.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -195,7 +196,7 @@ std::vector<std::string> methods_with_a_limit() {
 }
 
 StudyAxis default_stiffness_axis(const Scene& scene) {
-  const double stiffness = scene.springs ? scene.springs->structural : 1;
+  const double stiffness = has_stiffness(scene) ? leading_stiffness(scene) : 1;
   return {.path = all_stiffnesses_path,
           .low = stiffness / 10,
           .high = stiffness * 10,
@@ -206,7 +207,7 @@ StudyAxis default_stiffness_axis(const Scene& scene) {
 StudyAxis default_time_axis(const Scene& scene, const std::vector<std::string>& methods) {
   constexpr double negligible =
       0.05;  // of the longest limit: such a method would stretch the axis for itself
-  const double omega = scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  const double omega = largest_frequency(scene);
   const double reference = omega > 0 ? 2 / omega : scene.record.interval;
   double shortest = reference, longest = reference;
   for (const std::string& method : methods) {

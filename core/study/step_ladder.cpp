@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "measure/stability_limit.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth {
 namespace {
@@ -15,7 +16,7 @@ constexpr double newton_tolerance = 1e-8;   // relative, of the last change
 constexpr double under = 0.999, beyond = 1.15;
 
 double omega_of(const Scene& scene) {
-  return scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  return largest_frequency(scene);
 }
 
 std::int64_t round_up(std::int64_t value, std::int64_t to) {

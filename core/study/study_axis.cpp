@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
 
 namespace cloth {
@@ -48,12 +49,10 @@ std::optional<Problem> scale_stiffnesses(Scene& scene, double value, const std::
     return found;
   };
   if (!(value >= 0)) return broken("must be >= 0");
-  if (!scene.springs || !(scene.springs->structural > 0))
-    return broken("needs a scene with structural springs");
-  const double factor = value / scene.springs->structural;
-  scene.springs->structural = value;
-  scene.springs->shear *= factor;
-  scene.springs->flexion *= factor;
+  const double present = leading_stiffness(scene);
+  if (!(present > 0)) return broken("needs a scene with structural springs or a material that stretches");
+  scale_stiffness(scene, value / present);
+  (scene.material ? scene.material->stretch_warp : scene.springs->structural) = value;  // without rounding
   return std::nullopt;
 }
 
@@ -98,7 +97,10 @@ std::vector<double> values_of(const StudyAxis& axis) {
 
 Axis plot_axis(const StudyAxis& axis, const Scene& scene) {
   if (axis.path == all_stiffnesses_path)
-    return {.label = "Structural stiffness, others in proportion", .unit = "N/m", .scale = axis.scale};
+    return {.label = scene.material ? "Stretch stiffness along the warp, others in proportion"
+                                    : "Structural stiffness, others in proportion",
+            .unit = "N/m",
+            .scale = axis.scale};
   const auto parameter = find_parameter(scene, axis.path);
   if (!parameter) return {.label = axis.path, .scale = axis.scale};
   return {.label = parameter->info.label, .unit = parameter->info.unit, .scale = axis.scale};

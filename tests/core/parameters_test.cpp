@@ -150,7 +150,7 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     remove_block(with, obstacle ? "obstacles.0" : offer.path);
     EXPECT_EQ(with, scene) << offer.path;
   }
-  EXPECT_EQ(offered, std::set<std::string>({"springs", "deformation", "damping", "gravity", "air",
+  EXPECT_EQ(offered, std::set<std::string>({"springs", "material", "deformation", "damping", "gravity", "air",
                                             "self_contact", "sphere", "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
     EXPECT_TRUE(offer.path == "self_contact" || offer.is_obstacle) << offer.path;

@@ -17,11 +17,12 @@
 namespace cloth::test::sparse_test {
 namespace {
 
-ClothSystem square_cloth(int size) {
+ClothSystem square_cloth(int size,
+                         const SpringMaterial& springs = {.structural = 3, .shear = 2, .flexion = 1}) {
   ClothSheet sheet;
   sheet.rows = sheet.columns = size;
   sheet.pins = {NamedPin::top_left, NamedPin::top_right};
-  return make_grid(sheet, SpringMaterial{.structural = 3, .shear = 2, .flexion = 1});
+  return make_grid(sheet, springs);
 }
 
 /// Couplings between all particles, pinned or not.
@@ -61,12 +62,8 @@ TEST(EliminationOrder, OfSpringsThatReachFarHoldsEveryFreeParticleOnceToo) {
 }
 
 TEST(GridReach, IsOneAlongADiagonalOnlyWhereThereAreNoFlexionSprings) {
-  const ClothSystem system = square_cloth(9);
-  EXPECT_EQ(reach_of(system.springs, system.columns).along, (std::array{2, 2, 2, 2}));
-  std::vector<SpringRun> structural;
-  for (const SpringRun& run : system.springs)
-    if (run.family == SpringFamily::structural) structural.push_back(run);
-  EXPECT_EQ(reach_of(structural, system.columns).along, (std::array{1, 1, 1, 1}));
+  EXPECT_EQ(reach_of(square_cloth(9)).along, (std::array{2, 2, 2, 2}));
+  EXPECT_EQ(reach_of(square_cloth(9, {.structural = 3})).along, (std::array{1, 1, 1, 1}));
 }
 
 /// The unknowns of each front and of all below it.
@@ -81,8 +78,7 @@ std::vector<int> subtree_sizes(const EliminationTree& tree) {
 TEST(NestedDissection, SeparatesAGridIntoPartsOfAtMostThreeQuarters) {
   for (const int size : {16, 33, 50}) {
     const ClothSystem system = square_cloth(size);
-    const std::vector<int> order =
-        nested_dissection(all_particles(system), system.columns, reach_of(system.springs, system.columns));
+    const std::vector<int> order = nested_dissection(all_particles(system), system.columns, reach_of(system));
     const EliminationTree tree = analyse(couplings_of(system), order);
     const std::vector<int> sizes = subtree_sizes(tree);
     ASSERT_EQ(sizes.back(), system.size()) << "one tree";
@@ -103,8 +99,8 @@ TEST(NestedDissection, NeedsFewerOperationsThanMinimumDegreeAndThanRowByRow) {
       factors.analyse(couplings, order);
       return factors.operations();
     };
-    const double dissected = operations(
-        nested_dissection(all_particles(system), system.columns, reach_of(system.springs, system.columns)));
+    const double dissected =
+        operations(nested_dissection(all_particles(system), system.columns, reach_of(system)));
     EXPECT_LT(dissected, 0.95 * operations(minimum_degree(system.size(), couplings))) << size;
     EXPECT_LT(dissected, 0.75 * operations(all_particles(system))) << size;
   }

@@ -5,6 +5,7 @@
 #include "cloth/grid.h"
 #include "cloth/mesh_cloth.h"
 #include "integrators/registry.h"
+#include "scene/scene_cloth.h"
 
 namespace cloth::test {
 
@@ -17,7 +18,7 @@ IntegratorChoice exactly(const std::string& method, std::optional<double> time_s
 }
 
 DirectRun::DirectRun(const Scene& scene, const IntegratorChoice& choice)
-    : DirectRun(make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{})), scene, choice) {}
+    : DirectRun(make_cloth(scene), scene, choice) {}
 
 DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoice& choice)
     : system(std::move(made)), state(starting_state(system)), forces(scene, system), choice_(choice) {}

@@ -13,6 +13,7 @@
 
 #include "params/panel_parts.h"
 #include "params/wording.h"
+#include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
 #include "study/stability_map.h"
 #include "theme/theme.h"
@@ -78,7 +79,7 @@ std::vector<AxisChoice::Offer> AxisChoice::offersOf(const cloth::Scene& scene, c
     offers.push_back(
         {unit.empty() ? name : QString("%1 (%2)").arg(name, unit_text(unit)), std::move(offered), unit});
   };
-  if (scene.springs) offer(tr("All stiffnesses"), "N/m", cloth::default_stiffness_axis(scene));
+  if (cloth::has_stiffness(scene)) offer(tr("All stiffnesses"), "N/m", cloth::default_stiffness_axis(scene));
   for (const cloth::Block& block : cloth::blocks_of(scene))
     for (const cloth::Parameter& parameter : block.parameters) {
       const cloth::ParameterInfo& info = parameter.info;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "measure/stability_limit.h"
+#include "scene/scene_cloth.h"
 #include "simulation/time_step.h"
 #include "theme/theme.h"
 #include "widgets/numbers.h"
@@ -51,7 +52,7 @@ StabilityReading read_stability(const cloth::Scene& scene) {
     reading.level = Level::impossible;
   } else if (std::isinf(*limit)) {
     reading.level = Level::unlimited;
-    reading.by_method = scene.springs.has_value();
+    reading.by_method = cloth::has_stiffness(scene);
   } else {
     reading.stable_step = *limit;
     reading.flat_step = cloth::stable_step(scene.integrator.method, scene).value_or(0);

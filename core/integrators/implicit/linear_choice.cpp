@@ -19,6 +19,7 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   constexpr double iterations_per_root = 1.25, iterations_per_edge = 2.4, stiff = 1e6, growth = 0.25;
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
+  for (const BendingRun& run : system.bending) stiffest = std::max(stiffest, 2 * run.stiffness);
   for (const double mass : system.mass) lightest = std::min(lightest, mass);
   const double condition = 1 + 12 * weights.position * stiffest / lightest;
   const double size = system.size();

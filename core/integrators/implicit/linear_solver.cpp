@@ -54,6 +54,9 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
   for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
     if (rows.row[i] >= 0 && rows.row[j] >= 0) couplings.emplace_back(rows.row[i], rows.row[j]);
   });
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) {
+    if (rows.row[i] >= 0 && rows.row[j] >= 0) couplings.emplace_back(rows.row[i], rows.row[j]);
+  });
   std::vector<int> order = elimination_order(system);
   for (int& particle : order) particle = rows.row[static_cast<std::size_t>(particle)];
   factors.analyse(couplings, order);
@@ -62,7 +65,8 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
 }
 
 bool CholeskyFactors::fits(const ClothSystem& system) const {
-  if (pinned_ != system.pinned || runs_.size() != system.springs.size()) return false;
+  if (pinned_ != system.pinned || bending_ != system.bending || runs_.size() != system.springs.size())
+    return false;
   return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
                     [](const SpringRun& a, const SpringRun& b) {
                       return a.first == b.first && a.count == b.count && a.offset == b.offset;
@@ -72,6 +76,7 @@ bool CholeskyFactors::fits(const ClothSystem& system) const {
 void CholeskyFactors::analyse(const ClothSystem& system) {
   pinned_ = system.pinned;
   runs_ = system.springs;
+  bending_ = system.bending;
   rows_ = analyse_free_rows(system, factors_);
   diagonal_.resize(9 * rows_.particle.size());
   off_diagonal_.resize(9 * rows_.couplings);
@@ -89,6 +94,15 @@ bool CholeskyFactors::factorise(const ClothSystem& system, const Linearisation& 
   double* coupling = off_diagonal_.data();
   for_each_spring(system.springs, [&](const SpringRun&, std::size_t spring, std::size_t i, std::size_t j) {
     const SymmetricBlock block = linearisation.springs[spring];
+    add_to_diagonal(i, block);
+    add_to_diagonal(j, block);
+    if (rows_.row[i] < 0 || rows_.row[j] < 0) return;
+    add_block(-1, block, coupling);
+    coupling += 9;
+  });
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+    const double k = linearisation.bending * stiffness;
+    const SymmetricBlock block{k, 0, 0, k, 0, k};
     add_to_diagonal(i, block);
     add_to_diagonal(j, block);
     if (rows_.row[i] < 0 || rows_.row[j] < 0) return;
@@ -113,6 +127,11 @@ void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linear
     const SymmetricBlock block = linearisation.springs[spring];
     inverse_.add(i, block);
     inverse_.add(j, block);
+  });
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+    const double k = linearisation.bending * stiffness;
+    inverse_.add(i, {k, 0, 0, k, 0, k});
+    inverse_.add(j, {k, 0, 0, k, 0, k});
   });
   for (std::size_t i = 0; i < inverse_.size(); ++i)
     inverse_.set(i, system.pinned[i] ? SymmetricBlock{} : inverse_of(inverse_[i]));

@@ -1,0 +1,126 @@
+#include "cloth/material_grid.h"
+
+#include <cmath>
+
+#include "cloth/grid.h"
+
+namespace cloth {
+namespace {
+
+double part_at_border(int index, int count) {
+  return index == 0 || index == count - 1 ? 0.5 : 1;
+}
+
+/// One row of springs that begin at `first`: those of the first and the last are of half the stiffness where
+/// `halves_ends`.
+void add_row(SpringRuns& springs, SpringRun run, bool halves_ends) {
+  if (!(run.stiffness > 0) || run.count <= 0) return;
+  if (!halves_ends) return springs.push_back(run);
+  const int count = run.count;
+  SpringRun end = run;
+  end.count = 1;
+  end.stiffness = 0.5 * run.stiffness;
+  springs.push_back(end);
+  if (count > 2) {
+    run.first += 1, run.count = count - 2;
+    springs.push_back(run);
+  }
+  end.first += count - 1;
+  springs.push_back(end);
+}
+
+void add_springs(const GridCell& cell, const CellSprings& k, ClothSystem& system) {
+  const int rows = system.rows, columns = system.columns;
+  for (int row = 0; row < rows; ++row)
+    add_row(system.springs,
+            {SpringFamily::structural, system.index(row, 0), columns - 1, 1, cell.across.norm(),
+             part_at_border(row, rows) * k.across},
+            false);
+  for (int row = 0; row + 1 < rows; ++row)
+    add_row(system.springs,
+            {SpringFamily::structural, system.index(row, 0), columns, columns, cell.down.norm(), k.down},
+            true);
+  const double diagonal = (cell.across + cell.down).norm();
+  for (const SpringDirection& direction : spring_directions())
+    if (direction.family == SpringFamily::shear && k.diagonal > 0)
+      system.springs.blocks().push_back(direction_block(system, direction, diagonal, k.diagonal));
+}
+
+/// Collects elements one after the other into runs of elements that are alike.
+class BendingBuilder {
+ public:
+  explicit BendingBuilder(ClothSystem& system) : system_(system) {}
+
+  /// An element whose first point is `first`, without its stiffness' factor at clamps.
+  void add(int first, const BendingRun& element, double stiffness) {
+    BendingRun run = element;
+    run.first = first, run.count = 1;
+    run.stiffness = stiffness * clamp_factor(run);
+    if (!(run.stiffness > 0)) return;
+    if (!system_.bending.empty()) {
+      BendingRun& last = system_.bending.back();
+      if (last.stiffness == run.stiffness && last.offset == run.offset && last.first + last.count == first) {
+        ++last.count;
+        return;
+      }
+    }
+    system_.bending.push_back(run);
+  }
+
+ private:
+  bool pinned(const BendingRun& run, std::size_t point) const {
+    return system_.pinned[static_cast<std::size_t>(run.first + run.offset[point])] != 0;
+  }
+  double clamp_factor(const BendingRun& run) const {
+    int held = 0;
+    for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) held += pinned(run, p);
+    if (held == run.points) return 0;
+    if (run.points == 4) return held == 3 ? 2 : 1;
+    return held == 2 && pinned(run, 1) ? 2 : 1;
+  }
+
+  ClothSystem& system_;
+};
+
+void add_bending(const CellBending& k, ClothSystem& system) {
+  const int rows = system.rows, columns = system.columns;
+  const auto line = [](int step) {
+    return BendingRun{.points = 3, .offset = {0, step, 2 * step}, .coefficient = {1, -2, 1}};
+  };
+  const BendingRun across = line(1), down = line(columns),
+                   twist{.points = 4, .offset = {0, 1, columns, columns + 1}, .coefficient = {1, -1, -1, 1}};
+  BendingBuilder builder(system);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column + 2 < columns; ++column)
+      builder.add(system.index(row, column), across, part_at_border(row, rows) * k.across);
+  for (int row = 0; row + 2 < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      builder.add(system.index(row, column), down, part_at_border(column, columns) * k.down);
+  for (int row = 0; row + 1 < rows; ++row)
+    for (int column = 0; column + 1 < columns; ++column)
+      builder.add(system.index(row, column), twist, k.twist);
+}
+
+/// A quarter of a cell's mass for each cell that a particle is a corner of.
+void give_masses(double of_cell, ClothSystem& system) {
+  for (int row = 0; row < system.rows; ++row)
+    for (int column = 0; column < system.columns; ++column) {
+      const auto i = static_cast<std::size_t>(system.index(row, column));
+      system.mass[i] = of_cell * part_at_border(row, system.rows) * part_at_border(column, system.columns);
+      system.inverse_mass[i] = system.pinned[i] ? 0 : 1 / system.mass[i];
+    }
+}
+
+}  // namespace
+
+ClothSystem make_material_grid(const ClothSheet& sheet, const Material& material) {
+  ClothSystem system = make_grid(sheet, SpringMaterial{});
+  const GridCell cell = cell_of(sheet);
+  const double across = cell.across.norm(), down = cell.down.norm();
+  give_masses(material.areal_density * across * down, system);
+  add_springs(cell, cell_springs(material, across, down), system);
+  add_bending(cell_bending(material, across, down), system);
+  return system;
+}
+
+}  // namespace cloth

@@ -1,0 +1,83 @@
+// The bending of a material (cloth/bending.h): F = -K x, and its damping, F = -t K v with the damping time t.
+// K is constant, so that -dp/dx = K and D = t K exactly.
+#include <fmt/format.h>
+
+#include "forces/registry.h"
+
+namespace cloth {
+namespace {
+
+class Bending : public Force {
+ public:
+  bool is_internal() const override { return true; }
+  void update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) override {
+    add_bending_product(system.bending, -1, position, force);
+  }
+  void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                         Linearisation& to) const override {
+    to.bending += weights.position;
+  }
+};
+
+class BendingDamping : public Force {
+ public:
+  /// `time` in s; `system` must outlive the force.
+  BendingDamping(const ClothSystem& system, double time) : system_(&system), time_(time) {}
+
+  bool is_internal() const override { return true; }
+  void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
+    add_bending_product(system_->bending, time_, velocity, product);
+  }
+  bool add_node_damping(NodeDamping& damping) const override {
+    damping.bending_time += time_;
+    return false;
+  }
+  void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
+    power.damping_loss += time_ * bending_square(system_->bending, velocity);
+  }
+  void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
+                         Linearisation& to) const override {
+    to.bending += weights.velocity * time_;
+  }
+
+ private:
+  const ClothSystem* system_;
+  double time_;  ///< s
+};
+
+std::vector<StageInfo> explain_bending(const Scene& scene, const ClothSystem& system) {
+  if (!scene.material) return {};
+  const Material& m = *scene.material;
+  std::size_t count = 0;
+  for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
+  if (count == 0) return {{"bending", false, "material.bending_warp, bending_weft and twist are 0"}};
+  return {{"bending", true,
+           fmt::format("{} elements of {} N m along the warp, {} along the weft, twist {}", count,
+                       m.bending_warp, m.bending_weft, m.twist)}};
+}
+
+std::vector<StageInfo> explain_bending_damping(const Scene& scene, const ClothSystem&) {
+  if (!scene.material) return {};
+  return {coefficient_stage("bending damping", scene, "material.bending_damping")};
+}
+
+}  // namespace
+
+ForceEntry bending_entry() {
+  return {.make = [](const Scene&, const ClothSystem& system) -> std::unique_ptr<Force> {
+            return system.bending.empty() ? nullptr : std::make_unique<Bending>();
+          },
+          .explain = explain_bending};
+}
+
+ForceEntry bending_damping_entry() {
+  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+            if (system.bending.empty() || !scene.material || !(scene.material->bending_damping > 0))
+              return nullptr;
+            return std::make_unique<BendingDamping>(system, scene.material->bending_damping);
+          },
+          .work = &Work::damping_loss,
+          .explain = explain_bending_damping};
+}
+
+}  // namespace cloth

@@ -63,8 +63,9 @@ class AirForce : public Force {
 
   void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
   KernelCoverage join(SweepTerms& terms) const override {
-    if (brush_ || drag_.per_mass > 0) return KernelCoverage::none;
+    if (brush_ || (drag_.per_mass > 0) != terms.has_shares) return KernelCoverage::none;
     terms.air = &air_;
+    terms.air_drag = drag_.of(terms.mass);
     return KernelCoverage::whole_steps;
   }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {

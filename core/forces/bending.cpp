@@ -9,6 +9,9 @@ namespace {
 
 class Bending : public Force {
  public:
+  KernelCoverage join(SweepTerms& terms) const override {
+    return terms.has_shares ? KernelCoverage::every_pass : KernelCoverage::none;
+  }
   bool is_internal() const override { return true; }
   void update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) override {
     add_bending_product(system.bending, -1, position, force);
@@ -24,6 +27,11 @@ class BendingDamping : public Force {
   /// `time` in s; `system` must outlive the force.
   BendingDamping(const ClothSystem& system, double time) : system_(&system), time_(time) {}
 
+  KernelCoverage join(SweepTerms& terms) const override {
+    if (!terms.has_shares) return KernelCoverage::none;
+    terms.bending_time = time_;
+    return KernelCoverage::every_pass;
+  }
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
     add_bending_product(system_->bending, time_, velocity, product);

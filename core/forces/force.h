@@ -67,11 +67,17 @@ struct NodeDamping {
 /// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the
 /// springs' elastic forces.
 struct SweepTerms {
-  bool uniform_mass = false;  ///< given: all particles have the same mass
+  bool uniform_mass = false;  ///< given: all particles have the same mass, or their share of `mass`
+  bool has_shares = false;    ///< given: shares (GridSweep::has_shares()); bending is then computed too
+  double mass = 0;            ///< kg, given: of every particle, or of one that has a whole share
   Vec3 gravity{0, 0, 0};      ///< m/s^2
   double damping = 0;         ///< N s/m, viscous
   double spring_damping = 0;  ///< N s/m, along every spring
+  double stretch_time = 0;    ///< s, of dampers along springs
+  double bending_time = 0;    ///< s, of dampers of bending
   const Air* air = nullptr;
+  double air_drag = 0;  ///< N s/m
+  bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
 };
 
 /// Which passes of the kernels compute a force: none; those that do a whole explicit step; or also those that

@@ -26,8 +26,9 @@ void subtract_from(const Vec3Field& a, Vec3Field& b) {
 }
 
 std::unique_ptr<SpringSweep> sweep_for(const ClothSystem& system) {
-  if (const auto grid = grid_springs(system))
-    return std::make_unique<GridSweep>(system, *grid, common_mass(system));
+  const auto grid = system.bending.empty() ? grid_springs(system) : std::nullopt;
+  if (grid) return std::make_unique<GridSweep>(system, *grid, common_mass(system));
+  if (auto layout = cell_layout(system)) return std::make_unique<GridSweep>(system, std::move(*layout));
   if (suits_mesh_layout(system)) return std::make_unique<MeshSweep>(system, common_mass(system));
   return nullptr;
 }
@@ -51,6 +52,8 @@ void ForceModel::system_changed() {
 /// Which forces the kernels compute, and which kinds there are.
 void ForceModel::sort_forces() {
   swept_ = {.uniform_mass = sweep_ && sweep_->has_common_mass()};
+  swept_.has_shares = sweep_ && sweep_->has_shares();
+  if (swept_.uniform_mass) swept_.mass = sweep_->mass();
   const bool takes_air = sweep_ && sweep_->takes_air();
   apart_.clear();
   apart_from_steps_.clear();
@@ -138,7 +141,8 @@ double ForceModel::swept_dampers(const Vec3Field& position, const Vec3Field& vel
                                  Vec3Field& product) const {
   if (sweeps_dampers()) {
     if (product.size() != velocity.size()) product = Vec3Field(velocity.size());
-    return sweep_->damp(swept_.spring_damping, position, velocity, product);
+    return sweep_->damp({.spring_damping = swept_.spring_damping, .stretch_time = swept_.stretch_time},
+                        position, velocity, product);
   }
   clear(product, velocity.size());
   return 0;

@@ -99,7 +99,7 @@ class ForceModel {
     for (const auto& force : forces_) visit(*force);
     if (pull_) visit(*pull_);
   }
-  bool sweeps_dampers() const { return sweep_ && swept_.spring_damping > 0; }
+  bool sweeps_dampers() const { return sweep_ && (swept_.spring_damping > 0 || swept_.stretch_time > 0); }
   bool is_damped_by_sweep(const Force& force) const {
     return sweeps_dampers() && force.is_damper_of_springs();
   }

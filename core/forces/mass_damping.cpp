@@ -11,6 +11,11 @@ class MassDamping : public Force {
   /// `rate` in 1/s; `system` must outlive the force.
   MassDamping(const ClothSystem& system, double rate) : mass_(&system.mass), rate_(rate) {}
 
+  KernelCoverage join(SweepTerms& terms) const override {
+    if (!terms.uniform_mass) return KernelCoverage::none;
+    terms.damping = rate_ * terms.mass;
+    return KernelCoverage::every_pass;
+  }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
     for (std::size_t i = 0; i < velocity.size(); ++i) product.add(i, rate_ * (*mass_)[i] * velocity[i]);
   }

@@ -136,8 +136,9 @@ class SpringDamping : public Force {
       : system_(&system), damping_(damping), time_(time) {}
 
   KernelCoverage join(SweepTerms& terms) const override {
-    if (time_ > 0) return KernelCoverage::none;
+    if ((time_ > 0) != terms.has_shares) return KernelCoverage::none;
     terms.spring_damping = damping_;
+    terms.stretch_time = time_;
     return KernelCoverage::every_pass;
   }
   bool is_damper_of_springs() const override { return true; }

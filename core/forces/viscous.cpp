@@ -10,6 +10,7 @@ class ViscousDamping : public Force {
   explicit ViscousDamping(double coefficient) : coefficient_(coefficient) {}
 
   KernelCoverage join(SweepTerms& terms) const override {
+    if (terms.has_shares) return KernelCoverage::none;
     terms.damping = coefficient_;
     return KernelCoverage::every_pass;
   }

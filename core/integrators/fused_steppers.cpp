@@ -8,10 +8,13 @@ namespace {
 /// What acts beside the elasticity of springs in a step whose forces are taken at `times`, in s.
 SweepLoads loads_at(const ForceModel& forces, std::span<const double> times) {
   const SweepTerms& swept = forces.swept();
-  SweepLoads loads{
-      .weight = forces.weight(), .damping = swept.damping, .spring_damping = swept.spring_damping};
+  SweepLoads loads{.weight = forces.weight(),
+                   .damping = swept.damping,
+                   .spring_damping = swept.spring_damping,
+                   .stretch_time = swept.stretch_time,
+                   .bending_time = swept.bending_time};
   if (swept.air) {
-    loads.air.drag = swept.air->drag;
+    loads.air.drag = swept.air_drag;
     for (std::size_t k = 0; k < times.size(); ++k) loads.air.wind[k] = wind_at(*swept.air, times[k]);
   }
   return loads;
@@ -67,7 +70,7 @@ IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTime
 }
 
 bool FusedVerlet::suits(const ForceModel& forces, bool constrained) {
-  return forces.is_swept_whole() && !constrained && !forces.swept().air && forces.swept().spring_damping == 0;
+  return forces.is_swept_whole() && !constrained && !forces.swept().air && !forces.swept().has_dampers();
 }
 
 void FusedVerlet::evaluate(ForceModel& forces, const ClothState& state) {

@@ -35,7 +35,8 @@ struct IntegratorReport {
   /// The largest change of a particle's speed by the last iteration, divided by the largest speed.
   double residual = 0;
   std::optional<SolverFailure> failure = {};
-  std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, if computed anyway
+  std::optional<double> speed_squares = {};  ///< sum of |v|^2 after the step in (m/s)^2, each times its mass
+                                             ///< over the largest, if computed anyway
 };
 
 /// What something other than the integrator has changed.

@@ -10,6 +10,7 @@
 
 #include "kernels/grid_pass.h"
 #include "kernels/lane_vectors.h"
+#include "kernels/step_updates.h"
 
 namespace cloth::kernels {
 namespace {
@@ -31,15 +32,16 @@ class AirRows {
   }
 
   /// Of one row after the other: adds the push to `force`, where there is one. Returns its power.
-  template <bool HasBelow>
-  V run(const ConstRow& here, const ConstRow& below, const ConstRow& velocity, const Row& force) {
+  template <bool HasBelow, Share share>
+  V run(const RowShares<share>& shares, const ConstRow& here, const ConstRow& below, const ConstRow& velocity,
+        const Row& force) {
     V power = Lanes::zero();
     Carry carry{nothing(), nothing()};
     int j = 0;
     for (; j + Lanes::width + 1 <= columns_; j += Lanes::width)
-      block<HasBelow, false>(here, below, velocity, force, j, Lanes::width, carry, power);
+      block<HasBelow, false>(shares, here, below, velocity, force, j, Lanes::width, carry, power);
     for (; j < columns_; j += Lanes::width)
-      block<HasBelow, true>(here, below, velocity, force, j, columns_ - j, carry, power);
+      block<HasBelow, true>(shares, here, below, velocity, force, j, columns_ - j, carry, power);
     return power;
   }
 
@@ -52,9 +54,10 @@ class AirRows {
   static Vector nothing() { return {Lanes::zero(), Lanes::zero(), Lanes::zero()}; }
 
   /// At an edge a corner that is missing is replaced by the particle itself, which leaves no area.
-  template <bool HasBelow, bool Edge>
-  CLOTHLAB_INLINE void block(const ConstRow& here, const ConstRow& below, const ConstRow& velocity,
-                             const Row& force, int j, int count, Carry& carry, V& power) {
+  template <bool HasBelow, bool Edge, Share share>
+  CLOTHLAB_INLINE void block(const RowShares<share>& shares, const ConstRow& here, const ConstRow& below,
+                             const ConstRow& velocity, const Row& force, int j, int count, Carry& carry,
+                             V& power) {
     const Vector lower_above = load(lower_, j), above = lower_above + load(upper_, j);
     Vector lower = nothing(), upper = nothing();
     if constexpr (HasBelow) {
@@ -73,7 +76,7 @@ class AirRows {
     if (!force.x) return;
     const V inverse = Lanes::inverse_root<true>(squared(sum));
     const Vector n = scaled(inverse, sum), v = load_part<Edge>(velocity, j, count);
-    const V along = Lanes::mul(drag_, product(n, wind_ - v));
+    const V along = Lanes::mul(shares.of(drag_, j), product(n, wind_ - v));
     power = Lanes::fma(along, product(n, v), power);
     store(force, j, plus(load(force, j), along, n));
   }

@@ -33,6 +33,17 @@ struct Grid {
   SpringKind kind[spring_kinds]{};  ///< in the order of the bits
 };
 
+/// What a grid assembled cell by cell has in addition (cloth/material_grid.h): particles, springs along rows
+/// and springs along columns at its borders count half, and there are bending elements (cloth/bending.h).
+/// Absent: `part` is null.
+struct CellShares {
+  const double* part =
+      nullptr;  ///< 1/2 for the first and the last column, 1 for others; padded to whole registers
+  /// N/m: the stiffness of the bending element whose first point is this particle, along the row, along the
+  /// column and of the cell's twist; 0: none. Null: the cloth does not bend.
+  const double *across = nullptr, *down = nullptr, *twist = nullptr;
+};
+
 /// Consecutive rows of a field; each component is a contiguous array.
 struct RowBlock {
   double *x = nullptr, *y = nullptr, *z = nullptr;
@@ -64,18 +75,21 @@ struct Pass {
   BandField force;                                      ///< of Verlet, evaluate and damp
   const double* inverse_mass = nullptr;                 ///< 1/kg; 0 where pinned
   const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, additional force on each particle; may be null
-  double weight[3] = {0, 0, 0};                         ///< N, the same for all particles
-  double damping = 0;                                   ///< N s/m, viscous
-  double spring_damping = 0;                            ///< N s/m, dampers along springs
-  double air_drag = 0;                                  ///< N s/m per particle, along the normal
-  double wind[4][3] = {};                               ///< m/s, for each evaluation of the force in a step
-  double mass_of_free = 1;                              ///< kg
-  double step = 0;                                      ///< s
-  bool drift_first = false;   ///< explicit Euler: the position follows the old velocity
-  double* scratch = nullptr;  ///< 64-byte aligned
+  double weight[3] = {0, 0, 0};                         ///< N, of every particle; with shares, of a whole one
+  CellShares shares;
+  double damping = 0;                     ///< N s/m, viscous
+  bool has_dampers = false;               ///< along springs, or of bending
+  double spring_damping[spring_kinds]{};  ///< N s/m, dampers along springs
+  double bending_time = 0;                ///< s, damper over stiffness of bending elements
+  double air_drag = 0;                    ///< N s/m per particle, along the normal
+  double wind[4][3] = {};                 ///< m/s, for each evaluation of the force in a step
+  double mass_of_free = 1;                ///< kg
+  double step = 0;                        ///< s
+  bool drift_first = false;               ///< explicit Euler: the position follows the old velocity
+  double* scratch = nullptr;              ///< 64-byte aligned
   /// Output: sums over each row, in consecutive arrays of grid.rows numbers, indexed by StepSum or, of
-  /// Runge-Kutta, StageSum (+ stage): |v|^2 in (m/s)^2, the power dissipated by dampers along springs and the
-  /// power given by the air, in W.
+  /// Runge-Kutta, StageSum (+ stage): |v|^2 in (m/s)^2, with CellShares times the particle's share, the power
+  /// dissipated by dampers along springs and the power given by the air, in W.
   double* sums = nullptr;
 };
 enum StepSum { squares_before, squares_after, dampers_before, air_before, step_sums };

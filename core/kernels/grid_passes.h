@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/grid_air.h"
+#include "kernels/grid_cell_rows.h"
 #include "kernels/grid_rows.h"
 #include "kernels/step_updates.h"
 
@@ -43,8 +44,18 @@ struct ChainPlace {
   int evaluation = 0;  ///< of the step, for the wind
 };
 
+/// The share of a row's particles, and of springs along it.
+inline double share_of(const Pass& pass, int row) {
+  return row == 0 || row == pass.grid.rows - 1 ? 0.5 : 1;
+}
+template <Share share>
+RowShares<share> row_shares(const Pass& pass, int row) {
+  if constexpr (share == Share::equal) return {};
+  return {Lanes::set(share_of(pass, row)), pass.shares.part};
+}
+
 /// The row buffers of one chain of rows, and the rows' order.
-template <Law law>
+template <Law law, Share share>
 class RowChain {
  public:
   RowChain(const Pass& pass, const Springs& springs, const ChainPlace& place, int first_row) : pass_(pass) {
@@ -54,10 +65,16 @@ class RowChain {
     work_.b = scratch_row(pass, buffer + 1);
     work_.weight = vector_of(pass.weight);
     work_.springs = &springs;
-    work_.uses_b = (pass.grid.springs & down_two) != 0;
-    has_all_ = pass.grid.springs == (structural_springs | shear_springs | flexion_springs);
-    begin(work_.a, load_of(pass, first_row));
-    if (first_row + 1 < pass.grid.rows) begin(work_.b, load_of(pass, first_row + 1));
+    work_.part = pass.shares.part;
+    if constexpr (share == Share::equal) {
+      work_.uses_b = (pass.grid.springs & down_two) != 0;
+      has_all_ = pass.grid.springs == (structural_springs | shear_springs | flexion_springs);
+    } else {
+      work_.uses_b = law != Law::damper && pass.shares.across;
+      has_all_ = work_.uses_b && pass.grid.springs == (structural_springs | shear_springs);
+    }
+    begin(work_.a, first_row);
+    if (first_row + 1 < pass.grid.rows) begin(work_.b, first_row + 1);
     if (pass.air_drag > 0)
       air_.begin(pass, pass.wind[place.evaluation], scratch_row(pass, place.air_buffer),
                  scratch_row(pass, place.air_buffer + 1));
@@ -73,9 +90,10 @@ class RowChain {
     if (below >= 1) work_.below = particles(row + 1), work_.load_below = load_of(pass_, row + 1);
     if (below >= 2) work_.second = particles(row + 2), work_.load_second = load_of(pass_, row + 2);
     Powers powers{Lanes::zero(), Lanes::zero()};
-    if (pass_.air_drag > 0) powers.air = push(own, below >= 1);
+    if constexpr (share == Share::by_cell) stand_at(row);
+    if (pass_.air_drag > 0) powers.air = push(row, own, below >= 1);
     if (has_all_ && own && below >= 2) {
-      powers.dampers = row_pass<law, true>(work_, true, update);
+      powers.dampers = row_pass<law, share, true>(work_, true, update);
       return powers;
     }
     work_.has_below = below >= 1, work_.has_second = below >= 2;
@@ -84,20 +102,35 @@ class RowChain {
     if (below < 1) work_.present &= ~unsigned{down_one | shear_springs};
     if (row < first) work_.present &= ~unsigned{right_one | right_two};
     if (row + 1 < first) work_.present &= unsigned{down_two};
-    powers.dampers = row_pass<law, false>(work_, own, update);
+    powers.dampers = row_pass<law, share, false>(work_, own, update);
     return powers;
   }
 
  private:
-  V push(bool own, bool has_below) {
+  void stand_at(int row) {
+    work_.of_row = Lanes::set(share_of(pass_, row)), work_.of_below = Lanes::set(share_of(pass_, row + 1));
+    work_.of_second = Lanes::set(share_of(pass_, row + 2));
+    if (!pass_.shares.across) return;
+    const long at = static_cast<long>(row) * pass_.grid.columns;
+    work_.bending = {pass_.shares.across + at, pass_.shares.down + at, pass_.shares.twist + at};
+  }
+  V push(int row, bool own, bool has_below) {
+    const RowShares<share> shares = row_shares<share>(pass_, row);
     const Row force = own ? work_.a : Row{};
     const ConstRow& x = work_.here.position;
-    if (has_below) return air_.run<true>(x, work_.below.position, work_.here.velocity, force);
-    return air_.run<false>(x, {}, work_.here.velocity, force);
+    if (has_below)
+      return air_.template run<true>(shares, x, work_.below.position, work_.here.velocity, force);
+    return air_.template run<false>(shares, x, {}, work_.here.velocity, force);
   }
-  void begin(const Row& buffer, const ConstRow& load_row) const {
-    for (int j = 0; j < work_.columns; j += Lanes::width)
-      store(buffer, j, initial<true>(load_row, work_.weight, j, work_.columns - j));
+  void begin(const Row& buffer, int row) const {
+    const ConstRow load_row = load_of(pass_, row);
+    for (int j = 0; j < work_.columns; j += Lanes::width) {
+      const int count = work_.columns - j;
+      if constexpr (share == Share::equal)
+        store(buffer, j, initial<true>(load_row, work_.weight, j, count));
+      else
+        store(buffer, j, initial_share<true>(load_row, work_, Lanes::set(share_of(pass_, row)), j, count));
+    }
   }
 
   const Pass& pass_;
@@ -118,11 +151,11 @@ inline void store_sum(const Pass& pass, int which, int row, V sum) {
 }
 
 /// before(row), for the band's own rows, then the row's force and `update`, then after(row, powers).
-template <Law law, class Update, class Before, class After>
+template <Law law, Share share, class Update, class Before, class After>
 void band_pass(const Pass& pass, Update& update, const Before& before, const After& after) {
   const Springs springs(pass);
   const int start = first_row_of_springs(pass.first);
-  RowChain<law> chain(pass, springs, {0, 2}, start);
+  RowChain<law, share> chain(pass, springs, {0, 2}, start);
   const bool needs_velocity = law != Law::elastic || pass.air_drag > 0;
   const auto particles = [&](int row) -> ParticleRow {
     if (!needs_velocity) return {row_of(pass, pass.position, row), {}};
@@ -135,19 +168,20 @@ void band_pass(const Pass& pass, Update& update, const Before& before, const Aft
 }
 
 /// Lets an update that moves the particles stand at one of the band's own rows.
-template <class Update>
-void stand_at(const Pass& pass, int row, Update& update) {
+template <Share share, template <Share> class Update>
+void stand_at(const Pass& pass, int row, Update<share>& update) {
+  update.shares = row_shares<share>(pass, row);
   update.position = row_of(pass, pass.position, row);
   update.velocity = row_of(pass, pass.velocity, row);
   update.inverse_mass = inverse_masses(pass, row);
 }
 
-template <Law law>
+template <Law law, Share share>
 void euler_rows(const Pass& pass) {
-  EulerUpdate update{};
+  EulerUpdate<share> update{};
   update.step = Lanes::set(pass.step), update.damping = Lanes::set(pass.damping);
   update.drift_first = pass.drift_first;
-  band_pass<law>(
+  band_pass<law, share>(
       pass, update,
       [&](int row, bool own) {
         if (!own) return;
@@ -163,24 +197,29 @@ void euler_rows(const Pass& pass) {
 }
 
 void euler_band(const Pass& pass) {
-  if (pass.spring_damping > 0)
-    euler_rows<Law::damped>(pass);
+  if (pass.shares.part)
+    pass.has_dampers ? euler_rows<Law::damped, Share::by_cell>(pass)
+                     : euler_rows<Law::elastic, Share::by_cell>(pass);
   else
-    euler_rows<Law::elastic>(pass);
+    pass.has_dampers ? euler_rows<Law::damped, Share::equal>(pass)
+                     : euler_rows<Law::elastic, Share::equal>(pass);
 }
 
-inline void kick_drift_row(const Pass& pass, int row) {
+template <Share share>
+void kick_drift_row(const Pass& pass, int row) {
   if (row >= pass.grid.rows) return;
   const Row x = row_of(pass, pass.position, row), v = row_of(pass, pass.velocity, row);
   const ConstRow p = row_of(pass, pass.force, row);
   const double* inverse_mass = inverse_masses(pass, row);
   const V half_step = Lanes::set(0.5 * pass.step), step = Lanes::set(pass.step),
           damping = Lanes::set(pass.damping);
+  const RowShares<share> shares = row_shares<share>(pass, row);
   const int columns = pass.grid.columns;
   int j = 0;
   for (; j + Lanes::width <= columns; j += Lanes::width)
-    kick_drift_block<false>(x, v, p, inverse_mass, half_step, step, damping, j, Lanes::width);
-  if (j < columns) kick_drift_block<true>(x, v, p, inverse_mass, half_step, step, damping, j, columns - j);
+    kick_drift_block<false>(x, v, p, inverse_mass, half_step, step, shares.of(damping, j), j, Lanes::width);
+  if (j < columns)
+    kick_drift_block<true>(x, v, p, inverse_mass, half_step, step, shares.of(damping, j), j, columns - j);
 }
 
 inline V centring(const Pass& pass) {
@@ -188,36 +227,45 @@ inline V centring(const Pass& pass) {
 }
 
 /// With the kick and the drift before the force, or after a pass that has done them.
-template <bool KickAndDrift>
-void verlet_band(const Pass& pass) {
-  VerletUpdate update{};
+template <bool KickAndDrift, Share share>
+void verlet_rows(const Pass& pass) {
+  VerletUpdate<share> update{};
   update.half_step = Lanes::set(0.5 * pass.step);
   update.centred = centring(pass);
   const int start = first_row_of_springs(pass.first);
-  if (KickAndDrift) kick_drift_row(pass, start);
-  if (KickAndDrift) kick_drift_row(pass, start + 1);
-  band_pass<Law::elastic>(
+  if (KickAndDrift) kick_drift_row<share>(pass, start);
+  if (KickAndDrift) kick_drift_row<share>(pass, start + 1);
+  band_pass<Law::elastic, share>(
       pass, update,
       [&](int row, bool own) {
-        if (KickAndDrift) kick_drift_row(pass, row + 2);
+        if (KickAndDrift) kick_drift_row<share>(pass, row + 2);
         if (!own) return;
         update.velocity = row_of(pass, pass.velocity, row);
         update.force = row_of(pass, pass.force, row);
         update.inverse_mass = inverse_masses(pass, row);
+        update.shares = row_shares<share>(pass, row);
         update.after = Lanes::zero();
       },
       [&](int row, const Powers&) { store_sum(pass, squares_after, row, update.after); });
 }
 
-void verlet_open_band(const Pass& pass) {
-  for (int row = pass.first; row < pass.last; ++row) kick_drift_row(pass, row);
+template <bool KickAndDrift>
+void verlet_band(const Pass& pass) {
+  pass.shares.part ? verlet_rows<KickAndDrift, Share::by_cell>(pass)
+                   : verlet_rows<KickAndDrift, Share::equal>(pass);
 }
 
-void verlet_between_band(const Pass& pass) {
-  VerletBetweenUpdate update{};
+void verlet_open_band(const Pass& pass) {
+  for (int row = pass.first; row < pass.last; ++row)
+    pass.shares.part ? kick_drift_row<Share::by_cell>(pass, row) : kick_drift_row<Share::equal>(pass, row);
+}
+
+template <Share share>
+void verlet_between_rows(const Pass& pass) {
+  VerletBetweenUpdate<share> update{};
   update.half_step = Lanes::set(0.5 * pass.step), update.step = Lanes::set(pass.step);
   update.centred = centring(pass), update.damping = Lanes::set(pass.damping);
-  band_pass<Law::elastic>(
+  band_pass<Law::elastic, share>(
       pass, update,
       [&](int row, bool own) {
         if (!own) return;
@@ -227,9 +275,14 @@ void verlet_between_band(const Pass& pass) {
       [&](int row, const Powers&) { store_sum(pass, squares_after, row, update.after); });
 }
 
-void evaluate_band(const Pass& pass) {
+void verlet_between_band(const Pass& pass) {
+  pass.shares.part ? verlet_between_rows<Share::by_cell>(pass) : verlet_between_rows<Share::equal>(pass);
+}
+
+template <Share share>
+void evaluate_rows(const Pass& pass) {
   EvaluateUpdate update{};
-  band_pass<Law::elastic>(
+  band_pass<Law::elastic, share>(
       pass, update,
       [&](int row, bool own) {
         if (own) update.force = row_of(pass, pass.force, row);
@@ -237,9 +290,14 @@ void evaluate_band(const Pass& pass) {
       [](int, const Powers&) {});
 }
 
-void damp_band(const Pass& pass) {
+void evaluate_band(const Pass& pass) {
+  pass.shares.part ? evaluate_rows<Share::by_cell>(pass) : evaluate_rows<Share::equal>(pass);
+}
+
+template <Share share>
+void damp_rows(const Pass& pass) {
   DampUpdate update{};
-  band_pass<Law::damper>(
+  band_pass<Law::damper, share>(
       pass, update,
       [&](int row, bool own) {
         if (own) update.product = row_of(pass, pass.force, row);
@@ -247,17 +305,27 @@ void damp_band(const Pass& pass) {
       [&](int row, const Powers& powers) { store_sum(pass, dampers_before, row, powers.dampers); });
 }
 
-void sum_squares_band(const Pass& pass) {
+void damp_band(const Pass& pass) {
+  pass.shares.part ? damp_rows<Share::by_cell>(pass) : damp_rows<Share::equal>(pass);
+}
+
+template <Share share>
+void sum_squares_rows(const Pass& pass) {
   const int columns = pass.grid.columns;
   for (int row = pass.first; row < pass.last; ++row) {
     const ConstRow velocity = row_of(pass, pass.velocity, row);
+    const RowShares<share> shares = row_shares<share>(pass, row);
     V sum = Lanes::zero();
     int j = 0;
     for (; j + Lanes::width <= columns; j += Lanes::width)
-      sum = plus_square(sum, load_part<false>(velocity, j, Lanes::width));
-    if (j < columns) sum = plus_square(sum, load_part<true>(velocity, j, columns - j));
+      sum = shares.plus_square(sum, load_part<false>(velocity, j, Lanes::width), j);
+    if (j < columns) sum = shares.plus_square(sum, load_part<true>(velocity, j, columns - j), j);
     store_sum(pass, squares_after, row, sum);
   }
+}
+
+void sum_squares_band(const Pass& pass) {
+  pass.shares.part ? sum_squares_rows<Share::by_cell>(pass) : sum_squares_rows<Share::equal>(pass);
 }
 
 /// The rows that the four stages read and write: rings of three for each stage's state, of seven for the
@@ -282,9 +350,11 @@ struct KuttaRows {
     return {stage(s, row, 0), stage(s, row, 1)};
   }
 
-  StageUpdate update(int s, int row) const {
+  template <Share share>
+  StageUpdate<share> update(int s, int row) const {
     const bool is_last = s + 1 == kutta_stages;
-    StageUpdate update{};
+    StageUpdate<share> update{};
+    update.shares = row_shares<share>(pass, row);
     update.weight = Lanes::set(pass.step * kutta[s].weight);
     update.ahead = Lanes::set(is_last ? 0 : pass.step * kutta[s + 1].node);
     update.damping = Lanes::set(pass.damping);
@@ -308,7 +378,7 @@ struct KuttaRows {
 /// The four stages follow each other down the rows, two rows apart, so that what lies between them never
 /// leaves the cache. Near the band's ends the first stages also do the rows of other bands that the later
 /// ones will need.
-template <Law law>
+template <Law law, Share share>
 void runge_kutta_rows(const Pass& pass) {
   const Springs springs(pass);
   const KuttaRows rows{pass};
@@ -320,16 +390,16 @@ void runge_kutta_rows(const Pass& pass) {
     end[s] = pass.last + reach > pass.grid.rows ? pass.grid.rows : pass.last + reach;
   }
   const auto chain = [&](int s) {
-    return RowChain<law>(pass, springs, {2 * s, KuttaRows::first_air_row + 2 * s, s}, start[s]);
+    return RowChain<law, share>(pass, springs, {2 * s, KuttaRows::first_air_row + 2 * s, s}, start[s]);
   };
-  RowChain<law> chains[kutta_stages] = {chain(0), chain(1), chain(2), chain(3)};
+  RowChain<law, share> chains[kutta_stages] = {chain(0), chain(1), chain(2), chain(3)};
 
   for (int front = start[0]; front < pass.last + 2 * (kutta_stages - 1); ++front)
     for (int s = 0; s < kutta_stages; ++s) {
       const int row = front - 2 * s;
       if (row < start[s] || row >= end[s]) continue;
       const bool own = row >= begin[s];
-      StageUpdate update = own ? rows.update(s, row) : StageUpdate{};
+      StageUpdate<share> update = own ? rows.update<share>(s, row) : StageUpdate<share>{};
       const Powers powers = chains[s].run(
           row, begin[s], [&](int r) { return rows.particles(s, r); }, update);
       if (!own) continue;
@@ -341,10 +411,12 @@ void runge_kutta_rows(const Pass& pass) {
 }
 
 void runge_kutta_band(const Pass& pass) {
-  if (pass.spring_damping > 0)
-    runge_kutta_rows<Law::damped>(pass);
+  if (pass.shares.part)
+    pass.has_dampers ? runge_kutta_rows<Law::damped, Share::by_cell>(pass)
+                     : runge_kutta_rows<Law::elastic, Share::by_cell>(pass);
   else
-    runge_kutta_rows<Law::elastic>(pass);
+    pass.has_dampers ? runge_kutta_rows<Law::damped, Share::equal>(pass)
+                     : runge_kutta_rows<Law::elastic, Share::equal>(pass);
 }
 
 template <bool Divide>

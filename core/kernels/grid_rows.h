@@ -14,16 +14,20 @@
 
 #include "kernels/grid_pass.h"
 #include "kernels/lane_vectors.h"
+#include "kernels/step_updates.h"
 
 namespace cloth::kernels {
 namespace {
 
 struct Springs {
   Lanes::Spring kind[spring_kinds];
-  V damping;
-  explicit Springs(const Pass& pass) : damping(Lanes::set(pass.spring_damping)) {
-    for (int k = 0; k < spring_kinds; ++k)
+  V damping[spring_kinds];
+  V bending_time;  ///< s
+  explicit Springs(const Pass& pass) : bending_time(Lanes::set(pass.bending_time)) {
+    for (int k = 0; k < spring_kinds; ++k) {
       kind[k] = Lanes::spring(pass.grid.kind[k].stiffness, pass.grid.kind[k].rest_tension);
+      damping[k] = Lanes::set(pass.spring_damping[k]);
+    }
   }
   /// Sets d = to - from and returns s, so that the force on `from` is s d. Adds the power dissipated by the
   /// damper, in W, to `loss`.
@@ -35,15 +39,28 @@ struct Springs {
     const V s = squared(d);
     if constexpr (law == Law::elastic) return Lanes::spring_scale<divided>(s, spring);
     const V inverse = Lanes::inverse_root<divided>(s);
-    const V damper = damper_scale(from, to, d, inverse, damping, loss);
+    const V damper = damper_scale(from, to, d, inverse, damping[__builtin_ctz(Bit)], loss);
     if constexpr (law == Law::damper) return damper;
     return Lanes::add(Lanes::scale_at(inverse, spring), damper);
+  }
+  /// The same of a spring that counts for `part`.
+  template <Law law, unsigned Bit>
+  CLOTHLAB_INLINE V pull(V part, const Particles& from, const Particles& to, Vector& d, V& loss) const {
+    V whole = Lanes::zero();
+    const V scale = pull<law, Bit>(from, to, d, whole);
+    if constexpr (law != Law::elastic) loss = Lanes::fma(part, whole, loss);
+    return Lanes::mul(part, scale);
   }
 };
 
 /// The positions (m) and velocities (m/s) of a row's particles.
 struct ParticleRow {
   ConstRow position, velocity;
+};
+
+/// The stiffness of the bending elements that begin in a row, see CellShares.
+struct BendingRow {
+  const double *across = nullptr, *down = nullptr, *twist = nullptr;
 };
 
 /// The input of one row's spring forces.
@@ -57,6 +74,11 @@ struct RowWork {
   unsigned present = 0;  ///< this row's directions of springs
   bool has_below = true, has_second = true;
   bool uses_b = true;  ///< the grid has springs that reach two rows down
+
+  // Of a grid by cells (CellShares):
+  const double* part = nullptr;   ///< of the columns
+  V of_row, of_below, of_second;  ///< shares of these rows
+  BendingRow bending{};           ///< null pointers: none
 };
 
 /// Forces of the present block's springs on the columns of the next block: one and two columns ahead in this
@@ -147,30 +169,6 @@ CLOTHLAB_INLINE Vector block_force(const RowWork& work, int j, int count, const 
   if (Full || work.has_below) store(work.a, j, below_force);
   carry = {one, two, one_below};
   return force;
-}
-
-/// One row: its force, and `update(j, count, here, force)` for every block; an update<Edge> is a call
-/// operator with that template argument. A row of another band has no update. Returns the power that the
-/// row's dampers dissipate, in W.
-template <Law law, bool Full, class Update>
-CLOTHLAB_INLINE V row_pass(const RowWork& work, bool own, Update& update) {
-  const V zero = Lanes::zero();
-  const Vector nothing{zero, zero, zero};
-  Carry carry{nothing, nothing, nothing};
-  V loss = zero;
-  int j = 0;
-  for (; j + Lanes::width + 2 <= work.columns; j += Lanes::width) {
-    const Particles here = particles_at<law>(work.here, j);
-    const Vector force = block_force<law, Full, false>(work, j, Lanes::width, here, carry, loss);
-    if (Full || own) update.template operator()<false>(j, Lanes::width, here.position, force);
-  }
-  for (; j < work.columns; j += Lanes::width) {
-    const int count = work.columns - j;
-    const Particles here = particles_at<law>(work.here, j, count, {nothing, nothing});
-    const Vector force = block_force<law, Full, true>(work, j, count, here, carry, loss);
-    if (Full || own) update.template operator()<true>(j, count, here.position, force);
-  }
-  return loss;
 }
 
 }  // namespace

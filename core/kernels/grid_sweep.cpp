@@ -16,10 +16,6 @@ using kernels::Grid;
 using kernels::Pass;
 using kernels::RowBlock;
 
-/// Bits of kernels::SpringBit in the order of spring_directions().
-constexpr std::array direction_bits{kernels::right_one,    kernels::down_one,  kernels::diagonal,
-                                    kernels::antidiagonal, kernels::right_two, kernels::down_two};
-
 /// A band repeats up to two rows of the one above, Runge-Kutta's up to eight on either side.
 constexpr int fewest_rows = 12;
 static_assert(fewest_rows >= kernels::runge_kutta_halo);
@@ -47,36 +43,15 @@ void copy_rows(const Vec3Field& from, int rows, int columns, const RowBlock& to)
 
 }  // namespace
 
-std::optional<Grid> grid_springs(const ClothSystem& system) {
-  constexpr std::array families{kernels::structural_springs, kernels::shear_springs,
-                                kernels::flexion_springs};
-  Grid grid;
-  grid.rows = system.rows, grid.columns = system.columns;
-  std::array<bool, families.size()> absent{};  // a direction of the family that could be there
-  const std::vector<SpringBlock>& blocks = system.springs.blocks();
-  std::size_t at = 0;
-  for (std::size_t d = 0; d < direction_bits.size(); ++d) {
-    const SpringRun* run = at < blocks.size() ? &blocks[at].run : nullptr;
-    const SpringBlock expected =
-        direction_block(system, spring_directions()[d], run ? run->rest_length : 0, run ? run->stiffness : 0);
-    if (expected.rows == 0) continue;
-    const auto family = static_cast<std::size_t>(spring_directions()[d].family);
-    if (!run || !(blocks[at] == expected)) {
-      absent[family] = true;
-      continue;
-    }
-    grid.springs |= families[family];
-    grid.kind[__builtin_ctz(direction_bits[d])] = {run->stiffness, run->stiffness * run->rest_length};
-    ++at;
-  }
-  if (at != blocks.size() || at == 0) return std::nullopt;
-  for (std::size_t f = 0; f < families.size(); ++f)
-    if (absent[f] && (grid.springs & families[f])) return std::nullopt;
-  return grid;
-}
-
 GridSweep::GridSweep(const ClothSystem& system, const Grid& grid, std::optional<double> mass)
     : SpringSweep(mass), system_(&system), grid_(grid), kernels_(&active_kernels<kernels::GridKernels>()) {}
+
+GridSweep::GridSweep(const ClothSystem& system, CellLayout layout)
+    : SpringSweep(layout.mass),
+      system_(&system),
+      grid_(layout.grid),
+      layout_(std::move(layout)),
+      kernels_(&active_kernels<kernels::GridKernels>()) {}
 
 int GridSweep::threads() const {
   return std::clamp(std::min(grid_.rows * grid_.columns / fewest_particles, grid_.rows / fewest_rows), 1,
@@ -117,7 +92,11 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
     pass.load[0] = load->x(), pass.load[1] = load->y(), pass.load[2] = load->z();
   for (int axis = 0; axis < 3; ++axis) pass.weight[axis] = plan.loads.weight[axis];
   pass.damping = plan.loads.damping;
-  pass.spring_damping = plan.loads.spring_damping;
+  pass.has_dampers = plan.loads.has_dampers();
+  for (int k = 0; k < kernels::spring_kinds; ++k)
+    pass.spring_damping[k] = plan.loads.spring_damping + plan.loads.stretch_time * grid_.kind[k].stiffness;
+  pass.bending_time = plan.loads.bending_time;
+  if (has_shares()) pass.shares = layout_.shares();
   if (const SweptAir& air = plan.loads.air; air.drag > 0) {
     pass.air_drag = air.drag;
     for (int k = 0; k < plan.evaluations; ++k)
@@ -211,7 +190,7 @@ double GridSweep::sum_of(const Plan& plan, std::size_t pass, int which) const {
 void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                       ClothState& state) {
   assert(has_common_mass() && (!loads.load || sums.size() == 1));
-  const int velocity_halo = loads.spring_damping > 0 ? kernels::step_halo : 0;
+  const int velocity_halo = loads.has_dampers() ? kernels::step_halo : 0;
   const Plan plan{.kernel = kernels_->euler,
                   .loads = loads,
                   .step = step,
@@ -223,14 +202,14 @@ void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, st
     for (std::size_t k = 0; k < count; ++k) {
       StepSums& of_step = sums[first + k];
       of_step = {sum_of(plan, k, kernels::squares_before), sum_of(plan, k, kernels::squares_after)};
-      if (loads.spring_damping > 0) of_step.dampers = sum_of(plan, k, kernels::dampers_before);
+      if (loads.has_dampers()) of_step.dampers = sum_of(plan, k, kernels::dampers_before);
       if (loads.air.drag > 0) of_step.air = sum_of(plan, k, kernels::air_before);
     }
   });
 }
 
 double GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
-  assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
+  assert(has_common_mass() && !loads.load && !loads.has_dampers());
   const Plan plan{.kernel = kernels_->verlet,
                   .loads = loads,
                   .step = step,
@@ -243,7 +222,7 @@ double GridSweep::verlet(double step, const SweepLoads& loads, Vec3Field& force,
 
 void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<double> squares,
                              Vec3Field& force, ClothState& state) {
-  assert(has_common_mass() && !loads.load && loads.spring_damping == 0);
+  assert(has_common_mass() && !loads.load && !loads.has_dampers());
   const Plan plan{.kernel = kernels_->verlet_between,
                   .opening = kernels_->verlet_open,
                   .closing = kernels_->verlet_close,
@@ -276,7 +255,7 @@ void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
       for (int stage = 0; stage < 4; ++stage) {
         const auto s = static_cast<std::size_t>(stage);
         of_step.squares[s] = sum_of(plan, k, kernels::stage_squares + stage);
-        of_step.dampers[s] = loads.spring_damping > 0 ? sum_of(plan, k, kernels::stage_dampers + stage) : 0;
+        of_step.dampers[s] = loads.has_dampers() ? sum_of(plan, k, kernels::stage_dampers + stage) : 0;
         of_step.air[s] = loads.air.drag > 0 ? sum_of(plan, k, kernels::stage_air + stage) : 0;
       }
       of_step.after = sum_of(plan, k, kernels::squares_of_result);
@@ -292,11 +271,10 @@ void GridSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec
                         {&Pass::force, &force, 0}}}});
 }
 
-double GridSweep::damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+double GridSweep::damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
                        Vec3Field& product) {
-  const SweepLoads loads{.spring_damping = damping};
   const Plan plan{.kernel = kernels_->damp,
-                  .loads = loads,
+                  .loads = dampers,
                   .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
                               {&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0},  // only read
                               {&Pass::force, &product, 0}}}};

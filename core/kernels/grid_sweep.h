@@ -11,18 +11,17 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
-#include "kernels/grid_pass.h"
+#include "kernels/grid_layout.h"
 #include "kernels/spring_sweep.h"
 
 namespace cloth {
-
-/// The six directions of springs of `system` if they are those of make_grid; whole families may be absent.
-std::optional<kernels::Grid> grid_springs(const ClothSystem& system);
 
 class GridSweep : public SpringSweep {
  public:
   /// Both must outlive the sweep.
   GridSweep(const ClothSystem& system, const kernels::Grid& grid, std::optional<double> mass);
+  /// Of a grid assembled cell by cell.
+  GridSweep(const ClothSystem& system, CellLayout layout);
 
   int threads() const override;
   void euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
@@ -32,11 +31,12 @@ class GridSweep : public SpringSweep {
                     ClothState& state) override;
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
+  bool has_shares() const override { return !layout_.part.empty(); }
   bool takes_air() const override { return true; }
   /// Several steps at once start the threads only once.
   bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
-  double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+  double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
               Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
 
@@ -87,6 +87,7 @@ class GridSweep : public SpringSweep {
 
   const ClothSystem* system_;
   kernels::Grid grid_;
+  CellLayout layout_;  ///< empty: all particles and springs are alike
   const kernels::GridKernels* kernels_;
   std::deque<Band> bands_;
   std::vector<double> sums_;  ///< of every pass of a job, see kernels::Pass

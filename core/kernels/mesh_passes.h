@@ -180,7 +180,7 @@ void mesh_pass(const MeshPass& pass, Update& update, const Before& before, const
 
 template <Law law>
 void mesh_euler_of(const MeshPass& pass) {
-  EulerUpdate update{};
+  EulerUpdate<Share::equal> update{};
   update.step = Lanes::set(pass.step), update.damping = Lanes::set(pass.damping);
   update.drift_first = pass.drift_first;
   update.position = row_of(pass.position), update.velocity = row_of(pass.velocity);
@@ -198,7 +198,7 @@ void mesh_euler(const MeshPass& pass) {
 }
 
 void mesh_verlet(const MeshPass& pass) {
-  VerletUpdate update{};
+  VerletUpdate<Share::equal> update{};
   update.half_step = Lanes::set(0.5 * pass.step);
   update.centred = Lanes::set(centring(pass.step, pass.damping, pass.mass_of_free));
   update.velocity = row_of(pass.velocity), update.force = row_of(pass.force);
@@ -209,7 +209,7 @@ void mesh_verlet(const MeshPass& pass) {
 }
 
 void mesh_verlet_between(const MeshPass& pass) {
-  VerletBetweenUpdate update{};
+  VerletBetweenUpdate<Share::equal> update{};
   update.half_step = Lanes::set(0.5 * pass.step), update.step = Lanes::set(pass.step);
   update.centred = Lanes::set(centring(pass.step, pass.damping, pass.mass_of_free));
   update.damping = Lanes::set(pass.damping);
@@ -223,7 +223,7 @@ void mesh_verlet_between(const MeshPass& pass) {
 template <Law law>
 void mesh_runge_kutta_of(const MeshPass& pass) {
   const MeshStage& stage = pass.stage;
-  StageUpdate update{};
+  StageUpdate<Share::equal> update{};
   update.weight = Lanes::set(stage.weight), update.ahead = Lanes::set(stage.ahead);
   update.damping = Lanes::set(pass.damping);
   update.is_last = stage.is_last;

@@ -247,9 +247,9 @@ void MeshSweep::evaluate(const SweepLoads& loads, const Vec3Field& position, Vec
           [&](MeshPass& pass) { pass.position = read(position, inner_.position); });
 }
 
-double MeshSweep::damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+double MeshSweep::damp(const SweepLoads& loads, const Vec3Field& position, const Vec3Field& velocity,
                        Vec3Field& product) {
-  compute(PassKind::dampers, kernels_->damp, {.spring_damping = damping}, product, [&](MeshPass& pass) {
+  compute(PassKind::dampers, kernels_->damp, loads, product, [&](MeshPass& pass) {
     pass.position = read(position, inner_.position);
     pass.velocity = read(velocity, inner_.velocity);
   });

@@ -25,7 +25,7 @@ class MeshSweep : public SpringSweep {
   /// Several steps at once reorder the state to the layout's order and back only once.
   bool gains_steps_at_once() const override { return !layout_.order.empty(); }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;
-  double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+  double damp(const SweepLoads& loads, const Vec3Field& position, const Vec3Field& velocity,
               Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
 

@@ -14,7 +14,7 @@
 
 namespace cloth {
 
-/// The mass of every free particle, if all particles have the same.
+/// The mass of every particle in kg, if all have the same.
 std::optional<double> common_mass(const ClothSystem& system);
 
 /// Air drag, F_i = drag (n . (wind - v_i)) n (forces/air.h), with the wind at each force evaluation of a
@@ -25,13 +25,19 @@ struct SweptAir {
 };
 
 /// The forces beside the springs' elastic ones: f = springs + weight + load + air - damping v - D v, where D
-/// are dampers along the springs: F_i = spring_damping ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0.
+/// are dampers along the springs: F_i = k_d ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0, with k_d =
+/// spring_damping + stretch_time k; and t K v of the bending elements. Of a grid assembled cell by cell
+/// (GridSweep::has_shares()), weight, damping and the air's drag are those of a particle inside, of which the
+/// others have their share.
 struct SweepLoads {
   Vec3 weight{0, 0, 0};             ///< N, on every particle
   double damping = 0;               ///< N s/m
   const Vec3Field* load = nullptr;  ///< N, or none
   double spring_damping = 0;        ///< N s/m
-  SweptAir air{};                   ///< only for euler() and runge_kutta(), and only if takes_air()
+  double stretch_time = 0;          ///< s; only of grids assembled cell by cell
+  double bending_time = 0;          ///< s; likewise
+  bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
+  SweptAir air{};  ///< only for euler() and runge_kutta(), and only if takes_air()
 };
 
 /// Sums over all particles and springs that a step computes in the same pass.
@@ -51,7 +57,8 @@ struct StageSums {
 
 class SpringSweep {
  public:
-  /// `mass` (kg): see common_mass(). euler(), verlet() and runge_kutta() require it.
+  /// `mass` (kg): see common_mass(); of a grid assembled cell by cell that of a particle inside. euler(),
+  /// verlet() and runge_kutta() require it.
   explicit SpringSweep(std::optional<double> mass) : mass_(mass) {}
   virtual ~SpringSweep() = default;
 
@@ -78,6 +85,9 @@ class SpringSweep {
   /// Kutta's method of order four (kutta.h). Takes as many steps as there are `sums`. No load.
   virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                            ClothState& state) = 0;
+  /// Whether particles, and springs, have the shares of their cells, and whether the cloth's bending is part
+  /// of the springs' force.
+  virtual bool has_shares() const { return false; }
   /// Whether SweepLoads::air is supported.
   virtual bool takes_air() const { return false; }
   /// Whether several steps of euler() or runge_kutta() in one call cost less than single steps.
@@ -87,9 +97,9 @@ class SpringSweep {
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
   /// to = from. Each thread copies the particles that it will update, so that they are in its cache.
   void copy(const ClothState& from, ClothState& to);
-  /// product = D v for dampers of `damping`, in N s/m, along the springs at `position`. Returns the power in
-  /// W that they dissipate.
-  virtual double damp(double damping, const Vec3Field& position, const Vec3Field& velocity,
+  /// product = D v of the dampers along the springs at `position`. Returns the power in W that they
+  /// dissipate.
+  virtual double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
   /// The sum of |v|^2, in the order in which the steps add it up.
   virtual double squares(const Vec3Field& velocity) = 0;

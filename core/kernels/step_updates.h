@@ -11,9 +11,32 @@
 namespace cloth::kernels {
 namespace {
 
+/// Whether all particles and springs are alike, or count by their share of cells (CellShares). Damping in
+/// proportion to mass and sums of squares are taken by shares too.
+enum class Share { equal, by_cell };
+
+/// The shares of one row.
+template <Share share>
+struct RowShares {
+  V of_row{};
+  const double* of_columns = nullptr;
+
+  CLOTHLAB_INLINE V at(int j) const { return Lanes::mul(of_row, Lanes::load(of_columns + j)); }
+  CLOTHLAB_INLINE V of(V whole, int j) const {
+    if constexpr (share == Share::equal) return whole;
+    return Lanes::mul(whole, at(j));
+  }
+  CLOTHLAB_INLINE V plus_square(V sum, const Vector& v, int j) const {
+    if constexpr (share == Share::equal) return kernels::plus_square(sum, v);
+    return Lanes::fma(at(j), squared(v), sum);
+  }
+};
+
 /// v' = v + h a(x, v); x' = x + h v', or x + h v.
+template <Share share>
 struct EulerUpdate {
   V step, damping;
+  RowShares<share> shares{};
   bool drift_first;
   Row position, velocity;
   const double* inverse_mass;
@@ -24,16 +47,18 @@ struct EulerUpdate {
     const Vector v = load_part<Edge>(velocity, j, count);
     const V h_over_m = Lanes::mul(
         step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
-    const Vector next = plus(v, h_over_m, minus(spring_force, damping, v));
-    before = plus_square(before, v);
-    after = plus_square(after, next);
+    const Vector next = plus(v, h_over_m, minus(spring_force, shares.of(damping, j), v));
+    before = shares.plus_square(before, v, j);
+    after = shares.plus_square(after, next, j);
     store<Edge>(velocity, j, count, next);
     store<Edge>(position, j, count, plus(x, step, drift_first ? v : next));
   }
 };
 
 /// v' solves m v' = m v_half + h/2 (p(x') - c v').
+template <Share share>
 struct VerletUpdate {
+  RowShares<share> shares{};
   V half_step, centred;  ///< h/2, and 1 / (1 + h c / 2 m)
   Row velocity, force;
   const double* inverse_mass;
@@ -44,7 +69,7 @@ struct VerletUpdate {
     const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
                                                : Lanes::load(inverse_mass + j));
     const Vector next = scaled(centred, plus(load_part<Edge>(velocity, j, count), scale, p));
-    after = plus_square(after, next);
+    after = shares.plus_square(after, next, j);
     store<Edge>(velocity, j, count, next);
     store<Edge>(force, j, count, p);
   }
@@ -69,7 +94,9 @@ CLOTHLAB_INLINE void kick_drift_block(const Row& x, const Row& v, const ConstRow
 
 /// The closing kick of one step of Verlet, then kick and drift of the next, with the same operations in the
 /// same order as VerletUpdate and kick_drift_block.
+template <Share share>
 struct VerletBetweenUpdate {
+  RowShares<share> shares{};
   V half_step, step, centred, damping;
   Row position, velocity;
   const double* inverse_mass;
@@ -80,8 +107,8 @@ struct VerletBetweenUpdate {
     const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
                                                : Lanes::load(inverse_mass + j));
     const Vector v = scaled(centred, plus(load_part<Edge>(velocity, j, count), scale, p));
-    after = plus_square(after, v);
-    const Vector half = plus(v, scale, minus(p, damping, v));
+    after = shares.plus_square(after, v, j);
+    const Vector half = plus(v, scale, minus(p, shares.of(damping, j), v));
     store<Edge>(velocity, j, count, half);
     store<Edge>(position, j, count, plus(x, step, half));
   }
@@ -110,7 +137,9 @@ struct DampUpdate {
 
 /// One stage of Runge-Kutta: adds `weight` (s) times the stage's slope to the sums, and computes the next
 /// stage, which is `ahead` (s) along this slope from the state at the beginning of the step.
+template <Share share>
 struct StageUpdate {
+  RowShares<share> shares{};
   V weight, ahead, damping;
   bool is_last;
   ConstRow stage_velocity;
@@ -126,12 +155,12 @@ struct StageUpdate {
     const Vector v = load_part<Edge>(stage_velocity, j, count);
     const V inverse =
         Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j);
-    const Vector a = scaled(inverse, minus(spring_force, damping, v));
+    const Vector a = scaled(inverse, minus(spring_force, shares.of(damping, j), v));
     const Vector sum_x = plus(load_part<Edge>(sum_position, j, count), weight, v);
     const Vector sum_v = plus(load_part<Edge>(sum_velocity, j, count), weight, a);
-    squares = plus_square(squares, v);
+    squares = shares.plus_square(squares, v, j);
     if (is_last) {
-      after = plus_square(after, sum_v);
+      after = shares.plus_square(after, sum_v, j);
     } else {
       const Vector x0 = load_part<Edge>(state_position, j, count),
                    v0 = load_part<Edge>(state_velocity, j, count);

@@ -120,7 +120,7 @@ TEST_P(EveryInstructionSet, GivesTheDampersOfSpringsTakenOneByOne) {
       state.position.set(1, state.position[0]);  // a spring of no length
       Vec3Field product(state.position.size()), expected;
       GridSweep sweep(system, *grid_springs(system), common_mass(system));
-      const double loss = sweep.damp(damping, state.position, state.velocity, product);
+      const double loss = sweep.damp({.spring_damping = damping}, state.position, state.velocity, product);
       const double expected_loss = damper_product(system, damping, state, expected);
       const std::string what =
           std::to_string(rows) + " x " + std::to_string(columns) + ", families " + std::to_string(families);

@@ -290,7 +290,7 @@ TEST_P(MeshSprings, HaveDampersThatAreTheSumOverTheSprings) {
                        state.position[static_cast<std::size_t>(short_one.first)]);
     Vec3Field product(state.position.size()), expected;
     MeshSweep sweep(system, common_mass(system));
-    const double loss = sweep.damp(damping, state.position, state.velocity, product);
+    const double loss = sweep.damp({.spring_damping = damping}, state.position, state.velocity, product);
     const double expected_loss = damper_product(system, damping, state, expected);
     EXPECT_LE(largest_distance(product, expected), 2e-14 * largest_norm(expected));
     EXPECT_NEAR(loss, expected_loss, 1e-13 * expected_loss);

@@ -40,6 +40,14 @@ CLOTHLAB_INLINE V stiffness_at(const double* row, int j, int count) {
   return Lanes::load(row + j);
 }
 
+/// The particles `columns` ahead of a block; at an Edge those that are missing are replaced by `otherwise`.
+template <Law law, bool Edge>
+CLOTHLAB_INLINE Particles particles_ahead(const ParticleRow& row, int j, int columns, int count,
+                                          const Particles& otherwise) {
+  if constexpr (Edge) return particles_at<law>(row, j + columns, count - columns, otherwise);
+  return particles_at<law>(row, j + columns);
+}
+
 /// The force before any spring is added, of particles of a row with this share.
 template <bool Edge>
 CLOTHLAB_INLINE Vector initial_share(const ConstRow& load_row, const RowWork& work, V of_row, int j,
@@ -48,80 +56,98 @@ CLOTHLAB_INLINE Vector initial_share(const ConstRow& load_row, const RowWork& wo
   return initial<Edge>(load_row, weight, j, count);
 }
 
+/// Forces of the elements that begin in one block: on its particles, on those below, and on later columns, of
+/// this row and of the row below.
+struct BlockForces {
+  Vector here, below, one, two, one_below;
+};
+/// The particles of a cell's corners.
+struct Corners {
+  Particles here, right, below, below_right;
+};
+
+/// Springs of a block's cells that reach the row below.
+template <Law law, bool Full, bool Edge>
+CLOTHLAB_INLINE void add_springs_below(const RowWork& work, int j, int count, const Corners& at,
+                                       BlockForces& f, V& loss) {
+  const Springs& springs = *work.springs;
+  const auto has = [&](unsigned bits) { return Full || (work.present & bits) != 0; };
+  Vector d;
+  if (has(down_one)) {
+    const V s = springs.pull<law, down_one>(Lanes::load(work.part + j), at.here, at.below, d, loss);
+    f.here = plus(f.here, s, d);
+    f.below = minus(f.below, s, d);
+  }
+  if (has(antidiagonal)) {
+    Particles from = at.right;
+    if constexpr (Edge) from = particles_at<law>(work.here, j + 1, count - 1, at.below);
+    const V s = springs.pull<law, antidiagonal>(from, at.below, d, loss);
+    f.one = plus(f.one, s, d);
+    f.below = minus(f.below, s, d);
+  }
+  if (has(diagonal)) {
+    const V s = springs.pull<law, diagonal>(at.here, at.below_right, d, loss);
+    f.here = plus(f.here, s, d);
+    f.one_below = scaled(s, d);
+  }
+}
+
+/// The twist of a block's cells, and the bending of columns.
+template <Law law, bool Full, bool Edge>
+CLOTHLAB_INLINE void add_bending_below(const RowWork& work, int j, int count, const Corners& at,
+                                       BlockForces& f, V& loss) {
+  const Springs& springs = *work.springs;
+  const Vector twist = bend<law>(stiffness_at<Edge>(work.bending.twist, j, count), springs,
+                                 twist_of<law>(at.here, at.right, at.below, at.below_right), loss);
+  f.here = f.here - twist;
+  f.one = f.one + twist;
+  f.below = f.below + twist;
+  f.one_below = f.one_below + twist;
+  if (!Full && !work.has_second) return;
+  const Particles second = particles_ahead<law, Edge>(work.second, j, 0, count, at.here);
+  const Vector down = bend<law>(stiffness_at<Edge>(work.bending.down, j, count), springs,
+                                second_difference<law>(at.here, at.below, second), loss);
+  f.here = f.here - down;
+  f.below = f.below + (down + down);
+  store(work.b, j, initial_share<Edge>(work.load_second, work, work.of_second, j, count) - down);
+}
+
 /// As block_force() for grids of equal springs; `Full`: a row that is not one of the last two, of a cloth
 /// that bends and has both families.
 template <Law law, bool Full, bool Edge>
 CLOTHLAB_INLINE Vector block_force_by_cell(const RowWork& work, int j, int count, const Particles& here,
                                            Carry& carry, V& loss) {
   const Springs& springs = *work.springs;
-  const auto has = [&](unsigned bits) { return Full || (work.present & bits) != 0; };
   const bool has_below = Full || work.has_below;
   const bool bends = law != Law::damper && (Full || work.bending.across != nullptr);
   const auto ahead = [&](const ParticleRow& row, int columns) {
-    if constexpr (Edge) return particles_at<law>(row, j + columns, count - columns, here);
-    return particles_at<law>(row, j + columns);
+    return particles_ahead<law, Edge>(row, j, columns, count, here);
   };
   const Vector nothing{Lanes::zero(), Lanes::zero(), Lanes::zero()};
-  Vector force = load(work.a, j);
-  Vector below_force = nothing;
-  if (has_below)
-    below_force =
-        work.uses_b ? load(work.b, j) : initial_share<Edge>(work.load_below, work, work.of_below, j, count);
-  Vector one = nothing, two = nothing, one_below = nothing;
-  Vector d;
-
-  const Particles right = ahead(work.here, 1);
-  if (has(right_one)) {
-    const V s = springs.pull<law, right_one>(work.of_row, here, right, d, loss);
-    force = plus(force, s, d);
-    one = minus(one, s, d);
+  BlockForces f{load(work.a, j), nothing, nothing, nothing, nothing};
+  Corners at{here, ahead(work.here, 1), here, here};
+  if (Full || (work.present & right_one) != 0) {
+    Vector d;
+    const V s = springs.pull<law, right_one>(work.of_row, here, at.right, d, loss);
+    f.here = plus(f.here, s, d);
+    f.one = minus(f.one, s, d);
   }
   if (has_below) {
-    const Particles below = ahead(work.below, 0), below_right = ahead(work.below, 1);
-    if (has(down_one)) {
-      const V s = springs.pull<law, down_one>(Lanes::load(work.part + j), here, below, d, loss);
-      force = plus(force, s, d);
-      below_force = minus(below_force, s, d);
-    }
-    if (has(antidiagonal)) {
-      Particles from = right;
-      if constexpr (Edge) from = particles_at<law>(work.here, j + 1, count - 1, below);
-      const V s = springs.pull<law, antidiagonal>(from, below, d, loss);
-      one = plus(one, s, d);
-      below_force = minus(below_force, s, d);
-    }
-    if (has(diagonal)) {
-      Particles to = below_right;
-      const V s = springs.pull<law, diagonal>(here, to, d, loss);
-      force = plus(force, s, d);
-      one_below = scaled(s, d);
-    }
-    if (bends) {
-      const Vector f = bend<law>(stiffness_at<Edge>(work.bending.twist, j, count), springs,
-                                 twist_of<law>(here, right, below, below_right), loss);
-      force = force - f;
-      one = one + f;
-      below_force = below_force + f;
-      one_below = one_below + f;
-    }
-    if (bends && (Full || work.has_second)) {
-      const Vector f = bend<law>(stiffness_at<Edge>(work.bending.down, j, count), springs,
-                                 second_difference<law>(here, below, ahead(work.second, 0)), loss);
-      force = force - f;
-      below_force = below_force + (f + f);
-      store(work.b, j, initial_share<Edge>(work.load_second, work, work.of_second, j, count) - f);
-    }
-    below_force = below_force - moved_one(carry.one_below, one_below);
+    f.below =
+        work.uses_b ? load(work.b, j) : initial_share<Edge>(work.load_below, work, work.of_below, j, count);
+    at.below = ahead(work.below, 0), at.below_right = ahead(work.below, 1);
+    add_springs_below<law, Full, Edge>(work, j, count, at, f, loss);
+    if (bends) add_bending_below<law, Full, Edge>(work, j, count, at, f, loss);
+    store(work.a, j, f.below - moved_one(carry.one_below, f.one_below));
   }
   if (bends) {
-    two = bend<law>(stiffness_at<Edge>(work.bending.across, j, count), springs,
-                    second_difference<law>(here, right, ahead(work.here, 2)), loss);
-    force = force - two - moved_two(carry.two, two);
-    one = one + (two + two);
+    f.two = bend<law>(stiffness_at<Edge>(work.bending.across, j, count), springs,
+                      second_difference<law>(here, at.right, ahead(work.here, 2)), loss);
+    f.here = f.here - f.two - moved_two(carry.two, f.two);
+    f.one = f.one + (f.two + f.two);
   }
-  force = force + moved_one(carry.one, one);
-  if (has_below) store(work.a, j, below_force);
-  carry = {one, two, one_below};
+  const Vector force = f.here + moved_one(carry.one, f.one);
+  carry = {f.one, f.two, f.one_below};
   return force;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "measure/oblique_locking.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
 #include "scene/scene_mesh.h"
@@ -233,6 +234,9 @@ class Run {
                      : !ended_ || !problems_.empty() ? Status::stopped
                                                      : Status::finished;
     if (!summary.divergence) note(describe(summary.energy));
+    if (!summary.divergence)
+      note(locking_text(scene_,
+                        measure_oblique_locking(scene_, simulation_.system(), result_.final_state.position)));
     summary.rate_breach = simulation_.rate_breach();
     if (summary.rate_breach) note(describe(*summary.rate_breach));
     if (!folder_.is_open()) return;

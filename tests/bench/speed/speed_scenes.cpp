@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "scene/scene_cloth.h"
 #include "simulation/time_step.h"
 
 namespace cloth::speed {
@@ -11,7 +12,18 @@ namespace {
 constexpr double viscous_damping = 0.001;  // N s/m
 
 void add_damping(Scene& scene) {
-  scene.damping = viscous_damping;
+  if (scene.material)
+    scene.material->mass_damping = viscous_damping / particle_mass(scene);
+  else
+    scene.damping = viscous_damping;
+}
+
+/// As stiff and heavy as the bare cloth; bending is a medium cotton's.
+void make_material(Scene& scene, bool bends) {
+  scene.springs.reset();
+  scene.material =
+      Material{.areal_density = scene.cloth.mass, .stretch_warp = 950, .stretch_weft = 950, .shear = 250};
+  if (bends) scene.material->bending_warp = scene.material->bending_weft = scene.material->twist = 2e-5;
 }
 
 void add_air(Scene& scene) {
@@ -46,6 +58,8 @@ const std::vector<Feature>& features() {
       {"limit-10", "limit to 10 %", [](Scene& s) { s.deformation = Deformation{.rate = 0.1}; }},
       {"limit-1", "limit to 1 %", [](Scene& s) { s.deformation = Deformation{.rate = 0.01}; }},
       {"sphere", "a sphere", add_sphere},
+      {"material", "a material", [](Scene& s) { make_material(s, false); }},
+      {"bending", "a material that bends", [](Scene& s) { make_material(s, true); }},
   };
   return list;
 }

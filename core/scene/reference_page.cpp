@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-/// A scene that has every block once.
+/// A scene that has every block once, but a material: that is in place of other blocks.
 Scene full_scene() {
   Scene scene;
   add_every_block(scene);
@@ -87,6 +87,23 @@ std::string mesh_cloth_settings() {
   return row(scene, find_parameter(scene, "cloth.mesh").value(), " of a mesh");
 }
 
+std::string section(const Scene& scene, const Block& block) {
+  std::string text = fmt::format(
+      "\n## {}\n\n{}\n\n| path | label | unit | accepted | start value | meaning | an edit acts |\n"
+      "|---|---|---|---|---|---|---|\n",
+      block.title, block.doc);
+  for (const Parameter& parameter : block.parameters) text += row(scene, parameter);
+  return text;
+}
+
+std::string material_section() {
+  Scene scene;
+  scene.material.emplace();
+  for (const Block& block : blocks_of(scene))
+    if (block.path == "material") return section(scene, block);
+  return "";
+}
+
 }  // namespace
 
 std::string reference_page() {
@@ -98,13 +115,10 @@ std::string reference_page() {
       "to. A "
       "stiffness, damping or block that a file does not name is absent physics.\n";
   for (const Block& block : blocks_of(scene)) {
-    page += fmt::format(
-        "\n## {}\n\n{}\n\n| path | label | unit | accepted | start value | meaning | an edit acts |\n"
-        "|---|---|---|---|---|---|---|\n",
-        block.title, block.doc);
-    for (const Parameter& parameter : block.parameters) page += row(scene, parameter);
+    page += section(scene, block);
     if (block.path == "integrator") page += method_settings();
     if (block.path == "cloth") page += mesh_cloth_settings();
+    if (block.path == "springs") page += material_section();
   }
   return page;
 }

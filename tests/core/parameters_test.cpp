@@ -177,10 +177,13 @@ TEST(ReferencePage, IsTheOneInDocs) {
 
 TEST(ReferencePage, NamesEveryParameter) {
   const std::string page = reference_page();
-  Scene scene = full_scene();
-  scene.obstacles.clear();
-  for (const Parameter& parameter : parameters_of(scene))
-    EXPECT_NE(page.find("`" + parameter.path + "`"), std::string::npos) << parameter.path;
+  Scene of_springs = full_scene(), of_material;
+  of_springs.obstacles.clear();
+  of_material.material.emplace();
+  add_every_block(of_material);
+  for (const Scene& scene : {of_springs, of_material})
+    for (const Parameter& parameter : parameters_of(scene))
+      EXPECT_NE(page.find("`" + parameter.path + "`"), std::string::npos) << parameter.path;
 }
 
 TEST(Parameters, BeyondAllSenseHaveAReasonAndSensibleOnesHaveNone) {

@@ -8,30 +8,23 @@
 namespace cloth::kernels {
 namespace {
 
-/// What a bending element (cloth/bending.h) pulls with: k (s(x) + t s(v)), s the weighted sum of its points
-/// and t the damping time. Adds the power that the damper takes, k t |s(v)|^2 in W.
+/// What a bending element of stiffness k (cloth/bending.h) pulls with, over k: s(x) + t s(v), s the weighted
+/// sum of its points and t the damping time. Adds the power that the damper takes, k t |s(v)|^2 in W.
 template <Law law>
 CLOTHLAB_INLINE Vector bend(V stiffness, const Springs& springs, const Particles& sum, V& loss) {
-  if constexpr (law == Law::elastic) return scaled(stiffness, sum.position);
-  const V damper = Lanes::mul(stiffness, springs.bending_time);
-  loss = Lanes::fma(damper, squared(sum.velocity), loss);
-  return plus(scaled(stiffness, sum.position), damper, sum.velocity);
+  if constexpr (law == Law::elastic) return sum.position;
+  loss = Lanes::fma(Lanes::mul(stiffness, springs.bending_time), squared(sum.velocity), loss);
+  return plus(sum.position, springs.bending_time, sum.velocity);
 }
 
-/// a - 2 b + c
+/// (d - c) - (b - a): of three points in a row, with c = b, the second difference; of a cell's corners the
+/// twist. The differences are those of springs, which are computed anyway.
 template <Law law>
-CLOTHLAB_INLINE Particles second_difference(const Particles& a, const Particles& b, const Particles& c) {
-  const Vector x = (a.position - b.position) + (c.position - b.position);
+CLOTHLAB_INLINE Particles difference(const Particles& a, const Particles& b, const Particles& c,
+                                     const Particles& d) {
+  const Vector x = (d.position - c.position) - (b.position - a.position);
   if constexpr (law == Law::elastic) return {x, x};
-  return {x, (a.velocity - b.velocity) + (c.velocity - b.velocity)};
-}
-/// a - b - c + d
-template <Law law>
-CLOTHLAB_INLINE Particles twist_of(const Particles& a, const Particles& b, const Particles& c,
-                                   const Particles& d) {
-  const Vector x = (a.position - b.position) + (d.position - c.position);
-  if constexpr (law == Law::elastic) return {x, x};
-  return {x, (a.velocity - b.velocity) + (d.velocity - c.velocity)};
+  return {x, (d.velocity - c.velocity) - (b.velocity - a.velocity)};
 }
 
 template <bool Edge>
@@ -97,19 +90,20 @@ template <Law law, bool Full, bool Edge>
 CLOTHLAB_INLINE void add_bending_below(const RowWork& work, int j, int count, const Corners& at,
                                        BlockForces& f, V& loss) {
   const Springs& springs = *work.springs;
-  const Vector twist = bend<law>(stiffness_at<Edge>(work.bending.twist, j, count), springs,
-                                 twist_of<law>(at.here, at.right, at.below, at.below_right), loss);
-  f.here = f.here - twist;
-  f.one = f.one + twist;
-  f.below = f.below + twist;
-  f.one_below = f.one_below + twist;
+  const V k = stiffness_at<Edge>(work.bending.twist, j, count);
+  const Vector twist =
+      bend<law>(k, springs, difference<law>(at.here, at.right, at.below, at.below_right), loss);
+  f.here = minus(f.here, k, twist);
+  f.one = plus(f.one, k, twist);
+  f.below = plus(f.below, k, twist);
+  f.one_below = plus(f.one_below, k, twist);
   if (!Full && !work.has_second) return;
   const Particles second = particles_ahead<law, Edge>(work.second, j, 0, count, at.here);
-  const Vector down = bend<law>(stiffness_at<Edge>(work.bending.down, j, count), springs,
-                                second_difference<law>(at.here, at.below, second), loss);
-  f.here = f.here - down;
-  f.below = f.below + (down + down);
-  store(work.b, j, initial_share<Edge>(work.load_second, work, work.of_second, j, count) - down);
+  const V b = stiffness_at<Edge>(work.bending.down, j, count);
+  const Vector down = bend<law>(b, springs, difference<law>(at.here, at.below, at.below, second), loss);
+  f.here = minus(f.here, b, down);
+  f.below = plus(f.below, Lanes::add(b, b), down);
+  store(work.b, j, minus(initial_share<Edge>(work.load_second, work, work.of_second, j, count), b, down));
 }
 
 /// As block_force() for grids of equal springs; `Full`: a row that is not one of the last two, of a cloth
@@ -139,12 +133,6 @@ CLOTHLAB_INLINE Vector block_force_by_cell(const RowWork& work, int j, int count
     add_springs_below<law, Full, Edge>(work, j, count, at, f, loss);
     if (bends) add_bending_below<law, Full, Edge>(work, j, count, at, f, loss);
     store(work.a, j, f.below - moved_one(carry.one_below, f.one_below));
-  }
-  if (bends) {
-    f.two = bend<law>(stiffness_at<Edge>(work.bending.across, j, count), springs,
-                      second_difference<law>(here, at.right, ahead(work.here, 2)), loss);
-    f.here = f.here - f.two - moved_two(carry.two, f.two);
-    f.one = f.one + (f.two + f.two);
   }
   const Vector force = f.here + moved_one(carry.one, f.one);
   carry = {f.one, f.two, f.one_below};

@@ -126,6 +126,14 @@ CLOTHLAB_INLINE Vector block_force_by_cell(const RowWork& work, int j, int count
     f.here = plus(f.here, s, d);
     f.one = minus(f.one, s, d);
   }
+  if (bends) {
+    const V k = stiffness_at<Edge>(work.bending.across, j, count);
+    const Vector across =
+        bend<law>(k, springs, difference<law>(here, at.right, at.right, ahead(work.here, 2)), loss);
+    f.two = scaled(k, across);
+    f.here = minus(f.here, k, across) - moved_two(carry.two, f.two);
+    f.one = plus(f.one, Lanes::add(k, k), across);
+  }
   if (has_below) {
     f.below =
         work.uses_b ? load(work.b, j) : initial_share<Edge>(work.load_below, work, work.of_below, j, count);

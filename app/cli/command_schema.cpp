@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "compare/comparison_json.h"
 #include "console.h"
+#include "scene/material_file.h"
 #include "scene/scene_json.h"
 #include "scene/scene_parameters.h"
 
@@ -9,10 +10,11 @@ namespace clothlab::cli {
 namespace {
 
 struct SchemaArguments {
-  bool of_comparison = false, json = false;  ///< a schema is JSON, asked for or not
+  bool of_comparison = false, of_material = false, json = false;  ///< a schema is JSON, asked for or not
 };
 
 int schema(const SchemaArguments& arguments) {
+  if (arguments.of_material) return print(cloth::material_schema());
   return print(arguments.of_comparison ? cloth::comparison_schema() : cloth::scene_schema());
 }
 
@@ -27,7 +29,9 @@ int parameters(const NoArguments&) {
 void add_schema(Program& program) {
   auto [command, arguments] =
       add_command(program, "schema", "Print the JSON Schema of the scene file", schema);
-  command.add_flag("--comparison", arguments.of_comparison, "Of the comparison file instead");
+  CLI::Option* comparison =
+      command.add_flag("--comparison", arguments.of_comparison, "Of the comparison file instead");
+  command.add_flag("--material", arguments.of_material, "Of the material file instead")->excludes(comparison);
   add_json(command, arguments.json);
 }
 

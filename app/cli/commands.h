@@ -8,6 +8,7 @@ namespace clothlab::cli {
 void add_run(Program& program);
 void add_replay(Program& program);
 void add_scenes(Program& program);
+void add_materials(Program& program);
 void add_mesh(Program& program);
 void add_explain(Program& program);
 void add_compare(Program& program);

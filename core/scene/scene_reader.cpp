@@ -76,6 +76,12 @@ class SceneReader : public JsonReader<json> {
     return above && above->is_object() ? member(*above, path.substr(path.rfind('.') + 1)) : nullptr;
   }
 
+  /// What settle_material() has taken out of a material before.
+  static std::set<std::string> also_known_in(const std::string& object) {
+    if (object == "material") return {"preset", "bending_45"};
+    return {};
+  }
+
   /// The parameters of a block, object by object of the file.
   void read_row(const json& root, const BlockRow& row, Scene& scene) {
     if (row.path == "integrator") find_method(root, scene.integrator);
@@ -90,7 +96,7 @@ class SceneReader : public JsonReader<json> {
       if (!path.empty()) {
         if (row.optional) row.optional->add(scene);
         if (!object(*from, path)) continue;
-        known_keys(*from, path, known_in(path, {}, scene));
+        known_keys(*from, path, known_in(path, also_known_in(path), scene));
       }
       fields(*from, path, parameters, scene);
     }
@@ -282,6 +288,19 @@ bool set_at(json& root, const std::string& path, const json& value) {
   }
 }
 
+/// A material that is set as a whole takes the place of what it replaces: springs, damping, mass and drag.
+void apply_overrides(const std::vector<Override>& overrides, json& document, std::vector<Problem>& problems) {
+  name_preset(document);
+  for (const Override& override_ : overrides) {
+    const json value = parse_value(override_.value);
+    if (!set_at(document, override_.path, value))
+      problems.push_back({override_.path, override_.value, "there is no such parameter in this scene"});
+    if (override_.path != "material" || value.is_null()) continue;
+    name_preset(document);
+    take_out_replaced(document);
+  }
+}
+
 /// Finds for every problem the most precise place that the text has for it.
 class Placer {
  public:
@@ -326,14 +345,12 @@ SceneReading read_scene(const std::string& text, const std::string& place,
 
   SceneReader reader;
   reader.problems = place_problem.repetitions();
-  for (const Override& override_ : overrides)
-    if (!set_at(document, override_.path, parse_value(override_.value)))
-      reader.problems.push_back(
-          {override_.path, override_.value, "there is no such parameter in this scene"});
-
-  for (Problem& problem : settle_material(document)) reader.problems.push_back(std::move(problem));
+  apply_overrides(overrides, document, reader.problems);
+  const SceneFolder folder =
+      meshes.folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()});
+  for (Problem& problem : settle_material(document, folder)) reader.problems.push_back(std::move(problem));
   Scene scene = reader.read(document);
-  scene.folder = meshes.folder.value_or(SceneFolder{std::filesystem::path(place).parent_path().string()});
+  scene.folder = folder;
   for (Problem& problem : load_meshes(scene, meshes.known)) reader.problems.push_back(std::move(problem));
   std::set<std::string> named;
   for (const Problem& problem : reader.problems) named.insert(problem.path);

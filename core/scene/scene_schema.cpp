@@ -1,7 +1,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "scene/block_fields.h"
 #include "scene/blocks.h"
+#include "scene/material_file.h"
 #include "scene/method_facts.h"
 #include "scene/obstacle_shape.h"
 #include "scene/scene_json.h"
@@ -113,6 +115,29 @@ json integrator_schema() {
   return {{"type", "object"}, {"anyOf", std::move(list)}};
 }
 
+/// The values of a material; bending_45 stands for twist.
+json material_values() {
+  json values = object_schema(material_fields());
+  json bending_45 = values["properties"]["bending_warp"];
+  bending_45["title"] = "Bending stiffness at 45 degrees";
+  bending_45["description"] = "In place of twist: 2 bending_45 - (bending_warp + bending_weft)/2. In N m.";
+  values["properties"]["bending_45"] = std::move(bending_45);
+  values["not"] = {{"required", {"twist", "bending_45"}}};
+  return values;
+}
+
+/// The name of a preset, or an object that may name one.
+json material_block() {
+  json names = json::array();
+  for (const BuiltinMaterial& one : builtin_materials()) names.push_back(one.name);
+  const json preset{
+      {"description", "A built-in material, or a file as seen from the scene's folder."},
+      {"anyOf", json::array({json{{"enum", names}}, json{{"type", "string"}, {"pattern", "/|\\.json$"}}})}};
+  json values = material_values();
+  values["properties"]["preset"] = preset;
+  return {{"anyOf", json::array({preset, std::move(values)})}};
+}
+
 /// Where the schema of a value or object has its place below `root`; objects on the way are made.
 json& schema_at(json& root, const std::string& path) {
   const std::string parent = parent_path(path);
@@ -128,7 +153,8 @@ void put_blocks(json& root, bool objects) {
     if (objects && row->path == "cloth") root["properties"]["cloth"] = cloth_schema();
     if (objects && row->path == "obstacles") root["properties"]["obstacles"] = obstacles_schema();
     if (objects && row->path == "integrator") root["properties"]["integrator"] = integrator_schema();
-    if (row->path == "cloth" || row->path == "integrator") continue;
+    if (objects && row->path == "material") root["properties"]["material"] = material_block();
+    if (row->path == "cloth" || row->path == "integrator" || row->path == "material") continue;
     for (const Parameter& parameter : row->parameters(scene))
       if (objects != parent_path(parameter.path).empty())
         schema_at(root, parameter.path) = described(parameter.info);
@@ -147,6 +173,21 @@ std::string scene_schema() {
   put_blocks(root, true);
   put_blocks(root, false);
   root["required"] = {"cloth"};
+  return root.dump(2) + "\n";
+}
+
+std::string material_schema() {
+  json root{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Clothlab material"}};
+  const json text{{"type", "string"}}, year{{"type", "integer"}, {"minimum", 1}, {"maximum", 9999}};
+  const json source = object_schema(
+      Fields<Material>{}, {{"author", text}, {"year", year}, {"measured", text}, {"assumed", text}});
+  json values = material_values();
+  values["required"] = {"areal_density"};
+  root.update(object_schema(Fields<Material>{}, {{"format", {{"const", material_format}}},
+                                                 {"title", text},
+                                                 {"source", source},
+                                                 {"material", std::move(values)}}));
+  root["required"] = {"material"};
   return root.dump(2) + "\n";
 }
 

@@ -10,6 +10,7 @@
 #include "compare/builtin_comparisons.h"
 #include "compare/comparison_json.h"
 #include "scene/builtin_scenes.h"
+#include "scene/material_file.h"
 #include "scene/scene_json.h"
 
 namespace cloth::test::scene_schema_test {
@@ -38,6 +39,11 @@ class SceneSchema : public SchemaTest {
   SceneSchema() : SchemaTest(scene_schema()) {}
 };
 
+class MaterialSchema : public SchemaTest {
+ protected:
+  MaterialSchema() : SchemaTest(material_schema()) {}
+};
+
 class ComparisonSchema : public SchemaTest {
  protected:
   ComparisonSchema() : SchemaTest(comparison_schema()) {}
@@ -54,6 +60,26 @@ TEST_F(SceneSchema, AcceptsWhatIsWritten) {
 
 TEST_F(SceneSchema, AcceptsTheSmallestScene) {
   EXPECT_TRUE(accepts("{\"cloth\": {}}"));
+}
+
+TEST_F(SceneSchema, AcceptsMaterialsByNameByFileAndInFull) {
+  for (const char* material :
+       {R"("paper")", R"("./mine.material.json")", R"({"preset": "paper", "shear": 3})",
+        R"({"areal_density": 0.1, "bending_45": 1e-5})", R"({"areal_density": 0.1, "twist": 1e-5})"})
+    EXPECT_TRUE(accepts(std::string(R"({"cloth": {}, "material": )") + material + "}")) << material;
+  for (const char* material :
+       {R"("papr")", R"({"preset": 3})", R"({"bending_45": 1, "twist": 1})", R"({"areal_density": -1})"})
+    EXPECT_FALSE(accepts(std::string(R"({"cloth": {}, "material": )") + material + "}")) << material;
+}
+
+TEST_F(MaterialSchema, AcceptsTheBuiltInMaterialsAndWhatIsWritten) {
+  for (const BuiltinMaterial& one : builtin_materials()) {
+    EXPECT_TRUE(accepts(one.text)) << one.name;
+    EXPECT_TRUE(accepts(write_material_file(builtin_material(one.name)))) << one.name;
+  }
+  for (const char* text : {"{}", R"({"material": {}})", R"({"material": {"areal_density": 1, "x": 1}})",
+                           R"({"material": {"areal_density": 1}, "source": {"year": "1"}})"})
+    EXPECT_FALSE(accepts(text)) << text;
 }
 
 TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {

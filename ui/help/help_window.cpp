@@ -40,6 +40,7 @@ std::vector<Page> pages() {
           {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
           {"parameters.md", HelpWindow::tr("Parameters")},
           {"scene-format.md", HelpWindow::tr("Scene files")},
+          {"materials.md", HelpWindow::tr("Materials")},
           {"sessions.md", HelpWindow::tr("Sessions")},
           {"model.md", HelpWindow::tr("The model")},
           {"command-line.md", HelpWindow::tr("Command line")},

@@ -179,16 +179,20 @@ class Reader {
     const Term exponent = primary();
     const double by = sign * exponent.value;
     if (exponent.has_unit) throw Refused{"must have a pure number as an exponent"};
+    raise(out, by);
+    return out;
+  }
+
+  static void raise(Term& out, double by) {
     out.value = std::pow(out.value, by);
     out.literal.clear();
-    if (!out.has_unit) return out;
+    if (!out.has_unit) return;
     constexpr double largest = 9;
     if (by != std::round(by) || std::abs(by) > largest)
       throw Refused{"must have whole numbers as exponents of units"};
     out.tens *= static_cast<int>(by);
     out.degrees *= static_cast<int>(by);
     for (int& dimension : out.powers) dimension *= static_cast<int>(by);
-    return out;
   }
 
   Term primary() {
@@ -232,7 +236,11 @@ class Reader {
     while (at_ < text_.size() && is_in_name(text_[at_])) ++at_;
     const std::string_view name = text_.substr(from, at_ - from);
     if (name == "pi") return Term{std::numbers::pi};
-    if (const auto unit = unit_named(name)) return *unit;
+    if (auto unit = unit_named(name)) {
+      if (at_ < text_.size() && (text_[at_] == '2' || text_[at_] == '3'))  // as in "gf cm2/cm"
+        raise(*unit, text_[at_++] - '0');
+      return *unit;
+    }
     throw Refused{fmt::format("must be written with known units: \"{}\" is none", name)};
   }
 
@@ -262,6 +270,13 @@ std::string powers_text(const Powers& powers) {
   return shown_unit(below.empty() ? above : above + "/" + below);
 }
 
+/// Whether a stiffness is wanted in N/m and given over an angle too, as shear is measured: in gf/(cm deg) or
+/// N/(m rad).
+bool is_per_angle(Powers given, const Powers& wanted) {
+  constexpr Powers stiffness{0, 1, -2, 0};
+  return wanted == stiffness && given[angle]++ == -1 && given == wanted;
+}
+
 }  // namespace
 
 Quantity quantity_from(std::string_view text, const std::string& unit, bool decimal_comma) {
@@ -275,6 +290,7 @@ Quantity quantity_from(std::string_view text, const std::string& unit, bool deci
       found.value /= wanted.value;
     else
       found.powers = wanted.powers, found.tens = wanted.tens, found.degrees = wanted.degrees;
+    if (is_per_angle(found.powers, wanted.powers)) found.powers[angle] = 0;
     if (found.powers != wanted.powers) {
       const bool is_pure = found.powers == Powers{};
       const std::string not_in = is_pure ? "a pure number" : "in " + powers_text(found.powers);

@@ -16,9 +16,10 @@ struct Quantity {
 };
 
 /// The value of an expression: numbers, `+ - * / ^`, brackets, `pi` and units with SI prefixes, as in
-/// "0.3 ms", "5 cN/mm", "2*pi" or "1/60 s". From left to right: "1/60 s" is a sixtieth of a second. A result
-/// without any unit is in `unit`. With `decimal_comma`, "1,5" is a number, too. The value of a number with
-/// one unit is the double nearest to the decimal that was typed.
+/// "0.3 ms", "5 cN/mm", "2*pi", "0.1 gf cm2/cm" or "1/60 s". From left to right: "1/60 s" is a sixtieth of a
+/// second. A result without any unit is in `unit`. With `decimal_comma`, "1,5" is a number, too. The value of
+/// a number with one unit is the double nearest to the decimal that was typed. A stiffness in N/m may be
+/// given per angle: "0.8 gf/(cm deg)" is that per rad.
 Quantity quantity_from(std::string_view text, const std::string& unit, bool decimal_comma = false);
 
 /// A value as it is shown: the number, and the unit with a prefix, both in typographic form.

@@ -20,7 +20,7 @@ struct KnownUnit {
   int degrees = 0;
 };
 
-inline constexpr std::array<KnownUnit, 14> known_units{{
+inline constexpr std::array<KnownUnit, 15> known_units{{
     {"m", true, 1, 0, {1, 0, 0, 0}},
     {"g", true, 1, -3, {0, 1, 0, 0}},
     {"s", true, 1, 0, {0, 0, 1, 0}},
@@ -28,6 +28,7 @@ inline constexpr std::array<KnownUnit, 14> known_units{{
     {"h", false, 3600, 0, {0, 0, 1, 0}},
     {"Hz", true, 1, 0, {0, 0, -1, 0}},
     {"N", true, 1, 0, {1, 1, -2, 0}},
+    {"gf", true, 9.80665, -3, {1, 1, -2, 0}},
     {"Pa", true, 1, 0, {-1, 1, -2, 0}},
     {"J", true, 1, 0, {2, 1, -2, 0}},
     {"W", true, 1, 0, {2, 1, -3, 0}},

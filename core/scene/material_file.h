@@ -22,10 +22,10 @@ inline constexpr const char* material_format = "clothlab/material/1";
 
 /// Where a material's numbers come from.
 struct MaterialSource {
-  std::string author;    ///< empty: nobody measured it
-  int year = 0;          ///< 0: not known
-  std::string measured;  ///< what was measured, and how
-  std::string assumed;   ///< what was not
+  std::string author{};    ///< empty: nobody measured it
+  int year = 0;            ///< 0: not known
+  std::string measured{};  ///< what was measured, and how
+  std::string assumed{};   ///< what was not
   bool operator==(const MaterialSource&) const = default;
 
   std::string text() const;  ///< "Wang, O'Brien, Ramamoorthi 2011"

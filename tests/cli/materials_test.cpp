@@ -54,5 +54,25 @@ TEST(Materials, TakeThePlaceOfAScenesSpringsOnTheCommandLine) {
   EXPECT_EQ(cli("materials grey-interlock").exit_code, 2);
 }
 
+TEST(Materials, OfAScenesSpringsArePrintedAndTurnIntoSpringsAgain) {
+  const TemporaryFolder folder;
+  const CommandResult of = cli("materials --of corners-free");
+  ASSERT_EQ(of.exit_code, 0) << of.errors;
+  EXPECT_NE(of.errors.find("cube of the curvature"), std::string::npos) << of.errors;
+  EXPECT_TRUE(read_material_file(of.output, "x").file);
+  ASSERT_FALSE(write_text_file(folder / "x.material.json", of.output));
+  ASSERT_FALSE(write_text_file(folder / "x.scene.json", R"({"cloth": {}, "material": "./x.material.json"})"));
+  const CommandResult back = cli("materials --springs-of '" + (folder / "x.scene.json").string() + "'");
+  ASSERT_EQ(back.exit_code, 0) << back.errors;
+  const Json springs = Json::parse(back.output)["springs"],
+             first = Json::parse(cli("scenes corners-free").output)["springs"];
+  EXPECT_NEAR(springs["shear"].get<double>(), first["shear"].get<double>(), 1e-9);
+  EXPECT_NEAR(springs["structural"].get<double>(),
+              first["structural"].get<double>() + 4 * first["flexion"].get<double>(), 1e-9);
+  EXPECT_EQ(cli("materials --of disc").exit_code, 2);
+  EXPECT_EQ(cli("materials --springs-of flag").errors, "clothlab-cli: flag: The scene has no material.\n");
+  EXPECT_EQ(cli("materials paper --of flag").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace cloth::test::materials_test

@@ -46,6 +46,21 @@ TEST(Quantities, AreReadInTheirOwnUnitAndInOthers) {
   EXPECT_EQ(value("15 %", ""), 0.15);
 }
 
+TEST(Quantities, OfTheKawabataSystemAreReadAsItsSheetsWriteThem) {
+  for (const char* text : {"0.1 gf cm2/cm", "0.1 gf cm^2/cm", "0.1 gf·cm²/cm", "0.1 gf cm"})
+    EXPECT_DOUBLE_EQ(value(text, "N m"), 9.80665e-6) << text;
+  EXPECT_DOUBLE_EQ(value("1 gf cm/cm", "N"), 9.80665e-3);
+  EXPECT_DOUBLE_EQ(value("500 gf/cm", "N/m"), 490.3325);
+  EXPECT_DOUBLE_EQ(value("1 gf/(cm deg)", "N/m"), 0.980665 * 180 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(value("30 N/m/rad", "N/m"), 30);
+  EXPECT_DOUBLE_EQ(value("15 mg/cm2", "kg/m^2"), 0.15);
+  EXPECT_DOUBLE_EQ(value("150 g/m2", "kg/m^2"), 0.15);
+  EXPECT_EQ(value("2 m3", "m^3"), 2);
+  EXPECT_EQ(rule("1 gf/deg", "N/m"), "must be in N/m, not in kg·m/s²·rad");
+  EXPECT_EQ(rule("1 N deg/m", "N/m"), "must be in N/m, not in kg·rad/s²");
+  rule("3 m22", "m^2");
+}
+
 TEST(Quantities, WithoutAUnitAreInTheFieldsOwn) {
   for (const char* unit : {"", "s", "kg", "N/m", "N s/m", "deg", "rad/s"}) {
     EXPECT_EQ(value("123.45678901234567", unit), 123.45678901234567) << unit;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/grid_convergence_report.h"
@@ -84,7 +85,7 @@ LinePlot values_plot(const GridConvergence& study, const std::vector<std::size_t
     plot.y = {.label = name_of_output(study.outputs[outputs.front()]),
               .unit = unit_of_output(study.outputs[outputs.front()])};
   else
-    plot.y = {.label = "value over its extrapolated value"};
+    plot.y = {.label = "value, relative"};
   for (const std::size_t output : outputs) {
     const double scale = is_alone ? 1 : scale_of(study, output);
     plot.series.push_back(series_of(study, output, 0, scale, false));
@@ -99,7 +100,8 @@ LinePlot values_plot(const GridConvergence& study, const std::vector<std::size_t
       "At 0: the value that Richardson's extrapolation of the finest three grids gives; its bar is the error "
       "of the finest value (grid convergence index)."};
   if (!is_alone)
-    plot.caption.emplace_back("Where there is no extrapolated value, values are drawn over the finest one.");
+    plot.caption.emplace_back(
+        "Each output over its extrapolated value; where there is none, over its finest value.");
   return plot;
 }
 
@@ -107,23 +109,31 @@ LinePlot errors_plot(const GridConvergence& study, const std::vector<std::size_t
   LinePlot plot{.title = "Error against cell size", .subtitle = study.scene.title};
   plot.x = cell_axis(AxisScale::logarithmic);
   const bool is_alone = outputs.size() == 1;
-  plot.y = {.label = is_alone ? "|value - extrapolated value|" : "|value - extrapolated value| over that",
+  plot.y = {.label = is_alone ? "error" : "error, relative",
             .unit = is_alone ? unit_of_output(study.outputs[outputs.front()]) : "",
             .scale = AxisScale::logarithmic};
   for (const std::size_t output : outputs) {
     const Richardson found = richardson_of(study, output);
-    if (found.verdict != GridVerdict::converging) {
-      plot.caption.push_back(words_of_output(study.outputs[output]) + " is not drawn. " + found.words);
+    const std::string name = words_of_output(study.outputs[output]);
+    if (found.verdict == GridVerdict::converging) {
+      plot.series.push_back(
+          series_of(study, output, found.extrapolate, is_alone ? 1 : scale_of(study, output), true));
       continue;
     }
-    plot.series.push_back(
-        series_of(study, output, found.extrapolate, is_alone ? 1 : scale_of(study, output), true));
+    plot.series.push_back({.name = name,
+                           .detail = std::string("no order: ") + name_of(found.verdict),
+                           .style = static_cast<int>(output),
+                           .line = false});
+    plot.caption.push_back(name + " is not drawn. " + found.words);
   }
-  if (!plot.series.empty()) {
+  const bool any = std::any_of(plot.series.begin(), plot.series.end(),
+                               [](const PlotSeries& series) { return !series.points.empty(); });
+  if (any) {
     plot.triangles = {{1, "1"}, {2, "2"}};
     plot.caption.insert(
         plot.caption.begin(),
-        "The slope of a line is the order. The finest three values lie on the line of the observed order, "
+        "Error: distance from the extrapolated value. The slope of a line is the order. The finest three "
+        "values lie on the line of the observed order, "
         "because the extrapolated value is made from them; coarser ones tell whether it holds.");
   }
   return plot;

@@ -14,7 +14,8 @@ enum class GridPlot { values, errors };
 inline constexpr const char* grid_errors_name = "convergence_error.svg";
 
 /// Values: outputs against the length of a cell, with what they extrapolate to; of several outputs each over
-/// that. Errors: what each value differs from it by, on logarithmic axes, where there is an order.
+/// that. Errors: what each value differs from it by, on logarithmic axes; an output without an order stands in
+/// the legend alone.
 LinePlot study_plot(const GridConvergence& study, GridPlot what = GridPlot::values);
 
 /// The same of one output, in its unit.

@@ -91,7 +91,10 @@ TEST(GridConvergence, SaysInWordsWhereThereIsNoOrder) {
 }
 
 TEST(GridConvergence, PlotsErrorsOnlyWhereThereIsAnOrder) {
-  EXPECT_EQ(study_plot(made_up({4, 8, 16}, {1, 2, 1.5}), GridPlot::errors).series.size(), 0u);
+  const LinePlot none = study_plot(made_up({4, 8, 16}, {1, 2, 1.5}), GridPlot::errors);
+  ASSERT_EQ(none.series.size(), 1u);
+  EXPECT_TRUE(none.series[0].points.empty());
+  EXPECT_EQ(none.series[0].detail, "no order: oscillating");
   const GridConvergence study = made_up({4, 8, 16}, {3, 2, 1.5});
   const LinePlot errors = study_plot(study, GridPlot::errors);
   ASSERT_EQ(errors.series.size(), 1u);

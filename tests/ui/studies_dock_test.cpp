@@ -22,6 +22,9 @@ namespace clothlab::test::studies_dock_test {
 namespace {
 
 constexpr QSize small_window{1000, 650};
+constexpr StudyChoices::Kind every_kind[] = {StudyChoices::Kind::work_precision,
+                                             StudyChoices::Kind::stability, StudyChoices::Kind::extremes,
+                                             StudyChoices::Kind::convergence};
 
 bool is_placed_by_a_layout(const QWidget& widget) {
   const QWidget* parent = widget.parentWidget();
@@ -295,8 +298,7 @@ class StudiesDockTest : public QObject {
 
   void fields_of_the_form_begin_at_one_edge() {
     DockBench bench("pendulum");
-    for (const auto kind :
-         {StudyChoices::Kind::work_precision, StudyChoices::Kind::stability, StudyChoices::Kind::extremes}) {
+    for (const auto kind : every_kind) {
       bench.choose(kind);
       QTest::qWait(50);
       QSet<int> edges;
@@ -319,8 +321,7 @@ class StudiesDockTest : public QObject {
     bench.window.resize(small_window);
     QTest::qWait(100);
     QVERIFY(bench.panel().isRightToLeft() == reverse);
-    for (const auto kind :
-         {StudyChoices::Kind::work_precision, StudyChoices::Kind::stability, StudyChoices::Kind::extremes}) {
+    for (const auto kind : every_kind) {
       bench.choose(kind);
       QTest::qWait(50);
       QVERIFY2(trouble_below(bench.panel()).isEmpty(), qPrintable(trouble_below(bench.panel())));

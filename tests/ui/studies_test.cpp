@@ -6,11 +6,13 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QMenu>
 #include <QMessageBox>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSpinBox>
 #include <QTimer>
+#include <QToolButton>
 
 #include "listed_test.h"
 #include "studies_bench.h"
@@ -22,6 +24,16 @@ namespace {
 QByteArray content_of(const QString& path) {
   QFile file(path);
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+QAction* action_named(const QMenu& menu, const QString& text) {
+  for (QAction* action : menu.actions())
+    if (action->text() == text) return action;
+  return nullptr;
+}
+
+void click(QMenu& menu, QAction* action) {
+  QTest::mouseClick(&menu, Qt::LeftButton, {}, menu.actionGeometry(action).center());
 }
 
 }  // namespace
@@ -140,9 +152,82 @@ class StudiesTest : public QObject {
     QVERIFY(!bench.plot().placeOf(0).isEmpty());
   }
 
+  void outputs_of_a_convergence_study_are_chosen_in_a_menu() {
+    StudiesBench bench("corners-free");
+    bench.choose(StudyChoices::Kind::convergence);
+    auto* line = bench.part<QLineEdit>("outputNames");
+    QCOMPARE(line->placeholderText(), QString("lowest_point_m, elastic_J"));
+    auto* button = bench.part<QToolButton>("addOutput");
+    bool was_open = false;
+    QTimer::singleShot(300, button, [&] {
+      auto* menu = bench.part<QMenu>("outputMenu");
+      QAction* kinetic = action_named(*menu, "kinetic (J)");
+      was_open = menu->isVisible() && kinetic && kinetic->menu();
+      if (!was_open) return;
+      click(*menu, kinetic);
+      if (QTest::qWaitFor([&] { return kinetic->menu()->isVisible(); }))
+        click(*kinetic->menu(), action_named(*kinetic->menu(), "Largest"));
+    });
+    QTest::mouseClick(button, Qt::LeftButton);
+    QTRY_COMPARE(line->text(), QString("kinetic_J:max"));
+    QVERIFY(was_open);
+  }
+
+  void grid_convergence_shows_values_and_errors_and_opens_a_grid() {
+    StudiesBench bench("corners-free");
+    bench.choose(StudyChoices::Kind::convergence);
+    QVERIFY(!bench.part<QListWidget>("studyMethods")->isVisible());
+    bench.type("cells", "4, 8, 16");
+    bench.type("outputNames", "max_strain:max, elastic_J");
+    bench.type("studyTime", "0.1");
+    bench.type("studyFolder", folder_.filePath("convergence"));
+    bench.push("startStudy");
+    bench.wait_for_end();
+    const auto& study = std::get<cloth::GridConvergence>(*bench.panel().table());
+    QVERIFY(study.is_complete());
+    QCOMPARE(study.cells, (std::vector<int>{4, 8, 16}));
+    QVERIFY(!bench.part<QLabel>("studyEarlier")->isVisible());
+    QVERIFY(cloth::read_study(folder_.filePath("convergence").toStdString()).study);
+
+    const QString said = bench.part<QLabel>("studyLine")->toolTip();
+    QVERIFY2(said.contains("3 runs") && said.contains("elastic (J): "), qPrintable(said));
+
+    auto* which = bench.part<QComboBox>("against");
+    QVERIFY(which->isVisible());
+    QCOMPARE(which->count(), 2);
+    const auto title = [&] { return std::get<cloth::LinePlot>(bench.plot().diagram()).title; };
+    QCOMPARE(title(), std::string("Value against cell size"));
+    QTest::qWait(50);
+    const QPoint at = bench.plot().placeOf(1).center().toPoint();
+    QTest::keyClick(which, Qt::Key_Down);
+    QCOMPARE(title(), std::string("Error against cell size"));
+    QTest::keyClick(which, Qt::Key_Up);
+    QTest::mouseDClick(&bench.plot(), Qt::LeftButton, {}, at);
+    bench.settle();
+    QCOMPARE(bench.window.document().scene().cloth.columns, 9);
+    QCOMPARE(bench.window.document().scene().integrator.time_step, study.runs[1].time_step);
+  }
+
+  void a_convergence_study_that_cannot_be_made_says_why() {
+    StudiesBench bench("corners-free");
+    bench.choose(StudyChoices::Kind::convergence);
+    auto* line = bench.part<QLabel>("studyLine");
+    const auto says = [&](const char* field, const QString& text, const QString& rule) {
+      bench.type(field, text);
+      bench.push("startStudy");
+      const bool is_said = !bench.panel().isRunning() && line->toolTip().contains(rule);
+      bench.part<QLineEdit>(field)->clear();
+      return is_said;
+    };
+    QVERIFY(says("cells", "8, x", "Cells: \"8, x\" must be whole numbers"));
+    QVERIFY(says("cells", "16, 8", "Cells: 8: must be more than 16"));
+    QVERIFY(says("outputNames", "speed", "Outputs: speed: must be one of"));
+    QVERIFY(says("studyTime", "soon", "Time: \"soon\" must be a time in s"));
+  }
+
   void every_format_is_saved() {
     StudiesBench bench("pendulum");
-    for (const QString name : {"map", "precision", "extremes"}) {
+    for (const QString name : {"map", "precision", "extremes", "convergence"}) {
       bench.panel().openFolder(folder_.filePath(name));
       const QString base = folder_.filePath("saved-" + name);
       for (const QString ending : {".svg", ".png", ".pdf", ".csv"})

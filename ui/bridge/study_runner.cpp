@@ -43,6 +43,10 @@ cloth::ExtremesTable copy_of(const cloth::ExtremesTable& table) {
   return table;
 }
 
+cloth::GridConvergence copy_of(const cloth::GridConvergence& study) {
+  return study;
+}
+
 /// A table that is not the last one is that of a study which is not complete.
 void mark(cloth::WorkPrecision& study) {
   study.stopped = true;
@@ -51,6 +55,7 @@ void mark(cloth::StabilityMap& map) {
   map.complete = false;
 }
 void mark(cloth::ExtremesTable&) {}
+void mark(cloth::GridConvergence&) {}
 
 }  // namespace
 
@@ -203,6 +208,10 @@ void StudyRunner::carry_out(Job& job, const std::stop_token& stop) {
     study(
         *map, [&](const auto& o) { return cloth::plan_stability_map(order.scene, o); },
         [&](const auto& o) { return cloth::run_stability_map(order.scene, o); });
+  } else if (const auto* grids = std::get_if<cloth::GridConvergenceOptions>(&order.options)) {
+    study(
+        *grids, [&](const auto& o) { return cloth::plan_grid_convergence(order.scene, o); },
+        [&](const auto& o) { return cloth::run_grid_convergence(order.scene, o); });
   } else {
     study(std::get<cloth::ExtremesOptions>(order.options), cloth::empty_table, cloth::run_extremes);
   }

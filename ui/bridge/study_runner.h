@@ -17,8 +17,8 @@
 
 namespace clothlab {
 
-using StudyOptions =
-    std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions, cloth::ExtremesOptions>;
+using StudyOptions = std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions,
+                                  cloth::ExtremesOptions, cloth::GridConvergenceOptions>;
 
 struct StudyOrder {
   cloth::Scene scene;  ///< extremes: not used, see ExtremesOptions::scene

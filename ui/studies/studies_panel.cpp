@@ -284,10 +284,16 @@ void StudiesPanel::showStatus(const StudyStatus& status) {
 
 QString StudiesPanel::summary() const {
   if (!table_) return {};
-  return tr("%1 runs%2, in %3")
-      .arg(cloth::finished_runs(*table_))
-      .arg(cloth::is_complete(*table_) ? QString() : tr(" (stopped before the end)"))
-      .arg(shown_path(folder_));
+  QString text = tr("%1 runs%2, in %3")
+                     .arg(cloth::finished_runs(*table_))
+                     .arg(cloth::is_complete(*table_) ? QString() : tr(" (stopped before the end)"))
+                     .arg(shown_path(folder_));
+  if (const auto* grids = std::get_if<cloth::GridConvergence>(table_.get()))
+    for (std::size_t k = 0; k < grids->outputs.size(); ++k)
+      text += QString(". %1: %2")
+                  .arg(QString::fromStdString(cloth::words_of_output(grids->outputs[k])),
+                       QString::fromStdString(cloth::richardson_of(*grids, k).words).chopped(1));
+  return text;
 }
 
 void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {

@@ -13,7 +13,9 @@
 #include "integrators/registry.h"
 #include "params/wording.h"
 #include "studies/axis_choice.h"
+#include "studies/outputs_choice.h"
 #include "studies/study_library.h"
+#include "study/refined_scene.h"
 #include "study/stability_map.h"
 #include "study/stability_report.h"
 #include "theme/theme.h"
@@ -40,8 +42,29 @@ QString purpose_of(StudyChoices::Kind kind) {
       return QObject::tr(
           "What breaks which method? Every method on cases pushed far: stiffness, steps, "
           "masses, damping, wind, limits.");
+    case StudyChoices::Kind::convergence:
+      return QObject::tr(
+          "Is a value one of the cloth or of its grid? The scene on finer and finer grids, with "
+          "the order, the limit and the error of what is read off.");
   }
   return {};
+}
+
+QString cells_text(const std::vector<int>& cells) {
+  QStringList texts;
+  for (const int count : cells) texts << QString::number(count);
+  return texts.join(", ");
+}
+
+/// nullopt: an entry is no whole number.
+std::optional<std::vector<int>> cells_from(const QString& text) {
+  std::vector<int> cells;
+  for (const QString& entry : text.split(',')) {
+    bool is_whole = false;
+    cells.push_back(entry.trimmed().toInt(&is_whole));
+    if (!is_whole) return std::nullopt;
+  }
+  return cells;
 }
 
 std::vector<std::string> names_of(const std::vector<cloth::MethodStudy>& methods) {
@@ -69,6 +92,12 @@ bool has_inputs(const cloth::StabilityMap& map, const cloth::Scene& scene,
          is_same(map.options.y, options.y);
 }
 
+bool has_inputs(const cloth::GridConvergence& study, const cloth::Scene& scene,
+                const cloth::GridConvergenceOptions& options) {
+  const cloth::GridConvergence plan = cloth::plan_grid_convergence(scene, options);
+  return study.scene == plan.scene && study.cells == plan.cells && study.outputs == plan.outputs;
+}
+
 bool has_inputs(const cloth::ExtremesTable& table, const cloth::Scene&,
                 const cloth::ExtremesOptions& options) {
   return table.scene == options.scene && table.methods == options.methods;
@@ -78,7 +107,7 @@ bool has_inputs(const cloth::ExtremesTable& table, const cloth::Scene&,
 
 StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
-  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases")});
+  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases"), tr("Grid convergence")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
@@ -96,13 +125,13 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
     item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
     item->setCheckState(Qt::Checked);
   }
+  makeFields();
   makeRows();
   connectRows();
   follow();
 }
 
-/// Two left edges: that of the labels and that of the fields.
-void StudyChoices::makeRows() {
+void StudyChoices::makeFields() {
   horizon_ = named("horizon", new QLineEdit(this));
   repeats_ = named("repeats", new QSpinBox(this));
   repeats_->setRange(5, 100);
@@ -115,10 +144,19 @@ void StudyChoices::makeRows() {
   periods_->setToolTip(tr("How long a run lasts, in periods of the fastest motion"));
   cases_ = named("cases", new QComboBox(this));
   cases_->addItems({tr("This scene, pushed"), tr("The fixed list")});
+  cells_ = named("cells", new QLineEdit(this));
+  cells_->setToolTip(
+      tr("Cells across of each grid, from coarse to fine, between commas. The cells down follow."));
+  outputs_ = named("outputs", new OutputsChoice(this));
+  time_ = named("studyTime", new QLineEdit(this));
+  time_->setToolTip(tr("How long the runs last; empty: the scene's duration"));
   folder_ = named("studyFolder", new QLineEdit(this));
   folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(shown_path(studies_folder())));
   folder_->setPlaceholderText(tr("a new one in %1").arg(shown_path(studies_folder())));
+}
 
+/// Two left edges: that of the labels and that of the fields.
+void StudyChoices::makeRows() {
   form_ = spaced(new QFormLayout(this), spacing / 2);
   form_->setRowWrapPolicy(QFormLayout::DontWrapRows);
   form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
@@ -132,6 +170,9 @@ void StudyChoices::makeRows() {
   form_->addRow(tr("Up"), y_);
   form_->addRow(tr("Periods"), periods_);
   form_->addRow(tr("Cases"), cases_);
+  form_->addRow(tr("Cells"), cells_);
+  form_->addRow(tr("Outputs"), outputs_);
+  form_->addRow(tr("Time (s)"), time_);
   form_->addRow(tr("Folder"), folder_);
   form_->setItem(form_->rowCount(), QFormLayout::SpanningRole,
                  new QSpacerItem(0, 0, QSizePolicy::Minimum, QSizePolicy::Expanding));
@@ -152,6 +193,9 @@ void StudyChoices::connectRows() {
   connect(y_, &AxisChoice::changed, this, &StudyChoices::changed);
   connect(periods_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(cases_, &QComboBox::currentIndexChanged, this, &StudyChoices::changed);
+  connect(cells_, &QLineEdit::textChanged, this, &StudyChoices::changed);
+  connect(outputs_, &OutputsChoice::changed, this, &StudyChoices::changed);
+  connect(time_, &QLineEdit::textChanged, this, &StudyChoices::changed);
 }
 
 StudyChoices::Kind StudyChoices::kind() const {
@@ -167,6 +211,10 @@ void StudyChoices::follow() {
        {static_cast<QWidget*>(x_), static_cast<QWidget*>(y_), static_cast<QWidget*>(periods_)})
     form_->setRowVisible(field, now == Kind::stability);
   form_->setRowVisible(cases_, now == Kind::extremes);
+  for (QWidget* field :
+       {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
+    form_->setRowVisible(field, now == Kind::convergence);
+  form_->setRowVisible(methods_, now != Kind::convergence);  // the scene's own
   const auto own = own_methods_.find(now);
   if (own != own_methods_.end())
     checkMethods(own->second);
@@ -189,6 +237,10 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
   horizon_->setPlaceholderText(number_text(cloth::default_horizon(cloth::studied_scene(scene)), 4));
   x_->setScene(scene, cloth::default_time_axis(scene, cloth::methods_with_a_limit()));
   y_->setScene(scene, cloth::default_stiffness_axis(scene));
+  cells_->setPlaceholderText(cloth::refinement_problem(scene) ? QString()
+                                                              : cells_text(cloth::default_cells(scene)));
+  outputs_->setScene(scene);
+  time_->setPlaceholderText(number_text(scene.duration, 4));
   Q_EMIT changed();
 }
 
@@ -234,7 +286,32 @@ std::variant<StudyOrder, QString> StudyChoices::precisionInputs() const {
   return StudyOrder{scene_, options, {}, made_by};
 }
 
+std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
+  cloth::GridConvergenceOptions options;
+  options.outputs = outputs_->outputs();
+  if (const QString text = cells_->text().trimmed(); !text.isEmpty()) {
+    const auto cells = cells_from(text);
+    if (!cells) return tr("Cells: \"%1\" must be whole numbers between commas.").arg(text);
+    options.cells = *cells;
+  }
+  if (const QString text = time_->text().trimmed(); !text.isEmpty()) {
+    const cloth::Quantity typed = typed_quantity(text, "s");
+    options.time = typed.value;
+    if (!typed.ok() || !(typed.value > 0))
+      return tr("Time: \"%1\" must be a time in s, more than 0.").arg(text);
+  }
+  const auto problems = cloth::find_problems(scene_, options);
+  if (problems.empty()) return StudyOrder{scene_, options, {}, made_by};
+  const cloth::Problem& first = problems.front();
+  const QString rule = QString::fromStdString(first.rule);
+  if (first.path == "--cells") return tr("Cells: %1").arg(rule);
+  if (first.path == "--output") return tr("Outputs: %1").arg(rule);
+  if (first.path == "--time") return tr("Time: %1").arg(rule);
+  return QString::fromStdString(first.text());
+}
+
 std::variant<StudyOrder, QString> StudyChoices::inputs() const {
+  if (kind() == Kind::convergence) return convergenceInputs();
   if (methods().empty()) return tr("Choose at least one method.");
   if (kind() == Kind::stability) return stabilityInputs();
   if (kind() == Kind::work_precision) return precisionInputs();

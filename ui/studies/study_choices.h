@@ -18,12 +18,13 @@ class QSpinBox;
 namespace clothlab {
 
 class AxisChoice;
+class OutputsChoice;
 
 class StudyChoices : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Kind { work_precision, stability, extremes };
+  enum class Kind { work_precision, stability, extremes, convergence };
 
   explicit StudyChoices(QWidget* parent = nullptr);
 
@@ -43,6 +44,7 @@ class StudyChoices : public QWidget {
   void changed();  ///< an input of the study, the scene too
 
  private:
+  void makeFields();
   void makeRows();
   void connectRows();
   void follow();  ///< the kind
@@ -52,6 +54,7 @@ class StudyChoices : public QWidget {
   std::variant<StudyOrder, QString> inputs() const;
   std::variant<StudyOrder, QString> stabilityInputs() const;
   std::variant<StudyOrder, QString> precisionInputs() const;
+  std::variant<StudyOrder, QString> convergenceInputs() const;
 
   cloth::Scene scene_;
   QComboBox* kind_;
@@ -65,6 +68,8 @@ class StudyChoices : public QWidget {
   AxisChoice *x_, *y_;
   QSpinBox* periods_;
   QComboBox* cases_;
+  QLineEdit *cells_, *time_;
+  OutputsChoice* outputs_;
   QLineEdit* folder_;
 };
 

@@ -7,6 +7,7 @@
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QMessageBox>
+#include <QProgressDialog>
 #include <QTimer>
 #include <QtTest>
 #include <algorithm>
@@ -88,6 +89,7 @@ class Answers {
   void look() {
     auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
     if (!dialog || !dialog->isVisible()) return;
+    if (qobject_cast<QProgressDialog*>(dialog)) return;  // it comes up where work takes long, and goes by itself
     if (!steps_.empty()) {
       const Step step = std::move(steps_.front());
       steps_.pop_front();  // what it does may bring up the next dialog

@@ -65,7 +65,8 @@ class Answers {
       const auto is_visible = [](const QWidget* window) { return window->isVisible(); };
       return QApplication::activeWindow() || std::none_of(windows.begin(), windows.end(), is_visible);
     };
-    return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(takes_keys);
+    constexpr int patience = 30000;  // ms; a busy machine's window manager may take seconds
+    return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(takes_keys, patience);
   }
   QString what_went_wrong() const {
     return QStringLiteral("%1 answers are left; unexpected: %2")
@@ -89,7 +90,8 @@ class Answers {
   void look() {
     auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
     if (!dialog || !dialog->isVisible()) return;
-    if (qobject_cast<QProgressDialog*>(dialog)) return;  // it comes up where work takes long, and goes by itself
+    if (qobject_cast<QProgressDialog*>(dialog))
+      return;  // it comes up where work takes long, and goes by itself
     if (!steps_.empty()) {
       const Step step = std::move(steps_.front());
       steps_.pop_front();  // what it does may bring up the next dialog

@@ -79,15 +79,20 @@ class Bench {
   /// Opens the button's menu and clicks on an entry of it.
   void choose(MeshButton* button, const QString& entry) {
     QVERIFY(button && button->isVisible());
-    QTimer::singleShot(50, [button, entry] {
+    QTimer watch;
+    bool clicked = false;
+    QObject::connect(&watch, &QTimer::timeout, [&] {
       QMenu* menu = button->menu();
+      if (!menu->isVisible() || std::exchange(clicked, true)) return;
       for (QAction* action : menu->actions())
         if (action->objectName() == entry)
           return QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(action).center());
       menu->close();
       QFAIL(qPrintable(entry + ": no such entry"));
     });
+    watch.start(50);
     QTest::mouseClick(button, Qt::LeftButton);
+    QTRY_VERIFY(clicked && !button->menu()->isVisible());
     QTest::qWait(20);  // what the menu's entry does comes after the menu
     bench_->settle();
   }
@@ -107,7 +112,7 @@ class Bench {
     });
     watch.start(50);
     choose(button, "mesh:file");
-    QTRY_VERIFY(typed);
+    QTRY_VERIFY(typed && !QApplication::activeModalWidget());
     bench_->settle();
   }
 

@@ -53,7 +53,7 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
   EXPECT_TRUE(json["rows"].empty());
   EXPECT_GE(json["scenes"].size(), 10u);
   for (const auto& scene : json["scenes"]) EXPECT_GT(scene["simulated_per_wall"], 0) << scene.dump();
-  EXPECT_EQ(json["memory"].size(), 7u) << "bare, and with each thing that a scene may have";
+  EXPECT_EQ(json["memory"].size(), 9u) << "bare, and with each thing that a scene may have";
   for (const auto& row : json["memory"])
     EXPECT_TRUE(row["held_bytes_per_particle"].is_null() || row["held_bytes_per_particle"] > 48)
         << row.dump();

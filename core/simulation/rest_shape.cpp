@@ -167,6 +167,24 @@ RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Fie
   return RestSearch(scene, system, from, options).run();
 }
 
+bool is_minimum(const Scene& scene, const ClothSystem& system, const Vec3Field& position) {
+  const Scene still = conservative(scene);
+  ForceModel forces(still, system);
+  forces.update(position, 0);
+  constexpr double mass_beside_stiffness = 1e-12;  // what cannot be left out of the matrix
+  Linearisation linearisation;
+  const double stiffness = 1 / (mass_beside_stiffness * gravity_of(still).norm() / system.diagonal);
+  forces.linearise(position, {.position = stiffness, .velocity = 0, .clamped = false}, linearisation);
+  return CholeskyFactors().factorise(system, linearisation);
+}
+
+Vec3Field conservative_forces(const Scene& scene, const ClothSystem& system, const Vec3Field& position) {
+  const Scene still = conservative(scene);
+  ForceModel forces(still, system);
+  forces.update(position, 0);
+  return forces.position_force();
+}
+
 RestShape find_rest(const Scene& scene, const RestOptions& options) {
   const ClothSystem system = make_cloth(scene);
   return find_rest(scene, system, system.start, options);

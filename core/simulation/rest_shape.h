@@ -36,4 +36,10 @@ RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Fie
 /// From the starting shape of the scene's cloth.
 RestShape find_rest(const Scene& scene, const RestOptions& options = {});
 
+/// Whether the energy rises in every direction from this shape: with no pin it never does.
+bool is_minimum(const Scene& scene, const ClothSystem& system, const Vec3Field& position);
+
+/// What springs or material and gravity exert on every particle, pinned ones too; N.
+Vec3Field conservative_forces(const Scene& scene, const ClothSystem& system, const Vec3Field& position);
+
 }  // namespace cloth

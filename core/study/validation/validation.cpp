@@ -1,0 +1,89 @@
+#include "study/validation/validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "study/validation/protocols.h"
+
+namespace cloth {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A row of a protocol on all grids; false where it was stopped.
+bool measure(const ValidationProtocol& protocol, ValidationRow& row, const StopTest& stop) {
+  for (const int cells : validation_cells) {
+    if (!row.failure.empty()) return true;
+    if (is_to_stop(stop)) return false;
+    ValidationReading reading = protocol.measure(row, cells);
+    if (!reading.failure.empty()) {
+      row.failure = fmt::format("{} cells: {}", cells, reading.failure);
+      return true;
+    }
+    row.grids.push_back({cells, reading.value, reading.value / row.exact - 1, reading.distance});
+    if (cells == 20) row.shown = std::move(reading.points);
+  }
+  return true;
+}
+
+}  // namespace
+
+const ValidationProtocol* find_protocol(const std::string& name) {
+  const auto& all = protocols();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ValidationProtocol& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+double ValidationRow::order() const {
+  if (grids.size() < 2) return nan;
+  const bool has_curve = grids.back().distance > 0;
+  const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
+  const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());
+  return coarse * fine > 0 ? std::log2(coarse / fine) : nan;
+}
+
+bool ValidationRow::holds() const {
+  if (!failure.empty()) return false;
+  if (promise == Promise::none) return true;
+  const auto twenty = std::find_if(grids.begin(), grids.end(),
+                                   [](const ValidationValue& value) { return value.cells == 20; });
+  if (twenty == grids.end() || std::abs(twenty->error) > 0.01) return false;
+  return promise == Promise::error || (order() >= 1.8 && order() <= 2.2);
+}
+
+std::vector<std::string> validation_protocols() {
+  std::vector<std::string> names;
+  for (const ValidationProtocol& one : protocols()) names.emplace_back(one.name);
+  return names;
+}
+
+std::vector<ValidationRow> validation_rows(const std::vector<std::string>& names) {
+  std::vector<ValidationRow> rows;
+  for (const std::string& name : names)
+    if (const ValidationProtocol* protocol = find_protocol(name))
+      for (const double parameter : protocol->parameters) {
+        ValidationRow row = protocol->expect(parameter);
+        row.protocol = name, row.parameter = parameter, row.parameter_name = protocol->parameter_name;
+        rows.push_back(std::move(row));
+      }
+  return rows;
+}
+
+bool validate(std::vector<ValidationRow> rows, const std::function<void(ValidationRow)>& row,
+              const StopTest& stop) {
+  for (ValidationRow& expected : rows) {
+    if (!measure(*find_protocol(expected.protocol), expected, stop)) return false;
+    row(std::move(expected));
+  }
+  return true;
+}
+
+std::string name_of(const ValidationRow& row) {
+  return row.parameter_name.empty() ? row.protocol : fmt::format("{}-{:g}", row.protocol, row.parameter);
+}
+
+}  // namespace cloth

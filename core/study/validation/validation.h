@@ -1,0 +1,67 @@
+// Materials against exact solutions: strips at rest, the loads at which they buckle, how they swing. Every
+// protocol is taken on four grids, so that its error and its order in the cells are seen.
+//
+//     validate(validation_rows({"cantilever"}), [&](ValidationRow row) { rows.push_back(std::move(row)); });
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/study_progress.h"
+#include "study/validation/strip.h"
+
+namespace cloth {
+
+/// Along the strip.
+inline constexpr std::array validation_cells{10, 20, 40, 80};
+
+/// What one grid gives.
+struct ValidationValue {
+  int cells = 0;
+  double value = 0;
+  double error = 0;  ///< relative to the exact value
+  /// Root mean square over the particles of how far they are from the exact curve at their arc, in the
+  /// strip's length; 0: no curve.
+  double distance = 0;
+};
+
+/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2.
+enum class Promise { none, error, second_order };
+
+struct ValidationRow {
+  std::string protocol{};        ///< "cantilever"
+  std::string parameter_name{};  ///< "Gamma"; empty: the protocol has none
+  double parameter = 0;
+  std::string quantity{};  ///< in words, with its unit
+  std::string source{};    ///< author and year of the exact value
+  std::string method{};    ///< how the grids' values are found, and the step
+  double exact = 0;
+  StripCurve curve{};  ///< exact; no points: none
+  Promise promise = Promise::second_order;
+  std::vector<Eigen::Vector2d> shown{};  ///< points found with 20 cells, in the strip's length; may be empty
+  std::vector<ValidationValue> grids{};  ///< from coarse to fine, each with twice the cells of the one before
+  std::string failure{};                 ///< where a value could not be found
+
+  /// From the finest two grids' distances from the curve, and where there is no curve from their errors;
+  /// not a number where these change their sign.
+  double order() const;
+  /// Nothing failed, and what is promised is so.
+  bool holds() const;
+};
+
+/// "cantilever", "astm", "heart-loop", ... in the order of the table.
+std::vector<std::string> validation_protocols();
+
+/// The rows of these protocols with their exact values, not measured yet.
+std::vector<ValidationRow> validation_rows(const std::vector<std::string>& protocols);
+
+/// Measures these rows; each `row` as it is done. False where it was stopped.
+bool validate(std::vector<ValidationRow> rows, const std::function<void(ValidationRow)>& row,
+              const StopTest& stop = {});
+
+/// "heart-loop-50": of its files.
+std::string name_of(const ValidationRow& row);
+
+}  // namespace cloth

@@ -2,7 +2,9 @@
 # `header` declares `struct`, {name, title, text}, and `list`, which returns them all.
 function(clothlab_embed output folder kind header struct list)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/resources/${folder}/*.${kind}.json)
-  list(SORT files)
+  list(TRANSFORM files REPLACE "\\.${kind}\\.json$" "")
+  list(SORT files)  # by name: a sister "ball-wool" behind "ball"
+  list(TRANSFORM files APPEND ".${kind}.json")
   set(code "#include \"${header}\"\n\nnamespace cloth {\n\nconst std::vector<${struct}>& ${list}() {\n  static const std::vector<${struct}> all{\n")
   foreach(file ${files})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})

@@ -149,9 +149,16 @@ class Reader {
         multiply(out, factor(), -1);
       else if (next() == '(' || is_in_name(next()))
         multiply(out, power(), 1);
+      else if (is_at_reciprocal())
+        multiply(out, number(), 1);
       else
         return out;
     }
+  }
+
+  /// At "1/s" and the like, as in "0.2 1/s"; "2 1/2" is nothing.
+  bool is_at_reciprocal() {
+    return next() == '1' && at_ + 2 < text_.size() && text_[at_ + 1] == '/' && is_in_name(text_[at_ + 2]);
   }
 
   static void multiply(Term& out, const Term& by, int sign) {

@@ -51,8 +51,8 @@ TEST(Explain, GivesTheFrequencyItsBoundAndEveryMethodsStep) {
   for (const BuiltinScene& builtin : builtin_scenes()) {
     const Scene scene = builtin_scene(builtin.name);
     const auto json = explained(builtin.name);
-    EXPECT_EQ(json["largest_frequency_per_s"], largest_frequency(scene.cloth, *scene.springs));
-    EXPECT_EQ(json["guaranteed_frequency_per_s"], guaranteed_frequency(scene.cloth, *scene.springs));
+    EXPECT_EQ(json["largest_frequency_per_s"], largest_frequency(scene));
+    EXPECT_EQ(json["guaranteed_frequency_per_s"], guaranteed_frequency(scene));
     ASSERT_EQ(json["methods"].size(), integrator_names().size());
     for (const auto& method : json["methods"]) {
       const auto limit = stable_step(method["name"].get<std::string>(), scene);

@@ -44,6 +44,9 @@ TEST(Quantities, AreReadInTheirOwnUnitAndInOthers) {
   EXPECT_DOUBLE_EQ(value("90°", "rad"), std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value("pi rad", "deg"), 180);
   EXPECT_EQ(value("15 %", ""), 0.15);
+  EXPECT_EQ(value("0.2 1/s", "1/s"), 0.2);
+  EXPECT_EQ(value("0.2/s", "1/s"), 0.2);
+  rule("2 1/2", "");
 }
 
 TEST(Quantities, OfTheKawabataSystemAreReadAsItsSheetsWriteThem) {

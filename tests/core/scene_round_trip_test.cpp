@@ -29,10 +29,13 @@ TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
   for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
   EXPECT_EQ(names,
             std::vector<std::string>(
-                {"ball",      "bunny",    "corner",    "corners-free", "corners-shear", "corners-structural",
-                 "cube",      "curtain",  "disc",      "fast-ball",    "flag",          "fold",
-                 "free-fall", "pendulum", "rectangle", "slope",        "spikes",        "tablecloth",
-                 "twist",     "wind"}));
+                {"ball",           "ball-interlock", "bunny",        "bunny-knit",      "cantilever-paper",
+                 "corner",         "corner-wool",    "corners-free", "corners-shear",   "corners-structural",
+                 "corners-target", "cube",           "cube-ribbon",  "curtain",         "curtain-wool",
+                 "disc",           "fast-ball",      "flag",         "flag-cotton",     "fold",
+                 "free-fall",      "pendulum",       "rectangle",    "rectangle-ponte", "slope",
+                 "slope-wool",     "spikes",         "spikes-swim",  "tablecloth",      "tablecloth-denim",
+                 "twist",          "wind",           "wind-denim"}));
 }
 
 TEST(BuiltinScenes, AllReadAndKeepEveryRule) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "document/cloth_edits.h"
+#include "scene/scene_checks.h"
 #include "scene/scene_edits.h"
 
 namespace clothlab {
@@ -16,6 +17,15 @@ using cloth::Scene;
 using Effect = SceneChange::Effect;
 
 constexpr int following = -1;  // the drag number of edits that follow the run
+
+/// What one value of a material or of its grid's cells asks of the others.
+QString broken_rule_of_material(const Scene& edited) {
+  if (!edited.material) return {};
+  for (const cloth::Problem& problem : find_problems(edited))
+    if (problem.path.rfind("material", 0) == 0 || problem.path == "cloth.down")
+      return QString::fromStdString(problem.path == "cloth.down" ? problem.rule : problem.text());
+  return {};
+}
 
 /// Of comparisons: own values of parameters that went with their block or method go too. What has one pane
 /// left is that pane's scene.
@@ -198,6 +208,7 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
   const cloth::ClothSheet before = edited.cloth;
   parameter->set(edited, value);
   if (const QString rule = readMeshes(edited); !rule.isEmpty()) return rule;
+  if (const QString rule = broken_rule_of_material(edited); !rule.isEmpty()) return rule;
   QString text = verb.arg(in_sentence(parameter->info.label));
   if (is_own) {
     set_own(after.panes[*scope_], path, value);
@@ -242,6 +253,17 @@ bool LabDocument::removeBlock(const std::string& block_path) {
   pushShared(tr("Remove %1").arg(in_sentence(block->title)), std::move(after),
              {effect_of(*block), block_path});
   return true;
+}
+
+QString LabDocument::replaceScene(const QString& text, Scene after) {
+  const Scene& shared = comparison_.scene;
+  if (const auto problems = find_problems(after); !problems.empty())
+    return QString::fromStdString(problems.front().text());
+  const auto block = added_block(shared, after);
+  const SceneChange::Effect effect =
+      std::max(effect_between(shared, after), block ? Effect::restart : Effect::live);
+  pushShared(text, std::move(after), {effect, block ? block->path : ""});
+  return {};
 }
 
 QString LabDocument::setClothMesh(const std::string& file) {

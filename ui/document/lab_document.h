@@ -82,6 +82,10 @@ class LabDocument : public QObject {
   bool addBlock(const std::string& offer_path);
   /// Removes the removable cloth::Block with this path; false if there is none.
   bool removeBlock(const std::string& block_path);
+  /// Replaces the scene by another of the same title and folder, as one undo step: another material, or
+  /// springs in place of one. On error returns what is wrong with it and changes nothing; returns an empty
+  /// string on success.
+  QString replaceScene(const QString& text, cloth::Scene after);
   /// Replaces the cloth by a mesh, or by a grid if `file` is empty, at about the same place and without pins.
   /// On error returns why the file cannot be used and changes nothing; returns an empty string on success.
   QString setClothMesh(const std::string& file);

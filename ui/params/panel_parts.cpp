@@ -21,6 +21,11 @@ void set_style_property(QWidget& widget, const char* name, const QVariant& value
   widget.update();
 }
 
+QFont smaller(QFont font) {
+  font.setPointSizeF(font.pointSizeF() - 1);
+  return font;
+}
+
 QSize ElidedLabel::minimumSizeHint() const {
   return {fontMetrics().averageCharWidth() * 4, sizeHint().height()};
 }

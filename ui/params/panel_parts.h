@@ -10,6 +10,9 @@ namespace clothlab {
 /// Sets a property that the style sheet asks for, and has the widget restyled.
 void set_style_property(QWidget& widget, const char* name, const QVariant& value);
 
+/// The same font, a point smaller: for what is said below a control.
+QFont smaller(QFont font);
+
 /// One line that ends in an ellipsis where it has no room.
 class ElidedLabel : public QLabel {
   Q_OBJECT

@@ -28,11 +28,6 @@ QString capitalised(QString text) {
   return text;
 }
 
-QFont smaller(QFont font) {
-  font.setPointSizeF(font.pointSizeF() - 1);
-  return font;
-}
-
 }  // namespace
 
 ParameterEditor::ParameterEditor(LabDocument& document, cloth::Parameter parameter, QWidget* parent)

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "params/editors.h"
+#include "params/material_row.h"
 #include "params/mesh_button.h"
 #include "params/parameter_section.h"
 #include "theme/theme.h"
@@ -196,6 +197,8 @@ ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
   connect(section, &ParameterSection::removeRequested, this,
           [this, path = block.path] { document_.removeBlock(path); });
   connect(section, &ParameterSection::meshChosen, this, [this, path = block.path] { showMesh(path); });
+  connect(section, &ParameterSection::materialSaid, this,
+          [this, section] { showRow(section->findChild<MaterialRow*>()); });
   section->setRemovable(blocks_editable_);
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* made = section->editor(parameter.path);
@@ -214,8 +217,13 @@ void ParameterPanel::showMesh(const std::string& block_path) {
     QWidget* row = section->findChild<ClothShapeRow*>();
     for (ParameterEditor* editor : section->editors())
       if (auto* mesh = qobject_cast<MeshEditor*>(editor)) row = mesh;
-    if (row) scroll_->ensureWidgetVisible(row, 0, 3 * spacing);
+    showRow(row);
   }
+}
+
+void ParameterPanel::showRow(QWidget* row) {
+  QCoreApplication::sendPostedEvents(content_, QEvent::LayoutRequest);
+  if (row) scroll_->ensureWidgetVisible(row, 0, 3 * spacing);
 }
 
 void ParameterPanel::retire(ParameterSection* section) {

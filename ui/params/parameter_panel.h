@@ -70,6 +70,7 @@ class ParameterPanel : public QWidget {
   void follow(const std::string& path);
   ParameterSection* makeSection(const cloth::Block& block);
   void showMesh(const std::string& block_path);
+  void showRow(QWidget* row);
   void retire(ParameterSection* section);
   void orderTabs();
   void applyNotes(ParameterEditor& editor);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "params/editors.h"
+#include "params/material_row.h"
 #include "params/mesh_button.h"
 #include "params/panel_parts.h"
 #include "params/parameter_editor.h"
@@ -56,6 +57,10 @@ void ParameterSection::makeBody(LabDocument& document, const cloth::Block& block
   if (block.path == "cloth" && !document.scene().cloth.is_mesh())
     rows->addWidget(shape_ = new ClothShapeRow(document, body_));
   if (shape_) connect(shape_, &ClothShapeRow::meshChosen, this, &ParameterSection::meshChosen);
+  const bool of_springs = block.path == "springs" && !document.scene().cloth.is_mesh();
+  if (of_springs || block.path == "material")
+    rows->addWidget(material_ = new MaterialRow(document, of_springs, body_));
+  if (material_) connect(material_, &MaterialRow::said, this, &ParameterSection::materialSaid);
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* editor = make_editor(document, parameter, body_);
     const bool said_above = block.parameters.size() == 1 && parameter.info.label == block.title &&
@@ -86,6 +91,7 @@ void ParameterSection::setRemovable(bool removable) {
   removable_ = removable;
   if (cross_) cross_->setVisible(removable);
   if (shape_) shape_->setVisible(removable);
+  if (material_) material_->setVisible(removable);
   for (ParameterEditor* editor : editors_)
     if (auto* mesh = qobject_cast<MeshEditor*>(editor)) mesh->offerGrid(removable);
 }
@@ -102,12 +108,14 @@ bool ParameterSection::showMatching(const QStringList& words) {
     any = any || shown;
   }
   if (shape_) shape_->setVisible(whole && removable_);
+  if (material_) material_->setVisible(whole && removable_);
   setVisible(any);
   return any;
 }
 
 void ParameterSection::refresh() {
   for (ParameterEditor* editor : editors_) editor->refresh();
+  if (material_) material_->refresh();
 }
 
 ParameterEditor* ParameterSection::editor(const std::string& path) const {
@@ -120,6 +128,7 @@ QList<QWidget*> ParameterSection::tabStops() const {
   QList<QWidget*> stops{head_};
   if (cross_) stops << cross_;
   if (shape_) stops << shape_->tabStop();
+  if (material_) stops << material_->tabStops();
   for (const ParameterEditor* editor : editors_) stops << editor->tabStops();
   return stops;
 }

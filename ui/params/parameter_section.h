@@ -14,6 +14,7 @@ class QVBoxLayout;
 namespace clothlab {
 
 class ClothShapeRow;
+class MaterialRow;
 class ParameterEditor;
 class SectionHeader;
 
@@ -44,7 +45,8 @@ class ParameterSection : public QWidget {
  Q_SIGNALS:
   void collapsedChanged(bool collapsed);
   void removeRequested();
-  void meshChosen();  ///< and taken or refused; a message is at its place
+  void meshChosen();    ///< and taken or refused; a message is at its place
+  void materialSaid();  ///< something above its parameters
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -58,7 +60,8 @@ class ParameterSection : public QWidget {
   SectionHeader* head_ = nullptr;
   QToolButton* cross_ = nullptr;
   QWidget* body_ = nullptr;
-  ClothShapeRow* shape_ = nullptr;  ///< of a grid cloth
+  ClothShapeRow* shape_ = nullptr;   ///< of a grid cloth
+  MaterialRow* material_ = nullptr;  ///< of a grid's springs or material
   std::vector<ParameterEditor*> editors_;
 };
 

@@ -2,9 +2,11 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "exact/bessel_zero.h"
 #include "exact/strip_tests.h"
 #include "exact/swing.h"
 #include "scene/scene_cloth.h"
+#include "simulation/simulation.h"
 #include "study/validation/protocols.h"
 
 namespace cloth {
@@ -45,10 +47,77 @@ ValidationProtocol stick_slip() {
   return protocol;
 }
 
+constexpr double swing_amplitude = 1e-3;  // over the length
+
+/// A strip that hangs from its first end along x.
+Scene hanging_strip(double mass_damping, int cells) {
+  Scene scene = strip_scene({.load = 1, .bends = false, .stretch = 2e5, .cells = cells},
+                            {{}, StripEnd::pinned, StripEnd::free});
+  scene.gravity = gravity_of(scene).norm() * scene.cloth.across;
+  scene.material->mass_damping = mass_damping;
+  scene.integrator.method = "verlet";
+  return scene;
+}
+
+/// First mode of a hanging chain (Bernoulli 1738), at an arc from its upper end.
+double chain_mode(double arc) {
+  return std::cyl_bessel_j(0.0, exact::first_bessel_zero(0) * std::sqrt(std::max(0.0, 1 - arc)));
+}
+
+/// The logarithm of the speed at one passage through the middle over that at the next but one, one swing
+/// later; of the part of the motion in the first mode.
+ValidationReading decrement_of_swing(double mass_damping, int cells) {
+  const Scene scene = hanging_strip(mass_damping, cells);
+  const ClothSystem resting = make_cloth(scene);
+  const RestShape rest = find_rest(scene, resting, resting.start);
+  if (!rest.found) return {.failure = rest.failure};
+  std::vector<double> mode(rest.position.size());
+  for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = chain_mode(resting.start[i].x() / strip_length);
+  Simulation simulation(scene, [&](ClothSystem&, ClothState& state) {
+    state.position = rest.position;
+    for (std::size_t i = 0; i < mode.size(); ++i)
+      state.position.y()[i] += swing_amplitude * strip_length * mode[i];
+  });
+  const auto part = [&](const double* of) {
+    double sum = 0;
+    for (std::size_t i = 0; i < mode.size(); ++i) sum += resting.mass[i] * mode[i] * of[i];
+    return sum;
+  };
+  std::vector<double> passages;
+  double place = part(simulation.state().position.y()), speed = 0;
+  while (passages.size() < 3) {
+    if (const auto divergence = simulation.step()) return {.failure = describe(*divergence)};
+    const double next = part(simulation.state().position.y()),
+                 next_speed = part(simulation.state().velocity.y());
+    if (place * next < 0) {
+      const double share = place / (place - next);
+      passages.push_back(std::abs(speed + share * (next_speed - speed)));
+    }
+    place = next, speed = next_speed;
+  }
+  return {.value = std::log(passages[0] / passages[2])};
+}
+
+ValidationProtocol swing() {
+  ValidationProtocol protocol{"swing", "damping", {0.5, 4}, {}, {}};
+  protocol.expect = [](double mass_damping) {
+    const double frequency = exact::hanging_chain_frequency(strip_length, standard_gravity);
+    return ValidationRow{
+        .quantity = "logarithmic decrement of a hanging strip without bending; damping in 1/s",
+        .source = "Bernoulli 1738; Meirovitch 1986",
+        .method = "one swing, from the first mode on, by Verlet at its automatic step",
+        .exact = exact::damped_swing(frequency, mass_damping).decrement};
+  };
+  protocol.measure = [](const ValidationRow& row, int cells) {
+    return decrement_of_swing(row.parameter, cells);
+  };
+  return protocol;
+}
+
 }  // namespace
 
 std::vector<ValidationProtocol> force_protocols() {
-  return {stick_slip()};
+  return {stick_slip(), swing()};
 }
 
 const std::vector<ValidationProtocol>& protocols() {

@@ -17,14 +17,13 @@ Promise promise_of(double gamma) {
   return gamma <= promised_load ? Promise::second_order : Promise::none;
 }
 
-using Points = std::vector<Eigen::Vector2d>;
 
-double droop_over_width(const Points& points) {
+double droop_over_width(const PlanePoints& points) {
   const Eigen::Vector2d tip = points.back() - points.front();
   return -tip.y() / tip.x();
 }
 
-double drop_of_lowest(const Points& points) {
+double drop_of_lowest(const PlanePoints& points) {
   double lowest = 0;
   for (const Eigen::Vector2d& point : points) lowest = std::min(lowest, point.y() - points.front().y());
   return -lowest;

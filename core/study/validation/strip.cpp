@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double density = 0.2, gravity = 9.81;  // kg/m^2, m/s^2
+constexpr double density = 0.2;  // kg/m^2
 
 /// Columns behind the end.
 int behind(StripEnd end) {
@@ -69,8 +69,8 @@ Scene strip_scene(const StripCase& of, const StripCurve& curve) {
   };
   pin(curve.first, 0, 1);
   pin(curve.last, cloth.columns - 1, -1);
-  scene.gravity = Vec3(0, -gravity, 0);
-  const double weight = density * gravity * strip_length;  // N/m
+  scene.gravity = Vec3(0, -standard_gravity, 0);
+  const double weight = density * standard_gravity * strip_length;  // N/m
   const double bending = weight * strip_length * strip_length / of.load;
   const double stiff = of.stretch * (of.bends ? bending / (strip_length * strip_length) : weight);
   scene.material =

@@ -24,6 +24,9 @@ StripCurve whole_curve(const std::vector<exact::ElasticaPoint>& half, StripEnd e
 /// x and y on the curve at an arc, in the strip's length; beyond a clamp straight on.
 Eigen::Vector2d point_at(const StripCurve& curve, double arc);
 
+/// In the strip's length.
+using PlanePoints = std::vector<Eigen::Vector2d>;
+
 /// What a strip is made and loaded like. Its length is 0.1 m, its width that of two cells.
 struct StripCase {
   double load = 0;       ///< Gamma = mu g L^3/B; gravity points along -y
@@ -46,6 +49,6 @@ struct StripRest {
 };
 StripRest rest_of_strip(const StripCase& of, const StripCurve& curve);
 
-inline constexpr double strip_length = 0.1;  // m
+inline constexpr double strip_length = 0.1, standard_gravity = 9.81;  // m, m/s^2
 
 }  // namespace cloth

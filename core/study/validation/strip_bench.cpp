@@ -18,7 +18,6 @@ namespace cloth {
 namespace {
 
 using Eigen::Vector2d;
-using Points = std::vector<Vector2d>;
 
 const char* const end_names[] = {"free", "pinned", "clamped"};
 
@@ -67,14 +66,14 @@ NearestPoint nearest(const StripCurve& curve, const Vector2d& point) {
 }
 
 /// Numbers of the columns x and y.
-std::optional<Points> points_of_csv(const std::string& text, std::string& failure) {
+std::optional<PlanePoints> points_of_csv(const std::string& text, std::string& failure) {
   const CsvTable table = parse_csv(text);
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), name) -
                                     table.header.begin());
   };
   const std::size_t columns[] = {column("x"), column("y")};
-  Points points;
+  PlanePoints points;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     Vector2d point;
     for (int k = 0; k < 2; ++k) {
@@ -97,13 +96,13 @@ std::optional<Points> points_of_csv(const std::string& text, std::string& failur
   return points;
 }
 
-std::optional<Points> points_of_obj(const std::string& text, const std::string& place, std::string& failure) {
+std::optional<PlanePoints> points_of_obj(const std::string& text, const std::string& place, std::string& failure) {
   const ObjReading reading = parse_obj(text, place);
   if (!reading.mesh) {
     failure = reading.problem;
     return {};
   }
-  Points points;
+  PlanePoints points;
   for (const Vec3& vertex : reading.mesh->vertices)
     points.emplace_back(vertex.x() / strip_length, vertex.y() / strip_length);
   return points;
@@ -190,7 +189,7 @@ StripScore score_strip(const ValidationRow& task, const std::vector<Vector2d>& p
     return score;
   }
   if (const auto value = find_protocol(task.protocol)->value) {
-    Points sorted;
+    PlanePoints sorted;
     for (const auto& [arc, point] : along) sorted.push_back(point);
     score.value = value(sorted);
   }

@@ -102,10 +102,14 @@ std::string to_text(const Explanation& e) {
 
   text += fmt::format(
       "\nLargest frequency       {:.6g} 1/s ({} at rest)\n"
-      "Guaranteed bound        {:.6g} 1/s (every shape and stretch)\n"
+      "Guaranteed bound        {:.6g} 1/s ({})\n"
       "Provot's criterion      {} (historical; 3 to 5 times too long for a grid)\n",
       e.largest_frequency, e.scene.cloth.is_mesh() ? "at most, the mesh" : "flat grid",
-      e.guaranteed_frequency, step_text(e.provot_step));
+      e.guaranteed_frequency,
+      e.scene.material && e.scene.cloth.is_mesh()
+          ? fmt::format("every shape, no edge over {} of its length", cloth::covered_stretch)
+          : "every shape and stretch",
+      step_text(e.provot_step));
   text += fmt::format("\n  {:<22} {:>5} {:>12} {:>16} {:>16} {:>16}\n", "method", "order", "evaluations",
                       "stable: flat", "in every shape", "auto");
   for (const MethodLimit& method : e.methods)

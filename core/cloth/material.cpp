@@ -5,6 +5,10 @@
 
 namespace cloth {
 
+double coupling_of(const Material& material) {
+  return material.coupling.value_or(material.shear);
+}
+
 CellSprings cell_springs(const Material& material, double across, double down) {
   const double ratio = across / down, square = ratio * ratio;
   return {.across = (material.stretch_weft - material.shear * square) / ratio,

@@ -1,8 +1,10 @@
 // What a cloth is made of, in units that do not depend on its grid: stiffness for each metre of width, mass,
 // bending, damping and drag for each square metre. On a grid it becomes springs, masses and bending elements
 // cell by cell (cloth/material_grid.cpp), so that half of a cell's share is at its edges and a quarter at its
-// corners. The warp runs along the sheet's `down`, the weft along its `across`.
+// corners; on a mesh triangles of constant strain (cloth/material_mesh.h). The warp runs along the sheet's `down`, the weft along its `across`.
 #pragma once
+
+#include <optional>
 
 namespace cloth {
 
@@ -16,8 +18,13 @@ struct Material {
   double bending_damping = 0;  ///< s
   double mass_damping = 0;     ///< 1/s
   double drag_normal = 0, drag_tangential = 0;  ///< N s/m^3: force of the air for each area and speed
+  /// N/m: C12, pull across over strain along. A grid's springs have as much as they resist shear; "auto" is that.
+  std::optional<double> coupling{};
   bool operator==(const Material&) const = default;
 };
+
+/// C12 in N/m.
+double coupling_of(const Material& material);
 
 /// Springs of a grid of cells `across` by `down` metres that stretch and shear as the material does, exactly
 /// where the strain is the same everywhere: the stiffness in N/m of those along a row, along a column and of

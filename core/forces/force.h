@@ -58,10 +58,12 @@ struct NodeDamping {
   int held_particle = -1;
   double held_isotropic = 0;  ///< N s/m, in addition
   double held_stiffness = 0;  ///< N/m, of the spring to the hand
-  // The parts of D that couple particles: of every spring, per stiffness of it, and per K of bending.
+  // The parts of D that couple particles: of every spring, per stiffness of it, and per K of bending
+  // and of the membrane.
   double along_springs = 0;  ///< N s/m
   double stretch_time = 0;   ///< s
   double bending_time = 0;   ///< s
+  double membrane_time = 0;  ///< s
 };
 
 /// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the

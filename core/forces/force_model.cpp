@@ -26,6 +26,7 @@ void subtract_from(const Vec3Field& a, Vec3Field& b) {
 }
 
 std::unique_ptr<SpringSweep> sweep_for(const ClothSystem& system) {
+  if (!system.membrane.empty()) return nullptr;
   const auto grid = system.bending.empty() ? grid_springs(system) : std::nullopt;
   if (grid) return std::make_unique<GridSweep>(system, *grid, common_mass(system));
   if (auto layout = cell_layout(system)) return std::make_unique<GridSweep>(system, std::move(*layout));
@@ -216,7 +217,7 @@ void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights
     result.nodes.set(i, {m, 0, 0, m, 0, m});
   }
   result.springs.assign(system_->springs.spring_count(), {});
-  result.bending = 0;
+  result.bending = result.membrane = 0;
   result.has_compressed = false;
   for_each_force([&](Force& force) { force.add_linearisation(*system_, position, weights, result); });
 }

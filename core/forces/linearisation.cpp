@@ -55,6 +55,11 @@ void multiply_blocks(const SymmetricBlocks& blocks, std::size_t begin, std::size
                                                   rows_of(product, begin), end - begin);
 }
 
+void Linearisation::add_membrane(const Vec3Field& position, double weight) {
+  membrane += weight;
+  membrane_position = position;
+}
+
 void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& direction,
                                   Vec3Field& product) const {
   multiply_blocks(nodes, 0, nodes.size(), direction, product);
@@ -77,6 +82,7 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
     }
   }
   if (bending > 0) add_bending_product(system.bending, bending, direction, product);
+  if (membrane > 0) add_membrane_product(system.membrane, membrane, membrane_position, direction, product);
 }
 
 void Linearisation::multiply(const ClothSystem& system, const Vec3Field& direction,

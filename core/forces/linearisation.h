@@ -1,7 +1,8 @@
 // The symmetric matrix of a linearised step, A = M + weight_velocity D + weight_position K, K the symmetric
 // part of -dp/dx. It is stored as one 3x3 block for every particle and one, B, for every spring between
 // particles i and j: A = diag(node) + sum over springs of (e_i - e_j) B (e_i - e_j)^T,
-// and to that a multiple of the constant matrix K of a material's bending. The asymmetric part of
+// and to that a multiple of the constant matrix K of a material's bending and of J^T K J of its membrane
+// (cloth/membrane.h). The asymmetric part of
 // -df/dx (drag whose normal turns, a damper that turns) is not stored; Force::add_asymmetric_product
 // multiplies with it.
 #pragma once
@@ -65,7 +66,18 @@ struct Linearisation {
   SymmetricBlocks nodes;        ///< one of each particle
   SymmetricBlocks springs;      ///< run after run, in the order of ClothSystem::springs
   double bending = 0;           ///< s^2: what multiplies K of ClothSystem::bending
+  double membrane = 0;          ///< s^2: what multiplies J^T K J of ClothSystem::membrane
+  Vec3Field membrane_position;  ///< m, where J is; sized where there is a membrane
   bool has_compressed = false;  ///< some spring is shorter than its rest length, so that clamping changes A
+
+  /// Adds `weight` J^T K J.
+  void add_membrane(const Vec3Field& position, double weight);
+
+  /// Visits the blocks of bending and membrane between two different particles and those that they add to
+  /// each particle: off_diagonal(i, j, block), diagonal(i, block), blocks as 3x3 matrices, the one for i and j
+  /// in the row of i. Pairs may repeat; their order depends on the system alone.
+  template <class OffDiagonal, class Diagonal>
+  void for_each_element_block(const ClothSystem& system, OffDiagonal off_diagonal, Diagonal diagonal) const;
 
   /// product = A direction; pinned particles get 0.
   void multiply(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
@@ -73,6 +85,42 @@ struct Linearisation {
   /// The same, but the products of pinned particles are undefined. Precondition: `direction` is 0 on them.
   void multiply_free(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
 };
+
+/// visit(i, j) for every block off the diagonal that for_each_element_block() visits, in its order.
+template <class Visit>
+void for_each_element_pair(const ClothSystem& system, Visit visit) {
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) { visit(i, j); });
+  for (const MembraneTriangle& t : system.membrane)
+    for (std::size_t c = 0; c < 3; ++c) visit(at(t.corner[c]), at(t.corner[(c + 1) % 3]));
+}
+
+template <class OffDiagonal, class Diagonal>
+void Linearisation::for_each_element_block(const ClothSystem& system, OffDiagonal off_diagonal,
+                                           Diagonal diagonal) const {
+  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+    const Eigen::Matrix3d block = bending * stiffness * Eigen::Matrix3d::Identity();
+    diagonal(i, block), diagonal(j, block);
+    off_diagonal(i, j, Eigen::Matrix3d(-block));
+  });
+  for (const MembraneTriangle& t : system.membrane) {
+    std::array<Vec3, 3> d;
+    for (std::size_t e = 0; e < 3; ++e) d[e] = edge_of(t, e, membrane_position);
+    // Corner c is the beginning of edge c and the end of the edge before.
+    const auto block = [&](std::size_t b, std::size_t c) -> Eigen::Matrix3d {
+      Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+      const std::size_t before_b = (b + 2) % 3, before_c = (c + 2) % 3;
+      for (const auto& [e, of_b] : {std::pair(b, -1.0), {before_b, 1.0}})
+        for (const auto& [f, of_c] : {std::pair(c, -1.0), {before_c, 1.0}})
+          sum += (4 * membrane * of_b * of_c * t.k[e][f]) * d[e] * d[f].transpose();
+      return sum;
+    };
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t next = (c + 1) % 3;
+      diagonal(at(t.corner[c]), block(c, c));
+      off_diagonal(at(t.corner[c]), at(t.corner[next]), block(c, next));
+    }
+  }
+}
 
 /// product = blocks direction, block by block, for the vectors [begin, end).
 void multiply_blocks(const SymmetricBlocks& blocks, std::size_t begin, std::size_t end,

@@ -191,10 +191,16 @@ class SpringDamping : public Force {
   double time_;     ///< s
 };
 
+bool has_stiffness(const SpringRuns& springs) {
+  return std::any_of(springs.begin(), springs.end(), [](const SpringRun& run) { return run.stiffness > 0; });
+}
+
 /// Of a material.
 StageInfo material_stage(const Scene& scene, const ClothSystem& system, SpringFamily family) {
   const std::string name = fmt::format("{} springs", name_of(family));
   const auto count = system.spring_count(family);
+  if (system.is_mesh() && count > 0)
+    return {name, false, "a mesh's material has triangles; its edges measure strain alone"};
   if (count == 0 && family == SpringFamily::flexion)
     return {name, false, "a material bends by its own elements"};
   if (count == 0) return {name, false, "the material's stiffness for them is 0"};
@@ -237,7 +243,7 @@ std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field&
 
 ForceEntry spring_entry() {
   return {.make = [](const Scene&, const ClothSystem& system) -> std::unique_ptr<Force> {
-            return system.springs.empty() ? nullptr : std::make_unique<SpringForce>();
+            return has_stiffness(system.springs) ? std::make_unique<SpringForce>() : nullptr;
           },
           .explain = explain_springs};
 }
@@ -247,12 +253,13 @@ ForceEntry spring_damping_entry() {
       .make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
         const double damping = scene.springs ? scene.springs->damping : 0,
                      time = scene.material ? scene.material->stretch_damping : 0;
-        if (system.springs.empty() || !(damping + time > 0)) return nullptr;
+        if (!has_stiffness(system.springs) || !(damping + time > 0)) return nullptr;
         return std::make_unique<SpringDamping>(system, damping, time);
       },
       .work = &Work::damping_loss,
       .explain =
-          [](const Scene& scene, const ClothSystem&) {
+          [](const Scene& scene, const ClothSystem& system) -> std::vector<StageInfo> {
+            if (!system.membrane.empty()) return {};
             return std::vector{coefficient_stage(
                 "spring damping", scene, scene.material ? "material.stretch_damping" : "springs.damping")};
           }};

@@ -15,12 +15,13 @@ NodeCoefficient sum_of(const NodeCoefficient& a, const NodeCoefficient& b) {
 }  // namespace
 
 bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
-  if (!factored_ || pinned_ != system.pinned || springs_ != system.springs || bending_ != system.bending) {
+  if (!factored_ || pinned_ != system.pinned || springs_ != system.springs || bending_ != system.bending ||
+      membrane_ != system.membrane) {
     rows_ = analyse_free_rows(system, factors_);
     residual_.resize(3 * rows_.particle.size());
   }
-  coefficients_ = c, springs_ = system.springs, bending_ = system.bending, mass_ = system.mass,
-  pinned_ = system.pinned;
+  coefficients_ = c, springs_ = system.springs, bending_ = system.bending, membrane_ = system.membrane,
+  mass_ = system.mass, pinned_ = system.pinned;
 
   const double h = c.step;
   std::vector<double> diagonal(rows_.particle.size()), off_diagonal;
@@ -39,6 +40,11 @@ bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
   for_each_bending_pair(bending_, [&](std::size_t i, std::size_t j, double stiffness) {
     couple(i, j, h * (h + c.bending_time) * stiffness);
   });
+  for (const MembraneTriangle& t : membrane_) {
+    const std::array<double, 3> bound = edge_bounds(t);
+    for (std::size_t e = 0; e < 3; ++e)
+      couple(at(t.corner[e]), at(t.corner[(e + 1) % 3]), h * (h + c.membrane_time) * bound[e]);
+  }
   return factored_ = factors_.factorise(diagonal, off_diagonal);
 }
 
@@ -76,11 +82,12 @@ IntegratorReport Projective::step(ForceModel& forces, const StepTimes& times, Cl
                              .spring_damping = parts.along_springs,
                              .stretch_time = parts.stretch_time,
                              .bending_time = parts.bending_time,
+                             .membrane_time = parts.membrane_time,
                              .held_particle = parts.held_particle,
                              .held_damping = parts.held_isotropic,
                              .held_stiffness = parts.held_stiffness};
   if (!factored_ || coefficients_ != numbers || springs_ != system.springs || bending_ != system.bending ||
-      mass_ != system.mass || pinned_ != system.pinned) {
+      membrane_ != system.membrane || mass_ != system.mass || pinned_ != system.pinned) {
     ++report.factorisations;
     if (!factorise(system, numbers)) {
       report.failure = SolverFailure{0, "the constant matrix could not be factored"};

@@ -12,7 +12,8 @@
 // global step), and its solution is exactly the iteration above. D_max bounds D whatever the shape: viscous
 // damping and air on the diagonal (n n^T <= I), spring damping as the Laplacian weighted by it (d d^T <= I),
 // the hand's spring and damping on its particle. A material's bending is linear, so that its matrix is in A
-// exactly.
+// exactly. A triangle of constant strain (cloth/membrane.h) is in A as three springs that bound it near its
+// rest length: one that is stretched far can be stiffer than A, and more so the farther.
 //
 // So A is never less than the derivative of r by springs and damping, and an iteration lowers the incremental
 // potential wherever it is one. Wind is left out of A: its force changes with the normals, but is bounded
@@ -36,7 +37,7 @@ class Projective : public Integrator {
   struct Coefficients {
     double step = 0;
     NodeCoefficient node_damping;
-    double spring_damping = 0, stretch_time = 0, bending_time = 0;
+    double spring_damping = 0, stretch_time = 0, bending_time = 0, membrane_time = 0;
     int held_particle = -1;
     double held_damping = 0, held_stiffness = 0;
     bool operator==(const Coefficients&) const = default;
@@ -50,6 +51,7 @@ class Projective : public Integrator {
   Coefficients coefficients_;
   SpringRuns springs_;
   BendingRuns bending_;
+  Membrane membrane_;
   std::vector<double> mass_;
   std::vector<std::uint8_t> pinned_;
   FreeRows rows_;

@@ -1,6 +1,7 @@
 #include "integrators/xpbd.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +21,7 @@ void Xpbd::predict(const ClothSystem& system, const ForceModel& forces, double h
   const NodeDamping parts = forces.damping_parts();
   const Vec3Field& force = forces.position_force();
   spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
-  bending_time_ = parts.bending_time;
+  bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
   mobility_.assign(velocity.size(), {});
   for (std::size_t i = 0; i < mobility_.size(); ++i) {
     if (system.inverse_mass[i] == 0) continue;
@@ -92,6 +93,53 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, V
   for (const BendingRun& run : system.bending)
     for (int e = run.first; e < run.first + run.count; ++e, ++element)
       largest = std::max(largest, visit(run, e, start, h, impulse_[element], velocity));
+  for (const MembraneTriangle& t : system.membrane) {
+    largest = std::max(largest, visit(t, start, h, impulse_.data() + element, velocity));
+    element += 3;
+  }
+  return largest;
+}
+
+/// With J = dq/dx, G = J W J^T and the impulses J^T lambda: (I + h (h + t) K G) lambda = -h K a, a what q' + t
+/// dq'/dt would be without them.
+double Xpbd::visit(const MembraneTriangle& t, const Vec3Field& start, double h, Vec3* impulse,
+                   Vec3Field& velocity) const {
+  std::array<Vec3, 3> v, given, d;  // m/s, W P, edges in m
+  for (std::size_t c = 0; c < 3; ++c) {
+    v[c] = velocity[at(t.corner[c])];
+    given[c] = mobility_[at(t.corner[c])].times(impulse[c]);
+  }
+  Eigen::Vector3d without;
+  Eigen::Matrix3d k, give;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const std::size_t end = (e + 1) % 3;
+    d[e] = edge_of(t, e, start) + h * (v[end] - v[e]);
+    const double rate = 2 * d[e].dot(v[end] - v[e]), by_impulse = 2 * d[e].dot(given[end] - given[e]);
+    without[static_cast<Eigen::Index>(e)] = d[e].squaredNorm() - t.rest_square[e] - h * by_impulse +
+                                            membrane_time_ * (rate - by_impulse);
+  }
+  for (std::size_t e = 0; e < 3; ++e)
+    for (std::size_t f = 0; f < 3; ++f) {
+      const auto push = [&](std::size_t corner) -> Vec3 {  // speed by the impulse of edge f
+        const double sign = corner == f ? -2 : corner == (f + 1) % 3 ? 2 : 0;
+        return mobility_[at(t.corner[corner])].times(sign * d[f]);
+      };
+      const auto i = static_cast<Eigen::Index>(e), j = static_cast<Eigen::Index>(f);
+      k(i, j) = t.k[e][f];
+      give(i, j) = 2 * d[e].dot(push((e + 1) % 3) - push(e));
+    }
+  const Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity() + h * (h + membrane_time_) * k * give;
+  const Eigen::Vector3d lambda = matrix.partialPivLu().solve(Eigen::Vector3d(-h * (k * without)));
+  double largest = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t before = (c + 2) % 3;
+    const Vec3 next = 2 * (lambda[static_cast<Eigen::Index>(before)] * d[before] -
+                           lambda[static_cast<Eigen::Index>(c)] * d[c]);
+    const Vec3 change = mobility_[at(t.corner[c])].times(next - impulse[c]);
+    velocity.add(at(t.corner[c]), change);
+    largest = std::max(largest, change.squaredNorm());
+    impulse[c] = next;
+  }
   return largest;
 }
 
@@ -125,6 +173,7 @@ double Xpbd::visit(const BendingRun& run, int first, const Vec3Field& start, dou
 std::size_t Xpbd::element_count(const ClothSystem& system) {
   std::size_t count = system.springs.spring_count();
   for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
+  count += 3 * system.membrane.size();
   return count;
 }
 

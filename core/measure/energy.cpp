@@ -17,6 +17,7 @@ Energy measure_energy(const ClothSystem& system, const Vec3& gravity_acceleratio
   Energy energy;
   energy.kinetic = kinetic_energy(system, state.velocity);
   energy.elastic_by_family = elastic_energy(system, state.position);
+  energy.elastic_by_family[0] += membrane_energy(system.membrane, state.position);
   for (const double part : energy.elastic_by_family) energy.elastic += part;
   energy.bending = bending_energy(system.bending, state.position);
   energy.elastic += energy.bending;

@@ -9,7 +9,7 @@ namespace cloth {
 
 struct Energy {
   double kinetic = 0, elastic = 0, gravity = 0;  ///< J
-  std::array<double, 3> elastic_by_family{};     ///< J, indexed by SpringFamily
+  std::array<double, 3> elastic_by_family{};     ///< J, indexed by SpringFamily; structural: a mesh's membrane too
   double bending = 0;                            ///< J, the part of `elastic` in bending elements
   double potential() const { return elastic + gravity; }
   double total() const { return kinetic + elastic + gravity; }

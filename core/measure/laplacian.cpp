@@ -1,4 +1,6 @@
-// The bound on a cloth's frequencies that holds in every shape: the scalar graph Laplacian of its springs.
+// The bound on a cloth's frequencies that holds in every shape: the scalar graph Laplacian of its springs. Of
+// triangles of constant strain, which get stiffer as they are stretched, it holds as long as no edge is longer
+// than covered_stretch times its rest length.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -33,6 +35,11 @@ class ScaledLaplacian {
       product[Index(i)] += force;
       product[Index(j)] -= force;
     });
+    for_each_membrane_bound([&](std::size_t i, std::size_t j, double stiffness) {
+      const double force = stiffness * (u[Index(i)] - u[Index(j)]);
+      product[Index(i)] += force;
+      product[Index(j)] -= force;
+    });
     return scale_.cwiseProduct(product);
   }
 
@@ -47,10 +54,22 @@ class ScaledLaplacian {
       stiffness[Index(i)] += of_pair + (scale_[Index(j)] > 0 ? std::abs(of_pair) : 0);
       stiffness[Index(j)] += of_pair + (scale_[Index(i)] > 0 ? std::abs(of_pair) : 0);
     });
+    for_each_membrane_bound([&](std::size_t i, std::size_t j, double of_edge) {
+      stiffness[Index(i)] += (scale_[Index(j)] > 0 ? 2 : 1) * of_edge;
+      stiffness[Index(j)] += (scale_[Index(i)] > 0 ? 2 : 1) * of_edge;
+    });
     return scale_.cwiseProduct(scale_).cwiseProduct(stiffness);
   }
 
  private:
+  template <class Visit>  // visit(i, j, stiffness in N/m)
+  void for_each_membrane_bound(Visit visit) const {
+    for (const MembraneTriangle& t : system_.membrane) {
+      const std::array<double, 3> bound = edge_bounds(t);
+      for (std::size_t e = 0; e < 3; ++e) visit(cloth::at(t.corner[e]), cloth::at(t.corner[(e + 1) % 3]), bound[e]);
+    }
+  }
+
   const ClothSystem& system_;
   Eigen::VectorXd scale_;  ///< 1/sqrt(kg); 0 where pinned
 };

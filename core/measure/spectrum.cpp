@@ -33,6 +33,7 @@ class ScaledStiffness {
       add_spring(run, i, j, u, product);
     });
     add_bending(u, product);
+    add_membrane(u, product);
     return scale_.cwiseProduct(product);
   }
 
@@ -64,6 +65,23 @@ class ScaledStiffness {
         product[Index(k + j)] -= force;
       }
     });
+  }
+
+  /// J^T K J u, and the tension of every edge in every direction.
+  void add_membrane(const VectorXd& u, VectorXd& product) const {
+    if (system_.membrane.empty()) return;
+    Vec3Field from(position_.size()), to(position_.size());
+    std::copy(u.begin(), u.end(), from.flat().begin());
+    add_membrane_product(system_.membrane, 1, position_, from, to);
+    for (const MembraneTriangle& t : system_.membrane) {
+      const std::array<double, 3> tension = times_k(t, square_changes(t, position_));
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Vec3 force = 2 * tension[e] * edge_of(t, e, from);
+        to.add(cloth::at(t.corner[e]), -force);
+        to.add(cloth::at(t.corner[(e + 1) % 3]), force);
+      }
+    }
+    for (std::size_t k = 0; k < to.flat().size(); ++k) product[Index(k)] += to.flat()[k];
   }
 
   const ClothSystem& system_;

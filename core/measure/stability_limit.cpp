@@ -139,6 +139,38 @@ struct MaterialWaves {
   }
 };
 
+/// Of a material on a mesh: what its limits are made of.
+struct MeshNumbers {
+  double at_rest = 0, guaranteed = 0;  ///< 1/s
+  double lightest = 0;                 ///< kg
+  double stiffest_edge = 0;            ///< N/m
+};
+
+MeshNumbers measured_mesh(const Scene& scene) {
+  const ClothSystem system = make_cloth(scene);
+  const Spectrum spectrum = measure_spectrum(system, system.start);
+  MeshNumbers numbers{.guaranteed = guaranteed_frequency(system),
+                      .lightest = *std::min_element(system.mass.begin(), system.mass.end())};
+  numbers.at_rest =
+      std::min(numbers.guaranteed, std::sqrt(std::max(0.0, spectrum.largest) + spectrum.largest_residual));
+  for (const MembraneTriangle& t : system.membrane)
+    for (const double bound : edge_bounds(t)) numbers.stiffest_edge = std::max(numbers.stiffest_edge, bound);
+  return numbers;
+}
+
+/// They are asked for once for every method and limit of one scene, and measured once for all of them.
+const MeshNumbers& mesh_numbers(const Scene& scene) {
+  struct Known {
+    ClothSheet cloth;
+    Material material;
+    MeshNumbers numbers;
+  };
+  thread_local std::optional<Known> last;
+  if (!last || !(last->cloth == scene.cloth) || !(last->material == *scene.material))
+    last = Known{scene.cloth, *scene.material, measured_mesh(scene)};
+  return last->numbers;
+}
+
 /// Whether `method` chooses its own steps in this scene, so that none that is given is too long: the
 /// one place that decides it.
 bool adapts_its_steps(const std::string& method, const Scene& scene) {
@@ -183,6 +215,7 @@ double frequency_at_edges(const Scene& scene) {
 
 double largest_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  if (scene.cloth.is_mesh()) return mesh_numbers(scene).at_rest;
   const MaterialWaves waves(scene);
   const double inside = scanned_stiffness([&](double qx, double qy) { return waves.at_rest(qx, qy); });
   if (!(inside > 0)) return 0;
@@ -192,6 +225,7 @@ double largest_frequency(const Scene& scene) {
 
 double guaranteed_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
+  if (scene.cloth.is_mesh()) return mesh_numbers(scene).guaranteed;
   const MaterialWaves waves(scene);
   return std::sqrt((waves.most_of_springs() + waves.most_of_bending()) / particle_mass(scene));
 }
@@ -223,6 +257,10 @@ double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& mate
 double strongest_held_spring(const Scene& scene, double omega) {
   if (!scene.material)
     return strongest_held_spring(scene.cloth, scene.springs.value_or(SpringMaterial{}), omega);
+  if (scene.cloth.is_mesh()) {
+    const MeshNumbers& numbers = mesh_numbers(scene);
+    return std::max(0.0, numbers.lightest * (omega * omega - numbers.guaranteed * numbers.guaranteed));
+  }
   const MaterialWaves waves(scene);
   const double most = particle_mass(scene) * omega * omega;
   if (!(most > waves.most_of_springs() + waves.most_of_bending())) return 0;
@@ -242,6 +280,9 @@ constexpr Frequency at_rest{largest_frequency, largest_frequency},
 
 /// Damping in proportion to stiffness, as a rate in 1/s: t omega^2 with the damping time t.
 double stiffness_damping(const Scene& scene) {
+  if (scene.cloth.is_mesh())
+    return std::max(scene.material->stretch_damping, scene.material->bending_damping) *
+           std::pow(guaranteed_frequency(scene), 2);
   const MaterialWaves waves(scene);
   return (scene.material->stretch_damping * waves.most_of_springs() +
           scene.material->bending_damping * waves.most_of_bending()) /
@@ -359,7 +400,9 @@ double explicit_step_limit(const Scene& scene) {
 double provot_step(const Scene& scene) {
   double stiffness = 0;
   if (const auto& s = scene.springs) stiffness = std::max({s->structural, s->shear, s->flexion});
-  if (scene.material) {
+  if (scene.material && scene.cloth.is_mesh()) {
+    stiffness = mesh_numbers(scene).stiffest_edge;
+  } else if (scene.material) {
     const CellSprings k = MaterialWaves(scene).springs;
     stiffness = std::max({k.across, k.down, k.diagonal});
   }

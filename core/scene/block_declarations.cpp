@@ -149,8 +149,10 @@ BlockRow cloth_row() {
                .mesh_doc = "A mesh: its vertices are particles, its edges springs."};
   row.parameters = [](const Scene& scene) {
     std::vector<Parameter> parameters = cloth_parameters(scene.cloth.is_mesh());
-    if (scene.material)
-      std::erase_if(parameters, [](const Parameter& parameter) { return parameter.path == "cloth.mass"; });
+    std::erase_if(parameters, [&](const Parameter& parameter) {
+      if (scene.material) return parameter.path == "cloth.mass";
+      return scene.cloth.is_mesh() && (parameter.path == "cloth.across" || parameter.path == "cloth.down");
+    });
     return parameters;
   };
   row.is_present = always(true);

@@ -69,7 +69,10 @@ Field<ClothSheet> shared_field(const std::string& key) {
 }
 
 Fields<ClothSheet> mesh_cloth_fields() {
-  Field<ClothSheet> mass = shared_field("mass"), origin = shared_field("origin");
+  Field<ClothSheet> mass = shared_field("mass"), origin = shared_field("origin"),
+                    across = shared_field("across"), down = shared_field("down");
+  across.info.doc = "Direction of a material's weft where down stands across the triangle.";
+  down.info.doc = "Direction of a material's warp, as projected into each triangle.";
   mass.info.formula = "m = mass / vertices";
   origin.info.doc = "How far the mesh is moved from where its file has it.";
   return {field(&ClothSheet::mesh,
@@ -78,7 +81,7 @@ Fields<ClothSheet> mesh_cloth_fields() {
                  .doc = "OBJ file, as seen from the scene's folder, or built-in mesh; its vertices are the "
                         "particles.",
                  .cost = EditCost::restart}),
-          std::move(mass), std::move(origin)};
+          std::move(mass), std::move(origin), std::move(across), std::move(down)};
 }
 
 }  // namespace

@@ -26,11 +26,11 @@ std::string weight_loss(const char* now, double from, double to) {
 }
 
 /// In N/m along rows and columns, and of shear, of what each family contributes with these stiffnesses.
-struct Membrane {
+struct PlaneNumbers {
   double weft = 0, warp = 0, shear = 0;
 };
 
-Membrane membrane_of(double structural, double shear, double flexion, const CellSides& cell) {
+PlaneNumbers membrane_of(double structural, double shear, double flexion, const CellSides& cell) {
   const double a = cell.across, b = cell.down, square = a * a + b * b, along = structural + 4 * flexion;
   return {.weft = along * a / b + 2 * shear * a * a * a / (b * square),
           .warp = along * b / a + 2 * shear * b * b * b / (a * square),
@@ -41,8 +41,8 @@ Membrane membrane_of(double structural, double shear, double flexion, const Cell
 /// threads.
 double damping_time(const SpringMaterial& springs, const CellSides& cell) {
   const auto damper = [&](double stiffness) { return stiffness > 0 ? springs.damping : 0; };
-  const Membrane k = membrane_of(springs.structural, springs.shear, springs.flexion, cell);
-  const Membrane c =
+  const PlaneNumbers k = membrane_of(springs.structural, springs.shear, springs.flexion, cell);
+  const PlaneNumbers c =
       membrane_of(damper(springs.structural), damper(springs.shear), damper(springs.flexion), cell);
   const double stiffness = k.weft + k.warp;
   return stiffness > 0 ? (c.weft + c.warp) / stiffness : 0;
@@ -118,12 +118,12 @@ SceneConversion with_material(const Scene& scene) {
   const CellSides cell = cell_sides(scene.cloth);
   const double area = cell.across * cell.down, mass = particle_mass(scene);
   const SpringMaterial& springs = *scene.springs;
-  const Membrane membrane = membrane_of(springs.structural, springs.shear, springs.flexion, cell);
+  const PlaneNumbers plane = membrane_of(springs.structural, springs.shear, springs.flexion, cell);
   const Air air = scene.air.value_or(Air{.drag = 0, .gust = std::nullopt});
   const Material material{.areal_density = mass / area,
-                          .stretch_warp = membrane.warp,
-                          .stretch_weft = membrane.weft,
-                          .shear = membrane.shear,
+                          .stretch_warp = plane.warp,
+                          .stretch_weft = plane.weft,
+                          .shear = plane.shear,
                           .stretch_damping = damping_time(springs, cell),
                           .mass_damping = scene.damping.value_or(0) / mass,
                           .drag_normal = air.drag / area,

@@ -68,6 +68,14 @@ Fields<Material> material_fields() {
       stiffness(&M::shear, "shear", "Shear stiffness",
                 "Force for each metre of width over the shear angle; springs also resist stretching across "
                 "by as much."),
+      number_or_auto(&M::coupling,
+                     {.key = "coupling",
+                      .label = "Coupling of warp and weft",
+                      .unit = "N/m",
+                      .doc = "Pull across over strain along, C12; \"auto\" is as much as shear, which is what "
+                             "springs have. Another value needs a mesh.",
+                      .minimum = 0,
+                      .slider_maximum = 1e4}),
       bending(&M::bending_warp, "bending_warp", "Bending stiffness, warp",
               "Moment for each metre of width over curvature, of columns that bend.", "M = B kappa"),
       bending(&M::bending_weft, "bending_weft", "Bending stiffness, weft",

@@ -62,8 +62,10 @@ class MaterialFileReader : public JsonReader<nlohmann::json> {
       known.push_back(field.info.key);
       const std::string path = joined_path("material", field.info.key);
       const auto* value = member(from, field.info.key);
+      const bool is_auto = value && field.info.auto_allowed && *value == "auto";
+      if (is_auto) continue;
       if (value && !value->is_number()) {
-        problem(path, *value, "must be a number");
+        problem(path, *value, field.info.auto_allowed ? "must be a number or \"auto\"" : "must be a number");
         continue;
       }
       if (value) field.set(material, value->get<double>());
@@ -102,7 +104,8 @@ std::string write_material_file(const MaterialFile& file) {
   if (!file.source.assumed.empty()) source["assumed"] = file.source.assumed;
   if (!source.empty()) root["source"] = std::move(source);
   for (const Field<Material>& field : material_fields())
-    root["material"][field.info.key] = std::get<double>(field.get(file.material));
+    if (const ParameterValue value = field.get(file.material); std::holds_alternative<double>(value))
+      root["material"][field.info.key] = std::get<double>(value);
   return root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -51,7 +51,8 @@ void settle_preset(nlohmann::json& material, const SceneFolder& folder, std::vec
   const bool has_twist = material.contains("bending_45");
   for (const Field<Material>& field : material_fields())
     if (!material.contains(field.info.key) && !(has_twist && field.info.key == "twist"))
-      material[field.info.key] = std::get<double>(field.get(preset.file->material));
+      if (const ParameterValue value = field.get(preset.file->material); std::holds_alternative<double>(value))
+        material[field.info.key] = std::get<double>(value);
 }
 
 }  // namespace

@@ -63,22 +63,40 @@ void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
                       "must not be parallel to cloth.across"});
 }
 
-/// A material becomes springs of cells that are rectangles, none of them negative.
+/// Stretched in its plane it must gain energy.
+void check_coupling(const Material& m, bool is_mesh, std::vector<Problem>& problems) {
+  const double coupling = coupling_of(m), most = std::sqrt(m.stretch_warp * m.stretch_weft);
+  const auto refuse = [&](const char* key, double value, const std::string& rule) {
+    problems.push_back({std::string("material.") + key, fmt::format("{} N/m", value), rule});
+  };
+  if (!is_mesh && m.coupling && *m.coupling != m.shear)
+    return refuse("coupling", *m.coupling,
+                  fmt::format("must be \"auto\" or as much as material.shear, {} N/m: a grid's springs have no "
+                              "other; a mesh takes any",
+                              m.shear));
+  if (is_mesh && coupling > most)
+    refuse(m.coupling ? "coupling" : "shear", coupling,
+           fmt::format("must be at most {:.6g} N/m, the root of stretch_warp times stretch_weft: a cloth that "
+                       "pulls in across by more would gain energy by being stretched{}",
+                       most, m.coupling ? "" : "; material.coupling can be less"));
+}
+
+/// A material becomes triangles, or springs of cells that are rectangles, none of them negative.
 void check_material(const Scene& scene, std::vector<Problem>& problems) {
   if (!scene.material) return;
   const ClothSheet& cloth = scene.cloth;
-  if (cloth.is_mesh()) {
-    problems.push_back({"material", "", "is for grids: a cloth that is a mesh has springs"});
-    return;
-  }
+  check_coupling(*scene.material, cloth.is_mesh(), problems);
   if (!(cloth.across.norm() > 0) || !(cloth.down.norm() > 0)) return;  // said already
   constexpr double largest_cosine = 1e-9;
   if (std::abs(cloth.across.normalized().dot(cloth.down.normalized())) > largest_cosine) {
     const Vec3& down = cloth.down;
     problems.push_back({"cloth.down", fmt::format("[{}, {}, {}]", down.x(), down.y(), down.z()),
-                        "must be at right angles to cloth.across: the cells of a material are rectangles"});
+                        cloth.is_mesh()
+                            ? "must be at right angles to cloth.across: warp and weft of a material are"
+                            : "must be at right angles to cloth.across: the cells of a material are rectangles"});
     return;
   }
+  if (cloth.is_mesh()) return;
   const CellSides cell = cell_sides(cloth);
   const double most = largest_shear(*scene.material, cell.across, cell.down);
   if (scene.material->shear <= most) return;

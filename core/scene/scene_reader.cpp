@@ -115,6 +115,10 @@ class SceneReader : public JsonReader<json> {
     if (is_mesh) cloth.origin.setZero();
     known_keys(*value, "cloth", keys_of(cloth_fields(is_mesh), {"pins"}));
     fields(*value, "cloth", cloth_fields(is_mesh), cloth);
+    for (const char* direction : {"across", "down"})
+      if (is_mesh && !root.contains("material") && value->contains(direction))
+        problem(fmt::format("cloth.{}", direction), (*value)[direction],
+                "must be left out: only a material gives a mesh directions");
     if (is_mesh && (*value)["mesh"] == "") problem("cloth.mesh", (*value)["mesh"], "must name a mesh");
     const json* pins = member(*value, "pins");
     if (pins && is_mesh) read_vertex_pins(*pins, cloth.pins);

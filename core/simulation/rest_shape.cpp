@@ -77,6 +77,10 @@ class RestSearch {
       add(i, j, run.stiffness);
     });
     for_each_bending_pair(system_.bending, add);
+    for (const MembraneTriangle& t : system_.membrane) {
+      const std::array<double, 3> bound = edge_bounds(t);
+      for (std::size_t e = 0; e < 3; ++e) add(at(t.corner[e]), at(t.corner[(e + 1) % 3]), bound[e]);
+    }
     double sum = 0, furthest = 0;
     for (const double k : stiffness) sum += k * k;
     for (const double x : state_.position.flat()) furthest = std::max(furthest, std::abs(x));

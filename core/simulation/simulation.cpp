@@ -23,6 +23,10 @@ double elastic_scale_of(const ClothSystem& system) {
   double energy = 0;
   for (const SpringRun& run : system.springs)
     energy += 0.5 * run.stiffness * run.rest_length * run.rest_length * run.count;
+  for (const MembraneTriangle& t : system.membrane) {
+    const std::array<double, 3> bound = edge_bounds(t);
+    for (std::size_t e = 0; e < 3; ++e) energy += 0.5 * bound[e] * t.rest_square[e];
+  }
   return energy;
 }
 
@@ -32,6 +36,8 @@ double strength_of(const Scene& scene) {
     const SpringMaterial springs = scene.springs.value_or(SpringMaterial{});
     return 2 * (springs.structural + springs.shear + springs.flexion);
   }
+  const Material& m = *scene.material;
+  if (scene.cloth.is_mesh()) return 2 * (std::max(m.stretch_warp, m.stretch_weft) + m.shear);
   const CellSides cell = cell_sides(scene.cloth);
   const CellSprings k = cell_springs(*scene.material, cell.across, cell.down);
   return 2 * (std::max(k.across, k.down) + k.diagonal);

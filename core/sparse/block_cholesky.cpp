@@ -45,7 +45,7 @@ void BlockCholesky::place_entries(const std::vector<Coupling>& couplings) {
     const std::size_t height = block_ * at(front.height());
     const std::size_t row = block_ * at(within(front, std::max(a, b)));
     const std::size_t column = block_ * at(within(front, std::min(a, b)));
-    placed.push_back({f, {k * block_ * block_, row + column * height}});
+    placed.push_back({f, {k * block_ * block_, row + column * height, a < b}});
   }
   std::stable_sort(placed.begin(), placed.end(),
                    [](const Placed& p, const Placed& q) { return p.front < q.front; });
@@ -97,8 +97,18 @@ void BlockCholesky::gather(std::size_t f, std::span<const double> diagonal,
   };
   for (int c = 0; c < front.width; ++c)
     add(diagonal.data() + unknown_at_[at(front.first + c)] * b * b, columns + b * at(c) * (m + 1));
-  for (std::size_t e = panel.first_entry; e < panel.end_entry; ++e)
-    add(coupling_blocks.data() + entries_[e].source, columns + entries_[e].target);
+  const auto add_transposed = [&](const double* from, double* to) {
+    for (std::size_t k = 0; k < b; ++k)
+      for (std::size_t i = 0; i < b; ++i) to[i + k * m] += from[k + i * b];
+  };
+  for (std::size_t e = panel.first_entry; e < panel.end_entry; ++e) {
+    const Entry& entry = entries_[e];
+    const double* from = coupling_blocks.data() + entry.source;
+    if (entry.transposed)
+      add_transposed(from, columns + entry.target);
+    else
+      add(from, columns + entry.target);
+  }
 }
 
 /// A child's update, an array of its own, to the columns of its parent's front and to its parent's update.

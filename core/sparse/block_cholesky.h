@@ -24,8 +24,9 @@ class BlockCholesky {
   /// `couplings`: the unknowns, numbered as in `order`, that have a block off the diagonal. They may repeat.
   void analyse(const std::vector<Coupling>& couplings, const std::vector<int>& order);
 
-  /// Of every unknown the block on the diagonal, of every coupling the one off it, block x block numbers
-  /// each. Blocks are symmetric; those that repeat are added. False where the matrix is not positive
+  /// Of every unknown the block on the diagonal, of every coupling the one in the row of its first and the
+  /// column of its second unknown; block x block numbers each, column by column. Those that repeat are added.
+  /// False where the matrix is not positive
   /// definite; nothing can then be solved.
   bool factorise(std::span<const double> diagonal, std::span<const double> coupling_blocks);
 
@@ -38,6 +39,7 @@ class BlockCholesky {
   /// A block of the matrix and where it goes within its front's panel.
   struct Entry {
     std::size_t source, target;
+    bool transposed;
   };
   /// Where a front's columns are kept, and where its update goes within the parent's front.
   struct Panel {

@@ -54,7 +54,7 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
   for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
     if (rows.row[i] >= 0 && rows.row[j] >= 0) couplings.emplace_back(rows.row[i], rows.row[j]);
   });
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) {
+  for_each_element_pair(system, [&](std::size_t i, std::size_t j) {
     if (rows.row[i] >= 0 && rows.row[j] >= 0) couplings.emplace_back(rows.row[i], rows.row[j]);
   });
   std::vector<int> order = elimination_order(system);
@@ -65,7 +65,7 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
 }
 
 bool CholeskyFactors::fits(const ClothSystem& system) const {
-  if (pinned_ != system.pinned || bending_ != system.bending || runs_.size() != system.springs.size())
+  if (pinned_ != system.pinned || bending_ != system.bending || membrane_ != system.membrane || runs_.size() != system.springs.size())
     return false;
   return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
                     [](const SpringRun& a, const SpringRun& b) {
@@ -77,6 +77,7 @@ void CholeskyFactors::analyse(const ClothSystem& system) {
   pinned_ = system.pinned;
   runs_ = system.springs;
   bending_ = system.bending;
+  membrane_ = system.membrane;
   rows_ = analyse_free_rows(system, factors_);
   diagonal_.resize(9 * rows_.particle.size());
   off_diagonal_.resize(9 * rows_.couplings);
@@ -100,15 +101,16 @@ bool CholeskyFactors::factorise(const ClothSystem& system, const Linearisation& 
     add_block(-1, block, coupling);
     coupling += 9;
   });
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
-    const double k = linearisation.bending * stiffness;
-    const SymmetricBlock block{k, 0, 0, k, 0, k};
-    add_to_diagonal(i, block);
-    add_to_diagonal(j, block);
-    if (rows_.row[i] < 0 || rows_.row[j] < 0) return;
-    add_block(-1, block, coupling);
-    coupling += 9;
-  });
+  linearisation.for_each_element_block(
+      system,
+      [&](std::size_t i, std::size_t j, const Eigen::Matrix3d& block) {
+        if (rows_.row[i] < 0 || rows_.row[j] < 0) return;
+        Eigen::Map<Eigen::Matrix3d>(coupling) += block;
+        coupling += 9;
+      },
+      [&](std::size_t i, const Eigen::Matrix3d& block) {
+        if (rows_.row[i] >= 0) Eigen::Map<Eigen::Matrix3d>(diagonal_.data() + 9 * rows_.row[i]) += block;
+      });
   return factors_.factorise(diagonal_, off_diagonal_);
 }
 
@@ -128,11 +130,11 @@ void BlockJacobi::prepare(const ClothSystem& system, const Linearisation& linear
     inverse_.add(i, block);
     inverse_.add(j, block);
   });
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
-    const double k = linearisation.bending * stiffness;
-    inverse_.add(i, {k, 0, 0, k, 0, k});
-    inverse_.add(j, {k, 0, 0, k, 0, k});
-  });
+  linearisation.for_each_element_block(
+      system, [](std::size_t, std::size_t, const Eigen::Matrix3d&) {},
+      [&](std::size_t i, const Eigen::Matrix3d& m) {
+        inverse_.add(i, {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)});
+      });
   for (std::size_t i = 0; i < inverse_.size(); ++i)
     inverse_.set(i, system.pinned[i] ? SymmetricBlock{} : inverse_of(inverse_[i]));
 }

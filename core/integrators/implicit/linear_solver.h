@@ -15,11 +15,11 @@ namespace cloth {
 using LinearMap = std::function<void(const Vec3Field& direction, Vec3Field& result)>;
 
 /// The rows of a matrix with one block row for each free particle, and one block off the diagonal for each
-/// spring, and each pair of a bending element, between two of them.
+/// spring, and each pair of for_each_element_pair(), between two of them.
 struct FreeRows {
   std::vector<int> row;       ///< of each particle; -1 where pinned
   std::vector<int> particle;  ///< of each row
-  std::size_t couplings = 0;  ///< springs and bending pairs between free particles
+  std::size_t couplings = 0;  ///< springs and pairs between free particles
 };
 
 /// Numbers the free particles and has `factors` analyse the pattern of their matrix.
@@ -40,6 +40,7 @@ class CholeskyFactors {
   std::vector<std::uint8_t> pinned_;  ///< that the pattern was made for
   SpringRuns runs_;                   ///< of the springs that were analysed
   BendingRuns bending_;
+  Membrane membrane_;
   FreeRows rows_;
   BlockCholesky factors_{3};
   std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch

@@ -1,0 +1,38 @@
+#include "support/material_meshes.h"
+
+#include "support/meshes.h"
+
+namespace cloth::test {
+
+Scene material_mesh_sheet(int columns, int rows, double width, double height, double disorder,
+                          const Material& material, Random& random) {
+  const double a = width / (columns - 1), b = height / (rows - 1);
+  TriangleMesh surface;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      Vec3 place(a * column, -b * row, 0);
+      if (column > 0 && column + 1 < columns) place.x() += disorder * a * random.uniform(-1, 1);
+      if (row > 0 && row + 1 < rows) place.y() += disorder * b * random.uniform(-1, 1);
+      surface.vertices.push_back(place);
+    }
+  for (int row = 0; row + 1 < rows; ++row)
+    for (int column = 0; column + 1 < columns; ++column) {
+      const int p = row * columns + column, q = p + 1, s = p + columns, r = s + 1;
+      if (disorder > 0 && random.coin()) {
+        surface.triangles.push_back({p, s, q});
+        surface.triangles.push_back({q, s, r});
+      } else {
+        surface.triangles.push_back({p, s, r});
+        surface.triangles.push_back({p, r, q});
+      }
+    }
+  Scene scene;
+  scene.cloth.mesh = mesh_of_scene(surface);
+  scene.cloth.rows = 1;
+  scene.cloth.columns = static_cast<int>(surface.vertices.size());
+  scene.cloth.origin = Vec3::Zero();
+  scene.material = material;
+  return scene;
+}
+
+}  // namespace cloth::test

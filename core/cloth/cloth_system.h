@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloth/bending.h"
+#include "cloth/bending_sliders.h"
 #include "cloth/membrane.h"
 #include "cloth/spring_runs.h"
 #include "geometry/triangle_mesh.h"
@@ -19,6 +20,7 @@ struct ClothSystem {
   std::vector<Triangle> triangles;   ///< of a mesh; none: a grid, whose cells triangles_of() cuts in two
   SpringRuns springs;                ///< in the order structural, shear, flexion
   BendingRuns bending;               ///< of a material
+  BendingSliders sliders;            ///< of a material with hysteresis
   Membrane membrane;                 ///< of a material on a mesh, whose springs have no stiffness then
   std::vector<double> mass;          ///< kg, one of each particle
   std::vector<double> inverse_mass;  ///< 1/kg; 0 where pinned

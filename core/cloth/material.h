@@ -14,6 +14,7 @@ struct Material {
   double shear = 0;                           ///< N/m: C66, force over the shear angle 2 e_xy
   double bending_warp = 0, bending_weft = 0;  ///< N m: moment for each metre of width over curvature
   double twist = 0;            ///< N m: energy of a twisted square metre over the twist's square
+  double hysteresis_warp = 0, hysteresis_weft = 0;  ///< N: 2HB, the width of the loop of moment over curvature
   double stretch_damping = 0;  ///< s: of a spring's damper over its stiffness
   double bending_damping = 0;  ///< s
   double mass_damping = 0;     ///< 1/s

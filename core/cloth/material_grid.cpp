@@ -51,6 +51,21 @@ class BendingBuilder {
  public:
   explicit BendingBuilder(ClothSystem& system) : system_(system) {}
 
+  /// A slider beside the element of a line whose first point is `first`, `step` apart: its curvature is twice
+  /// as large at a clamp, over half of the area.
+  void add_slider(int first, int step, double spacing, double area, double stiffness, double yield) {
+    const BendingRun line{.first = first, .points = 3, .offset = {0, step, 2 * step}};
+    const double factor = clamp_factor(line);
+    if (!(factor > 0) || !(yield > 0)) return;
+    const double c = factor / (spacing * spacing);
+    system_.sliders.push_back({.points = 3,
+                               .particle = {first + step, first, first + 2 * step},
+                               .coefficient = {-2 * c, c, c},
+                               .area = area / factor,
+                               .stiffness = stiffness,
+                               .yield = yield});
+  }
+
   /// An element whose first point is `first`, without its stiffness' factor at clamps.
   void add(int first, const BendingRun& element, double stiffness) {
     BendingRun run = element;
@@ -101,6 +116,21 @@ void add_bending(const CellBending& k, ClothSystem& system) {
       builder.add(system.index(row, column), twist, k.twist);
 }
 
+/// 2HB is the width of the loop, so that the moment is up to half of it.
+void add_sliders(const Material& m, double across, double down, ClothSystem& system) {
+  const int rows = system.rows, columns = system.columns;
+  BendingBuilder builder(system);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column + 2 < columns; ++column)
+      builder.add_slider(system.index(row, column), 1, across, part_at_border(row, rows) * across * down,
+                         slider_stiffness_ratio * m.bending_weft, 0.5 * m.hysteresis_weft);
+  for (int row = 0; row + 2 < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      builder.add_slider(system.index(row, column), columns, down,
+                         part_at_border(column, columns) * across * down,
+                         slider_stiffness_ratio * m.bending_warp, 0.5 * m.hysteresis_warp);
+}
+
 /// A quarter of a cell's mass for each cell that a particle is a corner of.
 void give_masses(double of_cell, ClothSystem& system) {
   for (int row = 0; row < system.rows; ++row)
@@ -120,6 +150,7 @@ ClothSystem make_material_grid(const ClothSheet& sheet, const Material& material
   give_masses(material.areal_density * across * down, system);
   add_springs(cell, cell_springs(material, across, down), system);
   add_bending(cell_bending(material, across, down), system);
+  add_sliders(material, across, down, system);
   return system;
 }
 

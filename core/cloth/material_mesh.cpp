@@ -69,8 +69,14 @@ ClothSystem make_material_mesh(const ClothSheet& sheet, const Material& material
   const PlaneAxes axes{sheet.down, sheet.across};
   add_membrane(mesh, axes,
                {material.stretch_warp, material.stretch_weft, coupling_of(material), material.shear}, system);
-  system.bending = mesh_bending(mesh.surface, system.pinned, axes,
-                                {material.bending_warp, material.bending_weft, material.twist});
+  MeshBending bending = mesh_bending(mesh.surface, system.pinned, axes,
+                                     {material.bending_warp, material.bending_weft, material.twist},
+                                     {.yield_1 = 0.5 * material.hysteresis_warp,
+                                      .yield_2 = 0.5 * material.hysteresis_weft,
+                                      .stiffness_1 = slider_stiffness_ratio * material.bending_warp,
+                                      .stiffness_2 = slider_stiffness_ratio * material.bending_weft});
+  system.bending = std::move(bending.elements);
+  system.sliders = std::move(bending.sliders);
   return system;
 }
 

@@ -161,6 +161,19 @@ void add_elements(const Patch& patch, const MatrixXd& curvature, const Eigen::Ve
   }
 }
 
+void add_slider(const Patch& patch, const Eigen::RowVectorXd& curvature, double area, double stiffness,
+                double yield, BendingSliders& sliders) {
+  if (!(yield > 0) || !(curvature.cwiseAbs().maxCoeff() > 0)) return;
+  BendingSlider slider{.points = static_cast<int>(patch.corner.size()),
+                       .normal_points = 3,
+                       .area = area,
+                       .stiffness = stiffness,
+                       .yield = yield};
+  for (std::size_t p = 0; p < patch.corner.size(); ++p)
+    slider.particle[p] = patch.corner[p], slider.coefficient[p] = curvature[static_cast<Index>(p)];
+  sliders.push_back(slider);
+}
+
 }  // namespace
 
 std::array<Vec3, 2> PlaneAxes::in(const TriangleMesh& mesh, const Triangle& triangle) const {
@@ -171,11 +184,11 @@ std::array<Vec3, 2> PlaneAxes::in(const TriangleMesh& mesh, const Triangle& tria
   return {two.cross(n).normalized(), two.normalized()};
 }
 
-BendingRuns mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned,
-                         const PlaneAxes& axes, const PlaneBending& bending) {
+MeshBending mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned,
+                         const PlaneAxes& axes, const PlaneBending& bending, const PlaneFriction& friction) {
   const Eigen::Vector3d weight(bending.along_1, bending.along_2, 2 * bending.twist);
-  BendingRuns runs;
-  if (!(weight.maxCoeff() > 0)) return runs;
+  MeshBending result;
+  if (!(weight.maxCoeff() > 0)) return result;
   const Opposites opposite = opposite_corners(mesh.triangles);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
@@ -187,9 +200,12 @@ BendingRuns mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_
       if (opposite[t][e] >= 0) builder.add_across(e, opposite[t][e]);
     const Patch patch = builder.finish();
     static_assert(most_points >= 6);
-    add_elements(patch, curvatures(patch, weight), weight, area, runs);
+    const MatrixXd curvature = curvatures(patch, weight);
+    add_elements(patch, curvature, weight, area, result.elements);
+    add_slider(patch, curvature.row(0), area, friction.stiffness_1, friction.yield_1, result.sliders);
+    add_slider(patch, curvature.row(1), area, friction.stiffness_2, friction.yield_2, result.sliders);
   }
-  return runs;
+  return result;
 }
 
 }  // namespace cloth

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "cloth/bending.h"
+#include "cloth/bending_sliders.h"
 #include "cloth/material.h"
 #include "geometry/triangle_mesh.h"
 
@@ -31,8 +32,17 @@ struct PlaneAxes {
   std::array<Vec3, 2> in(const TriangleMesh& mesh, const Triangle& triangle) const;
 };
 
+/// Half of the loops' widths along both directions, N, and the stiffness of their sliders, N m.
+struct PlaneFriction {
+  double yield_1 = 0, yield_2 = 0, stiffness_1 = 0, stiffness_2 = 0;
+};
+
 /// `pinned` of every vertex. Triangles without area, and those whose corners are all pinned, have no elements.
-BendingRuns mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned,
-                         const PlaneAxes& axes, const PlaneBending& bending);
+struct MeshBending {
+  BendingRuns elements;
+  BendingSliders sliders;
+};
+MeshBending mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned,
+                         const PlaneAxes& axes, const PlaneBending& bending, const PlaneFriction& friction);
 
 }  // namespace cloth

@@ -21,19 +21,21 @@ namespace cloth {
 struct Air;
 
 /// Power of the non-conservative forces in W, or its time integral, work, in J. Positive values add energy to
-/// the cloth; `damping_loss` is positive where energy is taken out.
+/// the cloth; losses are positive where energy is taken out.
 struct Work {
-  double damping_loss = 0;  ///< taken by viscous and spring damping
+  double damping_loss = 0;     ///< taken by viscous and spring damping
+  double hysteresis_loss = 0;  ///< taken by friction in bending
   double air = 0;
   double brush = 0;
   double pull = 0;
 
   Work& operator+=(const Work& other) {
-    damping_loss += other.damping_loss, air += other.air, brush += other.brush, pull += other.pull;
+    damping_loss += other.damping_loss, hysteresis_loss += other.hysteresis_loss;
+    air += other.air, brush += other.brush, pull += other.pull;
     return *this;
   }
   friend Work operator*(double scale, const Work& work) {
-    return {scale * work.damping_loss, scale * work.air, scale * work.brush, scale * work.pull};
+    return {scale * work.damping_loss, scale * work.hysteresis_loss, scale * work.air, scale * work.brush, scale * work.pull};
   }
 };
 
@@ -64,6 +66,7 @@ struct NodeDamping {
   double stretch_time = 0;   ///< s
   double bending_time = 0;   ///< s
   double membrane_time = 0;  ///< s
+  const SliderState* sliders = nullptr;  ///< of hysteresis, for methods that treat elements one by one
 };
 
 /// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the
@@ -122,6 +125,13 @@ class Force {
   /// Adds this force's part of weight_velocity D + weight_position K, K the symmetric part of -dp/dx.
   virtual void add_linearisation(const ClothSystem&, const Vec3Field& /*position*/,
                                  const LinearisationWeights&, Linearisation& /*to*/) const {}
+
+  /// A force that depends on what has been: the energy in J that it stores at `position`, what it loses of it
+  /// as the step ends there, and what it remembers.
+  virtual double stored_energy(const Vec3Field& /*position*/) const { return 0; }
+  virtual double end_step(const Vec3Field& /*position*/) { return 0; }
+  virtual std::vector<double> history() const { return {}; }
+  virtual void set_history(const std::vector<double>& /*history*/, const Vec3Field& /*position*/) {}
 
   /// The rest of -df/dx at `velocity`: product += (-df/dx - K) direction. Only where has_asymmetric_part().
   virtual bool has_asymmetric_part() const { return false; }

@@ -41,6 +41,7 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(
     if (auto force = entry.make(scene, system)) {
       forces_.push_back(std::move(force));
       if (entry.work == &Work::damping_loss) has_damping_loss_ = true;
+      if (entry.work == &Work::hysteresis_loss) with_history_ = forces_.back().get();
     }
   system_changed();
 }
@@ -218,6 +219,7 @@ void ForceModel::linearise(const Vec3Field& position, const LinearisationWeights
   }
   result.springs.assign(system_->springs.spring_count(), {});
   result.bending = result.membrane = 0;
+  result.slider_slope.clear();
   result.has_compressed = false;
   for_each_force([&](Force& force) { force.add_linearisation(*system_, position, weights, result); });
 }

@@ -64,6 +64,21 @@ class ForceModel {
   /// Whether a force of the scene adds to Work::damping_loss (viscous damping, damping along springs).
   bool has_damping_loss() const { return has_damping_loss_; }
 
+  /// Of the force that depends on what has been (Force::stored_energy); whether there is one. At most one.
+  bool has_history() const { return with_history_ != nullptr; }
+  double stored_energy(const Vec3Field& position) const {
+    return with_history_ ? with_history_->stored_energy(position) : 0;
+  }
+  double end_step(const Vec3Field& position) {
+    return with_history_ ? with_history_->end_step(position) : 0;
+  }
+  std::vector<double> history() const {
+    return with_history_ ? with_history_->history() : std::vector<double>();
+  }
+  void set_history(const std::vector<double>& history, const Vec3Field& position) {
+    if (with_history_) with_history_->set_history(history, position);
+  }
+
   /// A = M + weights.velocity D + weights.position K at the last update.
   void linearise(const Vec3Field& position, const LinearisationWeights& weights, Linearisation& result) const;
 
@@ -110,6 +125,7 @@ class ForceModel {
   const ClothSystem* system_;
   std::vector<std::unique_ptr<Force>> forces_;
   std::unique_ptr<Force> pull_;
+  Force* with_history_ = nullptr;
   std::unique_ptr<SpringSweep> sweep_;
   SweepTerms swept_;
   std::vector<Force*> apart_;             ///< forces that the kernels' evaluations do not include

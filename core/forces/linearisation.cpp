@@ -60,6 +60,20 @@ void Linearisation::add_membrane(const Vec3Field& position, double weight) {
   membrane_position = position;
 }
 
+void Linearisation::add_slider_product(const ClothSystem& system, const Vec3Field& direction,
+                                       Vec3Field& product) const {
+  for (std::size_t k = 0; k < system.sliders.size(); ++k) {
+    if (slider_slope[k] == 0) continue;
+    const BendingSlider& s = system.sliders[k];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p)
+      sum += s.coefficient[p] * direction[at(s.particle[p])];
+    const Vec3 push = slider_slope[k] * slider_normal[k].dot(sum) * slider_normal[k];
+    for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p)
+      product.add(at(s.particle[p]), s.coefficient[p] * push);
+  }
+}
+
 void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& direction,
                                   Vec3Field& product) const {
   multiply_blocks(nodes, 0, nodes.size(), direction, product);
@@ -82,6 +96,7 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
     }
   }
   if (bending > 0) add_bending_product(system.bending, bending, direction, product);
+  if (!slider_slope.empty()) add_slider_product(system, direction, product);
   if (membrane > 0) add_membrane_product(system.membrane, membrane, membrane_position, direction, product);
 }
 

@@ -68,16 +68,22 @@ struct Linearisation {
   double bending = 0;           ///< s^2: what multiplies K of ClothSystem::bending
   double membrane = 0;          ///< s^2: what multiplies J^T K J of ClothSystem::membrane
   Vec3Field membrane_position;  ///< m, where J is; sized where there is a membrane
+  std::vector<double> slider_slope;  ///< of ClothSystem::sliders, weighted; empty: none acts
+  Vec3Field slider_normal;           ///< their unit normals
   bool has_compressed = false;  ///< some spring is shorter than its rest length, so that clamping changes A
 
   /// Adds `weight` J^T K J.
   void add_membrane(const Vec3Field& position, double weight);
 
-  /// Visits the blocks of bending and membrane between two different particles and those that they add to
+  /// Visits the blocks of bending, its sliders and the membrane between two different particles and those that they add to
   /// each particle: off_diagonal(i, j, block), diagonal(i, block), blocks as 3x3 matrices, the one for i and j
   /// in the row of i. Pairs may repeat; their order depends on the system alone.
   template <class OffDiagonal, class Diagonal>
   void for_each_element_block(const ClothSystem& system, OffDiagonal off_diagonal, Diagonal diagonal) const;
+
+  void add_slider_product(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
+  template <class OffDiagonal, class Diagonal>
+  void for_each_slider_block(const ClothSystem& system, OffDiagonal off_diagonal, Diagonal diagonal) const;
 
   /// product = A direction; pinned particles get 0.
   void multiply(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
@@ -86,10 +92,30 @@ struct Linearisation {
   void multiply_free(const ClothSystem& system, const Vec3Field& direction, Vec3Field& product) const;
 };
 
+/// -c_p c_q slope n n^T between two points, and its opposite on both.
+template <class OffDiagonal, class Diagonal>
+void Linearisation::for_each_slider_block(const ClothSystem& system, OffDiagonal off_diagonal,
+                                          Diagonal diagonal) const {
+  for (std::size_t k = 0; k < system.sliders.size(); ++k) {
+    const BendingSlider& s = system.sliders[k];
+    const bool acts = !slider_slope.empty();
+    const Vec3 n = acts ? slider_normal[k] : Vec3(Vec3::Zero());
+    const Eigen::Matrix3d along = (acts ? slider_slope[k] : 0.0) * n * n.transpose();
+    for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p)
+      for (std::size_t q = p + 1; q < static_cast<std::size_t>(s.points); ++q) {
+        const Eigen::Matrix3d block = s.coefficient[p] * s.coefficient[q] * along;
+        diagonal(at(s.particle[p]), Eigen::Matrix3d(-block));
+        diagonal(at(s.particle[q]), Eigen::Matrix3d(-block));
+        off_diagonal(at(s.particle[p]), at(s.particle[q]), block);
+      }
+  }
+}
+
 /// visit(i, j) for every block off the diagonal that for_each_element_block() visits, in its order.
 template <class Visit>
 void for_each_element_pair(const ClothSystem& system, Visit visit) {
   for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) { visit(i, j); });
+  for_each_slider_pair(system.sliders, [&](std::size_t i, std::size_t j, double) { visit(i, j); });
   for (const MembraneTriangle& t : system.membrane)
     for (std::size_t c = 0; c < 3; ++c) visit(at(t.corner[c]), at(t.corner[(c + 1) % 3]));
 }
@@ -102,6 +128,7 @@ void Linearisation::for_each_element_block(const ClothSystem& system, OffDiagona
     diagonal(i, block), diagonal(j, block);
     off_diagonal(i, j, Eigen::Matrix3d(-block));
   });
+  for_each_slider_block(system, off_diagonal, diagonal);
   for (const MembraneTriangle& t : system.membrane) {
     std::array<Vec3, 3> d;
     for (std::size_t e = 0; e < 3; ++e) d[e] = edge_of(t, e, membrane_position);

@@ -13,6 +13,7 @@ ForceEntry membrane_entry();
 ForceEntry spring_damping_entry();
 ForceEntry bending_damping_entry();
 ForceEntry membrane_damping_entry();
+ForceEntry hysteresis_entry();
 ForceEntry viscous_damping_entry();
 ForceEntry mass_damping_entry();
 ForceEntry gravity_entry();
@@ -22,9 +23,9 @@ ForceEntry skin_friction_entry();
 const std::vector<ForceEntry>& force_registry() {
   static const std::vector<ForceEntry> entries{
       spring_entry(),         membrane_entry(),         bending_entry(),
-      spring_damping_entry(), membrane_damping_entry(), bending_damping_entry(),
-      viscous_damping_entry(), mass_damping_entry(),    gravity_entry(),
-      air_entry(),            skin_friction_entry()};
+      hysteresis_entry(),     spring_damping_entry(),   membrane_damping_entry(),
+      bending_damping_entry(), viscous_damping_entry(), mass_damping_entry(),
+      gravity_entry(),        air_entry(),              skin_friction_entry()};
   return entries;
 }
 

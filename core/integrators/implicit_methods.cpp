@@ -97,7 +97,10 @@ void Bdf2::recall(const IntegratorMemory& memory) {
   before_.position = memory.fields.at(0);
   before_.velocity = memory.fields.at(1);
   step_before_ = memory.numbers.at(1);
-  work_before_ = {memory.numbers.at(2), memory.numbers.at(3), memory.numbers.at(4), memory.numbers.at(5)};
+  work_before_ = {.damping_loss = memory.numbers.at(2),
+                  .air = memory.numbers.at(3),
+                  .brush = memory.numbers.at(4),
+                  .pull = memory.numbers.at(5)};
 }
 
 }  // namespace cloth

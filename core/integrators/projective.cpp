@@ -16,12 +16,12 @@ NodeCoefficient sum_of(const NodeCoefficient& a, const NodeCoefficient& b) {
 
 bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
   if (!factored_ || pinned_ != system.pinned || springs_ != system.springs || bending_ != system.bending ||
-      membrane_ != system.membrane) {
+      membrane_ != system.membrane || sliders_ != system.sliders) {
     rows_ = analyse_free_rows(system, factors_);
     residual_.resize(3 * rows_.particle.size());
   }
   coefficients_ = c, springs_ = system.springs, bending_ = system.bending, membrane_ = system.membrane,
-  mass_ = system.mass, pinned_ = system.pinned;
+  sliders_ = system.sliders,  mass_ = system.mass, pinned_ = system.pinned;
 
   const double h = c.step;
   std::vector<double> diagonal(rows_.particle.size()), off_diagonal;
@@ -39,6 +39,9 @@ bool Projective::factorise(const ClothSystem& system, const Coefficients& c) {
   });
   for_each_bending_pair(bending_, [&](std::size_t i, std::size_t j, double stiffness) {
     couple(i, j, h * (h + c.bending_time) * stiffness);
+  });
+  for_each_slider_pair(sliders_, [&](std::size_t i, std::size_t j, double stiffness) {
+    couple(i, j, h * h * stiffness);
   });
   for (const MembraneTriangle& t : membrane_) {
     const std::array<double, 3> bound = edge_bounds(t);
@@ -87,7 +90,7 @@ IntegratorReport Projective::step(ForceModel& forces, const StepTimes& times, Cl
                              .held_damping = parts.held_isotropic,
                              .held_stiffness = parts.held_stiffness};
   if (!factored_ || coefficients_ != numbers || springs_ != system.springs || bending_ != system.bending ||
-      membrane_ != system.membrane || mass_ != system.mass || pinned_ != system.pinned) {
+      membrane_ != system.membrane || sliders_ != system.sliders || mass_ != system.mass || pinned_ != system.pinned) {
     ++report.factorisations;
     if (!factorise(system, numbers)) {
       report.failure = SolverFailure{0, "the constant matrix could not be factored"};

@@ -52,6 +52,7 @@ class Projective : public Integrator {
   SpringRuns springs_;
   BendingRuns bending_;
   Membrane membrane_;
+  BendingSliders sliders_;
   std::vector<double> mass_;
   std::vector<std::uint8_t> pinned_;
   FreeRows rows_;

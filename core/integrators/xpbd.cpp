@@ -22,6 +22,7 @@ void Xpbd::predict(const ClothSystem& system, const ForceModel& forces, double h
   const Vec3Field& force = forces.position_force();
   spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
   bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
+  sliders_ = parts.sliders;
   mobility_.assign(velocity.size(), {});
   for (std::size_t i = 0; i < mobility_.size(); ++i) {
     if (system.inverse_mass[i] == 0) continue;
@@ -93,10 +94,40 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, V
   for (const BendingRun& run : system.bending)
     for (int e = run.first; e < run.first + run.count; ++e, ++element)
       largest = std::max(largest, visit(run, e, start, h, impulse_[element], velocity));
+  for (std::size_t k = 0; sliders_ && k < system.sliders.size(); ++k)
+    largest = std::max(largest, visit(system.sliders[k], k, start, h, impulse_[element + k], velocity));
+  element += system.sliders.size();
   for (const MembraneTriangle& t : system.membrane) {
     largest = std::max(largest, visit(t, start, h, impulse_.data() + element, velocity));
     element += 3;
   }
+  return largest;
+}
+
+/// The impulse P on kappa is linear in P where the slider does not yield: P = -h A K (kappa' - slip), kappa' =
+/// kappa + h (u + G P) with u = dkappa/dt without P.
+double Xpbd::visit(const BendingSlider& s, std::size_t number, const Vec3Field& start, double h, Vec3& impulse,
+                   Vec3Field& velocity) const {
+  const Vec3 n = sliders_->normal[number];
+  double stretch = -sliders_->slip[number], give = 0;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p) {
+    const std::size_t i = at(s.particle[p]);
+    const double c = s.coefficient[p];
+    stretch += c * n.dot(start[i] + h * velocity[i]);
+    give += c * c * n.dot(mobility_[i].times(n));
+  }
+  double& given = impulse.x();
+  stretch -= h * give * given;
+  const double weight = h * s.area * s.stiffness, most = h * s.area * s.yield;
+  const double next = std::clamp(-weight * stretch / (1 + h * weight * give), -most, most);
+  double largest = 0;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p) {
+    const std::size_t i = at(s.particle[p]);
+    const Vec3 change = s.coefficient[p] * (next - given) * mobility_[i].times(n);
+    velocity.add(i, change);
+    largest = std::max(largest, change.squaredNorm());
+  }
+  given = next;
   return largest;
 }
 
@@ -173,7 +204,7 @@ double Xpbd::visit(const BendingRun& run, int first, const Vec3Field& start, dou
 std::size_t Xpbd::element_count(const ClothSystem& system) {
   std::size_t count = system.springs.spring_count();
   for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
-  count += 3 * system.membrane.size();
+  count += system.sliders.size() + 3 * system.membrane.size();
   return count;
 }
 

@@ -23,6 +23,7 @@
 // A bending element (cloth/bending.h) has the impulse P on s = sum c x, linear in s: P = -h k (s' + t sum c
 // v'). A triangle of constant strain (cloth/membrane.h) has three impulses along its edges, solved for
 // together: lambda = -h K (q' + t dq'/dt), with q' to first order in the change of a visit.
+// A slider of hysteresis (cloth/bending_sliders.h) has an impulse along its normal, bounded by its yield.
 #pragma once
 
 #include "integrators/integrator.h"
@@ -62,13 +63,16 @@ class Xpbd : public Integrator {
   /// `impulse`: of its three corners.
   double visit(const MembraneTriangle& triangle, const Vec3Field& start, double h, Vec3* impulse,
                Vec3Field& velocity) const;
+  double visit(const BendingSlider& slider, std::size_t number, const Vec3Field& start, double h,
+               Vec3& impulse, Vec3Field& velocity) const;
   static std::size_t element_count(const ClothSystem& system);
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
   std::vector<Mobility> mobility_;
   std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run, then of every bending element, then
-                               ///< of the corners of every triangle
+                               ///< of every slider (its first number), then of every triangle's corners
+  const SliderState* sliders_ = nullptr;
   double spring_damping_ = 0;  ///< N s/m
   double stretch_time_ = 0, bending_time_ = 0, membrane_time_ = 0;  ///< s
 };

@@ -35,6 +35,11 @@ class ScaledLaplacian {
       product[Index(i)] += force;
       product[Index(j)] -= force;
     });
+    for_each_slider_pair(system_.sliders, [&](std::size_t i, std::size_t j, double stiffness) {
+      const double force = stiffness * (u[Index(i)] - u[Index(j)]);
+      product[Index(i)] += force;
+      product[Index(j)] -= force;
+    });
     for_each_membrane_bound([&](std::size_t i, std::size_t j, double stiffness) {
       const double force = stiffness * (u[Index(i)] - u[Index(j)]);
       product[Index(i)] += force;
@@ -51,6 +56,10 @@ class ScaledLaplacian {
       stiffness[j] += (scale_[i] > 0 ? 2 : 1) * run.stiffness;
     });
     for_each_bending_pair(system_.bending, [&](std::size_t i, std::size_t j, double of_pair) {
+      stiffness[Index(i)] += of_pair + (scale_[Index(j)] > 0 ? std::abs(of_pair) : 0);
+      stiffness[Index(j)] += of_pair + (scale_[Index(i)] > 0 ? std::abs(of_pair) : 0);
+    });
+    for_each_slider_pair(system_.sliders, [&](std::size_t i, std::size_t j, double of_pair) {
       stiffness[Index(i)] += of_pair + (scale_[Index(j)] > 0 ? std::abs(of_pair) : 0);
       stiffness[Index(j)] += of_pair + (scale_[Index(i)] > 0 ? std::abs(of_pair) : 0);
     });

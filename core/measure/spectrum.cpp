@@ -56,15 +56,18 @@ class ScaledStiffness {
     }
   }
 
+  /// Sliders as if each were as stiff in every direction, and none yielded.
   void add_bending(const VectorXd& u, VectorXd& product) const {
     const auto n = position_.size();
-    for_each_bending_pair(system_.bending, [&](std::size_t i, std::size_t j, double stiffness) {
+    const auto add = [&](std::size_t i, std::size_t j, double stiffness) {
       for (std::size_t k = 0; k < 3 * n; k += n) {
         const double force = stiffness * (u[Index(k + i)] - u[Index(k + j)]);
         product[Index(k + i)] += force;
         product[Index(k + j)] -= force;
       }
-    });
+    };
+    for_each_bending_pair(system_.bending, add);
+    for_each_slider_pair(system_.sliders, add);
   }
 
   /// J^T K J u, and the tension of every edge in every direction.

@@ -109,6 +109,9 @@ struct MaterialWaves {
     const GridCell cell = cell_of(scene.cloth);
     springs = cell_springs(*scene.material, sides.across, sides.down);
     bending = cell_bending(*scene.material, sides.across, sides.down);
+    const Material& m = *scene.material;
+    if (m.hysteresis_weft > 0) bending.across *= 1 + slider_stiffness_ratio;
+    if (m.hysteresis_warp > 0) bending.down *= 1 + slider_stiffness_ratio;
     across = cell.across.normalized(), down = cell.down.normalized();
     diagonals[0] = (cell.across + cell.down).normalized();
     diagonals[1] = (cell.across - cell.down).normalized();

@@ -108,6 +108,8 @@ void list_losses_of_material(const Scene& scene, const CellSprings& k, const Sce
         springs.springs->damping, m.stretch_damping));
   if (m.bending_damping > 0 && (m.bending_warp > 0 || m.bending_weft > 0))
     losses.push_back("Bending is not damped either.");
+  if (m.hysteresis_warp > 0 || m.hysteresis_weft > 0)
+    losses.push_back("Bending has no hysteresis.");
 }
 
 }  // namespace

@@ -29,6 +29,17 @@ Field<M> bending(double M::*member, const char* key, const char* label, const ch
                         .slider_maximum = 1e-3});
 }
 
+Field<M> hysteresis(double M::*member, const char* key, const char* label, const char* doc) {
+  return field(member, {.key = key,
+                        .label = label,
+                        .unit = "N",
+                        .doc = doc,
+                        .formula = "M = B kappa +- 2HB/2",
+                        .scale = Scale::logarithmic,
+                        .minimum = 0,
+                        .slider_maximum = 1e-2});
+}
+
 Field<M> damping_time(double M::*member, const char* key, const char* label, const char* doc) {
   return field(member, {.key = key,
                         .label = label,
@@ -84,6 +95,10 @@ Fields<Material> material_fields() {
           &M::twist, "twist", "Twist stiffness",
           "Resistance to twisting; bending_45, the bending stiffness at 45 degrees, may be given instead.",
           "twist = 2 B_45 - (B_warp + B_weft)/2"),
+      hysteresis(&M::hysteresis_warp, "hysteresis_warp", "Bending hysteresis, warp",
+                 "Width of the loop of moment over curvature of columns that bend and bend back, 2HB."),
+      hysteresis(&M::hysteresis_weft, "hysteresis_weft", "Bending hysteresis, weft",
+                 "Width of the loop of moment over curvature of rows that bend and bend back, 2HB."),
       damping_time(&M::stretch_damping, "stretch_damping", "Stretch damping",
                    "Of every spring the damper over its stiffness."),
       damping_time(&M::bending_damping, "bending_damping", "Bending damping",

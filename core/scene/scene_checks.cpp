@@ -81,11 +81,24 @@ void check_coupling(const Material& m, bool is_mesh, std::vector<Problem>& probl
                        most, m.coupling ? "" : "; material.coupling can be less"));
 }
 
+void check_hysteresis(const Material& m, std::vector<Problem>& problems) {
+  const auto check = [&](const char* direction, double hysteresis, double bending) {
+    if (!(hysteresis > 0) || bending > 0) return;
+    problems.push_back({fmt::format("material.hysteresis_{}", direction), fmt::format("{} N", hysteresis),
+                        fmt::format("must be 0 where material.bending_{} is: friction without stiffness would "
+                                    "keep every fold",
+                                    direction)});
+  };
+  check("warp", m.hysteresis_warp, m.bending_warp);
+  check("weft", m.hysteresis_weft, m.bending_weft);
+}
+
 /// A material becomes triangles, or springs of cells that are rectangles, none of them negative.
 void check_material(const Scene& scene, std::vector<Problem>& problems) {
   if (!scene.material) return;
   const ClothSheet& cloth = scene.cloth;
   check_coupling(*scene.material, cloth.is_mesh(), problems);
+  check_hysteresis(*scene.material, problems);
   if (!(cloth.across.norm() > 0) || !(cloth.down.norm() > 0)) return;  // said already
   constexpr double largest_cosine = 1e-9;
   if (std::abs(cloth.across.normalized().dot(cloth.down.normalized())) > largest_cosine) {

@@ -89,7 +89,7 @@ void Simulation::begin_step_length() {
 /// that is let go can heat within a few steps.
 void Simulation::watch_step(bool at_once) {
   if (!watches_step_ || !(at_once || run_.state.step % ledger_interval == 0)) return;
-  const Energy energy = measure_energy(system_, gravity_of(scene_), run_.state);
+  const Energy energy = energy_of(run_.state);
   const double error = energy.total() - run_.ledger.initial - run_.ledger.entered();
   if (asks_for_shorter(run_.automatic, error / energy_scale_after(-energy.gravity))) shorten_step();
 }

@@ -15,7 +15,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
   const auto potential = [&](const Vec3Field& position) {
     ClothState there;
     there.position = position, there.velocity = Vec3Field(position.size());
-    return measure_energy(system_, gravity_of(scene_), there).total();
+    return energy_of(there).total();
   };
   const double stage_weight = facts_of(scene_.integrator.method).stage_weight.value_or(1);
   run_.last_contact = contact_->resolve({system_, *forces_, *integrator_, times, stage_weight,

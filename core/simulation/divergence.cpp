@@ -97,7 +97,7 @@ bool Simulation::is_fast(double kinetic) const {
 /// and ten times what the scene could give explain. What a limiter has taken out may be missing once more; it
 /// explains no gain.
 bool Simulation::has_diverged() const {
-  const Energy energy = measure_energy(system_, gravity_of(scene_), run_.state);
+  const Energy energy = energy_of(run_.state);
   const double unexplained = energy.total() - run_.ledger.initial - run_.ledger.entered();
   const double missing = unexplained < 0 ? std::abs(run_.ledger.limiter) : 0;
   return !(std::abs(unexplained) <= divergence_factor * (energy_scale_after(-energy.gravity) + missing));

@@ -31,7 +31,7 @@ void EnergyAccount::add(const Measurement& m) {
   }
   const Work& forces = m.ledger.forces;
   for (const double work :
-       {forces.damping_loss, forces.air, forces.brush, forces.pull, m.ledger.limiter, m.ledger.contact}) {
+       {forces.damping_loss, forces.hysteresis_loss, forces.air, forces.brush, forces.pull, m.ledger.limiter, m.ledger.contact}) {
     raise(exchanged_, std::abs(work));
     raise(largest_energy_, std::abs(work));
   }

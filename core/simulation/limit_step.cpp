@@ -24,11 +24,10 @@ void Simulation::limit_start() {
 void Simulation::limit_deformation() {
   if (!limits_drift_) {
     const bool by_energy = !integrator_->drifts_with_end_velocity();
-    const Vec3 gravity = gravity_of(scene_);
-    const Energy before = by_energy ? measure_energy(system_, gravity, run_.state) : Energy{};
+    const Energy before = by_energy ? energy_of(run_.state) : Energy{};
     if (limiter_->after_step(run_.state)) {
       if (by_energy) {
-        const double gained = measure_energy(system_, gravity, run_.state).potential() - before.potential();
+        const double gained = energy_of(run_.state).potential() - before.potential();
         limiter_->limit_energy_gain(gained, run_.state);
         run_.ledger.limiter += gained + kinetic_energy(system_, run_.state.velocity) - before.kinetic;
       }

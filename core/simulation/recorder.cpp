@@ -54,6 +54,8 @@ const std::vector<Column>& columns() {
       {"gravity_J", always, [](M m) { return m.energy.gravity; }},
       {"total_J", always, [](M m) { return m.energy.total(); }},
       {"damping_loss_J", [](Q q) { return q.damping; }, [](M m) { return m.ledger.forces.damping_loss; }},
+      {"hysteresis_loss_J", [](Q q) { return q.hysteresis; },
+       [](M m) { return m.ledger.forces.hysteresis_loss; }},
       {"air_work_J", [](Q q) { return q.air; }, [](M m) { return m.ledger.forces.air; }},
       {"brush_work_J", [](Q q) { return q.brush; }, [](M m) { return m.ledger.forces.brush; }},
       {"pull_work_J", [](Q q) { return q.pull; }, [](M m) { return m.ledger.forces.pull; }},

@@ -41,6 +41,12 @@ class RestSearch {
     shift_ = 1e3;
   }
 
+  void set_history(const std::vector<double>& history) { forces_.set_history(history, state_.position); }
+  std::vector<double> end_step() {
+    forces_.end_step(state_.position);
+    return forces_.history();
+  }
+
   RestShape run() {
     RestShape rest;
     evaluate();
@@ -91,7 +97,7 @@ class RestSearch {
   double energy_at(const Vec3Field& position) {
     ClothState state = state_;
     state.position = position;
-    return measure_energy(system_, gravity_of(scene_), state).potential();
+    return measure_energy(system_, gravity_of(scene_), state).potential() + forces_.stored_energy(position);
   }
   /// Net forces of the free particles at the present shape, and its energy.
   void evaluate() {
@@ -168,7 +174,19 @@ class RestSearch {
 
 RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Field& from,
                     const RestOptions& options) {
-  return RestSearch(scene, system, from, options).run();
+  RestShape rest{.position = from};
+  std::vector<double> history;
+  for (int part = 1; part <= options.load_steps; ++part) {
+    Scene loaded = scene;
+    loaded.gravity = gravity_of(scene) * part / options.load_steps;
+    RestSearch search(loaded, system, rest.position, options);
+    search.set_history(history);
+    const int iterations = rest.iterations;
+    rest = search.run();
+    rest.iterations += iterations;
+    history = search.end_step();
+  }
+  return rest;
 }
 
 bool is_minimum(const Scene& scene, const ClothSystem& system, const Vec3Field& position) {

@@ -16,14 +16,15 @@
 namespace cloth {
 
 /// The energy that entered the cloth since t = 0, in J. Positive values are energy gained, except
-/// forces.damping_loss, which is energy lost.
+/// forces.damping_loss and forces.hysteresis_loss, which are energy lost.
 struct EnergyLedger {
   Work forces;
   double limiter = 0;
   double contact = 0;
   double initial = 0;  ///< total energy at t = 0, plus what edits added
   double entered() const {
-    return forces.air + forces.brush + forces.pull + limiter + contact - forces.damping_loss;
+    return forces.air + forces.brush + forces.pull + limiter + contact - forces.damping_loss -
+           forces.hysteresis_loss;
   }
 };
 
@@ -56,6 +57,7 @@ struct Checkpoint : RunState {
   IntegratorMemory memory;
   std::vector<Pose> obstacle_poses;  ///< of continuous contact
   std::vector<double> tension;       ///< N, of the limited springs
+  std::vector<double> force_history;  ///< of forces that depend on what has been (Force::history)
 
   std::size_t bytes() const;
 };

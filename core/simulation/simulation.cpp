@@ -74,7 +74,9 @@ Simulation::Simulation(const Scene& scene, Preparation prepare)
 Simulation::~Simulation() = default;
 
 void Simulation::assemble() {
+  const std::vector<double> history = forces_ ? forces_->history() : std::vector<double>();
   forces_ = std::make_unique<ForceModel>(scene_, system_);
+  forces_->set_history(history, run_.state.position);
   make_limiter(limiter_ ? limiter_->tension() : std::vector<double>());
   contact_ = make_contact_stage(scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
                                 run_.time_step > explicit_step_limit(scene_));
@@ -98,6 +100,7 @@ void Simulation::assemble() {
                            .structural = system_.spring_count(SpringFamily::structural) > 0,
                            .shear = system_.spring_count(SpringFamily::shear) > 0,
                            .bending = !system_.bending.empty(),
+                           .hysteresis = forces_->has_history(),
                            .continuous_contact = has_continuous_contact()};
 
   strongest_pull_ = find_strongest_pull();
@@ -176,6 +179,10 @@ std::optional<Divergence> Simulation::step() {
     run_.state.position = position_before_;  // nothing has led it there
   run_.state.time = times.end;
   run_.state.step = next;
+  if (forces_->has_history() && !report.failure) {
+    run_.ledger.forces.hysteresis_loss += forces_->end_step(run_.state.position);
+    integrator_->forget(Change::forces);
+  }
   count_step(report);
 
   if (run_.last_contact.exhausted && !report.failure) return stop_at_exhaustion(*run_.last_contact.pinch);
@@ -267,7 +274,7 @@ void Simulation::edit(const Scene& scene) {
 
 std::size_t Checkpoint::bytes() const {
   std::size_t numbers =
-      tension.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
+      tension.size() + force_history.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
   numbers += contact_memory.deferred.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
@@ -282,6 +289,7 @@ Checkpoint Simulation::checkpoint() const {
   checkpoint.memory = integrator_->remember();
   if (contact_) checkpoint.obstacle_poses = contact_->poses();
   if (limiter_) checkpoint.tension = limiter_->tension();
+  checkpoint.force_history = forces_->history();
   return checkpoint;
 }
 
@@ -297,6 +305,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     run_.time_step = time_step, run_.automatic = std::move(automatic);
   quantities_.brush = run_.was_brushed, quantities_.pull = run_.was_pulled;
   make_limiter(checkpoint.tension);
+  forces_->set_history(checkpoint.force_history, run_.state.position);
   apply_hand();
   if (run_.transitions.size() != scene_.obstacles.size()) run_.transitions.clear();
   const bool same_method = checkpoint.method == scene_.integrator.method;
@@ -367,14 +376,21 @@ void Simulation::append_hierarchy_boxes(int obstacle, int level, std::vector<Bou
   if (contact_) contact_->append_boxes(obstacle, level, run_.state.position, boxes);
 }
 
+Energy Simulation::energy_of(const ClothState& state) const {
+  Energy energy = measure_energy(system_, gravity_of(scene_), state);
+  const double stored = forces_->stored_energy(state.position);
+  energy.bending += stored, energy.elastic += stored;
+  return energy;
+}
+
 double Simulation::total_energy() const {
-  return measure_energy(system_, gravity_of(scene_), run_.state).total();
+  return energy_of(run_.state).total();
 }
 
 Measurement Simulation::measure() const {
   return {.time = run_.state.time,
           .step = run_.state.step,
-          .energy = measure_energy(system_, gravity_of(scene_), run_.state),
+          .energy = energy_of(run_.state),
           .ledger = run_.ledger,
           .strain = measure_strain(system_, run_.state.position),
           .limiter_sweeps = run_.last_limit.sweeps,

@@ -48,7 +48,7 @@ struct Measurement {
 /// it.
 struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
-  bool structural = false, shear = false, bending = false;
+  bool structural = false, shear = false, bending = false, hysteresis = false;
   bool continuous_contact = false;
   bool operator==(const Quantities&) const = default;
 };
@@ -188,6 +188,8 @@ class Simulation {
   void restore_obstacles(const std::vector<Pose>& poses);
   bool has_continuous_contact() const { return contact_ && contact_->is_continuous(); }
   void take_back_step();
+  /// With what forces that depend on what has been store.
+  Energy energy_of(const ClothState& state) const;
   double total_energy() const;
   std::optional<Divergence> find_divergence(const IntegratorReport& report);
   Divergence stop_at(int particle, std::string cause) const;

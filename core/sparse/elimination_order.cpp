@@ -29,6 +29,9 @@ void for_each_coupling(const ClothSystem& system, Visit visit) {
   for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) {
     visit(static_cast<int>(i), static_cast<int>(j));
   });
+  for_each_slider_pair(system.sliders, [&](std::size_t i, std::size_t j, double) {
+    visit(static_cast<int>(i), static_cast<int>(j));
+  });
 }
 
 /// Particles with along(direction) in [begin, begin + reach).

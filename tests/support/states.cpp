@@ -38,14 +38,15 @@ ClothState waving_state(const ClothSystem& system, double strain, double speed) 
 
 Vec3 momentum(const ClothSystem& system, const ClothState& state) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < state.velocity.size(); ++i) sum += state.velocity[i];
-  return system.mass.front() * sum;
+  for (std::size_t i = 0; i < state.velocity.size(); ++i) sum += system.mass[i] * state.velocity[i];
+  return sum;
 }
 
 Vec3 angular_momentum(const ClothSystem& system, const ClothState& state) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < state.velocity.size(); ++i) sum += state.position[i].cross(state.velocity[i]);
-  return system.mass.front() * sum;
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    sum += system.mass[i] * state.position[i].cross(state.velocity[i]);
+  return sum;
 }
 
 double rms_distance(const Vec3Field& a, const Vec3Field& b) {

@@ -20,6 +20,8 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
   for (const BendingRun& run : system.bending) stiffest = std::max(stiffest, 2 * run.stiffness);
+  for (const BendingSlider& s : system.sliders)
+    stiffest = std::max(stiffest, 8 * s.stiffness * s.area * s.coefficient[0] * s.coefficient[0]);
   for (const MembraneTriangle& t : system.membrane)
     for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
   for (const double mass : system.mass) lightest = std::min(lightest, mass);

@@ -65,7 +65,8 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
 }
 
 bool CholeskyFactors::fits(const ClothSystem& system) const {
-  if (pinned_ != system.pinned || bending_ != system.bending || membrane_ != system.membrane || runs_.size() != system.springs.size())
+  if (pinned_ != system.pinned || bending_ != system.bending || membrane_ != system.membrane || sliders_ != system.sliders ||
+      runs_.size() != system.springs.size())
     return false;
   return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
                     [](const SpringRun& a, const SpringRun& b) {
@@ -78,6 +79,7 @@ void CholeskyFactors::analyse(const ClothSystem& system) {
   runs_ = system.springs;
   bending_ = system.bending;
   membrane_ = system.membrane;
+  sliders_ = system.sliders;
   rows_ = analyse_free_rows(system, factors_);
   diagonal_.resize(9 * rows_.particle.size());
   off_diagonal_.resize(9 * rows_.couplings);

@@ -41,6 +41,7 @@ class CholeskyFactors {
   SpringRuns runs_;                   ///< of the springs that were analysed
   BendingRuns bending_;
   Membrane membrane_;
+  BendingSliders sliders_;
   FreeRows rows_;
   BlockCholesky factors_{3};
   std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch

@@ -39,7 +39,7 @@ const ValidationProtocol* find_protocol(const std::string& name) {
 }
 
 double ValidationRow::order() const {
-  if (grids.size() < 2) return nan;
+  if (grids.size() < 2 || promise == Promise::exact) return nan;
   const bool has_curve = grids.back().distance > 0;
   const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
   const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());
@@ -49,6 +49,10 @@ double ValidationRow::order() const {
 bool ValidationRow::holds() const {
   if (!failure.empty()) return false;
   if (promise == Promise::none) return true;
+  if (promise == Promise::exact)
+    return !grids.empty() && std::all_of(grids.begin(), grids.end(), [](const ValidationValue& value) {
+      return std::abs(value.error) <= most_rounding;
+    });
   const auto twenty = std::find_if(grids.begin(), grids.end(),
                                    [](const ValidationValue& value) { return value.cells == 20; });
   if (twenty == grids.end() || std::abs(twenty->error) > 0.01) return false;

@@ -27,8 +27,10 @@ struct ValidationValue {
   double distance = 0;
 };
 
-/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2.
-enum class Promise { none, error, second_order };
+/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2; or of no
+/// error but rounding's on any grid.
+enum class Promise { none, error, second_order, exact };
+inline constexpr double most_rounding = 1e-9;  ///< relative
 
 struct ValidationRow {
   std::string protocol{};        ///< "cantilever"
@@ -45,7 +47,7 @@ struct ValidationRow {
   std::string failure{};                 ///< where a value could not be found
 
   /// From the finest two grids' distances from the curve, and where there is no curve from their errors;
-  /// not a number where these change their sign.
+  /// not a number where these change their sign, or are rounding's alone.
   double order() const;
   /// Nothing failed, and what is promised is so.
   bool holds() const;

@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "study/validation/strip_bench.h"
 #include "study/validation/validation_report.h"
+#include "validate_scenes.h"
 
 namespace clothlab::cli {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 struct ValidateArguments {
   std::vector<std::string> only;
   std::string folder, strips, scored;
+  SceneChecks of_scenes;  ///< all but folder and json
   bool json = false;
 };
 
@@ -77,6 +79,11 @@ bool measure(const std::vector<std::string>& protocols, Rows& rows) {
 int validate(const ValidateArguments& arguments) {
   if (!arguments.strips.empty()) return write_strips(arguments.strips);
   if (!arguments.scored.empty()) return score(arguments);
+  if (!arguments.of_scenes.scenes.empty()) {
+    SceneChecks checks = arguments.of_scenes;
+    checks.folder = arguments.folder, checks.json = arguments.json;
+    return validate_scenes(checks);
+  }
   listen_for_stop();
   const auto protocols = arguments.only.empty() ? cloth::validation_protocols() : arguments.only;
   cloth::ResultFolder folder;
@@ -100,17 +107,48 @@ int validate(const ValidateArguments& arguments) {
   return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.holds(); }) ? done : differs;
 }
 
+/// --scene and what goes with it.
+CLI::Option* add_scene_checks(CLI::App& command, SceneChecks& checks) {
+  CLI::Option* scene = command.add_option(
+      "--scene", checks.scenes,
+      "Hold this scene, a file or a built-in one, against the measured points that its block measured names; "
+      "may be given more than once");
+  scene->allow_extra_args(false)->check(CLI::Validator(
+      [](const std::string& name) { return name.empty() ? std::string("must name a scene") : std::string(); },
+      ""));
+  add_settings(command, checks.settings)->needs(scene);
+  command
+      .add_option(
+          "--cells", checks.cells,
+          "Cells across of each grid of --scene, from coarse to fine, e.g. 10,20,40; without it half, all, "
+          "twice and four times those of the scene where its pins allow it")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(scene);
+  command
+      .add_option(
+          "--threads", checks.threads,
+          "Threads that a step of --scene may use; without it all cores. The results are the same to the bit")
+      ->check(CLI::Range(1, 1024))
+      ->needs(scene);
+  return scene;
+}
+
 }  // namespace
 
 void add_validate(Program& program) {
   auto [command, arguments] = add_command(
-      program, "validate", "Strips of a material against exact solutions, on four grids", validate);
+      program, "validate",
+      "Strips of a material against exact solutions, on four grids, or scenes against measured points",
+      validate);
   CLI::Option* only = add_names(command, "--only", arguments.only,
                                 fmt::format("Only these protocols, separated by commas: {}",
                                             fmt::join(cloth::validation_protocols(), ", ")),
                                 cloth::validation_protocols());
-  CLI::Option* out = add_path(command, "--out", arguments.folder,
-                              "Folder for validation.csv, validation.json and report.html; made if missing");
+  CLI::Option* out =
+      add_path(command, "--out", arguments.folder,
+               "Folder for validation.csv, validation.json and report.html, of --scene measured.csv and "
+               "measured.json; made if missing");
   CLI::Option* strips =
       add_path(command, "--strips", arguments.strips,
                "Measure nothing; write the strips for other simulators into this folder: what they are made "
@@ -120,6 +158,8 @@ void add_validate(Program& program) {
                                  "NAME.obj, are from the exact curves");
   for (CLI::Option* one : {strips, scored}) one->excludes(only)->excludes(out);
   strips->excludes(scored);
+  CLI::Option* scene = add_scene_checks(command, arguments.of_scenes);
+  for (CLI::Option* one : {only, strips, scored}) scene->excludes(one);
   add_json(command, arguments.json);
 }
 

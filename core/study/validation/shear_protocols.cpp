@@ -68,11 +68,13 @@ ValidationProtocol picture_frame() {
   ValidationProtocol protocol{"picture-frame", "gamma", {0.05, 0.1, 0.2, 0.4, 0.8}, {}, {}};
   protocol.expect = [](double) {
     return ValidationRow{
-        .quantity = "C66 in N/m from the pull at two opposite corners of a square frame of hinged bars, "
-                    "sheared by gamma in rad; linear springs along the diagonals of square cells",
+        .quantity =
+            "C66 in N/m from the pull at two opposite corners of a square frame of hinged bars, "
+            "sheared by gamma in rad; linear springs along the diagonals of square cells",
         .source = "Cao et al. 2008",
-        .method = "at rest from a bulged start, by Newton's method; cells of any size shear alike, so that "
-                  "rounding alone is left",
+        .method =
+            "at rest from a bulged start, by Newton's method; cells of any size shear alike, so that "
+            "rounding alone is left",
         .exact = shear,
         .promise = Promise::exact};
   };

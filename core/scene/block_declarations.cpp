@@ -23,6 +23,31 @@ Fields<Recording> recording_fields() {
   };
 }
 
+Fields<MeasuredPoints> measured_fields() {
+  using M = MeasuredPoints;
+  return {
+      field(&M::file,
+            {.key = "file",
+             .label = "File",
+             .doc = "CSV file of measured points, as seen from the scene's folder: columns of x, y, z in "
+                    "m, or value, or time in s and value."}),
+      field(&M::output,
+            {.key = "output",
+             .label = "Output",
+             .doc = "What was measured: top-row, middle-row, bottom-row, left-column, middle-column or "
+                    "right-column of particles, or a quantity as grid convergence has it."}),
+      field(&M::state, {.key = "state",
+                        .label = "State",
+                        .doc = "When it was measured: at rest, or in a run to the end of the duration.",
+                        .choices = {"rest", "end"}}),
+      field(&M::tolerance, positive({.key = "tolerance",
+                                     .label = "Tolerance",
+                                     .doc = "Largest relative error with which the scene agrees.",
+                                     .scale = Scale::logarithmic,
+                                     .slider_minimum = 1e-4})),
+  };
+}
+
 Field<Scene> title_field() {
   return field(&Scene::title, {.key = "title", .label = "Title", .doc = "What the scene shows."});
 }
@@ -249,6 +274,12 @@ std::vector<BlockRow> all_rows() {
        .title = "Self-contact",
        .doc = "The cloth does not pass through itself."},
       self_contact_fields(), [](Scene& s) { return &s.self_contact; }, starter_self_contact));
+  rows.push_back(object_row<MeasuredPoints>(
+      {.path = "measured",
+       .file_place = 14,
+       .title = "Measured points",
+       .doc = "What such a cloth did in a laboratory, for clothlab-cli validate; a run does not know of it."},
+      measured_fields(), [](Scene& s) { return &s.measured; }, always(MeasuredPoints{.file = "points.csv"})));
   rows.push_back(cloth_row());
   rows.push_back(run_row());
   rows.push_back(title_row());

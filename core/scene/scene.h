@@ -106,6 +106,16 @@ struct Recording {
   bool operator==(const Recording&) const = default;
 };
 
+/// Points that somebody measured on such a cloth: a run does not know of them, clothlab-cli validate --scene
+/// holds the scene against them (study/validation/measured_points.h).
+struct MeasuredPoints {
+  std::string file;                   ///< CSV, as seen from the scene's folder
+  std::string output = "middle-row";  ///< a line of particles, or a quantity as grid convergence has it
+  std::string state = "rest";         ///< in which it was measured: "rest", or "end" of the duration
+  double tolerance = 0.02;            ///< relative
+  bool operator==(const MeasuredPoints&) const = default;
+};
+
 struct Scene {
   std::string title;
   ClothSheet cloth;
@@ -121,6 +131,7 @@ struct Scene {
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;
+  std::optional<MeasuredPoints> measured;
   SceneFolder folder;  ///< for relative paths of mesh files; not written to the file
   bool operator==(const Scene&) const = default;
 };

@@ -192,12 +192,17 @@ Scene moved_to_folder(const Scene& scene, const std::string& folder) {
     return fs::weakly_canonical(fs::current_path(error) / path, error);
   };
   const fs::path from(scene.folder.path), to = whole(folder);
+  const auto seen_from_there = [&](const std::string& name) {
+    const fs::path file = from / name;
+    const fs::path seen = (whole(file.parent_path()) / file.filename()).lexically_relative(to);
+    return (seen.empty() ? file : seen).generic_string();
+  };
+  if (moved.measured && !moved.measured->file.empty() && !fs::path(moved.measured->file).is_absolute())
+    moved.measured->file = seen_from_there(moved.measured->file);
   for_each_mesh(moved, [&](const std::string&, MeshChoice& mesh) {
     if (!mesh.is_loaded() || mesh.loaded->built_in || fs::path(mesh.file).is_absolute()) return;
-    const fs::path file = from / mesh.file;
-    const fs::path seen = (whole(file.parent_path()) / file.filename()).lexically_relative(to);
     auto renamed = std::make_shared<LoadedMesh>(*mesh.loaded);
-    mesh.file = renamed->file = (seen.empty() ? file : seen).generic_string();
+    mesh.file = renamed->file = seen_from_there(mesh.file);
     mesh.loaded = std::move(renamed);
   });
   return moved;

@@ -25,7 +25,7 @@ Field<Owner> field(MeshChoice Owner::*member, ParameterInfo info) {
           }};
 }
 
-/// The folder of the files that a scene names. It is not a value of the scene: scenes from different folders
+/// The folder of the files that a scene names, measured points too. It is not a value of the scene: scenes from different folders
 /// can be equal.
 struct SceneFolder {
   std::string path;       ///< "": the current folder

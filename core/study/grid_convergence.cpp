@@ -7,27 +7,13 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/start_check.h"
 #include "scene/scene_checks.h"
-#include "simulation/memory_estimate.h"
 #include "simulation/recorder.h"
-#include "simulation/time_step.h"
 #include "study/grid_output.h"
 #include "study/refined_scene.h"
 
 namespace cloth {
 namespace {
-
-/// Why a scene cannot be run on its grid; empty: it can.
-std::string refusal_of(const Scene& scene) {
-  std::vector<Problem> problems = find_problems(scene);
-  if (problems.empty()) problems = find_start_problems(scene);
-  if (!problems.empty()) return problems.front().text();
-  const auto time_step = resolved_time_step(scene);
-  if (!time_step) return no_stable_step_text(scene);
-  if (const auto rule = too_many_steps(scene.duration, *time_step)) return *rule;
-  return memory_problem(scene).value_or("");
-}
 
 /// Of a run with so many cells, in any unit: particles times steps, which "auto" shortens with the cells.
 double cost_of_run(const Scene& scene, int cells) {
@@ -70,7 +56,7 @@ std::optional<GridRun> run_grid(const GridConvergence& study, int cells,
                                 const GridConvergenceOptions& options) {
   GridRun run = run_to_make(study, cells);
   const Scene scene = refined_scene(study.scene, cells);
-  run.detail = refusal_of(scene);
+  run.detail = refusal_to_run(scene);
   if (!run.detail.empty()) {
     run.status = GridRunStatus::refused;
     return run;

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "contact/start_check.h"
+#include "scene/scene_checks.h"
 #include "scene/scene_parameters.h"
+#include "simulation/memory_estimate.h"
+#include "simulation/time_step.h"
 
 namespace cloth {
 namespace {
@@ -193,6 +197,16 @@ Scene refined_scene(const Scene& scene, int cells) {
       for (int column = scaled(region.first_column); column <= scaled(region.last_column); ++column)
         refined.cloth.pins.emplace_back(PinnedParticle{row, column});
   return refined;
+}
+
+std::string refusal_to_run(const Scene& scene) {
+  std::vector<Problem> problems = find_problems(scene);
+  if (problems.empty()) problems = find_start_problems(scene);
+  if (!problems.empty()) return problems.front().text();
+  const auto time_step = resolved_time_step(scene);
+  if (!time_step) return no_stable_step_text(scene);
+  if (const auto rule = too_many_steps(scene.duration, *time_step)) return *rule;
+  return memory_problem(scene).value_or("");
 }
 
 }  // namespace cloth

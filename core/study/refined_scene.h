@@ -30,4 +30,7 @@ std::optional<std::string> broken_cells_rule(const Scene& scene, const std::vect
 /// of cells it is the scene itself. Precondition: the cells keep the rule.
 Scene refined_scene(const Scene& scene, int cells);
 
+/// Why a scene cannot be run on its grid; empty: it can.
+std::string refusal_to_run(const Scene& scene);
+
 }  // namespace cloth

@@ -23,6 +23,7 @@ Scene full_scene() {
   scene.air.emplace().gust.emplace();
   scene.deformation.emplace();
   scene.contact.emplace();
+  scene.measured.emplace().file = "points.csv";
   // So far apart that no value below lets the cloth start in an obstacle.
   scene.cloth.origin = {-0.5, 20, 30};
   for (const ObstacleShape* one : obstacle_shapes()) {
@@ -151,7 +152,7 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     EXPECT_EQ(with, scene) << offer.path;
   }
   EXPECT_EQ(offered, std::set<std::string>({"springs", "material", "deformation", "damping", "gravity", "air",
-                                            "self_contact", "sphere", "box", "plane", "mesh"}));
+                                            "self_contact", "measured", "sphere", "box", "plane", "mesh"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
     EXPECT_TRUE(offer.path == "self_contact" || offer.is_obstacle) << offer.path;
 }

@@ -13,7 +13,7 @@ namespace {
 
 class Validation : public testing::TestWithParam<std::string> {};
 
-TEST_P(Validation, IsWithinOnePerCentAtTwentyCellsAndOfSecondOrderWhereThatIsPromised) {
+TEST_P(Validation, IsWithinOnePerCentAtTwentyCellsAndOfSecondOrderOrExactWhereThatIsPromised) {
   ASSERT_FALSE(validation_rows({GetParam()}).empty());
   ASSERT_TRUE(validate(validation_rows({GetParam()}), [&](const ValidationRow& row) {
     EXPECT_TRUE(row.failure.empty()) << name_of(row) << ": " << row.failure;
@@ -22,6 +22,9 @@ TEST_P(Validation, IsWithinOnePerCentAtTwentyCellsAndOfSecondOrderWhereThatIsPro
       for (std::size_t k = 1; k < row.grids.size(); ++k)
         EXPECT_LT(std::abs(row.grids[k].error), std::abs(row.grids[k - 1].error) / 2) << name_of(row);
       return;
+    }
+    if (row.promise == Promise::exact) {
+      for (const ValidationValue& grid : row.grids) EXPECT_LT(std::abs(grid.error), 1e-9) << name_of(row);
     }
     EXPECT_LE(std::abs(row.grids[1].error), 0.01) << name_of(row);
     if (row.promise == Promise::second_order) {
@@ -54,6 +57,12 @@ TEST(ValidationRows, DoNotHoldWithALargeErrorAWrongOrderOrAFailure) {
   ValidationRow far = row;
   for (ValidationValue& grid : far.grids) grid.error = -5.0 / (grid.cells * grid.cells);
   EXPECT_FALSE(far.holds());
+  ValidationRow rounded = row;
+  rounded.promise = Promise::exact;
+  EXPECT_FALSE(rounded.holds()) << "an error that falls is one";
+  for (ValidationValue& grid : rounded.grids) grid.error = 1e-13 * grid.cells;
+  EXPECT_TRUE(rounded.holds());
+  EXPECT_TRUE(std::isnan(rounded.order())) << "rounding has none";
   row.failure = "no rest";
   EXPECT_FALSE(row.holds());
 }

@@ -35,8 +35,8 @@ class StudiesBench : public WindowBench {
     QCOMPARE(panel().choices().kind(), kind);
   }
   /// Leaves these checked, by clicks on the boxes.
-  void only(const QStringList& names) {
-    auto* list = part<QListWidget>("studyMethods");
+  void only(const QStringList& names, const char* of = "studyMethods") {
+    auto* list = part<QListWidget>(of);
     for (int row = 0; row < list->count(); ++row) {
       QListWidgetItem* item = list->item(row);
       const bool wanted = names.contains(item->data(Qt::UserRole).toString());

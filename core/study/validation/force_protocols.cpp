@@ -42,7 +42,7 @@ ValidationProtocol stick_slip() {
     const StripRest found = rest_of_strip(of, row.curve);
     const Vec3 push = force_of_end(strip_scene(of, row.curve), found.rest.position);
     return ValidationReading{
-        .value = std::abs(push.x() / push.y()), .distance = 0, .failure = found.rest.failure};
+        .value = std::abs(push.x() / push.y()), .failure = found.rest.failure, .points = found.points};
   };
   return protocol;
 }
@@ -123,7 +123,7 @@ std::vector<ValidationProtocol> force_protocols() {
 const std::vector<ValidationProtocol>& protocols() {
   static const std::vector<ValidationProtocol> all = [] {
     std::vector<ValidationProtocol> sum = shape_protocols();
-    for (auto more : {buckling_protocols, force_protocols})
+    for (auto more : {buckling_protocols, force_protocols, shear_protocols})
       for (ValidationProtocol& one : more()) sum.push_back(std::move(one));
     return sum;
   }();

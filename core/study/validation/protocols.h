@@ -33,9 +33,10 @@ const ValidationProtocol* find_protocol(const std::string& name);
 /// In the order of the table.
 const std::vector<ValidationProtocol>& protocols();
 
-/// Shapes of strips at rest; loads at which they buckle; what moves or pushes.
+/// Shapes of strips at rest; loads at which they buckle; what moves or pushes; what shears.
 std::vector<ValidationProtocol> shape_protocols();
 std::vector<ValidationProtocol> buckling_protocols();
 std::vector<ValidationProtocol> force_protocols();
+std::vector<ValidationProtocol> shear_protocols();
 
 }  // namespace cloth

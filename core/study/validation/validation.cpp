@@ -39,7 +39,7 @@ const ValidationProtocol* find_protocol(const std::string& name) {
 }
 
 double ValidationRow::order() const {
-  if (grids.size() < 2) return nan;
+  if (grids.size() < 2 || promise == Promise::exact) return nan;
   const bool has_curve = grids.back().distance > 0;
   const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
   const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());
@@ -49,6 +49,10 @@ double ValidationRow::order() const {
 bool ValidationRow::holds() const {
   if (!failure.empty()) return false;
   if (promise == Promise::none) return true;
+  if (promise == Promise::exact)
+    return !grids.empty() && std::all_of(grids.begin(), grids.end(), [](const ValidationValue& value) {
+      return std::abs(value.error) <= most_rounding;
+    });
   const auto twenty = std::find_if(grids.begin(), grids.end(),
                                    [](const ValidationValue& value) { return value.cells == 20; });
   if (twenty == grids.end() || std::abs(twenty->error) > 0.01) return false;
@@ -80,6 +84,50 @@ bool validate(std::vector<ValidationRow> rows, const std::function<void(Validati
     row(std::move(expected));
   }
   return true;
+}
+
+ValidationStudy plan_validation(const ValidationOptions& options) {
+  ValidationStudy study;
+  for (const std::string& name : options.protocols.empty() ? validation_protocols() : options.protocols)
+    if (std::find(study.protocols.begin(), study.protocols.end(), name) == study.protocols.end())
+      study.protocols.push_back(name);
+  study.expected = validation_rows(study.protocols);
+  return study;
+}
+
+ValidationStudy run_validation(const ValidationOptions& options) {
+  ValidationStudy study = plan_validation(options);
+  if (options.earlier) study.rows = options.earlier->rows;
+  bool goes_on = true;
+  const auto tell = [&] {
+    if (study.is_complete() || !options.progress) return;
+    const double done = static_cast<double>(study.rows.size()),
+                 all = static_cast<double>(study.expected.size());
+    goes_on = options.progress({done / all, name_of(study.expected[study.rows.size()])});
+  };
+  const std::vector<ValidationRow> left(
+      study.expected.begin() + static_cast<std::ptrdiff_t>(study.rows.size()), study.expected.end());
+  tell();
+  validate(
+      left,
+      [&](ValidationRow row) {
+        study.rows.push_back(std::move(row));
+        if (options.partial) options.partial(study);
+        tell();
+      },
+      [&] { return !goes_on || is_to_stop(options.stop); });
+  return study;
+}
+
+std::optional<Scene> scene_of(const ValidationRow& row) {
+  const ValidationProtocol* protocol = find_protocol(row.protocol);
+  if (!protocol || !protocol->strip || row.curve.points.empty() || row.curve.last != StripEnd::free)
+    return std::nullopt;
+  constexpr int shown_cells = 20;
+  Scene scene = strip_scene(protocol->strip(row.parameter, shown_cells), row.curve);
+  scene.title = name_of(row);
+  scene.integrator = {.method = "implicit-euler", .time_step = 0.005};
+  return scene;
 }
 
 std::string name_of(const ValidationRow& row) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,10 @@ struct ValidationValue {
   double distance = 0;
 };
 
-/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2.
-enum class Promise { none, error, second_order };
+/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2; or of no
+/// error but rounding's on any grid.
+enum class Promise { none, error, second_order, exact };
+inline constexpr double most_rounding = 1e-9;  ///< relative
 
 struct ValidationRow {
   std::string protocol{};        ///< "cantilever"
@@ -45,7 +48,7 @@ struct ValidationRow {
   std::string failure{};                 ///< where a value could not be found
 
   /// From the finest two grids' distances from the curve, and where there is no curve from their errors;
-  /// not a number where these change their sign.
+  /// not a number where these change their sign, or are rounding's alone.
   double order() const;
   /// Nothing failed, and what is promised is so.
   bool holds() const;
@@ -60,6 +63,31 @@ std::vector<ValidationRow> validation_rows(const std::vector<std::string>& proto
 /// Measures these rows; each `row` as it is done. False where it was stopped.
 bool validate(std::vector<ValidationRow> rows, const std::function<void(ValidationRow)>& row,
               const StopTest& stop = {});
+
+/// Protocols, and what was measured of their rows so far.
+struct ValidationStudy {
+  std::vector<std::string> protocols;
+  std::vector<ValidationRow> expected;  ///< all rows, not measured
+  std::vector<ValidationRow> rows;      ///< as far as they were measured
+  bool is_complete() const { return rows.size() == expected.size(); }
+};
+
+struct ValidationOptions {
+  std::vector<std::string> protocols{};                   ///< empty: all
+  std::function<bool(const StudyProgress&)> progress{};   ///< false stops the study
+  std::function<void(const ValidationStudy&)> partial{};  ///< the study so far, after every row
+  StopTest stop{};                                        ///< asked between grids
+  /// The same study, stopped before its end: its rows are not measured again.
+  const ValidationStudy* earlier = nullptr;
+};
+
+/// The study without its rows' values, and with them. Precondition: all protocols are known.
+ValidationStudy plan_validation(const ValidationOptions& options);
+ValidationStudy run_validation(const ValidationOptions& options);
+
+/// The strip of 20 cells that a row is taken of, straight, with a method that takes long steps; nothing where
+/// it is another thing, or would have to start bent, between two clamps.
+std::optional<Scene> scene_of(const ValidationRow& row);
 
 /// "heart-loop-50": of its files.
 std::string name_of(const ValidationRow& row);

@@ -2,7 +2,7 @@
 // its curvature is that of the quadratic surface through the patch's corners, the others unfolded into the
 // triangle's plane. A quadratic surface is met exactly on every mesh, whatever its triangles' shapes, and the
 // second derivative of the energy is constant. On regular meshes it is the curvature of the basic shell
-// triangle (Onate and Zarate 2000); the isometric bending of hinges (Bergou et al. 2006) stores three times a
+// triangle (Oñate and Zárate 2000); the isometric bending of hinges (Bergou et al. 2006) stores three times a
 // cylinder's energy and depends on the mesh's directions where it is not equilateral.
 //
 // At a free edge a corner is missing: the surface is then that of least bending energy through those that

@@ -32,10 +32,10 @@ TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
                 {"ball",           "ball-interlock", "bunny",        "bunny-knit",      "cantilever-paper",
                  "corner",         "corner-wool",    "corners-free", "corners-shear",   "corners-structural",
                  "corners-target", "cube",           "cube-ribbon",  "curtain",         "curtain-wool",
-                 "disc",           "fast-ball",      "flag",         "flag-cotton",     "fold",
-                 "free-fall",      "pendulum",       "rectangle",    "rectangle-ponte", "slope",
-                 "slope-wool",     "spikes",         "spikes-swim",  "tablecloth",      "tablecloth-denim",
-                 "twist",          "wind",           "wind-denim"}));
+                 "disc",           "disc-interlock", "fast-ball",    "flag",            "flag-cotton",
+                 "fold",           "free-fall",      "pendulum",     "rectangle",       "rectangle-ponte",
+                 "slope",          "slope-wool",     "spikes",       "spikes-swim",     "tablecloth",
+                 "tablecloth-denim", "twist",        "wind",         "wind-denim"}));
 }
 
 TEST(BuiltinScenes, AllReadAndKeepEveryRule) {

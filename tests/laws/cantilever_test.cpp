@@ -7,6 +7,7 @@
 #include "scene/scene_cloth.h"
 #include "simulation/rest_shape.h"
 #include "study/richardson.h"
+#include "support/material_meshes.h"
 #include "support/scenes.h"
 
 namespace cloth::test::cantilever_test {
@@ -104,6 +105,55 @@ TEST(HeavyStrip, DroopsInProportionToASmallLoad) {
   const double less = droop_over_width(strip(bending_at_load(0.02), 20)),
                more = droop_over_width(strip(bending_at_load(0.2), 20));
   EXPECT_NEAR(std::log(more / less) / std::log(10), 1, 0.02);
+}
+
+/// The same strip of triangles, `across` cells wide; two columns of vertices are pinned.
+Scene strip_of_triangles(double bending, int cells, double disorder, Random& random) {
+  constexpr int across = 4;
+  const double a = length / cells;
+  Scene scene = material_mesh_sheet(cells + 2, across + 1, a * (cells + 1), a * across, disorder,
+                                    *strip(bending, cells).material, random);
+  scene.cloth.origin = Vec3(-a, 0, 0);
+  for (int row = 0; row <= across; ++row)
+    for (int column = 0; column < 2; ++column)
+      scene.cloth.pins.emplace_back(PinnedParticle{0, row * (cells + 2) + column});
+  scene.gravity = Vec3(0, 0, -g);
+  return scene;
+}
+
+double droop_over_width_of_triangles(const Scene& scene, int cells) {
+  const RestShape rest = find_rest(scene);
+  EXPECT_TRUE(rest.found) << rest.failure;
+  const Vec3 at = rest.position[static_cast<std::size_t>(2 * (cells + 2) + cells + 1)];
+  return -at.z() / at.x();
+}
+
+TEST(HeavyStripOfTriangles, ConvergesWithTheSquareOfTheCellsOnARegularMesh) {
+  Random random;
+  for (const double gamma : {1.0, 5.0, 20.0}) {
+    const double exact = exact::heavy_cantilever(gamma).droop_over_width;
+    double before = 0;
+    for (const int cells : {10, 20, 40}) {
+      const double error =
+          droop_over_width_of_triangles(strip_of_triangles(bending_at_load(gamma), cells, 0, random), cells) -
+          exact;
+      if (cells == 20) EXPECT_LE(std::abs(error), 0.01 * exact) << gamma;
+      if (before != 0) {
+        EXPECT_GE(std::log2(before / error), 1.8) << gamma << ", " << cells << " cells";
+        EXPECT_LE(std::log2(before / error), 2.2) << gamma << ", " << cells << " cells";
+      }
+      before = error;
+    }
+  }
+}
+
+TEST(HeavyStripOfTriangles, DroopsWithinTwoPerCentOnIrregularMeshes) {
+  Random random;
+  for (const double gamma : {1.0, 5.0, 20.0}) {
+    const double exact = exact::heavy_cantilever(gamma).droop_over_width;
+    const Scene scene = strip_of_triangles(bending_at_load(gamma), 20, 0.2, random);
+    EXPECT_NEAR(droop_over_width_of_triangles(scene, 20), exact, 0.02 * exact) << gamma;
+  }
 }
 
 }  // namespace

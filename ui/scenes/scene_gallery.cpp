@@ -51,6 +51,7 @@ std::vector<GalleryGroup> scene_gallery() {
         {"wind-denim", tr("Each gust lifts even 324 grams a square metre"), 0.6},
         {"curtain-wool", tr("Light wool between its rings"), 0.6},
         {"ball-interlock", tr("A T-shirt's knit gives way by a fifth of its length"), 0.6},
+        {"disc-interlock", tr("A material on a mesh: triangles of constant strain"), 0.6},
         {"cube-ribbon", tr("A stiff fabric stands off from the edges"), 0.6},
         {"rectangle-ponte", tr("Ponte knit, limp and heavy, slips past the box"), 0.42, "left"},
         {"bunny-knit", tr("Rib knit follows hollows and ears"), 0.6},

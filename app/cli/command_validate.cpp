@@ -2,12 +2,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "commands.h"
 #include "console.h"
 #include "io/result_folder.h"
-#include "progress.h"
+#include "studies.h"
 #include "study/validation/strip_bench.h"
 #include "study/validation/validation_report.h"
 #include "validate_scenes.h"
@@ -18,23 +17,14 @@ namespace {
 struct ValidateArguments {
   std::vector<std::string> only;
   std::string folder, strips, scored;
-  SceneChecks of_scenes;  ///< all but folder and json
+  SceneChecks of_scenes;   ///< all but folder and json
+  bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
 
-using Rows = std::vector<cloth::ValidationRow>;
-
-std::optional<cloth::IoError> write_folder(cloth::ResultFolder& folder, const Rows& rows,
-                                           const std::string& command, double wall) {
-  if (const auto error = folder.write("validation.csv", cloth::validation_csv(rows), true)) return error;
-  if (const auto error = folder.write("report.html", cloth::validation_page(rows, command, wall)))
-    return error;
-  return folder.finish("validation.json", cloth::validation_json(rows, folder.digests()));
-}
-
 /// The strips for other simulators.
 int write_strips(const std::string& place) {
-  const Rows tasks = cloth::strip_tasks();
+  const std::vector<cloth::ValidationRow> tasks = cloth::strip_tasks();
   std::vector<std::pair<std::string, std::string>> files{{"strips.csv", cloth::strips_csv(tasks)}};
   for (const cloth::ValidationRow& task : tasks) {
     files.emplace_back(name_of(task) + ".start.obj", cloth::starting_obj(task));
@@ -61,21 +51,6 @@ int score(const ValidateArguments& arguments) {
              : bad_input;
 }
 
-/// Every row as it is done; false where it was stopped.
-bool measure(const std::vector<std::string>& protocols, Rows& rows) {
-  Progress bar;
-  bar.show(0, "exact solutions");
-  Rows expected = cloth::validation_rows(protocols);
-  const std::size_t all = expected.size();
-  return cloth::validate(
-      std::move(expected),
-      [&](cloth::ValidationRow row) {
-        rows.push_back(std::move(row));
-        bar.show(static_cast<double>(rows.size()) / static_cast<double>(all), rows.back().protocol);
-      },
-      stop_is_requested);
-}
-
 int validate(const ValidateArguments& arguments) {
   if (!arguments.strips.empty()) return write_strips(arguments.strips);
   if (!arguments.scored.empty()) return score(arguments);
@@ -84,27 +59,20 @@ int validate(const ValidateArguments& arguments) {
     checks.folder = arguments.folder, checks.json = arguments.json;
     return validate_scenes(checks);
   }
-  listen_for_stop();
-  const auto protocols = arguments.only.empty() ? cloth::validation_protocols() : arguments.only;
-  cloth::ResultFolder folder;
-  if (!arguments.folder.empty()) {
-    const std::vector<std::string> files{"validation.csv", "report.html", "validation.json"};
-    if (const auto error = folder.claim(arguments.folder, {.kind = "validation", .files = files}))
-      return report(*error);
-  }
-  const auto start = std::chrono::steady_clock::now();
-  Rows rows;
-  const bool is_whole = measure(protocols, rows);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (folder.is_open()) {
-    std::string command = "clothlab-cli validate";
-    if (!arguments.only.empty()) command += fmt::format(" --only {}", fmt::join(arguments.only, ","));
-    if (const auto error = write_folder(folder, rows, command + " --out DIR", wall)) return report(*error);
-  }
-  const int printed = print(arguments.json ? cloth::validation_json(rows) : cloth::validation_text(rows));
+  cloth::ValidationOptions options{.protocols = arguments.only};
+  std::string command = "clothlab-cli validate";
+  if (!arguments.only.empty()) command += fmt::format(" --only {}", fmt::join(arguments.only, ","));
+  const auto made =
+      make_study(cloth::plan_validation(options), options,
+                 {arguments.folder, command + " --out DIR", "", arguments.overwrite}, cloth::run_validation);
+  if (const int* failed = std::get_if<int>(&made)) return *failed;
+  const cloth::ValidationStudy& study = std::get<0>(made).table;
+  const int printed = print(arguments.json ? cloth::study_json(study) : cloth::study_text(study));
   if (printed != done) return printed;
-  if (!is_whole) return interrupted;
-  return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.holds(); }) ? done : differs;
+  if (!study.is_complete()) return interrupted;
+  const bool holds =
+      std::all_of(study.rows.begin(), study.rows.end(), [](const auto& row) { return row.holds(); });
+  return holds ? done : differs;
 }
 
 /// --scene and what goes with it.
@@ -160,6 +128,7 @@ void add_validate(Program& program) {
   strips->excludes(scored);
   CLI::Option* scene = add_scene_checks(command, arguments.of_scenes);
   for (CLI::Option* one : {only, strips, scored}) scene->excludes(one);
+  add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }
 

@@ -1,5 +1,8 @@
 #include "study/study_folder.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 
 #include "io/csv.h"
@@ -13,6 +16,7 @@
 #include "study/stability_report.h"
 #include "study/study_index.h"
 #include "study/study_recorder.h"
+#include "study/validation/validation_report.h"
 #include "study/work_precision_report.h"
 
 namespace cloth {
@@ -56,6 +60,10 @@ json contents(const GridConvergence& study) {
       {"options", {{"cells", study.cells}, {"outputs", study.outputs}, {"time_s", study.scene.duration}}}};
 }
 
+json contents(const ValidationStudy& study) {
+  return {{"options", {{"protocols", study.protocols}}}};
+}
+
 /// What its numbers depend on beside scene and options.
 json maker() {
   return {{"version", version()},
@@ -69,18 +77,21 @@ const Scene* scene_of(const StudyTable& table) {
   if (const auto* study = std::get_if<WorkPrecision>(&table)) return &study->scene;
   if (const auto* map = std::get_if<StabilityMap>(&table)) return &map->scene;
   if (const auto* study = std::get_if<GridConvergence>(&table)) return &study->scene;
-  const auto& scene = std::get<ExtremesTable>(table).scene;
-  return scene ? &*scene : nullptr;
+  const auto* extremes = std::get_if<ExtremesTable>(&table);
+  return extremes && extremes->scene ? &*extremes->scene : nullptr;
 }
 
 const char* kind_of(const StudyTable& table) {
-  constexpr const char* names[] = {"work-precision", "stability", "extremes", "convergence"};
+  constexpr const char* names[] = {"work-precision", "stability", "extremes", "convergence", "validation"};
   return names[table.index()];
 }
 
 std::string title_of(const StudyTable& table) {
-  const Scene* scene = scene_of(table);
-  return scene ? scene->title : "The fixed list of cases";
+  if (const Scene* scene = scene_of(table)) return scene->title;
+  const auto* validation = std::get_if<ValidationStudy>(&table);
+  if (!validation) return "The fixed list of cases";
+  if (validation->protocols == validation_protocols()) return "All protocols";
+  return fmt::format("{}", fmt::join(validation->protocols, ", "));
 }
 
 bool is_complete(const StudyTable& table) {
@@ -88,7 +99,8 @@ bool is_complete(const StudyTable& table) {
 }
 
 const char* csv_name(const StudyTable& table) {
-  constexpr const char* names[] = {"work_precision.csv", "stability.csv", "extremes.csv", "convergence.csv"};
+  constexpr const char* names[] = {"work_precision.csv", "stability.csv", "extremes.csv", "convergence.csv",
+                                   "validation.csv"};
   return names[table.index()];
 }
 
@@ -126,6 +138,7 @@ std::vector<std::string> study_files(const StudyTable& table) {
   if (std::holds_alternative<WorkPrecision>(table))
     names.insert(names.end(), {samples_name, reference_states_name});
   if (std::holds_alternative<GridConvergence>(table)) names.emplace_back(grid_errors_name);
+  if (std::holds_alternative<ValidationStudy>(table)) names.emplace_back(validation_points_name);
   names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
   return names;
 }

@@ -15,13 +15,14 @@
 #include "study/extremes.h"
 #include "study/grid_convergence.h"
 #include "study/stability_map.h"
+#include "study/validation/validation.h"
 #include "study/work_precision.h"
 
 namespace cloth {
 
 inline constexpr const char* study_format = "clothlab/study/1";
 
-using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable, GridConvergence>;
+using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable, GridConvergence, ValidationStudy>;
 
 struct Study {
   StudyTable table;
@@ -29,13 +30,13 @@ struct Study {
   double wall = 0;      ///< s
 };
 
-/// "work-precision", "stability", "extremes", "convergence": the command's name.
+/// "work-precision", "stability", "extremes", "convergence", "validation".
 const char* kind_of(const StudyTable& table);
 
-/// The scene that is studied; null for the fixed list of cases.
+/// The scene that is studied; null for the fixed list of cases and for exact solutions.
 const Scene* scene_of(const StudyTable& table);
 
-/// The scene's title, or what the fixed list is.
+/// The scene's title, or what else is studied.
 std::string title_of(const StudyTable& table);
 
 /// Whether it came to its end.

@@ -16,6 +16,7 @@
 #include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
+#include "study/validation/validation_report.h"
 #include "study/work_precision_report.h"
 
 namespace cloth {
@@ -187,6 +188,54 @@ GridConvergence read_convergence(const std::filesystem::path& folder, const Json
   return study;
 }
 
+bool is_of(const Rows& rows, std::size_t row, const ValidationRow& expected) {
+  if (row >= rows.size() || rows.text(row, "protocol") != expected.protocol) return false;
+  const double parameter = rows.number(row, "parameter", 0.0);
+  return expected.parameter_name.empty() || parameter == expected.parameter;
+}
+
+/// The lines of one row, from `row` on; false where they are not all there.
+bool read_validation_row(const Rows& rows, std::size_t& row, ValidationRow& into) {
+  for (; is_of(rows, row, into) && into.grids.size() < validation_cells.size() && into.failure.empty();
+       ++row) {
+    into.failure = rows.text(row, "failure");
+    if (rows.text(row, "cells").empty()) continue;
+    const int cells = validation_cells[into.grids.size()];
+    if (rows.whole(row, "cells", 0, 1e6) != cells)
+      throw rows.bad(row, "cells", rows.text(row, "cells"), fmt::format("must be {}", cells));
+    into.grids.push_back({cells, rows.number(row, "value"), rows.number(row, "relative_error"),
+                          rows.number(row, "rms_distance", 0.0)});
+  }
+  return into.grids.size() == validation_cells.size() || !into.failure.empty();
+}
+
+ValidationStudy read_validation(const std::filesystem::path& folder, const JsonEntry& root) {
+  ValidationOptions options;
+  const std::vector<std::string> known = validation_protocols();
+  for (const JsonEntry& protocol : root.at("options").at("protocols").entries()) {
+    if (std::find(known.begin(), known.end(), protocol.text()) == known.end())
+      throw protocol.bad("is not a protocol");
+    options.protocols.push_back(protocol.text());
+  }
+  if (options.protocols.empty()) throw root.at("options").at("protocols").bad("must not be empty");
+  ValidationStudy study = plan_validation(options);
+  const Rows rows(folder, csv_name(study), root), points(folder, validation_points_name, root);
+  std::size_t row = 0, point = 0;
+  for (ValidationRow read : study.expected) {
+    const std::size_t first = row;
+    if (!read_validation_row(rows, row, read)) {
+      row = first;
+      break;
+    }
+    for (; is_of(points, point, read); ++point)
+      read.shown.emplace_back(points.number(point, "x"), points.number(point, "y"));
+    study.rows.push_back(std::move(read));
+  }
+  if (row < rows.size() && root.at("complete").flag())
+    throw rows.bad(row, "protocol", rows.text(row, "protocol"), "is not the row that study.json has here");
+  return study;
+}
+
 /// The tables that are not those that study.json describes, a clause each. One that is not there at all is
 /// said by who reads it.
 std::string find_disagreements(const std::filesystem::path& folder, const JsonEntry& root) {
@@ -208,7 +257,8 @@ StudyTable read_table(const std::filesystem::path& folder, const JsonEntry& root
   if (kind == "stability") return read_stability(folder, root);
   if (kind == "extremes") return read_extremes(folder, root);
   if (kind == "convergence") return read_convergence(folder, root);
-  throw root.at("kind").bad("must be work-precision, stability, extremes or convergence");
+  if (kind == "validation") return read_validation(folder, root);
+  throw root.at("kind").bad("must be work-precision, stability, extremes, convergence or validation");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
+#include "study/validation/validation_report.h"
 #include "study/work_precision_report.h"
 
 namespace cloth {
@@ -151,6 +152,11 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   } else if (const auto* grids = std::get_if<GridConvergence>(&table)) {
     kept = table_of(*grids);
     rows_kept_ = {grids->runs.size()};
+  } else if (const auto* validation = std::get_if<ValidationStudy>(&table)) {
+    rows_kept_ = {validation->rows.size()};
+    if (auto error = begin_table(folder_, validation_points_name, points_table(*validation), samples_))
+      return error;
+    kept = table_of(*validation);
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
     kept = table_of(extremes);
@@ -218,6 +224,17 @@ std::optional<IoError> StudyRecorder::keep(const GridConvergence& so_far) {
   return rows_.flush();
 }
 
+std::optional<IoError> StudyRecorder::keep(const ValidationStudy& so_far) {
+  for (std::size_t& k = rows_kept_.front(); k < so_far.rows.size(); ++k) {
+    for (const auto& line : point_lines(so_far.rows[k]))
+      if (auto error = samples_.add(line)) return error;
+    for (const auto& line : lines_of(so_far.rows[k]))
+      if (auto error = rows_.add(line)) return error;
+  }
+  if (auto error = samples_.flush()) return error;  // first: a row that is there has its points
+  return rows_.flush();
+}
+
 std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) {
   if (earlier_) wall += earlier_->wall;
   if (auto error = rows_.close()) return error;
@@ -233,6 +250,9 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
       folder_.note(*states_);  // an earlier part of the study may have written it
     }
   }
+  if (const auto* validation = std::get_if<ValidationStudy>(&table))
+    if (auto error = folder_.write(validation_points_name, csv_text(points_table(*validation), "\n"), true))
+      return error;
   const std::string svg = std::visit([](const auto& of) { return to_svg(study_plot(of)); }, table);
   const std::string page = std::visit([&](const auto& of) { return study_page(of, command_, wall); }, table);
   const std::string svg_name = std::filesystem::path(csv_name(table)).replace_extension("svg").string();

@@ -40,6 +40,7 @@ class StudyRecorder {
   std::optional<IoError> keep(const StabilityMap& so_far);
   std::optional<IoError> keep(const ExtremesTable& so_far);
   std::optional<IoError> keep(const GridConvergence& so_far);
+  std::optional<IoError> keep(const ValidationStudy& so_far);
 
   /// Tables, picture and page, and study.json after them. `wall`: s of this part of the study.
   std::optional<IoError> end(const StudyTable& table, double wall);
@@ -61,7 +62,7 @@ class StudyRecorder {
   std::string command_;
   std::optional<Study> earlier_;
   CsvFile rows_, samples_;
-  std::vector<std::size_t> rows_kept_;                  ///< of each method; extremes, convergence: of all
+  std::vector<std::size_t> rows_kept_;                  ///< of each method; the others: of all
   std::vector<std::vector<std::size_t>> samples_kept_;  ///< of each run of each method
   std::size_t limits_kept_ = 0;
   std::optional<FileDigest> states_;  ///< of the reference, once they are in their file

@@ -73,6 +73,21 @@ std::optional<StudyRun> run_at(const GridConvergence& study, std::size_t number)
                   .note = {}};
 }
 
+/// A row: its strip with 20 cells.
+std::optional<StudyRun> run_at(const ValidationStudy& study, std::size_t number) {
+  if (number >= study.rows.size()) return std::nullopt;
+  const ValidationRow& row = study.rows[number];
+  const auto scene = scene_of(row);
+  if (!scene) return std::nullopt;
+  return StudyRun{
+      .name = name_of(row),
+      .status = row.holds() ? "holds" : "does not hold",
+      .scene = *scene,
+      .note =
+          "In the study the rest of this strip was found from the exact curve on, without any step; here "
+          "it starts straight and swings, by implicit Euler, until that has come to rest."};
+}
+
 }  // namespace
 
 std::optional<StudyRun> run_of(const StudyTable& table, int number) {
@@ -94,6 +109,8 @@ int finished_runs(const StudyTable& table) {
       for (const StabilityCell& cell : method.cells) count += cell.status != CellStatus::not_run ? 1 : 0;
   else if (const auto* grids = std::get_if<GridConvergence>(&table))
     count = grids->runs.size();
+  else if (const auto* validation = std::get_if<ValidationStudy>(&table))
+    count = validation->rows.size();
   else
     count = std::get<ExtremesTable>(table).cells.size();
   return static_cast<int>(count);

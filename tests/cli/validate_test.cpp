@@ -40,6 +40,12 @@ TEST(Validate, LeavesATableAPageAndAnIndexAndReplacesItsOwnAlone) {
   }
   const CsvTable table = parse_csv(content_of(folder / "v/validation.csv"));
   EXPECT_EQ(table.rows.size(), 20u);
+  const CommandResult read = cli("study" + in(folder, "v"));
+  EXPECT_EQ(read.exit_code, 0) << read.errors;
+  for (const char* part : {"validation: self-buckling, pear-loop", "--only self-buckling,pear-loop", "holds"})
+    EXPECT_TRUE(has(read.output, part)) << read.output;
+  EXPECT_EQ(parse_csv(content_of(folder / "v/validation_points.csv")).rows.size(), 4 * 21u);
+  EXPECT_TRUE(has(content_of(folder / "v/validation.svg"), "self-buckling"));
   const std::string page = content_of(folder / "v/report.html");
   for (const char* part : {"<svg", "Greenhill 1881", "pear-loop", "validate --only self-buckling,pear-loop"})
     EXPECT_TRUE(has(page, part)) << part;

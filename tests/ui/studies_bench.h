@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QSpinBox>
 
@@ -35,8 +36,8 @@ class StudiesBench : public WindowBench {
     QCOMPARE(panel().choices().kind(), kind);
   }
   /// Leaves these checked, by clicks on the boxes.
-  void only(const QStringList& names) {
-    auto* list = part<QListWidget>("studyMethods");
+  void only(const QStringList& names, const char* of = "studyMethods") {
+    auto* list = part<QListWidget>(of);
     for (int row = 0; row < list->count(); ++row) {
       QListWidgetItem* item = list->item(row);
       const bool wanted = names.contains(item->data(Qt::UserRole).toString());
@@ -54,7 +55,8 @@ class StudiesBench : public WindowBench {
     QTest::keyClicks(line, text);
   }
   void wait_for_end() {
-    QTRY_VERIFY_WITH_TIMEOUT(!panel().isRunning() && part<QPushButton>("startStudy")->isEnabled(), 120000);
+    QTRY_VERIFY_WITH_TIMEOUT(!panel().isRunning() && !part<QProgressBar>("studyProgress")->isVisible(),
+                             120000);
   }
 
   /// 3 x 2 cells of two methods.

@@ -43,6 +43,10 @@ cloth::ExtremesTable copy_of(const cloth::ExtremesTable& table) {
   return table;
 }
 
+cloth::ValidationStudy copy_of(const cloth::ValidationStudy& study) {
+  return study;
+}
+
 cloth::GridConvergence copy_of(const cloth::GridConvergence& study) {
   return study;
 }
@@ -56,6 +60,7 @@ void mark(cloth::StabilityMap& map) {
 }
 void mark(cloth::ExtremesTable&) {}
 void mark(cloth::GridConvergence&) {}
+void mark(cloth::ValidationStudy&) {}
 
 }  // namespace
 
@@ -212,6 +217,8 @@ void StudyRunner::carry_out(Job& job, const std::stop_token& stop) {
     study(
         *grids, [&](const auto& o) { return cloth::plan_grid_convergence(order.scene, o); },
         [&](const auto& o) { return cloth::run_grid_convergence(order.scene, o); });
+  } else if (const auto* validation = std::get_if<cloth::ValidationOptions>(&order.options)) {
+    study(*validation, cloth::plan_validation, cloth::run_validation);
   } else {
     study(std::get<cloth::ExtremesOptions>(order.options), cloth::empty_table, cloth::run_extremes);
   }

@@ -17,11 +17,12 @@
 
 namespace clothlab {
 
-using StudyOptions = std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions,
-                                  cloth::ExtremesOptions, cloth::GridConvergenceOptions>;
+using StudyOptions =
+    std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions, cloth::ExtremesOptions,
+                 cloth::GridConvergenceOptions, cloth::ValidationOptions>;
 
 struct StudyOrder {
-  cloth::Scene scene;  ///< extremes: not used, see ExtremesOptions::scene
+  cloth::Scene scene;  ///< not used by extremes (ExtremesOptions::scene) and exact solutions
   StudyOptions options;
   std::filesystem::path folder;  ///< each finished run is written there at once; an unfinished study of the
                                  ///< same inputs is continued

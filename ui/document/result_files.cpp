@@ -26,7 +26,8 @@ QString results_folder() {
 
 QString new_folder(const QString& parent, const QStringList& words) {
   QString name = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
-  for (const QString& word : words) name += "-" + plain(word);
+  for (const QString& word : words)
+    if (!word.isEmpty()) name += "-" + plain(word);
   const QString base = QDir(parent).filePath(name);
   QString folder = base;
   for (int copy = 2; QFileInfo::exists(folder); ++copy) folder = base + "-" + QString::number(copy);

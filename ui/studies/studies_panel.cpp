@@ -25,6 +25,7 @@
 #include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
+#include "study/validation/validation_report.h"
 #include "study/work_precision_report.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
@@ -56,7 +57,10 @@ QStringList diagrams_of(const cloth::StudyTable& table) {
             QObject::tr("against force evaluations")};
   if (std::holds_alternative<cloth::GridConvergence>(table))
     return {QObject::tr("values"), QObject::tr("errors")};
-  return {};
+  QStringList names;
+  if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
+    for (const std::string& name : cloth::diagram_names(*validation)) names << QString::fromStdString(name);
+  return names;
 }
 
 /// `which` of diagrams_of the table.
@@ -70,12 +74,15 @@ Diagram diagram_of(const cloth::StudyTable& table, int which) {
   if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::study_plot(*map);
   if (const auto* grids = std::get_if<cloth::GridConvergence>(&table))
     return cloth::study_plot(*grids, static_cast<cloth::GridPlot>(which));
+  if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
+    return cloth::study_plot(*validation, static_cast<std::size_t>(which));
   return cloth::study_plot(std::get<cloth::ExtremesTable>(table));
 }
 
 QString kind_title(const cloth::StudyTable& table) {
   const QString titles[] = {QObject::tr("Work-precision"), QObject::tr("Stability map"),
-                            QObject::tr("Extreme cases"), QObject::tr("Grid convergence")};
+                            QObject::tr("Extreme cases"), QObject::tr("Grid convergence"),
+                            QObject::tr("Materials against exact solutions")};
   return titles[table.index()];
 }
 
@@ -293,6 +300,13 @@ QString StudiesPanel::summary() const {
       text += QString(". %1: %2")
                   .arg(QString::fromStdString(cloth::words_of_output(grids->outputs[k])),
                        QString::fromStdString(cloth::richardson_of(*grids, k).words).chopped(1));
+  if (const auto* validation = std::get_if<cloth::ValidationStudy>(table_.get())) {
+    QStringList failed;
+    for (const cloth::ValidationRow& row : validation->rows)
+      if (!row.holds()) failed << QString::fromStdString(cloth::name_of(row));
+    text += failed.isEmpty() ? tr(". All that is promised holds")
+                             : tr(". Not what is promised: %1").arg(failed.join(", "));
+  }
   return text;
 }
 
@@ -312,9 +326,9 @@ void StudiesPanel::compareWithForm() {
 /// The choice stays while the kind of study does.
 void StudiesPanel::offerDiagrams() {
   const QStringList diagrams = diagrams_of(*table_);
-  if (against_->count() == diagrams.size() &&
-      (diagrams.isEmpty() || against_->itemText(0) == diagrams.front()))
-    return;
+  QStringList offered;
+  for (int k = 0; k < against_->count(); ++k) offered << against_->itemText(k);
+  if (offered == diagrams) return;
   const QSignalBlocker quiet(against_);
   against_->clear();
   against_->addItems(diagrams);

@@ -18,6 +18,7 @@
 #include "study/refined_scene.h"
 #include "study/stability_map.h"
 #include "study/stability_report.h"
+#include "study/validation/validation.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 #include "widgets/numbers.h"
@@ -25,7 +26,7 @@
 namespace clothlab {
 namespace {
 
-constexpr int method_rows = 5, method_height = 22, method_width = 164;  // px
+constexpr int method_rows = 5, protocol_rows = 6, method_height = 22, method_width = 164;  // px
 const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
@@ -46,6 +47,10 @@ QString purpose_of(StudyChoices::Kind kind) {
       return QObject::tr(
           "Is a value one of the cloth or of its grid? The scene on finer and finer grids, with "
           "the order, the limit and the error of what is read off.");
+    case StudyChoices::Kind::validation:
+      return QObject::tr(
+          "Is a material the cloth that its numbers say? Strips of a material on four grids against exact "
+          "curves, loads and forces of laboratory tests.");
   }
   return {};
 }
@@ -103,28 +108,53 @@ bool has_inputs(const cloth::ExtremesTable& table, const cloth::Scene&,
   return table.scene == options.scene && table.methods == options.methods;
 }
 
+bool has_inputs(const cloth::ValidationStudy& study, const cloth::Scene&,
+                const cloth::ValidationOptions& options) {
+  return study.protocols == options.protocols;
+}
+
+/// Boxes to check, all of them checked, in columns.
+QListWidget* boxes(const char* name, const QString& accessible, int rows, QWidget* parent) {
+  auto* list = named(name, new QListWidget(parent));
+  list->setWrapping(true);
+  list->setFlow(QListView::TopToBottom);
+  list->setResizeMode(QListView::Adjust);
+  list->setGridSize({method_width, method_height});
+  list->setFixedHeight(rows * method_height + spacing);
+  list->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  list->setAccessibleName(accessible);
+  return list;
+}
+
+void add_box(QListWidget* list, const std::string& title, const std::string& name) {
+  auto* item = new QListWidgetItem(QString::fromStdString(title), list);
+  item->setData(Qt::UserRole, QString::fromStdString(name));
+  item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
+  item->setCheckState(Qt::Checked);
+}
+
+std::vector<std::string> checked(const QListWidget& list) {
+  std::vector<std::string> names;
+  for (int row = 0; row < list.count(); ++row)
+    if (list.item(row)->checkState() == Qt::Checked)
+      names.push_back(list.item(row)->data(Qt::UserRole).toString().toStdString());
+  return names;
+}
+
 }  // namespace
 
 StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
-  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases"), tr("Grid convergence")});
+  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases"), tr("Grid convergence"),
+                   tr("Materials against exact solutions")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
-  methods_ = named("studyMethods", new QListWidget(this));
-  methods_->setWrapping(true);
-  methods_->setFlow(QListView::TopToBottom);
-  methods_->setResizeMode(QListView::Adjust);
-  methods_->setGridSize({method_width, method_height});
-  methods_->setFixedHeight(method_rows * method_height + spacing);
-  methods_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  methods_->setAccessibleName(tr("Methods"));
-  for (const cloth::MethodFacts& facts : cloth::integrator_facts()) {
-    auto* item = new QListWidgetItem(QString::fromStdString(facts.title), methods_);
-    item->setData(Qt::UserRole, QString::fromStdString(facts.name));
-    item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable | Qt::ItemIsSelectable);
-    item->setCheckState(Qt::Checked);
-  }
+  methods_ = boxes("studyMethods", tr("Methods"), method_rows, this);
+  for (const cloth::MethodFacts& facts : cloth::integrator_facts())
+    add_box(methods_, facts.title, facts.name);
+  protocols_ = boxes("studyProtocols", tr("Protocols"), protocol_rows, this);
+  for (const std::string& name : cloth::validation_protocols()) add_box(protocols_, name, name);
   makeFields();
   makeRows();
   connectRows();
@@ -164,6 +194,7 @@ void StudyChoices::makeRows() {
   form_->addRow(kind_);
   form_->addRow(purpose_);
   form_->addRow(methods_);
+  form_->addRow(protocols_);
   form_->addRow(tr("Horizon (s)"), horizon_);
   form_->addRow(tr("Repeats"), repeats_);
   form_->addRow(tr("Across"), x_);
@@ -187,6 +218,7 @@ void StudyChoices::connectRows() {
     own_methods_[kind()] = methods();
     Q_EMIT changed();
   });
+  connect(protocols_, &QListWidget::itemChanged, this, &StudyChoices::changed);
   connect(horizon_, &QLineEdit::textChanged, this, &StudyChoices::changed);
   connect(repeats_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
@@ -205,6 +237,7 @@ StudyChoices::Kind StudyChoices::kind() const {
 void StudyChoices::follow() {
   const Kind now = kind();
   purpose_->setText(purpose_of(now));
+  keepPurposeWhole();
   for (QWidget* field : {static_cast<QWidget*>(horizon_), static_cast<QWidget*>(repeats_)})
     form_->setRowVisible(field, now == Kind::work_precision);
   for (QWidget* field :
@@ -214,13 +247,24 @@ void StudyChoices::follow() {
   for (QWidget* field :
        {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
     form_->setRowVisible(field, now == Kind::convergence);
-  form_->setRowVisible(methods_, now != Kind::convergence);  // the scene's own
+  form_->setRowVisible(methods_, now != Kind::convergence && now != Kind::validation);  // they have their own
+  form_->setRowVisible(protocols_, now == Kind::validation);
   const auto own = own_methods_.find(now);
   if (own != own_methods_.end())
     checkMethods(own->second);
   else
     checkMethods(now == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
   Q_EMIT changed();
+}
+
+/// A label's least height is that of a single line: rows below it would be squeezed before the form scrolls.
+void StudyChoices::keepPurposeWhole() {
+  purpose_->setMinimumHeight(purpose_->heightForWidth(width()));
+}
+
+void StudyChoices::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  keepPurposeWhole();
 }
 
 void StudyChoices::checkMethods(const std::vector<std::string>& names) {
@@ -251,11 +295,13 @@ void StudyChoices::keepAxes() {
 }
 
 std::vector<std::string> StudyChoices::methods() const {
-  std::vector<std::string> names;
-  for (int row = 0; row < methods_->count(); ++row)
-    if (methods_->item(row)->checkState() == Qt::Checked)
-      names.push_back(methods_->item(row)->data(Qt::UserRole).toString().toStdString());
-  return names;
+  return checked(*methods_);
+}
+
+std::variant<StudyOrder, QString> StudyChoices::validationInputs() const {
+  const cloth::ValidationOptions options{.protocols = checked(*protocols_)};
+  if (options.protocols.empty()) return tr("Choose at least one protocol.");
+  return StudyOrder{scene_, options, {}, made_by};
 }
 
 std::variant<StudyOrder, QString> StudyChoices::stabilityInputs() const {
@@ -312,6 +358,7 @@ std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
 
 std::variant<StudyOrder, QString> StudyChoices::inputs() const {
   if (kind() == Kind::convergence) return convergenceInputs();
+  if (kind() == Kind::validation) return validationInputs();
   if (methods().empty()) return tr("Choose at least one method.");
   if (kind() == Kind::stability) return stabilityInputs();
   if (kind() == Kind::work_precision) return precisionInputs();
@@ -325,8 +372,10 @@ std::variant<StudyOrder, QString> StudyChoices::order() const {
   if (auto* order = std::get_if<StudyOrder>(&result)) {
     const QString folder = path_from(folder_->text().trimmed());
     order->folder =
-        (folder.isEmpty() ? new_study_folder(kind_->currentText(), QString::fromStdString(scene_.title))
-                          : folder)
+        (folder.isEmpty()
+             ? new_study_folder(kind_->currentText(),
+                                kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title))
+             : folder)
             .toStdString();
   }
   return result;

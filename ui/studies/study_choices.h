@@ -24,7 +24,7 @@ class StudyChoices : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Kind { work_precision, stability, extremes, convergence };
+  enum class Kind { work_precision, stability, extremes, convergence, validation };
 
   explicit StudyChoices(QWidget* parent = nullptr);
 
@@ -43,7 +43,11 @@ class StudyChoices : public QWidget {
  Q_SIGNALS:
   void changed();  ///< an input of the study, the scene too
 
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+
  private:
+  void keepPurposeWhole();
   void makeFields();
   void makeRows();
   void connectRows();
@@ -55,11 +59,12 @@ class StudyChoices : public QWidget {
   std::variant<StudyOrder, QString> stabilityInputs() const;
   std::variant<StudyOrder, QString> precisionInputs() const;
   std::variant<StudyOrder, QString> convergenceInputs() const;
+  std::variant<StudyOrder, QString> validationInputs() const;
 
   cloth::Scene scene_;
   QComboBox* kind_;
   QLabel* purpose_;
-  QListWidget* methods_;
+  QListWidget *methods_, *protocols_;
   std::map<Kind, std::vector<std::string>> own_methods_;  ///< as the user checked them
   bool checking_ = false;                                 ///< the boxes change, but not by the user
   QFormLayout* form_;

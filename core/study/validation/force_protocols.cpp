@@ -42,7 +42,7 @@ ValidationProtocol stick_slip() {
     const StripRest found = rest_of_strip(of, row.curve);
     const Vec3 push = force_of_end(strip_scene(of, row.curve), found.rest.position);
     return ValidationReading{
-        .value = std::abs(push.x() / push.y()), .distance = 0, .failure = found.rest.failure};
+        .value = std::abs(push.x() / push.y()), .failure = found.rest.failure, .points = found.points};
   };
   return protocol;
 }

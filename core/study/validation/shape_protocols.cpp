@@ -17,7 +17,6 @@ Promise promise_of(double gamma) {
   return gamma <= promised_load ? Promise::second_order : Promise::none;
 }
 
-
 double droop_over_width(const PlanePoints& points) {
   const Eigen::Vector2d tip = points.back() - points.front();
   return -tip.y() / tip.x();

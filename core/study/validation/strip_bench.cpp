@@ -96,7 +96,8 @@ std::optional<PlanePoints> points_of_csv(const std::string& text, std::string& f
   return points;
 }
 
-std::optional<PlanePoints> points_of_obj(const std::string& text, const std::string& place, std::string& failure) {
+std::optional<PlanePoints> points_of_obj(const std::string& text, const std::string& place,
+                                         std::string& failure) {
   const ObjReading reading = parse_obj(text, place);
   if (!reading.mesh) {
     failure = reading.problem;

@@ -86,6 +86,50 @@ bool validate(std::vector<ValidationRow> rows, const std::function<void(Validati
   return true;
 }
 
+ValidationStudy plan_validation(const ValidationOptions& options) {
+  ValidationStudy study;
+  for (const std::string& name : options.protocols.empty() ? validation_protocols() : options.protocols)
+    if (std::find(study.protocols.begin(), study.protocols.end(), name) == study.protocols.end())
+      study.protocols.push_back(name);
+  study.expected = validation_rows(study.protocols);
+  return study;
+}
+
+ValidationStudy run_validation(const ValidationOptions& options) {
+  ValidationStudy study = plan_validation(options);
+  if (options.earlier) study.rows = options.earlier->rows;
+  bool goes_on = true;
+  const auto tell = [&] {
+    if (study.is_complete() || !options.progress) return;
+    const double done = static_cast<double>(study.rows.size()),
+                 all = static_cast<double>(study.expected.size());
+    goes_on = options.progress({done / all, name_of(study.expected[study.rows.size()])});
+  };
+  const std::vector<ValidationRow> left(
+      study.expected.begin() + static_cast<std::ptrdiff_t>(study.rows.size()), study.expected.end());
+  tell();
+  validate(
+      left,
+      [&](ValidationRow row) {
+        study.rows.push_back(std::move(row));
+        if (options.partial) options.partial(study);
+        tell();
+      },
+      [&] { return !goes_on || is_to_stop(options.stop); });
+  return study;
+}
+
+std::optional<Scene> scene_of(const ValidationRow& row) {
+  const ValidationProtocol* protocol = find_protocol(row.protocol);
+  if (!protocol || !protocol->strip || row.curve.points.empty() || row.curve.last != StripEnd::free)
+    return std::nullopt;
+  constexpr int shown_cells = 20;
+  Scene scene = strip_scene(protocol->strip(row.parameter, shown_cells), row.curve);
+  scene.title = name_of(row);
+  scene.integrator = {.method = "implicit-euler", .time_step = 0.005};
+  return scene;
+}
+
 std::string name_of(const ValidationRow& row) {
   return row.parameter_name.empty() ? row.protocol : fmt::format("{}-{:g}", row.protocol, row.parameter);
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,31 @@ std::vector<ValidationRow> validation_rows(const std::vector<std::string>& proto
 /// Measures these rows; each `row` as it is done. False where it was stopped.
 bool validate(std::vector<ValidationRow> rows, const std::function<void(ValidationRow)>& row,
               const StopTest& stop = {});
+
+/// Protocols, and what was measured of their rows so far.
+struct ValidationStudy {
+  std::vector<std::string> protocols;
+  std::vector<ValidationRow> expected;  ///< all rows, not measured
+  std::vector<ValidationRow> rows;      ///< as far as they were measured
+  bool is_complete() const { return rows.size() == expected.size(); }
+};
+
+struct ValidationOptions {
+  std::vector<std::string> protocols{};                   ///< empty: all
+  std::function<bool(const StudyProgress&)> progress{};   ///< false stops the study
+  std::function<void(const ValidationStudy&)> partial{};  ///< the study so far, after every row
+  StopTest stop{};                                        ///< asked between grids
+  /// The same study, stopped before its end: its rows are not measured again.
+  const ValidationStudy* earlier = nullptr;
+};
+
+/// The study without its rows' values, and with them. Precondition: all protocols are known.
+ValidationStudy plan_validation(const ValidationOptions& options);
+ValidationStudy run_validation(const ValidationOptions& options);
+
+/// The strip of 20 cells that a row is taken of, straight, with a method that takes long steps; nothing where
+/// it is another thing, or would have to start bent, between two clamps.
+std::optional<Scene> scene_of(const ValidationRow& row);
 
 /// "heart-loop-50": of its files.
 std::string name_of(const ValidationRow& row);

@@ -59,31 +59,15 @@ HtmlTable table_of(const std::string& protocol, const std::vector<ValidationRow>
     HtmlRow line{{parameter_of(row), fmt::format("{:.7g}", row.exact)}};
     for (std::size_t k = 0; k < validation_cells.size(); ++k)
       line.cells.emplace_back(k < row.grids.size() ? percent(row.grids[k].error) : "");
-    const bool has_curve = row.grids.size() > 1 && !row.curve.points.empty();
+    const bool has_distance = row.grids.size() > 1 && row.grids[1].distance > 0;
     line.cells.emplace_back(order_of(row));
-    line.cells.emplace_back(has_curve ? fmt::format("{:.2g} of the length", row.grids[1].distance) : "");
+    line.cells.emplace_back(has_distance ? fmt::format("{:.2g} of the length", row.grids[1].distance) : "");
     line.cells.push_back(
         {row.promise != Promise::none || !row.failure.empty() ? verdict_of(row) : "not promised",
          row.holds() ? row.promise != Promise::none ? Verdict::good : Verdict::none : Verdict::bad});
     table.rows.push_back(std::move(line));
   }
   return table;
-}
-
-/// A shape looks like itself: as many pixels to a length along both axes.
-void set_equal_scales(const std::vector<PlotPoint>& points, LinePlot& plot) {
-  Eigen::Array2d low(points.front().x, points.front().y), high = low;
-  for (const PlotPoint& point : points) {
-    low = low.min(Eigen::Array2d(point.x, point.y));
-    high = high.max(Eigen::Array2d(point.x, point.y));
-  }
-  plot.width = 830, plot.plot_height = 480;
-  constexpr double beside = 350, margin = 1.1;  // px of labels and legend; around the shape
-  const Eigen::Array2d frame(plot.width - beside, plot.plot_height);
-  const double pixel = margin * ((high - low) / frame).maxCoeff();
-  const Eigen::Array2d middle = (low + high) / 2, reach = pixel * frame / 2;
-  plot.x = {.label = "x over the length", .low = middle.x() - reach.x(), .high = middle.x() + reach.x()};
-  plot.y = {.label = "y over the length", .low = middle.y() - reach.y(), .high = middle.y() + reach.y()};
 }
 
 }  // namespace
@@ -107,28 +91,7 @@ std::string validation_text(const std::vector<ValidationRow>& rows) {
          "picture frame has no error but rounding's, and no order.\n";
 }
 
-std::string validation_csv(const std::vector<ValidationRow>& rows) {
-  CsvTable table{{"protocol", "parameter_name", "parameter", "quantity", "source", "method", "exact", "cells",
-                  "value", "relative_error", "rms_distance", "order", "failure"},
-                 {}};
-  for (const ValidationRow& row : rows) {
-    std::vector<ValidationValue> grids = row.grids;
-    if (grids.empty()) grids.emplace_back();
-    for (const ValidationValue& grid : grids) {
-      const bool is_last = &grid == &grids.back();
-      table.rows.push_back(
-          {row.protocol, row.parameter_name,
-           row.parameter_name.empty() ? std::string() : csv_number(row.parameter), row.quantity, row.source,
-           row.method, csv_number(row.exact), grid.cells > 0 ? std::to_string(grid.cells) : "",
-           grid.cells > 0 ? csv_number(grid.value) : "", grid.cells > 0 ? csv_number(grid.error) : "",
-           row.curve.points.empty() || grid.cells == 0 ? "" : csv_number(grid.distance),
-           is_last && std::isfinite(row.order()) ? csv_number(row.order()) : "", is_last ? row.failure : ""});
-    }
-  }
-  return csv_text(table, "\r\n");
-}
-
-std::string validation_json(const std::vector<ValidationRow>& rows, const std::vector<FileDigest>& files) {
+std::string validation_json(const std::vector<ValidationRow>& rows) {
   using Json = nlohmann::ordered_json;
   Json list = Json::array();
   for (const ValidationRow& row : rows) {
@@ -141,7 +104,7 @@ std::string validation_json(const std::vector<ValidationRow>& rows, const std::v
                   {"grids", Json::array()}});
     for (const ValidationValue& grid : row.grids) {
       Json one{{"cells", grid.cells}, {"value", grid.value}, {"relative_error", grid.error}};
-      if (!row.curve.points.empty()) one["rms_distance"] = grid.distance;
+      if (grid.distance > 0) one["rms_distance"] = grid.distance;
       entry["grids"].push_back(std::move(one));
     }
     entry["order"] = std::isfinite(row.order()) ? Json(row.order()) : Json(nullptr);
@@ -150,47 +113,7 @@ std::string validation_json(const std::vector<ValidationRow>& rows, const std::v
     if (!row.failure.empty()) entry["failure"] = row.failure;
     list.push_back(std::move(entry));
   }
-  Json root{{"program", "clothlab"}, {"kind", "validation"}, {"rows", std::move(list)}};
-  if (!files.empty()) root["files"] = digests_json(files);
-  return root.dump(2) + "\n";
-}
-
-std::string curve_csv(const StripCurve& curve) {
-  CsvTable table{{"arc", "x", "y"}, {}};
-  for (const exact::ElasticaPoint& point : curve.points)
-    table.rows.push_back({csv_number(point.arc), csv_number(point.x), csv_number(point.y)});
-  return csv_text(table, "\r\n");
-}
-
-LinePlot curve_plot(const ValidationRow& row) {
-  LinePlot plot{.title = row.protocol, .subtitle = parameter_of(row)};
-  PlotSeries exact{.name = "exact: " + row.source, .markers = false};
-  constexpr int segments = 200;
-  for (int k = 0; k <= segments; ++k) {
-    const Eigen::Vector2d point = point_at(row.curve, static_cast<double>(k) / segments);
-    exact.points.push_back({point.x(), point.y()});
-  }
-  PlotSeries found{.name = fmt::format("found with {} cells", row.shown.size() - 1), .line = false};
-  for (const Eigen::Vector2d& point : row.shown) found.points.push_back({point.x(), point.y()});
-  set_equal_scales(exact.points, plot);
-  plot.series = {std::move(exact), std::move(found)};
-  return plot;
-}
-
-LinePlot error_plot(const std::string& protocol, const std::vector<ValidationRow>& rows) {
-  LinePlot plot{.title = protocol, .subtitle = "relative error against the cells along the strip"};
-  plot.x = {.label = "cells", .scale = AxisScale::logarithmic};
-  plot.y = {.label = "relative error", .scale = AxisScale::logarithmic};
-  if (first_of(protocol, rows).promise != Promise::exact) plot.triangles = {{-2, "order 2"}};
-  for (const ValidationRow& row : rows) {
-    if (row.protocol != protocol || row.grids.empty()) continue;
-    PlotSeries series{.name = row.parameter_name.empty() ? protocol : parameter_of(row),
-                      .detail = order_of(row).empty() ? "" : "order " + order_of(row)};
-    for (const ValidationValue& grid : row.grids)
-      series.points.push_back({static_cast<double>(grid.cells), std::abs(grid.error)});
-    plot.series.push_back(std::move(series));
-  }
-  return plot;
+  return Json{{"program", "clothlab"}, {"kind", "validation"}, {"rows", std::move(list)}}.dump(2) + "\n";
 }
 
 std::string validation_page(const std::vector<ValidationRow>& rows, const std::string& command, double wall) {
@@ -206,10 +129,10 @@ std::string validation_page(const std::vector<ValidationRow>& rows, const std::s
     page.heading(protocol);
     page.paragraph(fmt::format("{}. {}. Taken {}.", first.quantity, first.source, first.method));
     page.table(table_of(protocol, rows));
-    page.figure(to_svg(error_plot(protocol, rows)),
-                first.promise == Promise::exact ? "Errors: what rounding leaves."
-                                                : "Errors: the slope is the order.",
-                command);
+    page.figure(
+        to_svg(error_plot(protocol, rows)),
+        first.promise == Promise::exact ? "Errors: what rounding leaves." : "Errors: the slope is the order.",
+        command);
     page.begin_details("Curves");
     for (const ValidationRow& row : rows)
       if (row.protocol == protocol && !row.shown.empty())
@@ -227,6 +150,18 @@ std::string validation_page(const std::vector<ValidationRow>& rows, const std::s
               {"Time taken", fmt::format("{:.3g} s", wall)}});
   page.machine_facts();
   return page.to_html();
+}
+
+std::string study_page(const ValidationStudy& study, const std::string& command, double wall) {
+  return validation_page(study.rows, command, wall);
+}
+
+std::string study_text(const ValidationStudy& study) {
+  return validation_text(study.rows);
+}
+
+std::string study_json(const ValidationStudy& study) {
+  return validation_json(study.rows);
 }
 
 }  // namespace cloth

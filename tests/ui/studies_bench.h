@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QSpinBox>
 
@@ -54,7 +55,8 @@ class StudiesBench : public WindowBench {
     QTest::keyClicks(line, text);
   }
   void wait_for_end() {
-    QTRY_VERIFY_WITH_TIMEOUT(!panel().isRunning() && part<QPushButton>("startStudy")->isEnabled(), 120000);
+    QTRY_VERIFY_WITH_TIMEOUT(!panel().isRunning() && !part<QProgressBar>("studyProgress")->isVisible(),
+                             120000);
   }
 
   /// 3 x 2 cells of two methods.

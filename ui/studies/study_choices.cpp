@@ -237,6 +237,7 @@ StudyChoices::Kind StudyChoices::kind() const {
 void StudyChoices::follow() {
   const Kind now = kind();
   purpose_->setText(purpose_of(now));
+  keepPurposeWhole();
   for (QWidget* field : {static_cast<QWidget*>(horizon_), static_cast<QWidget*>(repeats_)})
     form_->setRowVisible(field, now == Kind::work_precision);
   for (QWidget* field :
@@ -254,6 +255,16 @@ void StudyChoices::follow() {
   else
     checkMethods(now == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
   Q_EMIT changed();
+}
+
+/// A label's least height is that of a single line: rows below it would be squeezed before the form scrolls.
+void StudyChoices::keepPurposeWhole() {
+  purpose_->setMinimumHeight(purpose_->heightForWidth(width()));
+}
+
+void StudyChoices::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  keepPurposeWhole();
 }
 
 void StudyChoices::checkMethods(const std::vector<std::string>& names) {

@@ -43,7 +43,11 @@ class StudyChoices : public QWidget {
  Q_SIGNALS:
   void changed();  ///< an input of the study, the scene too
 
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+
  private:
+  void keepPurposeWhole();
   void makeFields();
   void makeRows();
   void connectRows();

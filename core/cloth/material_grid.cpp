@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cloth/bending_builder.h"
 #include "cloth/grid.h"
 
 namespace cloth {
@@ -45,42 +46,6 @@ void add_springs(const GridCell& cell, const CellSprings& k, ClothSystem& system
     if (direction.family == SpringFamily::shear && k.diagonal > 0)
       system.springs.blocks().push_back(direction_block(system, direction, diagonal, k.diagonal));
 }
-
-/// Collects elements one after the other into runs of elements that are alike.
-class BendingBuilder {
- public:
-  explicit BendingBuilder(ClothSystem& system) : system_(system) {}
-
-  /// An element whose first point is `first`, without its stiffness' factor at clamps.
-  void add(int first, const BendingRun& element, double stiffness) {
-    BendingRun run = element;
-    run.first = first, run.count = 1;
-    run.stiffness = stiffness * clamp_factor(run);
-    if (!(run.stiffness > 0)) return;
-    if (!system_.bending.empty()) {
-      BendingRun& last = system_.bending.back();
-      if (last.stiffness == run.stiffness && last.offset == run.offset && last.first + last.count == first) {
-        ++last.count;
-        return;
-      }
-    }
-    system_.bending.push_back(run);
-  }
-
- private:
-  bool pinned(const BendingRun& run, std::size_t point) const {
-    return system_.pinned[static_cast<std::size_t>(run.first + run.offset[point])] != 0;
-  }
-  double clamp_factor(const BendingRun& run) const {
-    int held = 0;
-    for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) held += pinned(run, p);
-    if (held == run.points) return 0;
-    if (run.points == 4) return held == 3 ? 2 : 1;
-    return held == 2 && pinned(run, 1) ? 2 : 1;
-  }
-
-  ClothSystem& system_;
-};
 
 void add_bending(const CellBending& k, ClothSystem& system) {
   const int rows = system.rows, columns = system.columns;

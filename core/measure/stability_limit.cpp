@@ -183,6 +183,11 @@ double frequency_at_edges(const Scene& scene) {
 
 double largest_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
+  if (scene.cloth.is_cut()) {
+    const ClothSystem system = make_cloth(scene);
+    const Spectrum spectrum = measure_spectrum(system, system.start);
+    return std::min(guaranteed_frequency(system), std::sqrt(spectrum.largest + spectrum.largest_residual));
+  }
   const MaterialWaves waves(scene);
   const double inside = scanned_stiffness([&](double qx, double qy) { return waves.at_rest(qx, qy); });
   if (!(inside > 0)) return 0;
@@ -192,6 +197,7 @@ double largest_frequency(const Scene& scene) {
 
 double guaranteed_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
+  if (scene.cloth.is_cut()) return guaranteed_frequency(make_cloth(scene));
   const MaterialWaves waves(scene);
   return std::sqrt((waves.most_of_springs() + waves.most_of_bending()) / particle_mass(scene));
 }
@@ -225,6 +231,8 @@ double strongest_held_spring(const Scene& scene, double omega) {
     return strongest_held_spring(scene.cloth, scene.springs.value_or(SpringMaterial{}), omega);
   const MaterialWaves waves(scene);
   const double most = particle_mass(scene) * omega * omega;
+  if (scene.cloth.is_cut())
+    return std::max(0.0, most - particle_mass(scene) * std::pow(guaranteed_frequency(scene), 2));
   if (!(most > waves.most_of_springs() + waves.most_of_bending())) return 0;
   return greens_stiffness(
       most, [&](double c, double d) { return waves.of_springs(c, d) + waves.of_bending(c, d); });

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cloth/cut_grid.h"
 #include "cloth/mesh_cloth.h"
 #include "contact/start_check.h"
 #include "integrators/registry.h"
@@ -54,7 +55,7 @@ std::string key_of(const Rows& rows, std::size_t row) {
 WorkPrecision read_work_precision(const std::filesystem::path& folder, const JsonEntry& root) {
   WorkPrecision study;
   study.scene = read_scene_of(root, folder);
-  study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
+  study.particles = particle_count(study.scene.cloth);
   study.diagonal = diagonal_of(study.scene.cloth);
   study.steps_per_method = WorkPrecisionOptions{}.steps_per_method;  // that old versions took
   const JsonEntry& options = root.at("options");

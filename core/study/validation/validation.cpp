@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "study/richardson.h"
 #include "study/validation/protocols.h"
 
 namespace cloth {
@@ -15,18 +17,21 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A row of a protocol on all grids; false where it was stopped.
 bool measure(const ValidationProtocol& protocol, ValidationRow& row, const StopTest& stop) {
-  for (const int cells : validation_cells) {
+  for (const int cells : protocol.cells) {
     if (!row.failure.empty()) return true;
     if (is_to_stop(stop)) return false;
+    const auto start = std::chrono::steady_clock::now();
     ValidationReading reading = protocol.measure(row, cells);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!reading.failure.empty()) {
       row.failure = fmt::format("{} cells: {}", cells, reading.failure);
       return true;
     }
-    row.grids.push_back({cells, reading.value, reading.value / row.exact - 1, reading.distance});
+    const double error = row.is_measured ? nan : reading.value / row.exact - 1;
+    row.grids.push_back({cells, reading.value, error, reading.distance, wall.count(), reading.drape});
     if (cells == 20) row.shown = std::move(reading.points);
   }
-  return true;
+  return !protocol.measure_seeds || protocol.measure_seeds(row, stop);
 }
 
 }  // namespace
@@ -39,11 +44,23 @@ const ValidationProtocol* find_protocol(const std::string& name) {
 }
 
 double ValidationRow::order() const {
+  if (is_measured) {
+    std::vector<GridValue> values;
+    for (const ValidationValue& grid : grids) values.push_back({1.0 / grid.cells, grid.value});
+    const Richardson found = richardson(values);
+    return found.verdict == GridVerdict::converging ? found.order : nan;
+  }
   if (grids.size() < 2) return nan;
   const bool has_curve = grids.back().distance > 0;
   const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
   const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());
   return coarse * fine > 0 ? std::log2(coarse / fine) : nan;
+}
+
+double ValidationRow::seconds() const {
+  double sum = 0;
+  for (const ValidationValue& grid : grids) sum += grid.seconds;
+  return sum;
 }
 
 bool ValidationRow::holds() const {
@@ -53,6 +70,12 @@ bool ValidationRow::holds() const {
                                    [](const ValidationValue& value) { return value.cells == 20; });
   if (twenty == grids.end() || std::abs(twenty->error) > 0.01) return false;
   return promise == Promise::error || (order() >= 1.8 && order() <= 2.2);
+}
+
+std::vector<std::string> exact_protocols() {
+  std::vector<std::string> names = validation_protocols();
+  for (const ValidationProtocol& of_fabrics : drape_protocols()) std::erase(names, of_fabrics.name);
+  return names;
 }
 
 std::vector<std::string> validation_protocols() {
@@ -83,6 +106,7 @@ bool validate(std::vector<ValidationRow> rows, const std::function<void(Validati
 }
 
 std::string name_of(const ValidationRow& row) {
+  if (!row.parameter_text.empty()) return row.protocol + "-" + row.parameter_text;
   return row.parameter_name.empty() ? row.protocol : fmt::format("{}-{:g}", row.protocol, row.parameter);
 }
 

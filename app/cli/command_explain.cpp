@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cloth/cut_grid.h"
 #include "cloth/mesh_cloth.h"
 #include "commands.h"
 #include "console.h"
@@ -87,14 +88,16 @@ std::string evaluations_text(const cloth::MethodFacts& facts) {
 }
 
 std::string shape_text(const cloth::ClothSheet& sheet) {
-  if (!sheet.is_mesh()) return fmt::format("{} rows x {} columns", sheet.rows, sheet.columns);
+  if (!sheet.is_mesh())
+    return fmt::format("{} rows x {} columns{}", sheet.rows, sheet.columns,
+                       sheet.is_cut() ? ", cut round" : "");
   return fmt::format("{}: {} triangles", sheet.mesh.file, sheet.mesh.loaded->surface.triangles.size());
 }
 
 std::string to_text(const Explanation& e) {
-  std::string text = fmt::format("{}\n{} particles ({}), {} pinned\n", e.scene.title,
-                                 e.scene.cloth.rows * e.scene.cloth.columns, shape_text(e.scene.cloth),
-                                 cloth::pinned_particles(e.scene.cloth).size());
+  std::string text =
+      fmt::format("{}\n{} particles ({}), {} pinned\n", e.scene.title, cloth::particle_count(e.scene.cloth),
+                  shape_text(e.scene.cloth), cloth::pinned_particles(e.scene.cloth).size());
   for (const std::string& notice : cloth::scene_notices(e.scene)) text += notice + '\n';
   text += "\nStages of a step\n";
   for (const cloth::StageInfo& stage : e.stages)
@@ -104,7 +107,10 @@ std::string to_text(const Explanation& e) {
       "\nLargest frequency       {:.6g} 1/s ({} at rest)\n"
       "Guaranteed bound        {:.6g} 1/s ({})\n"
       "Provot's criterion      {} (historical; 3 to 5 times too long for a grid)\n",
-      e.largest_frequency, e.scene.cloth.is_mesh() ? "at most, the mesh" : "flat grid",
+      e.largest_frequency,
+      e.scene.cloth.is_mesh()  ? "at most, the mesh"
+      : e.scene.cloth.is_cut() ? "the flat cloth"
+                               : "flat grid",
       e.guaranteed_frequency,
       e.scene.material && e.scene.cloth.is_mesh()
           ? fmt::format("every shape, no edge over {} of its length", cloth::covered_stretch)

@@ -107,10 +107,12 @@ CLI::Option* add_scene_checks(CLI::App& command, SceneChecks& checks) {
 void add_validate(Program& program) {
   auto [command, arguments] = add_command(
       program, "validate",
-      "Strips of a material against exact solutions, on four grids, or scenes against measured points",
+      "Strips of a material against exact solutions, and how fabrics drape, on four grids, or scenes against "
+      "measured points",
       validate);
   CLI::Option* only = add_names(command, "--only", arguments.only,
-                                fmt::format("Only these protocols, separated by commas: {}",
+                                fmt::format("Only these protocols, separated by commas: {}; without this option all "
+                                            "but drape, which takes much longer",
                                             fmt::join(cloth::validation_protocols(), ", ")),
                                 cloth::validation_protocols());
   CLI::Option* out =

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "cloth/cut_grid.h"
 
 namespace cloth {
 namespace {
@@ -40,6 +43,29 @@ ParticleRange range_of(const PinnedParticle& pin, int rows, int columns) {
   return {pin.row, pin.row + 1, pin.column, pin.column + 1};
 }
 
+template <class OneRange>  // a named pin or one particle
+void add_places(const OneRange& pin, const ClothSheet& cloth, std::vector<int>& places) {
+  const ParticleRange range = range_of(pin, cloth.rows, cloth.columns);
+  for (int row = range.row_begin; row < range.row_end; ++row)
+    for (int column = range.column_begin; column < range.column_end; ++column)
+      places.push_back(row * cloth.columns + column);
+}
+
+void add_places(const PinnedDisc& pin, const ClothSheet& cloth, std::vector<int>& places) {
+  if (cloth.is_mesh()) return;
+  const Vec3 across = cloth.across.normalized() * (cloth.width / (cloth.columns - 1)),
+             down = cloth.down.normalized() * (cloth.height / (cloth.rows - 1));
+  const double cell = std::sqrt(across.cross(down).norm());
+  constexpr double rounding = 1 + 1e-12;  // what lies on the rim is held on every grid
+  const double reach = (pin.radius + cells_beyond_disc * cell) * rounding;
+  for (int row = 0; row < cloth.rows; ++row)
+    for (int column = 0; column < cloth.columns; ++column) {
+      const Vec3 from_middle =
+          across * (column - 0.5 * (cloth.columns - 1)) + down * (row - 0.5 * (cloth.rows - 1));
+      if (from_middle.norm() <= reach) places.push_back(row * cloth.columns + column);
+    }
+}
+
 }  // namespace
 
 const char* name_of(NamedPin pin) {
@@ -55,15 +81,14 @@ std::optional<NamedPin> pin_named(const std::string& name) {
 
 std::vector<int> pinned_particles(const ClothSheet& cloth) {
   std::vector<int> particles;
-  for (const Pin& pin : cloth.pins) {
-    const ParticleRange range =
-        std::visit([&](const auto& which) { return range_of(which, cloth.rows, cloth.columns); }, pin);
-    for (int row = range.row_begin; row < range.row_end; ++row)
-      for (int column = range.column_begin; column < range.column_end; ++column)
-        particles.push_back(row * cloth.columns + column);
-  }
+  for (const Pin& pin : cloth.pins)
+    std::visit([&](const auto& which) { add_places(which, cloth, particles); }, pin);
   std::sort(particles.begin(), particles.end());
   particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  if (!cloth.is_cut()) return particles;
+  const CutGrid grid = cut_grid(cloth);
+  for (int& particle : particles) particle = grid.particle[static_cast<std::size_t>(particle)];
+  std::erase(particles, -1);
   return particles;
 }
 

@@ -28,11 +28,21 @@ struct PinnedParticle {
   bool operator==(const PinnedParticle&) const = default;
 };
 
-using Pin = std::variant<NamedPin, PinnedParticle>;
+/// Every particle of a grid that starts within `radius` of the sheet's middle and 0.4 cells more. The
+/// outermost of these particles, where the cloth begins to bend, lie between that and nearly one cell further
+/// in: with 0.4 they are on the rim of the disc in the mean, with 0 the disc would be too small by 0.4 cells.
+struct PinnedDisc {
+  double radius = 0;  ///< m
+  bool operator==(const PinnedDisc&) const = default;
+};
+inline constexpr double cells_beyond_disc = 0.4;
 
-/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0. With a mesh
-/// its vertices instead, shifted by `origin`: they count as one row, and width, height, across and down say
-/// nothing.
+using Pin = std::variant<NamedPin, PinnedParticle, PinnedDisc>;
+
+/// A grid of rows x columns particles, row-major from `origin`; top is row 0, left is column 0. Of a round
+/// one (cloth/cut_grid.h) only a part is there, and its particles are numbered without the others. With a
+/// mesh its vertices instead, shifted by `origin`: they count as one row, and width, height, across, down and
+/// cut say nothing.
 struct ClothSheet {
   MeshChoice mesh = {};  ///< no file: a grid
   int columns = 33, rows = 33;
@@ -40,7 +50,9 @@ struct ClothSheet {
   double mass = 0.25;                ///< kg, of the whole cloth
   Vec3 origin{-0.5, 1.0, 0.0};       ///< m, where particle (0, 0) starts
   Vec3 across{1, 0, 0}, down{0, -1, 0};
+  std::string cut = "none";  ///< or "round"
   std::vector<Pin> pins;
+  bool is_cut() const { return !is_mesh() && cut == "round"; }
   bool is_mesh() const { return !mesh.file.empty(); }
   bool operator==(const ClothSheet&) const = default;
 };
@@ -56,8 +68,8 @@ const char* name_of(NamedPin pin);
 std::optional<NamedPin> pin_named(const std::string& name);
 inline constexpr int named_pin_count = 8;
 
-/// The particles (row * columns + column) that `pins` hold, ascending, each once. Pins outside the grid are
-/// ignored.
+/// The particles that `pins` hold, by their numbers in the cloth (row * columns + column where nothing is cut
+/// away), ascending, each once. Pins outside the grid or what is left of it are ignored.
 std::vector<int> pinned_particles(const ClothSheet& cloth);
 
 }  // namespace cloth

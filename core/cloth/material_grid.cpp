@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cloth/bending_builder.h"
 #include "cloth/grid.h"
 
 namespace cloth {
@@ -46,57 +47,6 @@ void add_springs(const GridCell& cell, const CellSprings& k, ClothSystem& system
       system.springs.blocks().push_back(direction_block(system, direction, diagonal, k.diagonal));
 }
 
-/// Collects elements one after the other into runs of elements that are alike.
-class BendingBuilder {
- public:
-  explicit BendingBuilder(ClothSystem& system) : system_(system) {}
-
-  /// A slider beside the element of a line whose first point is `first`, `step` apart: its curvature is twice
-  /// as large at a clamp, over half of the area.
-  void add_slider(int first, int step, double spacing, double area, double stiffness, double yield) {
-    const BendingRun line{.first = first, .points = 3, .offset = {0, step, 2 * step}};
-    const double factor = clamp_factor(line);
-    if (!(factor > 0) || !(yield > 0)) return;
-    const double c = factor / (spacing * spacing);
-    system_.sliders.push_back({.points = 3,
-                               .particle = {first + step, first, first + 2 * step},
-                               .coefficient = {-2 * c, c, c},
-                               .area = area / factor,
-                               .stiffness = stiffness,
-                               .yield = yield});
-  }
-
-  /// An element whose first point is `first`, without its stiffness' factor at clamps.
-  void add(int first, const BendingRun& element, double stiffness) {
-    BendingRun run = element;
-    run.first = first, run.count = 1;
-    run.stiffness = stiffness * clamp_factor(run);
-    if (!(run.stiffness > 0)) return;
-    if (!system_.bending.empty()) {
-      BendingRun& last = system_.bending.back();
-      if (last.stiffness == run.stiffness && last.offset == run.offset && last.first + last.count == first) {
-        ++last.count;
-        return;
-      }
-    }
-    system_.bending.push_back(run);
-  }
-
- private:
-  bool pinned(const BendingRun& run, std::size_t point) const {
-    return system_.pinned[static_cast<std::size_t>(run.first + run.offset[point])] != 0;
-  }
-  double clamp_factor(const BendingRun& run) const {
-    int held = 0;
-    for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) held += pinned(run, p);
-    if (held == run.points) return 0;
-    if (run.points == 4) return held == 3 ? 2 : 1;
-    return held == 2 && pinned(run, 1) ? 2 : 1;
-  }
-
-  ClothSystem& system_;
-};
-
 void add_bending(const CellBending& k, ClothSystem& system) {
   const int rows = system.rows, columns = system.columns;
   const auto line = [](int step) {
@@ -122,11 +72,13 @@ void add_sliders(const Material& m, double across, double down, ClothSystem& sys
   BendingBuilder builder(system);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column + 2 < columns; ++column)
-      builder.add_slider(system.index(row, column), 1, across, part_at_border(row, rows) * across * down,
+      builder.add_slider(system.index(row, column), system.index(row, column + 1),
+                         system.index(row, column + 2), across, part_at_border(row, rows) * across * down,
                          slider_stiffness_ratio * m.bending_weft, 0.5 * m.hysteresis_weft);
   for (int row = 0; row + 2 < rows; ++row)
     for (int column = 0; column < columns; ++column)
-      builder.add_slider(system.index(row, column), columns, down,
+      builder.add_slider(system.index(row, column), system.index(row + 1, column),
+                         system.index(row + 2, column), down,
                          part_at_border(column, columns) * across * down,
                          slider_stiffness_ratio * m.bending_warp, 0.5 * m.hysteresis_warp);
 }

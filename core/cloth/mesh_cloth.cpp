@@ -1,5 +1,6 @@
 #include "cloth/mesh_cloth.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -62,6 +63,18 @@ TriangleMesh rest_surface(const ClothSystem& system) {
   TriangleMesh surface{{}, triangles_of(system)};
   for (std::size_t i = 0; i < system.start.size(); ++i) surface.vertices.push_back(system.start[i]);
   return surface;
+}
+
+std::shared_ptr<const LoadedMesh> surface_to_draw(const ClothSystem& system) {
+  auto mesh = std::make_shared<LoadedMesh>();
+  mesh->surface = rest_surface(system);
+  for (const Vec3& vertex : mesh->surface.vertices) mesh->bounds.extend(vertex);
+  for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
+    if (run.family == SpringFamily::structural)
+      mesh->edges.push_back({static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+  });
+  std::sort(mesh->edges.begin(), mesh->edges.end());
+  return mesh;
 }
 
 }  // namespace cloth

@@ -21,4 +21,7 @@ std::vector<Triangle> triangles_of(const ClothSystem& system);
 /// The same at the start, with its vertices.
 TriangleMesh rest_surface(const ClothSystem& system);
 
+/// The same with its structural springs as edges, for whoever draws a cloth that is no whole grid.
+std::shared_ptr<const LoadedMesh> surface_to_draw(const ClothSystem& system);
+
 }  // namespace cloth

@@ -175,7 +175,7 @@ int style_of(const Pane& pane) {
 }
 
 std::optional<std::string> must_be_shared(const std::string& path) {
-  if (path == "cloth.rows" || path == "cloth.columns" || path == "cloth.mesh")
+  if (path == "cloth.rows" || path == "cloth.columns" || path == "cloth.cut" || path == "cloth.mesh")
     return "must be shared: each particle of a pane is compared with the same one of the others";
   if (path.rfind("cloth.pins", 0) == 0) return "must be shared: pins act on all panes alike";
   if (path == "duration" || path == "record.interval")

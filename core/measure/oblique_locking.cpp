@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
+#include "cloth/cut_grid.h"
 #include "scene/scene_cloth.h"
 
 namespace cloth {
@@ -18,25 +20,28 @@ double locking_ratio(const Material& material, double across, double down, doubl
   return material.shear * std::pow(across * down * curvature, 2) / (128 * bending * giving_way);
 }
 
-ObliqueLocking measure_oblique_locking(const Scene& scene, const ClothSystem& system,
+ObliqueLocking measure_oblique_locking(const Scene& scene, [[maybe_unused]] const ClothSystem& system,
                                        const Vec3Field& position) {
   ObliqueLocking locking;
-  if (!scene.material || system.is_mesh()) return locking;
+  if (!scene.material || scene.cloth.is_mesh()) return locking;
   const CellSides cell = cell_sides(scene.cloth);
-  std::size_t above = 0;
-  for (int row = 0; row + 1 < system.rows; ++row)
-    for (int column = 0; column + 1 < system.columns; ++column) {
+  const CutGrid grid = cut_grid(scene.cloth);
+  assert(static_cast<int>(grid.place.size()) == system.size());
+  std::size_t above = 0, cells = 0;
+  for (int row = 0; row + 1 < grid.rows; ++row)
+    for (int column = 0; column + 1 < grid.columns; ++column) {
+      if (!grid.has_cell(row, column)) continue;
       const auto at = [&](int r, int c) {
-        return position[static_cast<std::size_t>(system.index(row + r, column + c))];
+        return position[static_cast<std::size_t>(grid.at(row + r, column + c))];
       };
       const double twist =
           (at(0, 0) - at(0, 1) - at(1, 0) + at(1, 1)).norm() / (cell.across * cell.down);  // 1/m
       const double ratio = locking_ratio(*scene.material, cell.across, cell.down, 2 * twist);
       locking.largest = std::max(locking.largest, ratio);
+      ++cells;
       if (ratio > locking_warned_of) ++above;
     }
-  const double cells = static_cast<double>(system.rows - 1) * (system.columns - 1);
-  locking.cells_above = static_cast<double>(above) / cells;
+  locking.cells_above = static_cast<double>(above) / static_cast<double>(cells);
   return locking;
 }
 

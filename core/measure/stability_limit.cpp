@@ -142,7 +142,7 @@ struct MaterialWaves {
   }
 };
 
-/// Of a material on a mesh: what its limits are made of.
+/// Of a material on a mesh or on a grid that is cut: what its limits are made of.
 struct MeshNumbers {
   double at_rest = 0, guaranteed = 0;  ///< 1/s
   double lightest = 0;                 ///< kg
@@ -218,7 +218,7 @@ double frequency_at_edges(const Scene& scene) {
 
 double largest_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? largest_frequency(scene.cloth, *scene.springs) : 0;
-  if (scene.cloth.is_mesh()) return mesh_numbers(scene).at_rest;
+  if (scene.cloth.is_mesh() || scene.cloth.is_cut()) return mesh_numbers(scene).at_rest;
   const MaterialWaves waves(scene);
   const double inside = scanned_stiffness([&](double qx, double qy) { return waves.at_rest(qx, qy); });
   if (!(inside > 0)) return 0;
@@ -228,7 +228,7 @@ double largest_frequency(const Scene& scene) {
 
 double guaranteed_frequency(const Scene& scene) {
   if (!scene.material) return scene.springs ? guaranteed_frequency(scene.cloth, *scene.springs) : 0;
-  if (scene.cloth.is_mesh()) return mesh_numbers(scene).guaranteed;
+  if (scene.cloth.is_mesh() || scene.cloth.is_cut()) return mesh_numbers(scene).guaranteed;
   const MaterialWaves waves(scene);
   return std::sqrt((waves.most_of_springs() + waves.most_of_bending()) / particle_mass(scene));
 }
@@ -260,7 +260,7 @@ double strongest_held_spring(const ClothSheet& sheet, const SpringMaterial& mate
 double strongest_held_spring(const Scene& scene, double omega) {
   if (!scene.material)
     return strongest_held_spring(scene.cloth, scene.springs.value_or(SpringMaterial{}), omega);
-  if (scene.cloth.is_mesh()) {
+  if (scene.cloth.is_mesh() || scene.cloth.is_cut()) {
     const MeshNumbers& numbers = mesh_numbers(scene);
     return std::max(0.0, numbers.lightest * (omega * omega - numbers.guaranteed * numbers.guaranteed));
   }

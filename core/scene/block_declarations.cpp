@@ -229,19 +229,29 @@ BlockRow air_row() {
   return row;
 }
 
+/// Round cloth without a material there is not: what loses its material is a whole grid again.
+BlockRow material_row() {
+  BlockRow row = object_row<Material>(
+      {.path = "material",
+       .file_place = 3,
+       .title = "Material",
+       .doc = "What the cloth is made of, in units that do not depend on the grid; in place of springs."},
+      material_fields(), [](Scene& s) { return s.springs || s.damping ? nullptr : &s.material; },
+      always(starter_material()));
+  row.optional->remove = [](Scene& scene) {
+    scene.material.reset();
+    scene.cloth.cut = ClothSheet{}.cut;
+  };
+  return row;
+}
+
 std::vector<BlockRow> force_rows() {
   return {
       object_row<SpringMaterial>(
           {.path = "springs", .file_place = 2, .title = "Springs", .doc = "What holds the cloth together."},
           spring_fields(), without_material(&Scene::springs),
           always(SpringMaterial{.structural = 500, .shear = 250, .flexion = 50, .damping = 0})),
-      object_row<Material>(
-          {.path = "material",
-           .file_place = 3,
-           .title = "Material",
-           .doc = "What the cloth is made of, in units that do not depend on the grid; in place of springs."},
-          material_fields(), [](Scene& s) { return s.springs || s.damping ? nullptr : &s.material; },
-          always(starter_material())),
+      material_row(),
       object_row<Deformation>(
           {.path = "deformation",
            .file_place = 8,

@@ -15,6 +15,7 @@ std::string refusal_of(const Scene& scene, bool has_source, const char* source) 
   if (!has_source) return fmt::format("The scene has no {}.", source);
   if (sheet.is_mesh())
     return "A mesh has no cells: springs and materials of grids alone stand for each other.";
+  if (sheet.is_cut()) return "The cloth is cut round: only a material can be, springs are of whole grids.";
   constexpr double largest_cosine = 1e-9;
   if (!(std::abs(sheet.across.normalized().dot(sheet.down.normalized())) <= largest_cosine))
     return "cloth.across and cloth.down are not at right angles: the cells of a material are rectangles.";

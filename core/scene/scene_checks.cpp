@@ -30,27 +30,52 @@ void check_meshes(const Scene& scene, std::vector<Problem>& problems) {
       check(fmt::format("obstacles.{}.file", i), scene.obstacles[i].mesh);
 }
 
-void check_vertex_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
-  if (!cloth.mesh.is_loaded()) return;  // said already
+/// As the file has it.
+std::string pin_text(const ClothSheet& cloth, const Pin& pin) {
+  if (const auto* named = std::get_if<NamedPin>(&pin)) return name_of(*named);
+  if (const auto* disc = std::get_if<PinnedDisc>(&pin)) return fmt::format("{{\"disc\": {}}}", disc->radius);
+  const auto& particle = std::get<PinnedParticle>(pin);
+  return cloth.is_mesh() ? std::to_string(particle.column)
+                         : fmt::format("[{}, {}]", particle.row, particle.column);
+}
+
+/// Empty where the pin is right.
+std::string broken_vertex_rule(const ClothSheet& cloth, const Pin& pin) {
+  if (!cloth.mesh.is_loaded()) return "";  // said already
+  const auto* one = std::get_if<PinnedParticle>(&pin);
+  if (one && one->row == 0 && one->column >= 0 && one->column < cloth.columns) return "";
+  return fmt::format("must be a vertex of the mesh: 0 to {}", cloth.columns - 1);
+}
+
+std::string broken_grid_rule(const ClothSheet& cloth, const Pin& pin) {
+  if (const auto* one = std::get_if<PinnedParticle>(&pin);
+      one && !(one->row >= 0 && one->row < cloth.rows && one->column >= 0 && one->column < cloth.columns))
+    return fmt::format("must lie in the grid: row 0 to {}, column 0 to {}", cloth.rows - 1,
+                       cloth.columns - 1);
+  if (const auto* disc = std::get_if<PinnedDisc>(&pin); disc && !(disc->radius > 0))
+    return "must have a radius greater than 0 m";
+  ClothSheet only = cloth;
+  only.pins = {pin};
+  if (!pinned_particles(only).empty()) return "";
+  return std::holds_alternative<PinnedDisc>(pin)
+             ? "must be larger: no particle of this grid lies within it"
+             : "must hold a particle: there is none where the cloth is cut away";
+}
+
+/// Of a cloth with as many rows and columns as it may have.
+void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
   for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
-    const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
-    if (pin && pin->row == 0 && pin->column >= 0 && pin->column < cloth.columns) continue;
-    problems.push_back({fmt::format("cloth.pins.{}", i),
-                        pin ? std::to_string(pin->column) : name_of(std::get<NamedPin>(cloth.pins[i])),
-                        fmt::format("must be a vertex of the mesh: 0 to {}", cloth.columns - 1)});
+    const Pin& pin = cloth.pins[i];
+    const std::string rule = cloth.is_mesh() ? broken_vertex_rule(cloth, pin) : broken_grid_rule(cloth, pin);
+    if (!rule.empty()) problems.push_back({fmt::format("cloth.pins.{}", i), pin_text(cloth, pin), rule});
   }
 }
 
-void check_pins(const ClothSheet& cloth, std::vector<Problem>& problems) {
-  if (cloth.is_mesh()) return check_vertex_pins(cloth, problems);
-  for (std::size_t i = 0; i < cloth.pins.size(); ++i) {
-    const auto* pin = std::get_if<PinnedParticle>(&cloth.pins[i]);
-    if (!pin) continue;
-    if (pin->row >= 0 && pin->row < cloth.rows && pin->column >= 0 && pin->column < cloth.columns) continue;
-    problems.push_back({fmt::format("cloth.pins.{}", i), fmt::format("[{}, {}]", pin->row, pin->column),
-                        fmt::format("must lie in the grid: row 0 to {}, column 0 to {}", cloth.rows - 1,
-                                    cloth.columns - 1)});
-  }
+/// Springs of a cut border would need masses of their own.
+void check_cut(const Scene& scene, std::vector<Problem>& problems) {
+  if (scene.cloth.is_cut() && !scene.material)
+    problems.push_back(
+        {"cloth.cut", "\"round\"", "needs a material: the cloth of a scene with springs is the whole grid"});
 }
 
 void check_directions(const ClothSheet& cloth, std::vector<Problem>& problems) {
@@ -201,7 +226,11 @@ std::vector<Problem> find_problems(const Scene& scene) {
   if (!problems.empty()) return problems;
   check_parameters(scene, problems);
   check_meshes(scene, problems);
-  check_pins(scene.cloth, problems);
+  check_cut(scene, problems);
+  const bool has_size = std::none_of(problems.begin(), problems.end(), [](const Problem& problem) {
+    return problem.path == "cloth.rows" || problem.path == "cloth.columns";
+  });
+  if (has_size) check_pins(scene.cloth, problems);
   check_directions(scene.cloth, problems);
   check_material(scene, problems);
   check_keyframes(scene, problems);

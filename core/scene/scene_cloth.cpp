@@ -1,6 +1,7 @@
 #include "scene/scene_cloth.h"
 
 #include "cloth/grid.h"
+#include "cloth/material_cut.h"
 #include "cloth/material_grid.h"
 #include "cloth/material_mesh.h"
 #include "cloth/mesh_cloth.h"
@@ -9,6 +10,7 @@ namespace cloth {
 
 ClothSystem make_cloth(const Scene& scene) {
   if (scene.material && scene.cloth.is_mesh()) return make_material_mesh(scene.cloth, *scene.material);
+  if (scene.material && scene.cloth.is_cut()) return make_material_cut(scene.cloth, *scene.material);
   if (scene.material) return make_material_grid(scene.cloth, *scene.material);
   return make_cloth(scene.cloth, scene.springs.value_or(SpringMaterial{}));
 }

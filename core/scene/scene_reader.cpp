@@ -145,13 +145,20 @@ class SceneReader : public JsonReader<json> {
         else
           problem(path, pin,
                   "must be top-left, top-right, bottom-left, bottom-right, top-edge, bottom-edge, left-edge, "
-                  "right-edge or [row, column]");
+                  "right-edge, [row, column] or {\"disc\": radius}");
       } else if (pin.is_array() && pin.size() == 2 && small_integer(pin[0]) && small_integer(pin[1])) {
         pins.emplace_back(PinnedParticle{pin[0].get<int>(), pin[1].get<int>()});
       } else {
-        problem(path, pin, "must be a name or [row, column] in whole numbers");
+        read_disc(pin, path, pins);
       }
     }
+  }
+
+  void read_disc(const json& pin, const std::string& path, std::vector<Pin>& pins) {
+    const bool is_disc = pin.is_object() && pin.size() == 1 && pin.contains("disc");
+    if (!is_disc || !pin["disc"].is_number())
+      return problem(path, pin, "must be a name, [row, column] in whole numbers or {\"disc\": radius in m}");
+    pins.emplace_back(PinnedDisc{pin["disc"].get<double>()});
   }
 
   static bool small_integer(const json& value) {

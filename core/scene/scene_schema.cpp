@@ -63,9 +63,16 @@ json pins_schema() {
   for (int pin = 0; pin < named_pin_count; ++pin) names.push_back(name_of(static_cast<NamedPin>(pin)));
   const json particle{
       {"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}, {"minItems", 2}, {"maxItems", 2}};
+  const json radius{{"type", "number"}, {"exclusiveMinimum", 0}};
+  const json disc{{"type", "object"},
+                  {"properties", {{"disc", radius}}},
+                  {"required", {"disc"}},
+                  {"additionalProperties", false}};
   return {{"type", "array"},
-          {"items", {{"anyOf", json::array({json{{"enum", names}}, particle})}}},
-          {"description", "Pinned particles: names of corners and edges, or [row, column]."}};
+          {"items", {{"anyOf", json::array({json{{"enum", names}}, particle, disc})}}},
+          {"description",
+           "Pinned particles: names of corners and edges, [row, column], or all within a disc "
+           "around the sheet's middle, by its radius in m."}};
 }
 
 json vertex_pins_schema() {

@@ -32,10 +32,12 @@ json pins_json(const ClothSheet& cloth) {
     const auto* particle = std::get_if<PinnedParticle>(&pin);
     if (particle && cloth.is_mesh())
       list.push_back(particle->column);
-    else if (const auto* named = std::get_if<NamedPin>(&pin))
-      list.push_back(name_of(*named));
+    else if (particle)
+      list.push_back({particle->row, particle->column});
+    else if (const auto* disc = std::get_if<PinnedDisc>(&pin))
+      list.push_back({{"disc", disc->radius}});
     else
-      list.push_back({std::get<PinnedParticle>(pin).row, std::get<PinnedParticle>(pin).column});
+      list.push_back(name_of(std::get<NamedPin>(pin)));
   }
   return list;
 }

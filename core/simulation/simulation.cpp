@@ -62,6 +62,7 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
 Simulation::Simulation(const Scene& scene, Preparation prepare)
     : scene_(scene), prepare_(std::move(prepare)) {
   system_ = make_cloth(scene_);
+  surface_ = scene_.cloth.is_cut() ? surface_to_draw(system_) : scene_.cloth.mesh.loaded;
   run_.state = starting_state(system_);
   if (prepare_) prepare_(system_, run_.state);
   take_step_of_scene();

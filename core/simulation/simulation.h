@@ -116,6 +116,8 @@ class Simulation {
 
   const Scene& scene() const { return scene_; }
   const ClothSystem& system() const { return system_; }
+  /// The cloth at rest where it is a mesh or cut from a grid; null: a grid.
+  const std::shared_ptr<const LoadedMesh>& surface() const { return surface_; }
   const ClothState& state() const { return run_.state; }
   double time() const { return run_.state.time; }
   double time_step() const { return run_.time_step; }
@@ -205,6 +207,7 @@ class Simulation {
   Scene scene_;
   Preparation prepare_;
   ClothSystem system_;
+  std::shared_ptr<const LoadedMesh> surface_;
   RunState run_;
   std::unique_ptr<WorkerTeam> team_;  ///< none: one thread
   ThreadUse thread_use_ = ThreadUse::where_they_gain;

@@ -26,7 +26,9 @@ class PinnedGrid {
       : rows_(cloth.rows),
         columns_(cloth.columns),
         pinned_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_)) {
-    for (const int particle : pinned_particles(cloth)) pinned_[static_cast<std::size_t>(particle)] = true;
+    ClothSheet whole = cloth;
+    whole.cut = "none";  // so that a particle's number says its row and column
+    for (const int particle : pinned_particles(whole)) pinned_[static_cast<std::size_t>(particle)] = true;
   }
 
   /// The regions that the pins fill; nullopt where particles that touch fill none, one of which is `odd`.
@@ -110,14 +112,14 @@ class PinnedGrid {
   std::vector<bool> pinned_;
 };
 
-bool all_named(const std::vector<Pin>& pins) {
-  return std::all_of(pins.begin(), pins.end(),
-                     [](const Pin& pin) { return std::holds_alternative<NamedPin>(pin); });
+bool are_of_every_grid(const std::vector<Pin>& pins) {
+  return std::none_of(pins.begin(), pins.end(),
+                      [](const Pin& pin) { return std::holds_alternative<PinnedParticle>(pin); });
 }
 
-/// Those of pins that every grid has by name: none.
+/// Those of pins that every grid has, by name or as a disc: none.
 std::optional<std::vector<Region>> regions_of(const ClothSheet& cloth, PinnedParticle& odd) {
-  if (all_named(cloth.pins)) return std::vector<Region>();
+  if (are_of_every_grid(cloth.pins)) return std::vector<Region>();
   return PinnedGrid(cloth).regions(odd);
 }
 

@@ -70,7 +70,9 @@ void make_smaller(ClothSheet& cloth) {
     return static_cast<int>(std::lround(static_cast<double>(index) * (to - 1) / (from - 1)));
   };
   for (Pin& pin : cloth.pins)
-    if (auto* particle = std::get_if<PinnedParticle>(&pin))
+    if (auto* disc = std::get_if<PinnedDisc>(&pin))
+      disc->radius *= static_cast<double>(columns - 1) / (cloth.columns - 1);
+    else if (auto* particle = std::get_if<PinnedParticle>(&pin))
       *particle = {scaled(particle->row, cloth.rows, rows), scaled(particle->column, cloth.columns, columns)};
   cloth.mass *= static_cast<double>(rows) * columns / (static_cast<double>(cloth.rows) * cloth.columns);
   cloth.width *= static_cast<double>(columns - 1) / (cloth.columns - 1);

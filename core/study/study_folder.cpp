@@ -90,7 +90,7 @@ std::string title_of(const StudyTable& table) {
   if (const Scene* scene = scene_of(table)) return scene->title;
   const auto* validation = std::get_if<ValidationStudy>(&table);
   if (!validation) return "The fixed list of cases";
-  if (validation->protocols == validation_protocols()) return "All protocols";
+  if (validation->protocols == exact_protocols()) return "All protocols";
   return fmt::format("{}", fmt::join(validation->protocols, ", "));
 }
 

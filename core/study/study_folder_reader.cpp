@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cloth/cut_grid.h"
 #include "cloth/mesh_cloth.h"
 #include "contact/start_check.h"
 #include "integrators/registry.h"
@@ -55,7 +56,7 @@ std::string key_of(const Rows& rows, std::size_t row) {
 WorkPrecision read_work_precision(const std::filesystem::path& folder, const JsonEntry& root) {
   WorkPrecision study;
   study.scene = read_scene_of(root, folder);
-  study.particles = study.scene.cloth.rows * study.scene.cloth.columns;
+  study.particles = particle_count(study.scene.cloth);
   study.diagonal = diagonal_of(study.scene.cloth);
   study.steps_per_method = WorkPrecisionOptions{}.steps_per_method;  // that old versions took
   const JsonEntry& options = root.at("options");
@@ -194,19 +195,36 @@ bool is_of(const Rows& rows, std::size_t row, const ValidationRow& expected) {
   return expected.parameter_name.empty() || parameter == expected.parameter;
 }
 
+DrapeFacts read_drape(const Rows& rows, std::size_t row) {
+  return {.folds = static_cast<int>(rows.whole(row, "folds", 0, 1e6)),
+          .amplitude = rows.number(row, "amplitude_m"),
+          .cells_above = rows.number(row, "cells_that_lock")};
+}
+
+ValidationValue read_grid(const Rows& rows, std::size_t row, const ValidationRow& of) {
+  const int cells = of.cells[of.grids.size()];
+  if (rows.whole(row, "cells", 0, 1e6) != cells)
+    throw rows.bad(row, "cells", rows.text(row, "cells"), fmt::format("must be {}", cells));
+  ValidationValue grid{.cells = cells,
+                       .value = rows.number(row, "value"),
+                       .error = of.is_measured ? 0 : rows.number(row, "relative_error"),
+                       .distance = rows.number(row, "rms_distance", 0.0),
+                       .seconds = rows.number(row, "wall_s", 0.0)};
+  if (of.is_measured) grid.drape = read_drape(rows, row);
+  return grid;
+}
+
 /// The lines of one row, from `row` on; false where they are not all there.
 bool read_validation_row(const Rows& rows, std::size_t& row, ValidationRow& into) {
-  for (; is_of(rows, row, into) && into.grids.size() < validation_cells.size() && into.failure.empty();
-       ++row) {
+  const auto is_seed = [&] { return !rows.text(row, "seed").empty(); };
+  for (; is_of(rows, row, into) && into.grids.size() < into.cells.size() && into.failure.empty(); ++row) {
     into.failure = rows.text(row, "failure");
-    if (rows.text(row, "cells").empty()) continue;
-    const int cells = validation_cells[into.grids.size()];
-    if (rows.whole(row, "cells", 0, 1e6) != cells)
-      throw rows.bad(row, "cells", rows.text(row, "cells"), fmt::format("must be {}", cells));
-    into.grids.push_back({cells, rows.number(row, "value"), rows.number(row, "relative_error"),
-                          rows.number(row, "rms_distance", 0.0)});
+    if (!rows.text(row, "cells").empty()) into.grids.push_back(read_grid(rows, row, into));
   }
-  return into.grids.size() == validation_cells.size() || !into.failure.empty();
+  for (; into.is_measured && is_of(rows, row, into) && is_seed(); ++row)
+    into.seeds.push_back({static_cast<std::uint64_t>(rows.whole(row, "seed", 0, 1e9)),
+                          rows.number(row, "value"), read_drape(rows, row)});
+  return into.grids.size() == into.cells.size() || !into.failure.empty();
 }
 
 ValidationStudy read_validation(const std::filesystem::path& folder, const JsonEntry& root) {

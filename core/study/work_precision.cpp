@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cloth/cut_grid.h"
 #include "cloth/mesh_cloth.h"
 #include "geometry/split_mix.h"
 #include "scene/scene_checks.h"
@@ -333,7 +334,7 @@ std::optional<std::string> broken_horizon_rule(const Scene& scene, const std::ve
 WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study;
   study.scene = studied_scene(scene);
-  study.particles = scene.cloth.rows * scene.cloth.columns;
+  study.particles = particle_count(scene.cloth);
   study.diagonal = diagonal_of(scene.cloth);
   study.repeats = options.repeats;
   study.steps_per_method = options.steps_per_method;

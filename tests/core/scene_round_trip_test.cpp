@@ -27,15 +27,41 @@ void expect_reads_back(const Scene& scene) {
 TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
-  EXPECT_EQ(names,
-            std::vector<std::string>(
-                {"ball",           "ball-interlock", "bunny",        "bunny-knit",      "cantilever-paper",
-                 "corner",         "corner-wool",    "corners-free", "corners-shear",   "corners-structural",
-                 "corners-target", "cube",           "cube-ribbon",  "curtain",         "curtain-wool",
-                 "disc",           "disc-interlock", "fast-ball",    "flag",            "flag-cotton",
-                 "fold",           "free-fall",      "pendulum",     "rectangle",       "rectangle-ponte",
-                 "slope",          "slope-wool",     "spikes",       "spikes-swim",     "tablecloth",
-                 "tablecloth-denim", "twist",        "wind",         "wind-denim"}));
+  EXPECT_EQ(names, std::vector<std::string>({"ball",
+                                             "ball-interlock",
+                                             "bunny",
+                                             "bunny-knit",
+                                             "cantilever-paper",
+                                             "corner",
+                                             "corner-wool",
+                                             "corners-free",
+                                             "corners-shear",
+                                             "corners-structural",
+                                             "corners-target",
+                                             "cube",
+                                             "cube-ribbon",
+                                             "curtain",
+                                             "curtain-wool",
+                                             "cusick-cotton",
+                                             "disc",
+                                             "disc-interlock",
+                                             "fast-ball",
+                                             "flag",
+                                             "flag-cotton",
+                                             "fold",
+                                             "free-fall",
+                                             "pendulum",
+                                             "rectangle",
+                                             "rectangle-ponte",
+                                             "slope",
+                                             "slope-wool",
+                                             "spikes",
+                                             "spikes-swim",
+                                             "tablecloth",
+                                             "tablecloth-denim",
+                                             "twist",
+                                             "wind",
+                                             "wind-denim"}));
 }
 
 TEST(BuiltinScenes, AllReadAndKeepEveryRule) {

@@ -35,7 +35,7 @@ TEST_P(Validation, IsWithinOnePerCentAtTwentyCellsAndOfSecondOrderOrExactWhereTh
   }));
 }
 
-INSTANTIATE_TEST_SUITE_P(Protocols, Validation, testing::ValuesIn(validation_protocols()),
+INSTANTIATE_TEST_SUITE_P(Protocols, Validation, testing::ValuesIn(exact_protocols()),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::erase(name, '-');

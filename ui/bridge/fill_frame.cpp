@@ -54,7 +54,7 @@ void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& st
   const cloth::Vec3Field& position = state.position;
   frame.rows = system.rows;
   frame.columns = system.columns;
-  frame.mesh = system.is_mesh() ? simulation.scene().cloth.mesh.loaded : nullptr;
+  frame.mesh = simulation.surface();
   interleave(position, frame.positions);
   if (normals.size() != position.size()) normals = cloth::Vec3Field(position.size());
   cloth::particle_normals(system, position, normals);

@@ -12,13 +12,16 @@ using cloth::Pin;
 using cloth::PinnedParticle;
 using cloth::Vec3;
 
+/// The same grid with nothing cut away, where a particle's number is row * columns + column.
+ClothSheet whole(ClothSheet sheet) {
+  sheet.cut = "none";
+  return sheet;
+}
+
 /// The particles of one pin, by the core's own rule.
-std::vector<int> particles_of(const ClothSheet& sheet, const Pin& pin) {
-  ClothSheet only;
-  only.rows = sheet.rows;
-  only.columns = sheet.columns;
-  only.pins = {pin};
-  return pinned_particles(only);
+std::vector<int> particles_of(ClothSheet sheet, const Pin& pin) {
+  sheet.pins = {pin};
+  return pinned_particles(sheet);
 }
 
 bool holds(const std::vector<int>& ascending, int particle) {
@@ -27,7 +30,7 @@ bool holds(const std::vector<int>& ascending, int particle) {
 
 Pin pin_at(const ClothSheet& sheet, int row, int column) {
   const int particle = row * sheet.columns + column;
-  if (sheet.is_mesh()) return PinnedParticle{row, column};
+  if (sheet.is_mesh() || sheet.is_cut()) return PinnedParticle{row, column};
   for (const NamedPin corner :
        {NamedPin::top_left, NamedPin::top_right, NamedPin::bottom_left, NamedPin::bottom_right})
     if (particles_of(sheet, corner) == std::vector<int>{particle}) return corner;
@@ -35,11 +38,11 @@ Pin pin_at(const ClothSheet& sheet, int row, int column) {
 }
 
 std::vector<Pin> without(const ClothSheet& sheet, int particle) {
-  ClothSheet rest = sheet;
+  ClothSheet rest = whole(sheet);
   rest.pins.clear();
   std::set<int> freed;  // with their pin, unless another pin holds them too
   for (const Pin& pin : sheet.pins) {
-    const std::vector<int> particles = particles_of(sheet, pin);
+    const std::vector<int> particles = particles_of(whole(sheet), pin);
     if (holds(particles, particle))
       freed.insert(particles.begin(), particles.end());
     else
@@ -47,8 +50,10 @@ std::vector<Pin> without(const ClothSheet& sheet, int particle) {
   }
   freed.erase(particle);
   for (const int held : pinned_particles(rest)) freed.erase(held);
-  for (const int other : freed)
-    rest.pins.push_back(PinnedParticle{other / sheet.columns, other % sheet.columns});
+  for (const int other : freed) {
+    const Pin pin = PinnedParticle{other / sheet.columns, other % sheet.columns};
+    if (!particles_of(sheet, pin).empty()) rest.pins.push_back(pin);
+  }
   return rest.pins;
 }
 
@@ -78,7 +83,7 @@ ClothSheet grid_in_place_of(const ClothSheet& mesh) {
 
 bool is_pinned(const ClothSheet& sheet, int row, int column) {
   const bool inside = row >= 0 && row < sheet.rows && column >= 0 && column < sheet.columns;
-  return inside && holds(pinned_particles(sheet), row * sheet.columns + column);
+  return inside && holds(pinned_particles(whole(sheet)), row * sheet.columns + column);
 }
 
 std::vector<Pin> toggled_pins(const ClothSheet& sheet, int row, int column) {

@@ -15,7 +15,7 @@ cloth::Vec3 middle_of(const cloth::ClothSheet& sheet);
 /// mesh is higher than deep, else horizontal.
 cloth::ClothSheet grid_in_place_of(const cloth::ClothSheet& mesh);
 
-/// Whether any pin, named or not, holds the particle.
+/// Whether any pin, named or not, holds the particle at this place of the grid.
 bool is_pinned(const cloth::ClothSheet& sheet, int row, int column);
 
 /// The sheet's pins with the pin of this particle added or removed. Freeing a particle of a named edge turns

@@ -18,12 +18,14 @@ using Effect = SceneChange::Effect;
 
 constexpr int following = -1;  // the drag number of edits that follow the run
 
-/// What one value of a material or of its grid's cells asks of the others.
+/// What one value of a material or of its grid's cells asks of the others, and what a cut asks.
 QString broken_rule_of_material(const Scene& edited) {
-  if (!edited.material) return {};
-  for (const cloth::Problem& problem : find_problems(edited))
-    if (problem.path.rfind("material", 0) == 0 || problem.path == "cloth.down")
-      return QString::fromStdString(problem.path == "cloth.down" ? problem.rule : problem.text());
+  if (!edited.material && !edited.cloth.is_cut()) return {};
+  for (const cloth::Problem& problem : find_problems(edited)) {
+    const bool of_cloth = problem.path == "cloth.down" || problem.path == "cloth.cut";
+    if (problem.path.rfind("material", 0) == 0 || of_cloth)
+      return QString::fromStdString(of_cloth ? problem.rule : problem.text());
+  }
   return {};
 }
 
@@ -214,7 +216,8 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
     set_own(after.panes[*scope_], path, value);
     text += tr(" of %1").arg(QString::fromStdString(after.panes[*scope_].name));
   } else {
-    if (edited.cloth.rows != before.rows || edited.cloth.columns != before.columns)
+    if (edited.cloth.rows != before.rows || edited.cloth.columns != before.columns ||
+        edited.cloth.cut != before.cut)
       edited.cloth.pins = pins_inside(edited.cloth);
     after.scene = std::move(edited);
   }

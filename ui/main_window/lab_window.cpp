@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cloth/cut_grid.h"
 #include "compare/scope_tabs.h"
 #include "main_window/autosave.h"
 #include "main_window/view_bar.h"
@@ -107,8 +108,10 @@ void LabWindow::connectHand() {
     if (document_.scene().air) link_.send(command::Brush{});
   });
   connect(grid_, &PaneGrid::pinToggled, this, [this](int particle) {
-    const int columns = document_.scene().cloth.columns;
-    document_.togglePin(particle / columns, particle % columns);
+    const cloth::ClothSheet& sheet = document_.scene().cloth;
+    const int place =
+        sheet.is_cut() ? cut_grid(sheet).place.at(static_cast<std::size_t>(particle)) : particle;
+    document_.togglePin(place / sheet.columns, place % sheet.columns);
   });
   connect(grid_, &PaneGrid::obstacleMoveStarted, this, &LabWindow::startObstacleMove);
   connect(grid_, &PaneGrid::obstacleMoved, this, &LabWindow::moveObstacle);

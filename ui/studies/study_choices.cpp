@@ -154,7 +154,12 @@ StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
   for (const cloth::MethodFacts& facts : cloth::integrator_facts())
     add_box(methods_, facts.title, facts.name);
   protocols_ = boxes("studyProtocols", tr("Protocols"), protocol_rows, this);
-  for (const std::string& name : cloth::validation_protocols()) add_box(protocols_, name, name);
+  const std::vector<std::string> exact = cloth::exact_protocols();
+  for (const std::string& name : cloth::validation_protocols()) {
+    add_box(protocols_, name, name);
+    if (std::find(exact.begin(), exact.end(), name) == exact.end())  // it takes many minutes
+      protocols_->item(protocols_->count() - 1)->setCheckState(Qt::Unchecked);
+  }
   makeFields();
   makeRows();
   connectRows();

@@ -123,7 +123,7 @@ std::vector<ValidationProtocol> force_protocols() {
 const std::vector<ValidationProtocol>& protocols() {
   static const std::vector<ValidationProtocol> all = [] {
     std::vector<ValidationProtocol> sum = shape_protocols();
-    for (auto more : {buckling_protocols, force_protocols, shear_protocols})
+    for (auto more : {buckling_protocols, force_protocols, shear_protocols, drape_protocols})
       for (ValidationProtocol& one : more()) sum.push_back(std::move(one));
     return sum;
   }();

@@ -14,6 +14,7 @@ struct ValidationReading {
   double distance = 0;  ///< as ValidationValue has it
   std::string failure{};
   std::vector<Eigen::Vector2d> points{};  ///< beside the row's curve
+  std::optional<DrapeFacts> drape{};
 };
 
 struct ValidationProtocol {
@@ -22,6 +23,9 @@ struct ValidationProtocol {
   std::vector<double> parameters;
   std::function<ValidationRow(double parameter)> expect;  ///< all but the name, the parameter and the grids
   std::function<ValidationReading(const ValidationRow& row, int cells)> measure;
+  std::vector<int> cells{validation_cells.begin(), validation_cells.end()};
+  /// Other rests on the row's seed_cells, where it has some; false where it was stopped.
+  std::function<bool(ValidationRow& row, const StopTest& stop)> measure_seeds = nullptr;
   /// Where there is a curve: the strip, and how the value is read off points from its first end to its last,
   /// in its length; null: it cannot be.
   std::function<StripCase(double parameter, int cells)> strip = nullptr;
@@ -33,10 +37,11 @@ const ValidationProtocol* find_protocol(const std::string& name);
 /// In the order of the table.
 const std::vector<ValidationProtocol>& protocols();
 
-/// Shapes of strips at rest; loads at which they buckle; what moves or pushes; what shears.
+/// Shapes of strips at rest; loads at which they buckle; what moves or pushes; what shears; how fabrics drape.
 std::vector<ValidationProtocol> shape_protocols();
 std::vector<ValidationProtocol> buckling_protocols();
 std::vector<ValidationProtocol> force_protocols();
 std::vector<ValidationProtocol> shear_protocols();
+std::vector<ValidationProtocol> drape_protocols();
 
 }  // namespace cloth

@@ -121,7 +121,7 @@ StripScore score_text_of(const ValidationRow& task, const std::filesystem::path&
 }  // namespace
 
 std::vector<ValidationRow> strip_tasks() {
-  std::vector<ValidationRow> tasks = validation_rows(validation_protocols());
+  std::vector<ValidationRow> tasks = validation_rows(exact_protocols());
   std::erase_if(tasks, [](const ValidationRow& row) { return row.curve.points.empty(); });
   return tasks;
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "study/richardson.h"
 #include "study/validation/protocols.h"
 
 namespace cloth {
@@ -15,18 +17,21 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A row of a protocol on all grids; false where it was stopped.
 bool measure(const ValidationProtocol& protocol, ValidationRow& row, const StopTest& stop) {
-  for (const int cells : validation_cells) {
+  for (const int cells : protocol.cells) {
     if (!row.failure.empty()) return true;
     if (is_to_stop(stop)) return false;
+    const auto start = std::chrono::steady_clock::now();
     ValidationReading reading = protocol.measure(row, cells);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!reading.failure.empty()) {
       row.failure = fmt::format("{} cells: {}", cells, reading.failure);
       return true;
     }
-    row.grids.push_back({cells, reading.value, reading.value / row.exact - 1, reading.distance});
+    const double error = row.is_measured ? nan : reading.value / row.exact - 1;
+    row.grids.push_back({cells, reading.value, error, reading.distance, wall.count(), reading.drape});
     if (cells == 20) row.shown = std::move(reading.points);
   }
-  return true;
+  return !protocol.measure_seeds || protocol.measure_seeds(row, stop);
 }
 
 }  // namespace
@@ -39,11 +44,23 @@ const ValidationProtocol* find_protocol(const std::string& name) {
 }
 
 double ValidationRow::order() const {
+  if (is_measured) {
+    std::vector<GridValue> values;
+    for (const ValidationValue& grid : grids) values.push_back({1.0 / grid.cells, grid.value});
+    const Richardson found = richardson(values);
+    return found.verdict == GridVerdict::converging ? found.order : nan;
+  }
   if (grids.size() < 2 || promise == Promise::exact) return nan;
   const bool has_curve = grids.back().distance > 0;
   const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
   const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());
   return coarse * fine > 0 ? std::log2(coarse / fine) : nan;
+}
+
+double ValidationRow::seconds() const {
+  double sum = 0;
+  for (const ValidationValue& grid : grids) sum += grid.seconds;
+  return sum;
 }
 
 bool ValidationRow::holds() const {
@@ -59,6 +76,12 @@ bool ValidationRow::holds() const {
   return promise == Promise::error || (order() >= 1.8 && order() <= 2.2);
 }
 
+std::vector<std::string> exact_protocols() {
+  std::vector<std::string> names = validation_protocols();
+  for (const ValidationProtocol& of_fabrics : drape_protocols()) std::erase(names, of_fabrics.name);
+  return names;
+}
+
 std::vector<std::string> validation_protocols() {
   std::vector<std::string> names;
   for (const ValidationProtocol& one : protocols()) names.emplace_back(one.name);
@@ -72,6 +95,7 @@ std::vector<ValidationRow> validation_rows(const std::vector<std::string>& names
       for (const double parameter : protocol->parameters) {
         ValidationRow row = protocol->expect(parameter);
         row.protocol = name, row.parameter = parameter, row.parameter_name = protocol->parameter_name;
+        row.cells = protocol->cells;
         rows.push_back(std::move(row));
       }
   return rows;
@@ -88,7 +112,7 @@ bool validate(std::vector<ValidationRow> rows, const std::function<void(Validati
 
 ValidationStudy plan_validation(const ValidationOptions& options) {
   ValidationStudy study;
-  for (const std::string& name : options.protocols.empty() ? validation_protocols() : options.protocols)
+  for (const std::string& name : options.protocols.empty() ? exact_protocols() : options.protocols)
     if (std::find(study.protocols.begin(), study.protocols.end(), name) == study.protocols.end())
       study.protocols.push_back(name);
   study.expected = validation_rows(study.protocols);
@@ -131,6 +155,7 @@ std::optional<Scene> scene_of(const ValidationRow& row) {
 }
 
 std::string name_of(const ValidationRow& row) {
+  if (!row.parameter_text.empty()) return row.protocol + "-" + row.parameter_text;
   return row.parameter_name.empty() ? row.protocol : fmt::format("{}-{:g}", row.protocol, row.parameter);
 }
 

@@ -1,10 +1,12 @@
-// Materials against exact solutions: strips at rest, the loads at which they buckle, how they swing. Every
-// protocol is taken on four grids, so that its error and its order in the cells are seen.
+// Materials against exact solutions: strips at rest, the loads at which they buckle, how they swing; and
+// against what was published of fabrics: how they drape. Every protocol is taken on four grids, so that its
+// error and its order in the cells are seen.
 //
 //     validate(validation_rows({"cantilever"}), [&](ValidationRow row) { rows.push_back(std::move(row)); });
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,6 +16,13 @@
 #include "study/validation/strip.h"
 
 namespace cloth {
+
+/// Of a drape, beside its coefficient.
+struct DrapeFacts {
+  int folds = 0;
+  double amplitude = 0;    ///< m, of the folds
+  double cells_above = 0;  ///< part of the cells that lock, see measure/oblique_locking.h
+};
 
 /// Along the strip.
 inline constexpr std::array validation_cells{10, 20, 40, 80};
@@ -26,6 +35,21 @@ struct ValidationValue {
   /// Root mean square over the particles of how far they are from the exact curve at their arc, in the
   /// strip's length; 0: no curve.
   double distance = 0;
+  double seconds = 0;  ///< on the clock
+  std::optional<DrapeFacts> drape{};
+};
+
+/// What was published of such cloths; one value: both are that.
+struct ValueBand {
+  double low = 0, high = 0;
+  bool holds(double value) const { return value >= low && value <= high; }
+};
+
+/// One of several rests of the same cloth on the same grid.
+struct SeedValue {
+  std::uint64_t seed = 0;  ///< of the random disturbance that it was found from
+  double value = 0;
+  DrapeFacts drape{};
 };
 
 /// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2; or of no
@@ -37,24 +61,35 @@ struct ValidationRow {
   std::string protocol{};        ///< "cantilever"
   std::string parameter_name{};  ///< "Gamma"; empty: the protocol has none
   double parameter = 0;
-  std::string quantity{};  ///< in words, with its unit
-  std::string source{};    ///< author and year of the exact value
-  std::string method{};    ///< how the grids' values are found, and the step
+  std::string parameter_text{};  ///< in its place: "cotton-broad"
+  std::string quantity{};        ///< in words, with its unit
+  std::string source{};          ///< author and year of the exact value
+  std::string method{};          ///< how the grids' values are found, and the step
   double exact = 0;
-  StripCurve curve{};  ///< exact; no points: none
+  /// In place of an exact value where there is none; a band without a promise.
+  std::optional<ValueBand> band{};
+  bool is_measured = false;  ///< there is no exact value, whether or not there is a band
+  StripCurve curve{};        ///< exact; no points: none
   Promise promise = Promise::second_order;
   std::vector<Eigen::Vector2d> shown{};  ///< points found with 20 cells, in the strip's length; may be empty
-  std::vector<ValidationValue> grids{};  ///< from coarse to fine, each with twice the cells of the one before
-  std::string failure{};                 ///< where a value could not be found
+  std::vector<int> cells{};              ///< of the grids that it is to be measured on
+  std::vector<ValidationValue> grids{};  ///< from coarse to fine, those of strips with twice the cells
+  std::vector<SeedValue> seeds{};        ///< other rests on the grid of `seed_cells`
+  int seed_cells = 0;
+  std::string failure{};  ///< where a value could not be found
 
   /// From the finest two grids' distances from the curve, and where there is no curve from their errors;
-  /// not a number where these change their sign, or are rounding's alone.
+  /// not a number where these change their sign, or are rounding's alone. Where there is no exact value: from
+  /// the finest three grids, not a number where they do not converge.
   double order() const;
+  double seconds() const;  ///< that its grids took on the clock
   /// Nothing failed, and what is promised is so.
   bool holds() const;
 };
 
-/// "cantilever", "astm", "heart-loop", ... in the order of the table.
+/// "cantilever", "astm", "heart-loop", ... in the order of the table: those with exact solutions, which take
+/// minutes, or all, which take many more.
+std::vector<std::string> exact_protocols();
 std::vector<std::string> validation_protocols();
 
 /// The rows of these protocols with their exact values, not measured yet.
@@ -73,7 +108,7 @@ struct ValidationStudy {
 };
 
 struct ValidationOptions {
-  std::vector<std::string> protocols{};                   ///< empty: all
+  std::vector<std::string> protocols{};                   ///< empty: exact_protocols()
   std::function<bool(const StudyProgress&)> progress{};   ///< false stops the study
   std::function<void(const ValidationStudy&)> partial{};  ///< the study so far, after every row
   StopTest stop{};                                        ///< asked between grids

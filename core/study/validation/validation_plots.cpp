@@ -9,6 +9,7 @@ namespace cloth {
 namespace {
 
 std::string label_of(const ValidationRow& row) {
+  if (!row.parameter_text.empty()) return row.parameter_text;
   return row.parameter_name.empty() ? "" : fmt::format("{} {:g}", row.parameter_name, row.parameter);
 }
 
@@ -102,7 +103,26 @@ LinePlot all_errors_plot(const ValidationStudy& study) {
   return plot;
 }
 
+/// Where there is no exact value: what was found on each grid.
+LinePlot values_plot(const std::string& protocol, const std::vector<ValidationRow>& rows) {
+  LinePlot plot{.title = protocol, .subtitle = rows.empty() ? "" : rows.front().quantity};
+  plot.x = {.label = "cells across", .scale = AxisScale::logarithmic};
+  plot.y = {.label = "value"};
+  for (const ValidationRow& row : rows) {
+    if (row.protocol != protocol || row.grids.empty()) continue;
+    PlotSeries series{.name = label_of(row)};
+    for (const ValidationValue& grid : row.grids)
+      series.points.push_back({static_cast<double>(grid.cells), grid.value});
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
 LinePlot error_plot(const std::string& protocol, const std::vector<ValidationRow>& rows) {
+  const bool is_measured = std::any_of(rows.begin(), rows.end(), [&](const ValidationRow& row) {
+    return row.protocol == protocol && row.is_measured;
+  });
+  if (is_measured) return values_plot(protocol, rows);
   LinePlot plot{.title = protocol, .subtitle = "relative error against the cells along the strip"};
   plot.x = {.label = "cells", .scale = AxisScale::logarithmic};
   plot.y = {.label = "relative error", .scale = AxisScale::logarithmic};

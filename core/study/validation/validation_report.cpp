@@ -116,6 +116,15 @@ std::string validation_text(const std::vector<ValidationRow>& rows) {
   return exact + (exact.empty() || measured.empty() ? "" : "\n") + measured;
 }
 
+namespace {
+
+std::string csv_parameter(const ValidationRow& row) {
+  if (!row.parameter_text.empty() || row.parameter_name.empty()) return row.parameter_text;
+  return csv_number(row.parameter);
+}
+
+}  // namespace
+
 std::string validation_csv(const std::vector<ValidationRow>& rows) {
   CsvTable table{{"protocol", "parameter_name", "parameter", "quantity", "source", "method", "exact", "cells",
                   "value", "relative_error", "rms_distance", "order", "failure", "low", "high", "folds", "amplitude_m",
@@ -128,7 +137,7 @@ std::string validation_csv(const std::vector<ValidationRow>& rows) {
       const bool is_last = &grid == &grids.back();
       table.rows.push_back(
           {row.protocol, row.parameter_name,
-           row.parameter_name.empty() ? std::string() : csv_number(row.parameter), row.quantity, row.source,
+           csv_parameter(row), row.quantity, row.source,
            row.method, row.is_measured ? "" : csv_number(row.exact), grid.cells > 0 ? std::to_string(grid.cells) : "",
            grid.cells > 0 ? csv_number(grid.value) : "", grid.cells > 0 && !row.is_measured ? csv_number(grid.error) : "",
            row.curve.points.empty() || grid.cells == 0 ? "" : csv_number(grid.distance),

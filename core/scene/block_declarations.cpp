@@ -149,8 +149,8 @@ BlockRow cloth_row() {
                .mesh_doc = "A mesh: its vertices are particles, its edges springs."};
   row.parameters = [](const Scene& scene) {
     std::vector<Parameter> parameters = cloth_parameters(scene.cloth.is_mesh());
-    if (scene.material)
-      std::erase_if(parameters, [](const Parameter& parameter) { return parameter.path == "cloth.mass"; });
+    const char* without = scene.material ? "cloth.mass" : "cloth.cut";
+    std::erase_if(parameters, [&](const Parameter& parameter) { return parameter.path == without; });
     return parameters;
   };
   row.is_present = always(true);

@@ -12,7 +12,7 @@ Field<ClothSheet> cut_field() {
                {.key = "cut",
                 .label = "Cut",
                 .doc = "What is left of the grid: all of it, or the cells whose middle lies within the "
-                       "ellipse of this width and height. Round cloth needs a material.",
+                       "ellipse of this width and height.",
                 .cost = EditCost::restart,
                 .choices = {"none", "round"}});
 }

@@ -176,7 +176,8 @@ BlockRow cloth_row() {
     std::vector<Parameter> parameters = cloth_parameters(scene.cloth.is_mesh());
     std::erase_if(parameters, [&](const Parameter& parameter) {
       if (scene.material) return parameter.path == "cloth.mass";
-      return scene.cloth.is_mesh() && (parameter.path == "cloth.across" || parameter.path == "cloth.down");
+      return parameter.path == "cloth.cut" ||
+             (scene.cloth.is_mesh() && (parameter.path == "cloth.across" || parameter.path == "cloth.down"));
     });
     return parameters;
   };

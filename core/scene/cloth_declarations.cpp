@@ -7,6 +7,16 @@
 namespace cloth {
 namespace {
 
+Field<ClothSheet> cut_field() {
+  return field(&ClothSheet::cut,
+               {.key = "cut",
+                .label = "Cut",
+                .doc = "What is left of the grid: all of it, or the cells whose middle lies within the "
+                       "ellipse of this width and height.",
+                .cost = EditCost::restart,
+                .choices = {"none", "round"}});
+}
+
 Fields<ClothSheet> grid_cloth_fields() {
   using C = ClothSheet;
   const auto count = [](int C::*member, const char* key, const char* label, const char* doc) {
@@ -59,12 +69,7 @@ Fields<ClothSheet> grid_cloth_fields() {
                          .slider_maximum = 2}),
       direction(&C::across, "across", "Across", "Direction of a row."),
       direction(&C::down, "down", "Down", "Direction of a column."),
-      field(&C::cut, {.key = "cut",
-                      .label = "Cut",
-                      .doc = "What is left of the grid: all of it, or the cells whose middle lies within the "
-                             "ellipse of this width and height. Round cloth needs a material.",
-                      .cost = EditCost::restart,
-                      .choices = {"none", "round"}}),
+      cut_field(),
   };
 }
 

@@ -80,11 +80,14 @@ std::string method_settings() {
   return rows;
 }
 
-/// What a cloth from a mesh has in place of rows, columns, lengths and directions.
-std::string mesh_cloth_settings() {
-  Scene scene;
-  scene.cloth.mesh.file = "disc.obj";
-  return row(scene, find_parameter(scene, "cloth.mesh").value(), " of a mesh");
+/// What a cloth of a material has beside, and what a cloth from a mesh has in place of rows, columns, lengths
+/// and directions.
+std::string other_cloth_settings() {
+  Scene cut, mesh;
+  cut.material.emplace();
+  mesh.cloth.mesh.file = "disc.obj";
+  return row(cut, find_parameter(cut, "cloth.cut").value(), " of a material's grid") +
+         row(mesh, find_parameter(mesh, "cloth.mesh").value(), " of a mesh");
 }
 
 std::string section(const Scene& scene, const Block& block) {
@@ -117,7 +120,7 @@ std::string reference_page() {
   for (const Block& block : blocks_of(scene)) {
     page += section(scene, block);
     if (block.path == "integrator") page += method_settings();
-    if (block.path == "cloth") page += mesh_cloth_settings();
+    if (block.path == "cloth") page += other_cloth_settings();
     if (block.path == "springs") page += material_section();
   }
   return page;

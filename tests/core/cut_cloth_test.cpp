@@ -18,6 +18,7 @@
 #include "scene/scene_cloth.h"
 #include "scene/scene_json.h"
 #include "simulation/rest_shape.h"
+#include "simulation/simulation.h"
 #include "support/materials.h"
 #include "support/scenes.h"
 
@@ -246,6 +247,37 @@ TEST(PinnedDisc, IsReadWithItsRuleAndWrittenAgain) {
   ASSERT_TRUE(again.scene);
   EXPECT_EQ(again.scene->cloth.pins, scene.cloth.pins);
   EXPECT_EQ(again.scene->cloth.cut, "round");
+}
+
+TEST(RoundCloth, TakesAndFreesPinsWhileItRuns) {
+  Scene scene = round_sheet(9, 9, 0.05, 0.05);
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.cloth.pins = {NamedPin::top_edge};
+  Simulation simulation(scene);
+  for (int step = 0; step < 50; ++step) simulation.step();
+  const auto pinned = [&] {
+    std::vector<int> found;
+    for (int i = 0; i < simulation.system().size(); ++i)
+      if (simulation.system().pinned[static_cast<std::size_t>(i)] != 0) found.push_back(i);
+    return found;
+  };
+  EXPECT_EQ(pinned(), pinned_particles(scene.cloth));
+  scene.cloth.pins = {PinnedParticle{4, 4}, PinnedDisc{0.06}};
+  simulation.edit(scene);
+  EXPECT_EQ(pinned(), pinned_particles(scene.cloth));
+  const Vec3 held = simulation.state().position[static_cast<std::size_t>(cut_grid(scene.cloth).at(4, 4))];
+  for (int step = 0; step < 50; ++step) simulation.step();
+  EXPECT_EQ(simulation.state().position[static_cast<std::size_t>(cut_grid(scene.cloth).at(4, 4))], held);
+}
+
+/// What is drawn has the cloth's particles, and its threads as edges.
+TEST(RoundCloth, IsDrawnByItsOwnTrianglesAndThreads) {
+  const Simulation simulation(round_sheet(9, 9, 0.05, 0.05));
+  ASSERT_TRUE(simulation.surface());
+  EXPECT_EQ(simulation.surface()->surface.triangles, simulation.system().triangles);
+  EXPECT_EQ(static_cast<std::int64_t>(simulation.surface()->edges.size()),
+            simulation.system().spring_count(SpringFamily::structural));
+  EXPECT_FALSE(Simulation(material_sheet(9, 9, 0.05, 0.05, any_material())).surface());
 }
 
 /// What automatic steps rely on.

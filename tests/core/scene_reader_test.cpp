@@ -180,10 +180,15 @@ TEST(SceneReader, NamesProblemsOfPins) {
   refused("[[3, 0]]", "10: cloth.pins.0 = [3, 0]: must lie in the grid: row 0 to 2, column 0 to 3");
   refused("[\"top-left\", [0, -1]]",
           "22: cloth.pins.1 = [0, -1]: must lie in the grid: row 0 to 2, column 0 to 3");
-  refused("[[0, 1.5]]", "10: cloth.pins.0 = [0,1.5]: must be a name or [row, column] in whole numbers");
-  refused("[[0]]", "10: cloth.pins.0 = [0]: must be a name or [row, column] in whole numbers");
+  refused("[[0, 1.5]]",
+          "10: cloth.pins.0 = [0,1.5]: must be a name, [row, column] in whole numbers or {\"disc\": radius "
+          "in m}");
+  refused(
+      "[[0]]",
+      "10: cloth.pins.0 = [0]: must be a name, [row, column] in whole numbers or {\"disc\": radius in m}");
   refused("[[99999999999, 0]]",
-          "10: cloth.pins.0 = [99999999999,0]: must be a name or [row, column] in whole numbers");
+          "10: cloth.pins.0 = [99999999999,0]: must be a name, [row, column] in whole numbers or {\"disc\": "
+          "radius in m}");
   refused("\"all\"", "9: cloth.pins = \"all\": must be a list");
   EXPECT_EQ(problem_of("{\"cloth\": {\"pins\": [\"middle\"]}}")
                 .rfind("name:1:21: cloth.pins.0 = \"middle\": must be", 0),

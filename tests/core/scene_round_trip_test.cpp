@@ -42,7 +42,7 @@ TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
                                              "cube-ribbon",
                                              "curtain",
                                              "curtain-wool",
-                                             "cusick-cotton",
+                                             "cusick-interlock",
                                              "disc",
                                              "disc-interlock",
                                              "fast-ball",

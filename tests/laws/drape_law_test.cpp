@@ -93,6 +93,10 @@ TEST(DrapeRows, SayWhetherTheFinestGridIsWithinWhatWasPublished) {
   const std::string text = validation_text({row});
   for (const char* part : {"11oz-black-denim", "70 to 90 %", "95.0 %", "82.5 %", "2.00", "4.5 s", "within"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
+  const std::string csv = validation_csv({row});
+  for (const char* part : {"drape,material,11oz-black-denim,,,,,32,0.9",
+                           "drape,material,11oz-black-denim,,,,,64,0.8", ",5,0,0,1.5\r\n"})
+    EXPECT_NE(csv.find(part), std::string::npos) << part << csv;
   row.band = ValueBand{0.283, 0.283};
   EXPECT_NE(validation_text({row}).find("54.2 points above"), std::string::npos);
   row.grids[1].value = 0.99;

@@ -47,7 +47,7 @@ std::vector<GalleryGroup> scene_gallery() {
        {{"flag-cotton", tr("Broadcloth: hardly stretches, and bends as it was measured"), 2.6, "front"},
         {"tablecloth-denim", tr("Denim: few and wide folds, for it is stiff"), 1.0},
         {"cantilever-paper", tr("Bending alone carries it; the same on a finer grid"), 3.0},
-        {"cusick-cotton", tr("The laboratory's test of drape: a round specimen on a disc"), 1.5},
+        {"cusick-interlock", tr("The laboratory's test of drape: a round specimen on a disc"), 1.5},
         {"corners-target", tr("A tight weave: 4 kN/m along warp and weft, soft along the bias"), 1.0},
         {"wind-denim", tr("Each gust lifts even 324 grams a square metre"), 0.6},
         {"curtain-wool", tr("Light wool between its rings"), 0.6},

@@ -191,6 +191,7 @@ GridConvergence read_convergence(const std::filesystem::path& folder, const Json
 
 bool is_of(const Rows& rows, std::size_t row, const ValidationRow& expected) {
   if (row >= rows.size() || rows.text(row, "protocol") != expected.protocol) return false;
+  if (!expected.parameter_text.empty()) return rows.text(row, "parameter") == expected.parameter_text;
   const double parameter = rows.number(row, "parameter", 0.0);
   return expected.parameter_name.empty() || parameter == expected.parameter;
 }

@@ -21,7 +21,7 @@ struct DrapeReading {
   Drape drape;
   ObliqueLocking locking;
   RestShape rest;
-  bool is_minimum = false;  ///< the energy rises in every direction
+  bool is_minimum = false;  ///< the energy rises in every direction; of an elastic cloth
   std::string failure{};    ///< why there is no rest; empty: there is one
 };
 

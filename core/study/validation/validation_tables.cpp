@@ -12,6 +12,7 @@ std::vector<std::string> drape_fields(const std::optional<DrapeFacts>& drape) {
 }
 
 std::string parameter_field(const ValidationRow& row) {
+  if (!row.parameter_text.empty()) return row.parameter_text;
   return row.parameter_name.empty() ? std::string() : csv_number(row.parameter);
 }
 

@@ -209,8 +209,7 @@ ValidationValue read_grid(const Rows& rows, std::size_t row, const ValidationRow
   ValidationValue grid{.cells = cells,
                        .value = rows.number(row, "value"),
                        .error = of.is_measured ? 0 : rows.number(row, "relative_error"),
-                       .distance = rows.number(row, "rms_distance", 0.0),
-                       .seconds = rows.number(row, "wall_s", 0.0)};
+                       .distance = rows.number(row, "rms_distance", 0.0)};
   if (of.is_measured) grid.drape = read_drape(rows, row);
   return grid;
 }

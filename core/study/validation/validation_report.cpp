@@ -89,7 +89,7 @@ std::string exact_text(const std::vector<ValidationRow>& rows) {
     for (std::size_t k = 0; k < validation_cells.size(); ++k)
       line.push_back(k < row.grids.size() ? percent(row.grids[k].error) : "");
     line.push_back(order_of(row));
-    line.push_back(fmt::format("{:.1f} s", row.seconds()));
+    line.push_back(row.seconds() > 0 ? fmt::format("{:.1f} s", row.seconds()) : "");  // a folder has none
     line.push_back(verdict_of(row));
     table.rows.push_back(std::move(line));
   }

@@ -36,13 +36,13 @@ std::vector<std::vector<std::string>> lines_of(const ValidationRow& row) {
         is_found && !row.is_measured ? csv_number(grid.error) : "",
         grid.distance > 0 ? csv_number(grid.distance) : "",
         is_last && std::isfinite(row.order()) ? csv_number(row.order()) : "",
-        is_found ? csv_number(grid.seconds) : "", ""};
+        ""};
     for (std::string& field : drape_fields(grid.drape)) found.push_back(std::move(field));
     found.push_back(is_last ? row.failure : "");
     add(is_found ? std::to_string(grid.cells) : "", found);
   }
   for (const SeedValue& seed : row.seeds) {
-    std::vector<std::string> found{csv_number(seed.value), "", "", "", "", std::to_string(seed.seed)};
+    std::vector<std::string> found{csv_number(seed.value), "", "", "", std::to_string(seed.seed)};
     for (std::string& field : drape_fields(seed.drape)) found.push_back(std::move(field));
     found.emplace_back();
     add(std::to_string(row.seed_cells), found);
@@ -52,7 +52,7 @@ std::vector<std::vector<std::string>> lines_of(const ValidationRow& row) {
 
 CsvTable table_of(const ValidationStudy& study) {
   CsvTable table{{"protocol", "parameter_name", "parameter", "quantity", "source", "method", "exact", "low",
-                  "high", "cells", "value", "relative_error", "rms_distance", "order", "wall_s", "seed",
+                  "high", "cells", "value", "relative_error", "rms_distance", "order", "seed",
                   "folds", "amplitude_m", "cells_that_lock", "failure"},
                  {}};
   for (const ValidationRow& row : study.rows)

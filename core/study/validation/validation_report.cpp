@@ -118,9 +118,8 @@ Json drape_json(const DrapeFacts& drape) {
 Json grid_json(const ValidationRow& row, const ValidationValue& grid) {
   Json one{{"cells", grid.cells}, {"value", grid.value}};
   if (!row.is_measured) one["relative_error"] = grid.error;
-  if (!row.curve.points.empty()) one["rms_distance"] = grid.distance;
+  if (grid.distance > 0) one["rms_distance"] = grid.distance;
   if (grid.drape) one.update(drape_json(*grid.drape));
-  one["wall_s"] = grid.seconds;
   return one;
 }
 

@@ -23,6 +23,18 @@ void sum_points(const BendingRun& run, int first, int count, const double* x, Ch
   }
 }
 
+bool has_single_elements(const BendingRuns& runs) {
+  return std::all_of(runs.begin(), runs.end(), [](const BendingRun& run) { return run.count == 1; });
+}
+
+/// Of a single element.
+Vec3 weighted_sum(const BendingRun& run, const Vec3Field& field) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p)
+    sum += run.coefficient[p] * field[static_cast<std::size_t>(run.first + run.offset[p])];
+  return sum;
+}
+
 template <class Visit>  // visit(run, first, count)
 void for_each_chunk(const BendingRuns& runs, Visit visit) {
   for (const BendingRun& run : runs)
@@ -34,6 +46,10 @@ void for_each_chunk(const BendingRuns& runs, Visit visit) {
 
 double bending_square(const BendingRuns& runs, const Vec3Field& field) {
   double total = 0;
+  if (has_single_elements(runs)) {
+    for (const BendingRun& run : runs) total += run.stiffness * weighted_sum(run, field).squaredNorm();
+    return total;
+  }
   Chunk sum;
   for_each_chunk(runs, [&](const BendingRun& run, int first, int count) {
     for (const double* x : {field.x(), field.y(), field.z()}) {

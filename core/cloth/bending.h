@@ -15,7 +15,7 @@ namespace cloth {
 
 /// `count` elements alike: the points of element e are the particles first + e + offset[p].
 struct BendingRun {
-  static constexpr std::size_t most_points = 6;
+  static constexpr std::size_t most_points = 12;
   int first = 0, count = 0;
   int points = 3;
   std::array<int, most_points> offset{};

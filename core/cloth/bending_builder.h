@@ -28,8 +28,8 @@ class BendingBuilder {
     system_.bending.push_back(run);
   }
 
-  /// A slider beside the element of three neighbours in a line, `spacing` (m) apart, that stands for `area` (m2)
-  /// where it bends on both sides: at a clamp its curvature is twice as large, over half of the area.
+  /// A slider beside the element of three neighbours in a line, `spacing` (m) apart, that stands for `area`
+  /// (m2) where it bends on both sides: at a clamp its curvature is twice as large, over half of the area.
   /// `stiffness` in N m, `yield` in N; none without a yield.
   void add_slider(int before, int middle, int after, double spacing, double area, double stiffness,
                   double yield) {

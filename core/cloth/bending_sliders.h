@@ -1,6 +1,6 @@
-// Friction between the threads of a cloth that bends: its moment lags behind by up to half of the width of the
-// loop that a bending tester draws, 2HB of the KES (Kawabata 1980). Beside the elastic moment B kappa acts a
-// slider, elastic and then plastic:
+// Friction between the threads of a cloth that bends: its moment lags behind by up to half of the width of
+// the loop that a bending tester draws, 2HB of the KES (Kawabata 1980). Beside the elastic moment B kappa
+// acts a slider, elastic and then plastic:
 //
 //     M = B kappa + K (kappa - slip),   |K (kappa - slip)| <= HB
 //

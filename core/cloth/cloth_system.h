@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloth/bending.h"
+#include "cloth/bending_rows.h"
 #include "cloth/bending_sliders.h"
 #include "cloth/membrane.h"
 #include "cloth/spring_runs.h"
@@ -20,6 +21,7 @@ struct ClothSystem {
   std::vector<Triangle> triangles;   ///< of a mesh; none: a grid, whose cells triangles_of() cuts in two
   SpringRuns springs;                ///< in the order structural, shear, flexion
   BendingRuns bending;               ///< of a material
+  BendingRows bending_rows;          ///< of the same elements, on a mesh
   BendingSliders sliders;            ///< of a material with hysteresis
   Membrane membrane;                 ///< of a material on a mesh, whose springs have no stiffness then
   std::vector<double> mass;          ///< kg, one of each particle

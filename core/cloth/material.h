@@ -1,7 +1,8 @@
 // What a cloth is made of, in units that do not depend on its grid: stiffness for each metre of width, mass,
 // bending, damping and drag for each square metre. On a grid it becomes springs, masses and bending elements
 // cell by cell (cloth/material_grid.cpp), so that half of a cell's share is at its edges and a quarter at its
-// corners; on a mesh triangles of constant strain (cloth/material_mesh.h). The warp runs along the sheet's `down`, the weft along its `across`.
+// corners; on a mesh triangles of constant strain (cloth/material_mesh.h). The warp runs along the sheet's
+// `down`, the weft along its `across`.
 #pragma once
 
 #include <optional>
@@ -13,13 +14,15 @@ struct Material {
   double stretch_warp = 0, stretch_weft = 0;  ///< N/m: C11 and C22
   double shear = 0;                           ///< N/m: C66, force over the shear angle 2 e_xy
   double bending_warp = 0, bending_weft = 0;  ///< N m: moment for each metre of width over curvature
-  double twist = 0;            ///< N m: energy of a twisted square metre over the twist's square
-  double hysteresis_warp = 0, hysteresis_weft = 0;  ///< N: 2HB, the width of the loop of moment over curvature
-  double stretch_damping = 0;  ///< s: of a spring's damper over its stiffness
-  double bending_damping = 0;  ///< s
-  double mass_damping = 0;     ///< 1/s
+  double twist = 0;  ///< N m: energy of a twisted square metre over the twist's square
+  double hysteresis_warp = 0,
+         hysteresis_weft = 0;                   ///< N: 2HB, the width of the loop of moment over curvature
+  double stretch_damping = 0;                   ///< s: of a spring's damper over its stiffness
+  double bending_damping = 0;                   ///< s
+  double mass_damping = 0;                      ///< 1/s
   double drag_normal = 0, drag_tangential = 0;  ///< N s/m^3: force of the air for each area and speed
-  /// N/m: C12, pull across over strain along. A grid's springs have as much as they resist shear; "auto" is that.
+  /// N/m: C12, pull across over strain along. A grid's springs have as much as they resist shear; "auto" is
+  /// that.
   std::optional<double> coupling{};
   bool operator==(const Material&) const = default;
 };

@@ -40,8 +40,7 @@ void add_membrane(const LoadedMesh& mesh, const PlaneAxes& axes, const PlaneStif
       at_rest[c] = {arm.dot(one), arm.dot(two)};
     }
     MembraneTriangle triangle = membrane_triangle(t, at_rest, stiffness);
-    for (std::size_t e = 0; e < 3; ++e)
-      triangle.spring[e] = number.at(std::minmax({t[e], t[(e + 1) % 3]}));
+    for (std::size_t e = 0; e < 3; ++e) triangle.spring[e] = number.at(std::minmax({t[e], t[(e + 1) % 3]}));
     system.membrane.push_back(triangle);
   }
 }
@@ -76,6 +75,7 @@ ClothSystem make_material_mesh(const ClothSheet& sheet, const Material& material
                                       .stiffness_1 = slider_stiffness_ratio * material.bending_warp,
                                       .stiffness_2 = slider_stiffness_ratio * material.bending_weft});
   system.bending = std::move(bending.elements);
+  if (!system.bending.empty()) system.bending_rows = bending_rows(system.bending, system.mass.size());
   system.sliders = std::move(bending.sliders);
   return system;
 }

@@ -10,8 +10,7 @@ namespace {
 std::array<double, 3> rates(const MembraneTriangle& t, const Vec3Field& position,
                             const Vec3Field& direction) {
   std::array<double, 3> rate{};
-  for (std::size_t e = 0; e < 3; ++e)
-    rate[e] = 2 * edge_of(t, e, position).dot(edge_of(t, e, direction));
+  for (std::size_t e = 0; e < 3; ++e) rate[e] = 2 * edge_of(t, e, position).dot(edge_of(t, e, direction));
   return rate;
 }
 
@@ -59,8 +58,7 @@ double membrane_energy(const Membrane& membrane, const Vec3Field& position) {
 void add_membrane_force(const Membrane& membrane, const Vec3Field& position, Vec3Field& force) {
   for (const MembraneTriangle& t : membrane) {
     const std::array<double, 3> tension = times_k(t, square_changes(t, position));
-    for (std::size_t e = 0; e < 3; ++e)
-      add_to_ends(t, e, -2 * tension[e] * edge_of(t, e, position), force);
+    for (std::size_t e = 0; e < 3; ++e) add_to_ends(t, e, -2 * tension[e] * edge_of(t, e, position), force);
   }
 }
 
@@ -86,20 +84,18 @@ void add_membrane_turning(const Membrane& membrane, double scale, const Vec3Fiel
                           const Vec3Field& velocity, const Vec3Field& direction, Vec3Field& product) {
   for (const MembraneTriangle& t : membrane) {
     std::array<double, 3> change{};
-    for (std::size_t e = 0; e < 3; ++e)
-      change[e] = 2 * edge_of(t, e, direction).dot(edge_of(t, e, velocity));
+    for (std::size_t e = 0; e < 3; ++e) change[e] = 2 * edge_of(t, e, direction).dot(edge_of(t, e, velocity));
     const std::array<double, 3> share = times_k(t, rates(t, position, velocity)),
                                 share_change = times_k(t, change);
     for (std::size_t e = 0; e < 3; ++e)
-      add_to_ends(t, e,
-                  2 * scale *
-                      (share[e] * edge_of(t, e, direction) + share_change[e] * edge_of(t, e, position)),
-                  product);
+      add_to_ends(
+          t, e, 2 * scale * (share[e] * edge_of(t, e, direction) + share_change[e] * edge_of(t, e, position)),
+          product);
   }
 }
 
-/// Of J^T K J, with a = d_e . u_e and |a| <= s L_e |u_e| at a stretch of s: 2 |K_ef a b| <= |K_ef| (a^2 L_f/L_e +
-/// b^2 L_e/L_f). Of the tension: 2 |K_ef| (s^2 - 1) L_f^2.
+/// Of J^T K J, with a = d_e . u_e and |a| <= s L_e |u_e| at a stretch of s: 2 |K_ef a b| <= |K_ef| (a^2
+/// L_f/L_e + b^2 L_e/L_f). Of the tension: 2 |K_ef| (s^2 - 1) L_f^2.
 std::array<double, 3> edge_bounds(const MembraneTriangle& t) {
   constexpr double square = covered_stretch * covered_stretch;
   std::array<double, 3> bound{};

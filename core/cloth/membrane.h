@@ -25,15 +25,15 @@ struct PlaneStiffness {
 /// Edge e leads from corner e to corner (e + 1) mod 3.
 struct MembraneTriangle {
   Triangle corner{};
-  std::array<int, 3> spring{};                 ///< the number of the spring along each edge
-  std::array<double, 3> rest_square{};         ///< L^2 in m^2
-  std::array<std::array<double, 3>, 3> k{};    ///< K in N/m^3
+  std::array<int, 3> spring{};               ///< the number of the spring along each edge
+  std::array<double, 3> rest_square{};       ///< L^2 in m^2
+  std::array<std::array<double, 3>, 3> k{};  ///< K in N/m^3
   bool operator==(const MembraneTriangle&) const = default;
 };
 using Membrane = std::vector<MembraneTriangle>;
 
-/// A triangle whose corners lie at these places at rest, m, in the directions of `stiffness`. Precondition: its
-/// area is not 0. `spring` is left to the caller.
+/// A triangle whose corners lie at these places at rest, m, in the directions of `stiffness`. Precondition:
+/// its area is not 0. `spring` is left to the caller.
 MembraneTriangle membrane_triangle(const Triangle& corner, const std::array<Eigen::Vector2d, 3>& at_rest,
                                    const PlaneStiffness& stiffness);
 
@@ -93,8 +93,8 @@ void for_each_edge_tension(const Membrane& membrane, const Vec3Field& position, 
   }
 }
 
-/// J^T K J as a sum over pairs of edges of a triangle: visit(t, e, f, 4 K_ef); its part is the block weight d_e
-/// d_f^T between the differences of both edges' ends.
+/// J^T K J as a sum over pairs of edges of a triangle: visit(t, e, f, 4 K_ef); its part is the block weight
+/// d_e d_f^T between the differences of both edges' ends.
 template <class Visit>
 void for_each_edge_pair(const Membrane& membrane, Visit visit) {
   for (const MembraneTriangle& t : membrane)

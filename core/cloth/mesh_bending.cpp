@@ -3,174 +3,137 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
+
+#include "cloth/mesh_patch.h"
 
 namespace cloth {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::Vector2d;
 
-constexpr std::size_t most_points = BendingRun::most_points;
+/// What a weighted sum of vertices' positions is made of.
+struct WeightedVertices {
+  std::vector<int> vertex;
+  MatrixXd weight;  ///< a column for each vertex
 
-/// The corner across each edge of a triangle, that from corner e to corner e + 1; -1: none.
-using Opposites = std::vector<std::array<int, 3>>;
+  explicit WeightedVertices(Index rows) : weight(rows, 0) {}
 
-Opposites opposite_corners(const std::vector<Triangle>& triangles) {
-  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, std::size_t>>> sides;
-  const auto key = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t e = 0; e < 3; ++e)
-      sides[key(triangles[t][e], triangles[t][(e + 1) % 3])].emplace_back(t, e);
-  Opposites opposite(triangles.size(), {-1, -1, -1});
-  for (const auto& [edge, of] : sides) {
-    if (of.size() != 2) continue;  // free, or where more than two meet
-    for (const std::size_t one : {0u, 1u}) {
-      const auto& [t, e] = of[one];
-      const auto& [other, f] = of[1 - one];
-      opposite[t][e] = triangles[other][(f + 2) % 3];
-    }
+  Index column_of(int v) {
+    const auto found = std::find(vertex.begin(), vertex.end(), v);
+    if (found != vertex.end()) return found - vertex.begin();
+    vertex.push_back(v);
+    weight.conservativeResize(Eigen::NoChange, weight.cols() + 1);
+    weight.col(weight.cols() - 1).setZero();
+    return weight.cols() - 1;
   }
-  return opposite;
-}
-
-/// The places of a patch's corners in the triangle's plane, and what the surface of the patch has to meet:
-/// each row of `basis` of its six coefficients is a row of `data` of the corners' positions.
-struct Patch {
-  std::vector<int> corner;
-  std::vector<Vector2d> place;
-  MatrixXd basis, data;
+  template <class Vertices>
+  void add(const Eigen::VectorXd& direction, const Vertices& vertices, const Eigen::RowVectorXd& weights) {
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      weight.col(column_of(vertices[v])) += weights[static_cast<Index>(v)] * direction;
+  }
 };
 
-/// 1, x, y, x^2/2, y^2/2, x y.
-Eigen::Matrix<double, 1, 6> values_at(const Vector2d& p) {
-  Eigen::Matrix<double, 1, 6> row;
-  row << 1, p.x(), p.y(), 0.5 * p.x() * p.x(), 0.5 * p.y() * p.y(), p.x() * p.y();
-  return row;
-}
-/// Derivative along n.
-Eigen::Matrix<double, 1, 6> slopes_at(const Vector2d& p, const Vector2d& n) {
-  Eigen::Matrix<double, 1, 6> row;
-  row << 0, n.x(), n.y(), p.x() * n.x(), p.y() * n.y(), p.x() * n.y() + p.y() * n.x();
-  return row;
-}
-
-class PatchBuilder {
+class CurvatureBuilder {
  public:
-  PatchBuilder(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned, const Triangle& triangle,
-               const std::array<Vec3, 2>& axes)
-      : mesh_(mesh), pinned_(pinned) {
-    const Vec3 middle = (vertex(triangle[0]) + vertex(triangle[1]) + vertex(triangle[2])) / 3;
-    for (const int c : triangle) {
-      const Vec3 arm = vertex(c) - middle;
-      patch_.corner.push_back(c);
-      patch_.place.emplace_back(arm.dot(axes[0]), arm.dot(axes[1]));
+  CurvatureBuilder(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned, const PlaneAxes& axes,
+                   const Eigen::Vector3d& weight)
+      : weight_(weight), neighbours_(neighbours_of(mesh.triangles)) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle& corner = mesh.triangles[t];
+      const auto is_pinned = [&](int c) { return pinned[at(c)] != 0; };
+      stands_.push_back(std::all_of(corner.begin(), corner.end(), is_pinned));
+      triangle_.push_back(flat_triangle(mesh, corner, axes.in(mesh, corner)));
+      const bool has_surface = triangle_[t].area > 0 && !stands_[t];
+      surface_.push_back(has_surface ? patch_surface(mesh, pinned, triangle_[t], neighbours_[t], weight)
+                                     : PatchSurface());
     }
-    patch_.basis.resize(6, 6), patch_.data = MatrixXd::Zero(6, 6);
-    for (Index row = 0; row < 3; ++row) {
-      patch_.basis.row(row) = values_at(patch_.place[static_cast<std::size_t>(row)]);
-      patch_.data(row, row) = 1;
-    }
-    rows_ = 3;
   }
 
-  void add_across(std::size_t e, int opposite) {
-    const std::size_t begin = e, end = (e + 1) % 3;
-    const Vec3 a = vertex(patch_.corner[begin]), along = vertex(patch_.corner[end]) - a;
-    const Vec3 arm = vertex(opposite) - a;
-    const double length = along.norm(), foot = arm.dot(along) / (length * length);
-    const double height = (arm - foot * along).norm();
-    if (!(length > 0) || !(height > 1e-9 * length)) return;
-    const Vector2d from = patch_.place[begin], edge = patch_.place[end] - from;
-    Vector2d out(edge.y(), -edge.x());
-    out /= length;
-    if (out.dot(patch_.place[(e + 2) % 3] - from) > 0) out = -out;
-    const auto point = static_cast<Index>(patch_.corner.size());
-    patch_.corner.push_back(opposite);
-    patch_.place.push_back(from + foot * edge + height * out);
-    if (is_clamped(begin, end, opposite)) {
-      patch_.basis.row(rows_) = height * slopes_at(from + 0.5 * edge, out);
-      patch_.data(rows_, static_cast<Index>(begin)) = foot - 1;
-      patch_.data(rows_, static_cast<Index>(end)) = -foot;
-    } else {
-      patch_.basis.row(rows_) = values_at(patch_.place.back());
-    }
-    patch_.data(rows_, point) = 1;
-    ++rows_;
-  }
+  bool bends(std::size_t t) const { return triangle_[t].area > 0 && !stands_[t]; }
+  double area_of(std::size_t t) const { return triangle_[t].area; }
 
-  Patch finish() {
-    const auto points = static_cast<Index>(patch_.corner.size());
-    patch_.basis = patch_.basis.topRows(rows_).eval();
-    patch_.data = patch_.data.topLeftCorner(rows_, points).eval();
-    return std::move(patch_);
+  /// Rows k_11, k_22, k_12 of triangle t. An edge's slope adds along n n^T; those of free edges are what
+  /// takes the least energy.
+  WeightedVertices curvature_of(std::size_t t) const {
+    const FlatTriangle& triangle = triangle_[t];
+    const Eigen::Matrix<double, 2, 3> plane = triangle.slope();
+    WeightedVertices curvature(3);
+    MatrixXd free(3, 0);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const Eigen::Vector2d n = triangle.outward_of(e);
+      const Eigen::Vector3d direction = triangle.length_of(e) / triangle.area *
+                                        Eigen::Vector3d(n.x() * n.x(), n.y() * n.y(), n.x() * n.y());
+      const AcrossEdge& across = neighbours_[t][e];
+      if (across.triangle < 0 || !(triangle_[at(across.triangle)].area > 0)) {
+        free.conservativeResize(Eigen::NoChange, free.cols() + 1);
+        free.col(free.cols() - 1) = direction;
+        continue;
+      }
+      curvature.add(direction, triangle.corner, -n.transpose() * plane);
+      add_shared_slope(t, e, across, direction, curvature);
+    }
+    if (free.cols() > 0) {
+      const MatrixXd root = weight_.cwiseSqrt().asDiagonal();
+      curvature.weight -=
+          free * (root * free).completeOrthogonalDecomposition().solve(root * curvature.weight);
+    }
+    return curvature;
   }
 
  private:
-  const Vec3& vertex(int i) const { return mesh_.vertices[at(i)]; }
-  bool is_clamped(std::size_t begin, std::size_t end, int opposite) const {
-    return pinned_[at(patch_.corner[begin])] && pinned_[at(patch_.corner[end])] && pinned_[at(opposite)];
+  /// The other triangle's outward direction is this one's inward.
+  void add_shared_slope(std::size_t t, std::size_t e, const AcrossEdge& across,
+                        const Eigen::Vector3d& direction, WeightedVertices& curvature) const {
+    const std::size_t o = at(across.triangle), f = at(across.edge);
+    const FlatTriangle& other = triangle_[o];
+    if (stands_[o]) {
+      curvature.add(direction, other.corner, -other.outward_of(f).transpose() * other.slope());
+      return;
+    }
+    const PatchSurface &mine = surface_[t], &its = surface_[o];
+    curvature.add(0.5 * direction, mine.corner,
+                  mine.slope_at(triangle_[t].middle_of(e), triangle_[t].outward_of(e)));
+    curvature.add(-0.5 * direction, its.corner, its.slope_at(other.middle_of(f), other.outward_of(f)));
   }
 
-  const TriangleMesh& mesh_;
-  const std::vector<std::uint8_t>& pinned_;
-  Patch patch_;
-  Index rows_ = 0;
+  const Eigen::Vector3d weight_;
+  TriangleNeighbours neighbours_;
+  std::vector<bool> stands_;
+  std::vector<FlatTriangle> triangle_;
+  std::vector<PatchSurface> surface_;
 };
 
-/// The curvatures k_11, k_22, k_12 of the surface of least energy, one row each, from the corners' positions.
-/// The triangle's corners give the surface's plane, so that nothing that is flat has any, however the patch is
-/// shaped; what the surface has to meet beside them gives the curvatures.
-MatrixXd curvatures(const Patch& patch, const Eigen::Vector3d& weight) {
-  constexpr double undetermined = 1e-3;  // relative: a direction that the corners hardly tell apart
-  const auto points = static_cast<Index>(patch.corner.size()), rows = patch.basis.rows() - 3;
-  if (rows == 0) return MatrixXd::Zero(3, points);
-  const Eigen::Matrix3d flat = patch.basis.topLeftCorner(3, 3), bent = patch.basis.topRightCorner(3, 3);
-  const MatrixXd by_plane = patch.basis.bottomLeftCorner(rows, 3) * flat.inverse();
-  const MatrixXd matrix = patch.basis.bottomRightCorner(rows, 3) - by_plane * bent;
-  const MatrixXd data = patch.data.bottomRows(rows) - by_plane * patch.data.topRows(3);
-  const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
-  const auto& values = svd.singularValues();
-  Index rank = 0;
-  while (rank < values.size() && values[rank] > undetermined * values[0]) ++rank;
-  const MatrixXd from = svd.matrixV().leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() *
-                        svd.matrixU().leftCols(rank).transpose() * data;
-  if (rank == 3) return from;
-  const MatrixXd free = svd.matrixV().rightCols(3 - rank);
-  const MatrixXd root = weight.cwiseSqrt().asDiagonal();
-  return from - free * (root * free).completeOrthogonalDecomposition().solve(root * from);
-}
-
 /// Elements whose energies sum up to 1/2 area x^T C^T W C x, C the curvatures: as few as there are.
-void add_elements(const Patch& patch, const MatrixXd& curvature, const Eigen::Vector3d& weight, double area,
+void add_elements(const WeightedVertices& curvature, const Eigen::Vector3d& weight, double area,
                   BendingRuns& runs) {
-  const MatrixXd form = weight.cwiseSqrt().asDiagonal() * curvature;
+  const MatrixXd form = weight.cwiseSqrt().asDiagonal() * curvature.weight;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(form * form.transpose());
   const double largest = solver.eigenvalues().maxCoeff();
   for (Index k = 0; k < 3; ++k) {
     if (!(solver.eigenvalues()[k] > 1e-12 * largest)) continue;
     const Eigen::VectorXd c = form.transpose() * solver.eigenvectors().col(k);
     const double unit = c.cwiseAbs().maxCoeff();
-    BendingRun run{.first = 0, .count = 1, .points = static_cast<int>(patch.corner.size())};
-    for (std::size_t p = 0; p < patch.corner.size(); ++p)
-      run.offset[p] = patch.corner[p], run.coefficient[p] = c[static_cast<Index>(p)] / unit;
+    BendingRun run{.first = 0, .count = 1, .points = static_cast<int>(curvature.vertex.size())};
+    for (std::size_t p = 0; p < curvature.vertex.size(); ++p)
+      run.offset[p] = curvature.vertex[p], run.coefficient[p] = c[static_cast<Index>(p)] / unit;
     run.stiffness = area * unit * unit;
     runs.push_back(run);
   }
 }
 
-void add_slider(const Patch& patch, const Eigen::RowVectorXd& curvature, double area, double stiffness,
-                double yield, BendingSliders& sliders) {
-  if (!(yield > 0) || !(curvature.cwiseAbs().maxCoeff() > 0)) return;
-  BendingSlider slider{.points = static_cast<int>(patch.corner.size()),
+/// About the normals of the triangle's own corners, which come first.
+void add_slider(const WeightedVertices& curvature, Index row, double area, double stiffness, double yield,
+                BendingSliders& sliders) {
+  const Eigen::RowVectorXd weight = curvature.weight.row(row);
+  if (!(yield > 0) || weight.size() == 0 || !(weight.cwiseAbs().maxCoeff() > 0)) return;
+  BendingSlider slider{.points = static_cast<int>(curvature.vertex.size()),
                        .normal_points = 3,
                        .area = area,
                        .stiffness = stiffness,
                        .yield = yield};
-  for (std::size_t p = 0; p < patch.corner.size(); ++p)
-    slider.particle[p] = patch.corner[p], slider.coefficient[p] = curvature[static_cast<Index>(p)];
+  for (std::size_t p = 0; p < curvature.vertex.size(); ++p)
+    slider.particle[p] = curvature.vertex[p], slider.coefficient[p] = weight[static_cast<Index>(p)];
   sliders.push_back(slider);
 }
 
@@ -186,24 +149,18 @@ std::array<Vec3, 2> PlaneAxes::in(const TriangleMesh& mesh, const Triangle& tria
 
 MeshBending mesh_bending(const TriangleMesh& mesh, const std::vector<std::uint8_t>& pinned,
                          const PlaneAxes& axes, const PlaneBending& bending, const PlaneFriction& friction) {
+  static_assert(BendingRun::most_points >= 12);  // a triangle, its neighbours and theirs
   const Eigen::Vector3d weight(bending.along_1, bending.along_2, 2 * bending.twist);
   MeshBending result;
   if (!(weight.maxCoeff() > 0)) return result;
-  const Opposites opposite = opposite_corners(mesh.triangles);
+  const CurvatureBuilder builder(mesh, pinned, axes, weight);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& triangle = mesh.triangles[t];
-    const double area = 0.5 * mesh.area_normal(triangle).norm();
-    const auto is_pinned = [&](int corner) { return pinned[at(corner)] != 0; };
-    if (!(area > 0) || std::all_of(triangle.begin(), triangle.end(), is_pinned)) continue;
-    PatchBuilder builder(mesh, pinned, triangle, axes.in(mesh, triangle));
-    for (std::size_t e = 0; e < 3; ++e)
-      if (opposite[t][e] >= 0) builder.add_across(e, opposite[t][e]);
-    const Patch patch = builder.finish();
-    static_assert(most_points >= 6);
-    const MatrixXd curvature = curvatures(patch, weight);
-    add_elements(patch, curvature, weight, area, result.elements);
-    add_slider(patch, curvature.row(0), area, friction.stiffness_1, friction.yield_1, result.sliders);
-    add_slider(patch, curvature.row(1), area, friction.stiffness_2, friction.yield_2, result.sliders);
+    if (!builder.bends(t)) continue;
+    const double area = builder.area_of(t);
+    const WeightedVertices curvature = builder.curvature_of(t);
+    add_elements(curvature, weight, area, result.elements);
+    add_slider(curvature, 0, area, friction.stiffness_1, friction.yield_1, result.sliders);
+    add_slider(curvature, 1, area, friction.stiffness_2, friction.yield_2, result.sliders);
   }
   return result;
 }

@@ -14,7 +14,7 @@ class Bending : public Force {
   }
   bool is_internal() const override { return true; }
   void update(const ClothSystem& system, const Vec3Field& position, double, Vec3Field& force) override {
-    add_bending_product(system.bending, -1, position, force);
+    add_bending_product(system, -1, position, force);
   }
   void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                          Linearisation& to) const override {
@@ -34,7 +34,7 @@ class BendingDamping : public Force {
   }
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
-    add_bending_product(system_->bending, time_, velocity, product);
+    add_bending_product(*system_, time_, velocity, product);
   }
   bool add_node_damping(NodeDamping& damping) const override {
     damping.bending_time += time_;

@@ -95,7 +95,7 @@ void Linearisation::multiply_free(const ClothSystem& system, const Vec3Field& di
       spring += static_cast<std::size_t>(count);
     }
   }
-  if (bending > 0) add_bending_product(system.bending, bending, direction, product);
+  if (bending > 0) add_bending_product(system, bending, direction, product);
   if (!slider_slope.empty()) add_slider_product(system, direction, product);
   if (membrane > 0) add_membrane_product(system.membrane, membrane, membrane_position, direction, product);
 }

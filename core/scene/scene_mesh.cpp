@@ -142,6 +142,10 @@ SharedMesh find_loaded(const Scene* scene, const SceneFolder& folder, const std:
 
 }  // namespace
 
+MeshChoice made_mesh(const std::string& name, const TriangleMesh& surface) {
+  return {name, prepared(name, surface, false)};
+}
+
 std::vector<Problem> load_meshes(Scene& scene, const Scene* known) {
   std::vector<Problem> problems;
   for_each_mesh(scene, [&](const std::string& path, MeshChoice& mesh) {

@@ -25,8 +25,8 @@ Field<Owner> field(MeshChoice Owner::*member, ParameterInfo info) {
           }};
 }
 
-/// The folder of the files that a scene names, measured points too. It is not a value of the scene: scenes from different folders
-/// can be equal.
+/// The folder of the files that a scene names, measured points too. It is not a value of the scene: scenes
+/// from different folders can be equal.
 struct SceneFolder {
   std::string path;       ///< "": the current folder
   bool built_in = false;  ///< a built-in scene: built-in meshes go before files
@@ -36,6 +36,9 @@ struct SceneFolder {
 /// Reads every mesh that the scene names and that is not loaded yet, or takes it from `known` where that has
 /// it. Returns a problem for each mesh that cannot be used.
 std::vector<Problem> load_meshes(Scene& scene, const Scene* known = nullptr);
+
+/// A mesh made in memory, as if it had been read from a file of this name.
+MeshChoice made_mesh(const std::string& name, const TriangleMesh& surface);
 
 /// Warnings about the scene's meshes, a sentence each (a border is unusual only for obstacles):
 /// `obstacles.0.file = "bunny.obj": ...`

@@ -31,7 +31,8 @@ struct RestShape {
 /// Levenberg's shift (Levenberg 1944; More 1978) and Armijo's rule on the energy: the shift falls as long as
 /// whole steps are taken, and rises where the energy does not fall. Where the exact second derivative is not
 /// positive definite, compressed springs lose their part across. Air, damping, contact and the deformation
-/// rate are left out. With hysteresis it is the rest of a cloth that was flat and without weight before. `system` is make_cloth(scene), possibly with other masses or rest lengths.
+/// rate are left out. With hysteresis it is the rest of a cloth that was flat and without weight before.
+/// `system` is make_cloth(scene), possibly with other masses or rest lengths.
 RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Field& from,
                     const RestOptions& options = {});
 

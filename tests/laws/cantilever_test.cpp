@@ -113,7 +113,7 @@ Scene strip_of_triangles(double bending, int cells, double disorder, Random& ran
   constexpr int across = 4;
   const double a = length / cells;
   Scene scene = material_mesh_sheet(cells + 2, across + 1, a * (cells + 1), a * across, disorder,
-                                    *strip(bending, cells).material, random);
+                                    *strip(bending, cells).material, random, 2);
   scene.cloth.origin = Vec3(-a, 0, 0);
   for (int row = 0; row <= across; ++row)
     for (int column = 0; column < 2; ++column)
@@ -129,37 +129,32 @@ double droop_over_width_of_triangles(const Scene& scene, int cells) {
   return -at.z() / at.x();
 }
 
-TEST(HeavyStripOfTriangles, ConvergesWithTheSquareOfTheCellsOnARegularMesh) {
-  Random random;
-  for (const double gamma : {1.0, 5.0, 20.0}) {
-    const double exact = exact::heavy_cantilever(gamma).droop_over_width;
-    double before = 0;
-    for (const int cells : {10, 20, 40}) {
-      const double error =
-          droop_over_width_of_triangles(strip_of_triangles(bending_at_load(gamma), cells, 0, random), cells) -
-          exact;
-      if (cells == 20) EXPECT_LE(std::abs(error), 0.01 * exact) << gamma;
-      if (before != 0) {
-        EXPECT_GE(std::log2(before / error), 1.8) << gamma << ", " << cells << " cells";
-        EXPECT_LE(std::log2(before / error), 2.2) << gamma << ", " << cells << " cells";
-      }
-      before = error;
+/// The error in H/W, within 1 % at 20 cells, and its order.
+void expect_second_order_of_triangles(double gamma, double disorder, double least, double most,
+                                      Random& random) {
+  const double exact = exact::heavy_cantilever(gamma).droop_over_width;
+  double before = 0;
+  for (const int cells : {10, 20, 40}) {
+    const Scene scene = strip_of_triangles(bending_at_load(gamma), cells, disorder, random);
+    const double error = droop_over_width_of_triangles(scene, cells) - exact;
+    if (cells == 20) EXPECT_LE(std::abs(error), 0.01 * exact) << gamma;
+    if (before != 0) {
+      EXPECT_GE(std::log2(before / error), least) << gamma << ", " << cells << " cells";
+      EXPECT_LE(std::log2(before / error), most) << gamma << ", " << cells << " cells";
     }
+    before = error;
   }
 }
 
-/// A patch meets every quadratic surface, but neighbours that are not alike let each other bend more easily. This
-/// does not fall with the cells.
-TEST(HeavyStripOfTriangles, DroopsTooFarOnIrregularMeshesByLessThanAFifth) {
+TEST(HeavyStripOfTriangles, ConvergesWithTheSquareOfTheCellsOnARegularMesh) {
   Random random;
-  for (const double gamma : {1.0, 20.0})
-    for (const int cells : {10, 20, 40}) {
-      const double exact = exact::heavy_cantilever(gamma).droop_over_width;
-      const double found =
-          droop_over_width_of_triangles(strip_of_triangles(bending_at_load(gamma), cells, 0.2, random), cells);
-      std::printf("Gamma %g, %d cells: %.1f %%\n", gamma, cells, 100 * (found / exact - 1));
-      EXPECT_NEAR(found, exact, 0.2 * exact) << gamma << ", " << cells << " cells";
-    }
+  for (const double gamma : {1.0, 5.0, 20.0}) expect_second_order_of_triangles(gamma, 0, 1.8, 2.2, random);
+}
+
+/// No two meshes are alike but in what they converge with.
+TEST(HeavyStripOfTriangles, ConvergesAsFastWithRandomDiagonalsAndMovedVertices) {
+  Random random;
+  for (const double gamma : {1.0, 20.0}) expect_second_order_of_triangles(gamma, 0.2, 1.5, 3, random);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "contact/near_pairs.h"
 #include "geometry/mesh_repair.h"
 #include "scene/obstacle_shape.h"
+#include "scene/scene_mesh.h"
 #include "support/contact_scenes.h"
 #include "support/meshes.h"
 
@@ -36,7 +37,7 @@ TriangleMesh sheets(int count, double apart) {
 
 Scene layers(int count, double thickness) {
   Scene scene;
-  scene.cloth.mesh = mesh_of_scene(sheets(count, std::max(0.01, 1.5 * thickness)));
+  scene.cloth.mesh = made_mesh("made.obj", sheets(count, std::max(0.01, 1.5 * thickness)));
   scene.cloth.rows = 1;
   scene.cloth.columns = static_cast<int>(scene.cloth.mesh.loaded->surface.vertices.size());
   scene.cloth.origin.setZero();

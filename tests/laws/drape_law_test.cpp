@@ -11,6 +11,7 @@
 #include "scene/material_file.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_cloth.h"
+#include "scene/scene_mesh.h"
 #include "study/validation/drape_case.h"
 #include "study/validation/protocols.h"
 #include "study/validation/validation_report.h"
@@ -93,7 +94,7 @@ Scene specimen_of_triangles(const Material& material, int cells) {
         surface.triangles.push_back({vertex(i + 1, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
     }
   Scene scene;
-  scene.cloth = {.mesh = mesh_of_scene(surface),
+  scene.cloth = {.mesh = made_mesh("made.obj", surface),
                  .columns = static_cast<int>(surface.vertices.size()),
                  .rows = 1,
                  .origin = Vec3::Zero(),
@@ -135,8 +136,9 @@ TEST(DrapeCase, OfCottonHasHalfTheFoldsAndStandsOffFurtherWithItsHysteresis) {
   const DrapeReading without = measure_drape_of(elastic, 64, 1),
                      with = measure_drape_of(fabric("cotton-broad"), 64, 1);
   EXPECT_EQ(without.failure + with.failure, "");
-  std::printf("elastic %.1f %%, %d folds; with hysteresis %.1f %%, %d folds\n", 100 * without.drape.coefficient,
-              without.drape.folds, 100 * with.drape.coefficient, with.drape.folds);
+  std::printf("elastic %.1f %%, %d folds; with hysteresis %.1f %%, %d folds\n",
+              100 * without.drape.coefficient, without.drape.folds, 100 * with.drape.coefficient,
+              with.drape.folds);
   EXPECT_GT(with.drape.coefficient, without.drape.coefficient + 0.04);
   EXPECT_LE(with.drape.folds, 5);
   EXPECT_GE(without.drape.folds, 7);
@@ -168,9 +170,11 @@ TEST(DrapeRows, SayWhetherTheFinestGridIsWithinWhatWasPublished) {
   const std::string text = validation_text({row});
   for (const char* part : {"11oz-black-denim", "70 to 90 %", "95.0 %", "82.5 %", "2.00", "4.5 s", "within"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
-  const std::string csv = csv_text(table_of(ValidationStudy{.protocols = {}, .expected = {}, .rows = {row}}), "\n");
-  for (const char* part : {"drape,material,11oz-black-denim,,,,,0.69999999999999996,0.90000000000000002,32,0.9",
-                           ",64,0.84", ",5,0,0,\n"})
+  const std::string csv =
+      csv_text(table_of(ValidationStudy{.protocols = {}, .expected = {}, .rows = {row}}), "\n");
+  for (const char* part :
+       {"drape,material,11oz-black-denim,,,,,0.69999999999999996,0.90000000000000002,32,0.9", ",64,0.84",
+        ",5,0,0,\n"})
     EXPECT_NE(csv.find(part), std::string::npos) << part << csv;
   row.band = ValueBand{0.283, 0.283};
   EXPECT_NE(validation_text({row}).find("54.2 points above"), std::string::npos);

@@ -13,6 +13,7 @@
 #include "measure/spectrum.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_json.h"
+#include "scene/scene_mesh.h"
 #include "simulation/recorder.h"
 #include "simulation/simulation.h"
 #include "simulation/time_step.h"
@@ -28,7 +29,7 @@ namespace {
 
 Scene mesh_scene(const TriangleMesh& surface) {
   Scene scene;
-  scene.cloth.mesh = mesh_of_scene(surface);
+  scene.cloth.mesh = made_mesh("made.obj", surface);
   scene.cloth.rows = 1;
   scene.cloth.columns = static_cast<int>(surface.vertices.size());
   scene.cloth.mass = 1e-2 * scene.cloth.columns;

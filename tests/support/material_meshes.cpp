@@ -1,17 +1,18 @@
 #include "support/material_meshes.h"
 
+#include "scene/scene_mesh.h"
 #include "support/meshes.h"
 
 namespace cloth::test {
 
 Scene material_mesh_sheet(int columns, int rows, double width, double height, double disorder,
-                          const Material& material, Random& random) {
+                          const Material& material, Random& random, int straight) {
   const double a = width / (columns - 1), b = height / (rows - 1);
   TriangleMesh surface;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       Vec3 place(a * column, -b * row, 0);
-      if (column > 0 && column + 1 < columns) place.x() += disorder * a * random.uniform(-1, 1);
+      if (column >= straight && column + 1 < columns) place.x() += disorder * a * random.uniform(-1, 1);
       if (row > 0 && row + 1 < rows) place.y() += disorder * b * random.uniform(-1, 1);
       surface.vertices.push_back(place);
     }
@@ -27,7 +28,7 @@ Scene material_mesh_sheet(int columns, int rows, double width, double height, do
       }
     }
   Scene scene;
-  scene.cloth.mesh = mesh_of_scene(surface);
+  scene.cloth.mesh = made_mesh("made.obj", surface);
   scene.cloth.rows = 1;
   scene.cloth.columns = static_cast<int>(surface.vertices.size());
   scene.cloth.origin = Vec3::Zero();

@@ -6,10 +6,10 @@
 
 namespace cloth::test {
 
-/// A flat sheet `width` by `height` from the origin along x and -y, in cells that are cut in two along the one
-/// or the other diagonal; `disorder`: by how much of a cell particles inside are moved about at random. Warp
-/// along -y. No physics but the material's own.
+/// A flat sheet `width` by `height` from the origin along x and -y, in cells that are cut in two along the
+/// one or the other diagonal; `disorder`: by how much of a cell particles inside are moved about at random.
+/// Warp along -y. The first `straight` columns stay where they are. No physics but the material's own.
 Scene material_mesh_sheet(int columns, int rows, double width, double height, double disorder,
-                          const Material& material, Random& random);
+                          const Material& material, Random& random, int straight = 1);
 
 }  // namespace cloth::test

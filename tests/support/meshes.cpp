@@ -7,8 +7,6 @@
 #include <tuple>
 
 #include "geometry/at.h"
-#include "geometry/mesh_repair.h"
-#include "scene/scene_mesh.h"
 #include "support/direct_run.h"
 #include "support/scenes.h"
 
@@ -90,21 +88,6 @@ ClothSystem shuffled_grid(int rows, int columns, Random& random) {
   scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20, .damping = 0};
   scene.cloth.pins = {NamedPin::top_left, NamedPin::top_right};
   return renumbered(DirectRun(scene, "verlet").system, random_order(rows * columns, random));
-}
-
-MeshChoice mesh_of_scene(const TriangleMesh& surface) {
-  auto mesh = std::make_shared<LoadedMesh>();
-  mesh->file = "made.obj";
-  mesh->surface = surface;
-  for (const MeshEdge& edge : unique_edges(surface)) {
-    mesh->edges.push_back({edge.from, edge.to});
-    const auto [a, b] = std::minmax(edge.opposite[0], edge.opposite[1]);
-    if (a >= 0) mesh->hinges.push_back({a, b});
-  }
-  std::sort(mesh->hinges.begin(), mesh->hinges.end());
-  mesh->hinges.erase(std::unique(mesh->hinges.begin(), mesh->hinges.end()), mesh->hinges.end());
-  for (const Vec3& vertex : surface.vertices) mesh->bounds.extend(vertex);
-  return {mesh->file, mesh};
 }
 
 std::vector<int> random_order(int size, Random& random) {

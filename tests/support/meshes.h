@@ -30,9 +30,6 @@ ClothSystem irregular_triangulation(int rows, int columns, double stiffness, boo
 /// stiffnesses. Numbered at random.
 ClothSystem shuffled_grid(int rows, int columns, Random& random);
 
-/// A surface as the mesh of a scene's cloth, under the name of a file that is not there.
-MeshChoice mesh_of_scene(const TriangleMesh& surface);
-
 /// The same cloth with its particles in this order: springs one by one, by family and then by their ends. A
 /// grid becomes a mesh of one row.
 ClothSystem renumbered(const ClothSystem& system, const ParticleOrder& order);

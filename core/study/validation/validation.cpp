@@ -50,7 +50,7 @@ double ValidationRow::order() const {
     const Richardson found = richardson(values);
     return found.verdict == GridVerdict::converging ? found.order : nan;
   }
-  if (grids.size() < 2 || promise == Promise::exact) return nan;
+  if (grids.size() < 2 || promise == Promise::exact || promise == Promise::error) return nan;
   const bool has_curve = grids.back().distance > 0;
   const auto error = [&](const ValidationValue& grid) { return has_curve ? grid.distance : grid.error; };
   const double coarse = error(grids[grids.size() - 2]), fine = error(grids.back());

@@ -52,8 +52,8 @@ struct SeedValue {
   DrapeFacts drape{};
 };
 
-/// Of an error with 20 cells of at most one per cent, and of an order in the cells from 1.8 to 2.2; or of no
-/// error but rounding's on any grid.
+/// Of an error with 20 cells of at most one per cent, with an order in the cells from 1.8 to 2.2 or without
+/// one; or of no error but rounding's on any grid.
 enum class Promise { none, error, second_order, exact };
 inline constexpr double most_rounding = 1e-9;  ///< relative
 
@@ -79,8 +79,8 @@ struct ValidationRow {
   std::string failure{};  ///< where a value could not be found
 
   /// From the finest two grids' distances from the curve, and where there is no curve from their errors;
-  /// not a number where these change their sign, or are rounding's alone. Where there is no exact value: from
-  /// the finest three grids, not a number where they do not converge.
+  /// not a number where these change their sign, and where no order is promised. Where there is no exact
+  /// value: from the finest three grids, not a number where they do not converge.
   double order() const;
   double seconds() const;  ///< that its grids took on the clock
   /// Nothing failed, and what is promised is so.

@@ -46,9 +46,11 @@ TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
                                              "disc",
                                              "disc-interlock",
                                              "fast-ball",
+                                             "fast-ball-denim",
                                              "flag",
                                              "flag-cotton",
                                              "fold",
+                                             "fold-ribbon",
                                              "free-fall",
                                              "pendulum",
                                              "rectangle",
@@ -60,6 +62,7 @@ TEST(BuiltinScenes, AreThoseOfTheDocumentation) {
                                              "tablecloth",
                                              "tablecloth-denim",
                                              "twist",
+                                             "twist-ponte",
                                              "wind",
                                              "wind-denim"}));
 }

@@ -36,4 +36,10 @@ Scene material_mesh_sheet(int columns, int rows, double width, double height, do
   return scene;
 }
 
+std::vector<Scene> meshes_of_a_sheet(double width, double height, const Material& material, Random& random) {
+  return {material_mesh_sheet(4, 3, width, height, 0, material, random),
+          material_mesh_sheet(7, 9, width, height, 0.3, material, random),
+          material_mesh_sheet(13, 9, width, height, 0.3, material, random)};
+}
+
 }  // namespace cloth::test

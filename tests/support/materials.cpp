@@ -1,5 +1,13 @@
 #include "support/materials.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "measure/energy.h"
+#include "scene/scene_cloth.h"
+#include "support/direct_run.h"
+#include "support/reference.h"
 #include "support/scenes.h"
 
 namespace cloth::test {
@@ -20,6 +28,54 @@ Scene material_sheet(int rows, int columns, double across, double down, const Ma
   scene.cloth.height = down * (rows - 1);
   scene.material = material;
   return scene;
+}
+
+std::vector<Scene> grids_of_a_sheet(const Material& material) {
+  std::vector<Scene> scenes;
+  for (const auto& [rows, columns] : {std::pair{3, 4}, {5, 7}, {9, 7}, {7, 13}, {9, 13}})
+    scenes.push_back(material_sheet(rows, columns, 0.6 / (columns - 1), 0.4 / (rows - 1), material));
+  return scenes;
+}
+
+Vec3Field mapped(const Vec3Field& from, const Eigen::Matrix3d& by) {
+  Vec3Field to(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) to.set(i, by * from[i]);
+  return to;
+}
+
+double elastic_energy_of(const ClothSystem& system, const Vec3Field& position) {
+  const ClothState state{.position = position, .velocity = Vec3Field(position.size())};
+  return measure_energy(system, Vec3::Zero(), state).elastic;
+}
+
+Vec3Field force_of(const Scene& scene, const Vec3Field& position) {
+  const ClothSystem system = make_cloth(scene);
+  ForceModel forces(scene, system);
+  Vec3Field force(position.size());
+  forces.update(position, 0);
+  forces.force(position, Vec3Field(position.size()), force);
+  return force;
+}
+
+void expect_the_same_by_every_method(const Scene& scene) {
+  const auto end_by = [&](const std::string& method, double step) {
+    DirectRun run(scene, exactly(method, step));
+    run.advance(static_cast<int>(std::lround(0.04 / step)), step);
+    return run.state.position;
+  };
+  const Vec3Field exact = end_by("rk4", 1e-5);
+  for (const auto& [method, step, order] : {std::tuple{"semi-implicit-euler", 8e-5, 1},
+                                            {"verlet", 1e-4, 2},
+                                            {"implicit-euler", 1e-4, 1},
+                                            {"implicit-midpoint", 2e-4, 2},
+                                            {"bdf2", 2e-4, 2},
+                                            {"projective", 1e-4, 1},
+                                            {"xpbd", 1e-4, 1}}) {
+    const double coarse = rms_distance(end_by(method, step), exact),
+                 fine = rms_distance(end_by(method, step / 2), exact);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.25) << method;
+    EXPECT_LE(coarse, 2e-3) << method;
+  }
 }
 
 Eigen::MatrixXd bending_hessian(const ClothSystem& system) {

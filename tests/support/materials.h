@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "cloth/cloth_system.h"
 #include "scene/scene.h"
@@ -14,6 +15,20 @@ Material any_material();
 /// A sheet in the plane z = 0 of cells `across` by `down` metres, hanging from the origin, without physics
 /// but the material's own.
 Scene material_sheet(int rows, int columns, double across, double down, const Material& material);
+
+/// Grids of one sheet, 0.6 m by 0.4 m, with cells of any shape.
+std::vector<Scene> grids_of_a_sheet(const Material& material);
+
+Vec3Field mapped(const Vec3Field& from, const Eigen::Matrix3d& by);
+
+double elastic_energy_of(const ClothSystem& system, const Vec3Field& position);  ///< J
+
+/// What all forces of the scene exert at rest in this shape, N.
+Vec3Field force_of(const Scene& scene, const Vec3Field& position);
+
+/// Every method goes to where RK4's small steps go after 0.04 s, with its order; in steps from 0.08 to 0.2
+/// ms.
+void expect_the_same_by_every_method(const Scene& scene);
 
 /// d2E/dx2 of the bending elements, from their definition; particle i's component a is row 3 i + a.
 Eigen::MatrixXd bending_hessian(const ClothSystem& system);

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "listed_test.h"
+#include "patience.h"
 #include "window_bench.h"
 
 namespace clothlab::test::beside_test {
@@ -107,7 +108,7 @@ class BesideTest : public QObject {
           told->count_down();
         });
     QVERIFY(result.stopped);
-    QTRY_VERIFY(told->try_wait());
+    QTRY_VERIFY_WITH_TIMEOUT(told->try_wait(), patience);
   }
 
   void a_failed_allocation_or_an_exception_is_a_message() {
@@ -141,7 +142,7 @@ class BesideTest : public QObject {
     }
     QVERIFY(!*done);
     held->release();
-    QTRY_VERIFY(*done);
+    QTRY_VERIFY_WITH_TIMEOUT(*done, patience);
   }
 
   void points_that_are_no_longer_wanted_are_not_written() {

@@ -11,6 +11,7 @@
 
 #include "main_window/lab_window.h"
 #include "params/exact_field.h"
+#include "patience.h"
 #include "scene/builtin_scenes.h"
 
 namespace clothlab::test {
@@ -42,7 +43,7 @@ class CompareBench {
   explicit CompareBench(const cloth::Comparison& comparison = small_comparison()) {
     window.setAsksToSave(false);
     window.show();
-    if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
+    if (!QTest::qWaitForWindowActive(&window, patience)) qFatal("the window was never active");
     window.document().load(comparison);
     window.simulation().settle();
   }

@@ -6,6 +6,7 @@
 
 #include "compare_bench.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "support/timed_application.h"
 #include "theme/theme.h"
 #include "viewport/drawing_turns.h"
@@ -119,7 +120,7 @@ class CompareDrawingTest : public QObject {
     std::vector<std::int64_t> events[3];
     Patient first(4, events[0]), second(4, events[1]), gone_early(4, events[2]);
     DrawingTurns::ofTheApplication().leave(&gone_early);
-    QTRY_COMPARE(events[1].size(), std::size_t{4});
+    QTRY_COMPARE_WITH_TIMEOUT(events[1].size(), std::size_t{4}, patience);
     QCOMPARE(events[0].size(), std::size_t{4});
     QVERIFY(events[2].empty());
     for (std::size_t turn = 0; turn < 4; ++turn) {
@@ -133,7 +134,7 @@ class CompareDrawingTest : public QObject {
     OneColour canvases[] = {OneColour(Qt::red), OneColour(Qt::green), OneColour(Qt::blue)};
     for (int round = 1; round <= 5; ++round) {
       for (OneColour& canvas : canvases) canvas.redraw();
-      for (OneColour& canvas : canvases) QTRY_VERIFY(canvas.shown() >= round);
+      for (OneColour& canvas : canvases) QTRY_VERIFY_WITH_TIMEOUT(canvas.shown() >= round, patience);
       QTest::qWait(50);
       for (OneColour& canvas : canvases) QVERIFY(canvas.shows_its_colour());
     }

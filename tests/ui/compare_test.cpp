@@ -15,6 +15,7 @@
 #include "io/text_file.h"
 #include "listed_test.h"
 #include "main_window/lab_window.h"
+#include "patience.h"
 #include "theme/theme.h"
 #include "viewport/picking.h"
 
@@ -40,15 +41,13 @@ class CompareTest : public QObject {
   Q_OBJECT
 
  private Q_SLOTS:
-  void initTestCase() {
-    apply_theme(*qApp, false);
-  }
+  void initTestCase() { apply_theme(*qApp, false); }
 
   void the_main_window_compares_the_scene_being_edited_with_two_other_methods() {
     LabWindow window;
     window.setAsksToSave(false);
     window.show();
-    QVERIFY(QTest::qWaitForWindowActive(&window));
+    QVERIFY(QTest::qWaitForWindowActive(&window, patience));
     window.openScene("corners-free");
     window.document().setParameter("springs.structural", 123.0);
     window.findChild<QAction*>("compareMethods")->trigger();

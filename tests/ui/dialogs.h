@@ -14,6 +14,8 @@
 #include <deque>
 #include <functional>
 
+#include "patience.h"
+
 namespace clothlab::test {
 
 class Answers {
@@ -65,7 +67,6 @@ class Answers {
       const auto is_visible = [](const QWidget* window) { return window->isVisible(); };
       return QApplication::activeWindow() || std::none_of(windows.begin(), windows.end(), is_visible);
     };
-    constexpr int patience = 30000;  // ms; a busy machine's window manager may take seconds
     return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(takes_keys, patience);
   }
   QString what_went_wrong() const {

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "listed_test.h"
+#include "patience.h"
 #include "theme/theme.h"
 #include "viewport/gl/gl_probe.h"
 #include "viewport/gl_canvas.h"
@@ -102,13 +103,14 @@ class DrawingPaceTest : public QObject {
     if (!gl_abilities().usable || !gl_abilities().software) QSKIP("the processor does not draw here");
     SlowCanvas canvas(static_cast<int>(1.5 * long_ms));
     canvas.setMoving(true);
-    QTRY_VERIFY(!canvas.drawings().empty() && canvas.drawings().back().fineness == 0.5);
+    QTRY_VERIFY_WITH_TIMEOUT(!canvas.drawings().empty() && canvas.drawings().back().fineness == 0.5,
+                             patience);
     QVERIFY(canvas.drawings().front().fineness == 1);
     const QSize coarse = canvas.drawings().back().viewport, whole = canvas.drawings().front().viewport;
     QCOMPARE(coarse, whole / 2);
     QCOMPARE(canvas.grab().size(), whole);
     canvas.setMoving(false);
-    QTRY_VERIFY(!canvas.drawings().back().quick);
+    QTRY_VERIFY_WITH_TIMEOUT(!canvas.drawings().back().quick, patience);
     QTest::qWait(400);  // nothing comes after it
     QVERIFY(!canvas.drawings().back().quick);
     QCOMPARE(canvas.drawings().back().viewport, whole);

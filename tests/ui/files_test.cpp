@@ -10,6 +10,7 @@
 #include "dialogs.h"
 #include "listed_test.h"
 #include "main_window/lab_files.h"
+#include "patience.h"
 #include "scene/builtin_scenes.h"
 #include "studies/studies_panel.h"
 #include "study/study_recorder.h"
@@ -59,7 +60,7 @@ void drop(QWidget& on, const QString& path) {
 /// To the window, which a dialog may just have covered.
 void press(QWidget& window, Qt::Key key, Qt::KeyboardModifiers modifiers) {
   window.activateWindow();
-  if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
+  if (!QTest::qWaitForWindowActive(&window, patience)) qFatal("the window was never active");
   QTest::keyClick(&window, key, modifiers);
 }
 
@@ -304,10 +305,10 @@ class FilesTest : public QObject {
   void quit_asks_every_window_and_cancel_keeps_all() {
     open_first_window("corners-free");
     LabWindow* main = other();
-    QVERIFY(main && QTest::qWaitForWindowActive(main));
+    QVERIFY(main && QTest::qWaitForWindowActive(main, patience));
     press(*main, Qt::Key_M, Qt::ControlModifier);  // compare methods: in no file yet
     LabWindow* compare = other(main);
-    QVERIFY(compare && QTest::qWaitForWindowActive(compare));
+    QVERIFY(compare && QTest::qWaitForWindowActive(compare, patience));
     main->document().setParameter("springs.structural", 123.0);
     {
       Answers answers;
@@ -321,10 +322,10 @@ class FilesTest : public QObject {
     Answers answers;
     answers.press("Discard").press("Discard");
     main->activateWindow();
-    QVERIFY(QTest::qWaitForWindowActive(main));
+    QVERIFY(QTest::qWaitForWindowActive(main, patience));
     press(*main, Qt::Key_Q, Qt::ControlModifier);
     QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
-    QTRY_VERIFY(LabWindow::all().empty());
+    QTRY_VERIFY_WITH_TIMEOUT(LabWindow::all().empty(), patience);
   }
 
  private:
@@ -348,8 +349,8 @@ class FilesTest : public QObject {
       answers.type(path("foo")).press("Replace");
       save();
       QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
-      QTRY_VERIFY(content_of(there) != "old");
-      QTRY_VERIFY2(said().contains(there), qPrintable(said()));
+      QTRY_VERIFY_WITH_TIMEOUT(content_of(there) != "old", patience);
+      QTRY_VERIFY2_WITH_TIMEOUT(said().contains(there), qPrintable(said()), patience);
     }
     Answers answers;
     answers.type(path("cmp.xyz")).press("OK").leave();

@@ -23,6 +23,7 @@
 #include "params/slider_scale.h"
 #include "params/wording.h"
 #include "part_of.h"
+#include "patience.h"
 
 namespace clothlab::test {
 
@@ -84,7 +85,7 @@ class FormFixture : public QObject {
     panel().show();
     QVERIFY(QTest::qWaitForWindowExposed(panel_.get()));
     panel().activateWindow();
-    QVERIFY(QTest::qWaitForWindowActive(panel_.get()));
+    QVERIFY(QTest::qWaitForWindowActive(panel_.get(), patience));
   }
   void close() {
     panel_.reset();

@@ -3,6 +3,7 @@
 
 #include "form_fixture.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "window_bench.h"
 
 namespace clothlab::test::form_search_test {
@@ -84,7 +85,7 @@ class FormSearchTest : public FormFixture {
     bench.window.findChild<QDockWidget*>("parametersDock")->hide();
     QTest::keyClick(&bench.window, Qt::Key_F, Qt::ControlModifier);
     auto* field = bench.window.parameters().findChild<QLineEdit*>("search");
-    QTRY_VERIFY(field->isVisible() && field->hasFocus());
+    QTRY_VERIFY_WITH_TIMEOUT(field->isVisible() && field->hasFocus(), patience);
   }
 };
 

@@ -286,7 +286,7 @@ class FormTest : public FormFixture {
       window->show();
       QVERIFY(QTest::qWaitForWindowExposed(window.get()));
       window->activateWindow();
-      QVERIFY(QTest::qWaitForWindowActive(window.get()));
+      QVERIFY(QTest::qWaitForWindowActive(window.get(), patience));
       auto* field = form->findChild<QWidget*>("param:springs.structural")->findChild<QLineEdit*>("field");
       field->setFocus();
       QTest::keyClicks(field, "9");
@@ -310,3 +310,4 @@ const Listed listed{"form_test", test_main<FormTest>};
 }  // namespace clothlab::test::form_test
 
 #include "form_test.moc"
+#include "patience.h"

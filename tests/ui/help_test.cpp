@@ -8,6 +8,7 @@
 #include "io/machine.h"
 #include "kernels/instruction_set.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "window_bench.h"
 
 namespace clothlab::test::help_test {
@@ -16,22 +17,20 @@ class HelpTest : public QObject {
   Q_OBJECT
 
  private Q_SLOTS:
-  void initTestCase() {
-    apply_theme(*qApp, false);
-  }
+  void initTestCase() { apply_theme(*qApp, false); }
 
   void f1_shows_the_guide_and_a_second_time_the_same_window() {
     WindowBench bench;
     QTest::keyClick(&bench.window, Qt::Key_F1);
     HelpWindow* help = help_of(bench);
     QVERIFY(help);
-    QTRY_COMPARE(QApplication::activeWindow(), help);
+    QTRY_COMPARE_WITH_TIMEOUT(QApplication::activeWindow(), help, patience);
     QVERIFY(help->browser().toPlainText().startsWith("The window"));
     QVERIFY(!help->browser().toPlainText().contains("pictures/"));
     QTest::keyClick(&help->browser(), Qt::Key_Escape);
     QVERIFY(!help->isVisible());
     bench.window.activateWindow();
-    QVERIFY(QTest::qWaitForWindowActive(&bench.window));
+    QVERIFY(QTest::qWaitForWindowActive(&bench.window, patience));
     QTest::keyClick(&bench.window, Qt::Key_F1);
     QCOMPARE(help_of(bench), help);
     QVERIFY(help->isVisible());
@@ -74,7 +73,7 @@ class HelpTest : public QObject {
   void words_are_found_and_found_again_from_the_start() {
     WindowBench bench;
     HelpWindow& help = shown(bench, "helpGlossary");
-    QTRY_COMPARE(QApplication::activeWindow(), &help);
+    QTRY_COMPARE_WITH_TIMEOUT(QApplication::activeWindow(), &help, patience);
     QTest::keyClick(&help.browser(), Qt::Key_F, Qt::ControlModifier);
     auto* words = help.findChild<QLineEdit*>("helpFind");
     QCOMPARE(help.focusWidget(), words);

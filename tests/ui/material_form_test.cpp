@@ -9,6 +9,7 @@
 
 #include "dialogs.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "scene/material_file.h"
 #include "window_bench.h"
 
@@ -50,7 +51,7 @@ class Bench {
     QVERIFY(index > 0);
     QTest::mouseClick(presets(), Qt::LeftButton);
     QAbstractItemView* list = presets()->view();
-    QTRY_VERIFY(list->isVisible());
+    QTRY_VERIFY_WITH_TIMEOUT(list->isVisible(), patience);
     const QModelIndex entry = presets()->model()->index(index, 0);
     QTest::qWait(QApplication::doubleClickInterval() + 50);  // a quick click would only open the list
     QPoint at;
@@ -60,10 +61,10 @@ class Bench {
       at.setX(20);
       return list->viewport()->rect().contains(at);
     };
-    QTRY_VERIFY2(is_in_sight(), name);
+    QTRY_VERIFY2_WITH_TIMEOUT(is_in_sight(), name, patience);
     QTest::mouseMove(list->viewport(), at);
     QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, at);
-    QTRY_VERIFY2(!list->isVisible(), name);
+    QTRY_VERIFY2_WITH_TIMEOUT(!list->isVisible(), name, patience);
     bench_->settle();
   }
 
@@ -157,17 +158,17 @@ class MaterialFormTest : public QObject {
       Answers answers;
       answers.type(b.path("mine.material.json"));
       b.act("material:save");
-      QTRY_VERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+      QTRY_VERIFY2_WITH_TIMEOUT(answers.came_true(), qPrintable(answers.what_went_wrong()), patience);
     }
-    QTRY_VERIFY(QFile::exists(b.path("mine.material.json")));
+    QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(b.path("mine.material.json")), patience);
     b.choose("royal-target");
     {
       Answers answers;
       answers.type(b.path("mine.material.json"));
       b.act("material:open");
-      QTRY_VERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+      QTRY_VERIFY2_WITH_TIMEOUT(answers.came_true(), qPrintable(answers.what_went_wrong()), patience);
     }
-    QTRY_VERIFY(b.material() == saved);
+    QTRY_VERIFY_WITH_TIMEOUT(b.material() == saved, patience);
   }
 
   void a_bad_file_is_answered_with_its_place_and_rule() {
@@ -177,7 +178,7 @@ class MaterialFormTest : public QObject {
     Answers answers;
     answers.type(b.path("bad.material.json"));
     b.act("material:open");
-    QTRY_VERIFY(b.rule()->isVisible());
+    QTRY_VERIFY_WITH_TIMEOUT(b.rule()->isVisible(), patience);
     QVERIFY2(b.rule()->text().contains("bad.material.json:1:32"), qPrintable(b.rule()->text()));
     QVERIFY(b.material() == preset("gray-interlock"));
   }
@@ -190,16 +191,16 @@ class MaterialFormTest : public QObject {
       Answers answers;
       answers.press("Cancel");
       QTest::mouseClick(b.button(), Qt::LeftButton);
-      QTRY_VERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+      QTRY_VERIFY2_WITH_TIMEOUT(answers.came_true(), qPrintable(answers.what_went_wrong()), patience);
     }
     QVERIFY(b.scene() == before);
     {
       Answers answers;
       answers.press("Turn springs into a material");
       QTest::mouseClick(b.button(), Qt::LeftButton);
-      QTRY_VERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+      QTRY_VERIFY2_WITH_TIMEOUT(answers.came_true(), qPrintable(answers.what_went_wrong()), patience);
     }
-    QTRY_VERIFY(b.material());
+    QTRY_VERIFY_WITH_TIMEOUT(b.material(), patience);
     b.bench().settle();
     QVERIFY(!b.scene().springs);
     QVERIFY(std::abs(b.material()->stretch_warp - 340) < 1e-9);
@@ -210,9 +211,9 @@ class MaterialFormTest : public QObject {
       Answers answers;
       answers.press("Turn the material into springs");
       b.act("material:springs");
-      QTRY_VERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
+      QTRY_VERIFY2_WITH_TIMEOUT(answers.came_true(), qPrintable(answers.what_went_wrong()), patience);
     }
-    QTRY_VERIFY(b.scene().springs);
+    QTRY_VERIFY_WITH_TIMEOUT(b.scene().springs, patience);
     QVERIFY(std::abs(b.scene().springs->structural - 240) < 1e-9);
     b.document().undoStack().undo();
     b.document().undoStack().undo();
@@ -232,7 +233,7 @@ class MaterialFormTest : public QObject {
     });
     watch.start(50);
     QTest::mouseClick(b.button(), Qt::LeftButton);
-    QTRY_VERIFY(!said.isEmpty());
+    QTRY_VERIFY_WITH_TIMEOUT(!said.isEmpty(), patience);
     QVERIFY2(said.contains("cube of the curvature") && said.contains("half the springs"), qPrintable(said));
   }
 };

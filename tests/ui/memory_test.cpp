@@ -11,6 +11,7 @@
 #include "dialogs.h"
 #include "listed_test.h"
 #include "main_window/autosave.h"
+#include "patience.h"
 #include "window_bench.h"
 
 namespace clothlab::test::memory_test {
@@ -127,7 +128,7 @@ class MemoryTest : public QObject {
     QTest::qWait(150);
     QVERIFY(bench.window.autosave().file().isEmpty());  // nothing was changed
     bench.window.document().setParameter("springs.structural", 123.0);
-    QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
+    QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(bench.window.autosave().file()), patience);
     QVERIFY(Autosave::found().empty());  // its process lives
     const QString kept = bench.window.autosave().file();
     bench.action("undo")->trigger();
@@ -141,7 +142,7 @@ class MemoryTest : public QObject {
       CompareBench bench;  // ends without being closed
       bench.window.autosave().setInterval(50);
       bench.window.document().setParameter("springs.structural", 123.0);
-      QTRY_VERIFY(QFile::exists(bench.window.autosave().file()));
+      QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(bench.window.autosave().file()), patience);
       left = bench.window.autosave().file();
     }
     QCOMPARE(Autosave::found().size(), size_t(1));
@@ -178,12 +179,12 @@ class MemoryTest : public QObject {
     auto* close = first.window.notice().findChild<QAbstractButton*>("noticeClose");
     QVERIFY(close);
     QTest::mouseClick(close, Qt::LeftButton);
-    QTRY_COMPARE(Autosave::found().size(), size_t(1));
+    QTRY_COMPARE_WITH_TIMEOUT(Autosave::found().size(), size_t(1), patience);
     second.window.offerUnsaved();
     QVERIFY(second.window.notice().text().contains("without saving"));
     for (auto* button : second.window.notice().findChildren<QAbstractButton*>())
       if (button->text() == "Discard") QTest::mouseClick(button, Qt::LeftButton);
-    QTRY_VERIFY(QDir(Autosave::folder()).isEmpty());
+    QTRY_VERIFY_WITH_TIMEOUT(QDir(Autosave::folder()).isEmpty(), patience);
   }
 
   void docks_have_title_bars_to_move_them_by() {

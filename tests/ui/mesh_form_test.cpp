@@ -12,6 +12,7 @@
 
 #include "listed_test.h"
 #include "params/mesh_button.h"
+#include "patience.h"
 #include "window_bench.h"
 
 namespace clothlab::test::mesh_form_test {
@@ -93,7 +94,7 @@ class Bench {
     });
     watch.start(50);
     QTest::mouseClick(button, Qt::LeftButton);
-    QTRY_VERIFY(clicked && (!menu || !menu->isVisible()));
+    QTRY_VERIFY_WITH_TIMEOUT(clicked && (!menu || !menu->isVisible()), patience);
     QTest::qWait(20);  // what the menu's entry does comes after the menu
     bench_->settle();
   }
@@ -113,7 +114,7 @@ class Bench {
     });
     watch.start(50);
     choose(button, "mesh:file");
-    QTRY_VERIFY(typed && !QApplication::activeModalWidget());
+    QTRY_VERIFY_WITH_TIMEOUT(typed && !QApplication::activeModalWidget(), patience);
     bench_->settle();
   }
 
@@ -178,10 +179,10 @@ class MeshFormTest : public QObject {
       b.choose_file(button, b.path(file));
       QCoreApplication::processEvents();
       QWidget* said = file == QLatin1String("bad.obj") ? b.obstacle_rule() : b.obstacle_report();
-      QTRY_VERIFY2(is_in_sight(said), file);
+      QTRY_VERIFY2_WITH_TIMEOUT(is_in_sight(said), file, patience);
     }
     b.choose_file(b.cloth_button(), b.path("bad.obj"));
-    QTRY_VERIFY(is_in_sight(b.cloth_rule()));
+    QTRY_VERIFY_WITH_TIMEOUT(is_in_sight(b.cloth_rule()), patience);
   }
 
   void a_bad_file_is_answered_with_place_value_and_rule_and_nothing_is_lost() {

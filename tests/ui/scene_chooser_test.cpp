@@ -13,6 +13,7 @@
 
 #include "compare/builtin_comparisons.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "scene/builtin_scenes.h"
 #include "scenes/scene_gallery.h"
 #include "window_bench.h"
@@ -95,7 +96,7 @@ class SceneChooserTest : public QObject {
     click(*chooser_of(bench), "cube");
     bench.settle();
     QCOMPARE(bench.window.document().title(), gallery_title("cube"));
-    QTRY_VERIFY(!bench.window.findChild<SceneChooser*>());
+    QTRY_VERIFY_WITH_TIMEOUT(!bench.window.findChild<SceneChooser*>(), patience);
   }
 
   void a_click_on_a_heading_does_nothing_and_escape_leaves_the_scene() {
@@ -106,7 +107,7 @@ class SceneChooserTest : public QObject {
     QTest::mouseClick(list.viewport(), Qt::LeftButton, {}, list.visualItemRect(list.item(0)).center());
     QVERIFY(chooser->isVisible());
     QTest::keyClick(chooser->focusWidget(), Qt::Key_Escape);
-    QTRY_VERIFY(!bench.window.findChild<SceneChooser*>());
+    QTRY_VERIFY_WITH_TIMEOUT(!bench.window.findChild<SceneChooser*>(), patience);
     QCOMPARE(bench.window.document().title(), gallery_title("corners-shear"));
   }
 
@@ -196,7 +197,7 @@ class SceneChooserTest : public QObject {
 
   static SceneChooser* chooser_of(WindowBench& bench) {
     auto* chooser = bench.window.findChild<SceneChooser*>();
-    if (!chooser || !QTest::qWaitForWindowActive(chooser)) qFatal("no chooser came");
+    if (!chooser || !QTest::qWaitForWindowActive(chooser, patience)) qFatal("no chooser came");
     return chooser;
   }
   static QListWidget* list_of(const SceneChooser& chooser) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "listed_test.h"
+#include "patience.h"
 #include "support/files.h"
 #include "window_bench.h"
 
@@ -28,9 +29,7 @@ class StopSignalsTest : public QObject {
   Q_OBJECT
 
  private Q_SLOTS:
-  void initTestCase() {
-    apply_theme(*qApp, false);
-  }
+  void initTestCase() { apply_theme(*qApp, false); }
 
   void each_signal_calls_stop_once_from_the_event_loop() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -38,7 +37,7 @@ class StopSignalsTest : public QObject {
       const StopSignals signals([&] { ++calls; });
       std::raise(signal);
       QCOMPARE(calls, 0);
-      QTRY_COMPARE(calls, 1);
+      QTRY_COMPARE_WITH_TIMEOUT(calls, 1, patience);
     }
   }
 

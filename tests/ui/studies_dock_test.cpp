@@ -13,6 +13,7 @@
 #include "charts/live_chart.h"
 #include "dialogs.h"
 #include "listed_test.h"
+#include "patience.h"
 #include "studies/axis_choice.h"
 #include "studies_bench.h"
 #include "study/study_runs.h"
@@ -193,7 +194,7 @@ class StudiesDockTest : public QObject {
     bench.prepare_small_map(first);
     bench.push("startStudy");
     QTRY_VERIFY_WITH_TIMEOUT(disk.is_waited_for(), 60000);
-    QTRY_VERIFY(bench.part<QPushButton>("startStudy")->isEnabled());
+    QTRY_VERIFY_WITH_TIMEOUT(bench.part<QPushButton>("startStudy")->isEnabled(), patience);
     QCOMPARE(cloth::finished_runs(*bench.panel().table()), 2 * 3 * 2);
     bench.type("studyFolder", second);
     bench.push("startStudy");
@@ -219,7 +220,7 @@ class StudiesDockTest : public QObject {
         answers.type(file);
         QTest::keyClick(&bench.window, Qt::Key_S, Qt::ControlModifier | Qt::AltModifier);
         QVERIFY2(answers.came_true(), qPrintable(answers.what_went_wrong()));
-        QTRY_VERIFY(disk.is_waited_for());
+        QTRY_VERIFY_WITH_TIMEOUT(disk.is_waited_for(), patience);
       }
       QVERIFY(bench.window.close());
       end_of_a_failure.dismiss();

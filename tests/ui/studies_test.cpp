@@ -15,6 +15,7 @@
 #include <QToolButton>
 
 #include "listed_test.h"
+#include "patience.h"
 #include "studies_bench.h"
 #include "study/study_runs.h"
 
@@ -79,7 +80,7 @@ class StudiesTest : public QObject {
     QSignalSpy hovered(&bench.plot(), &StudyPlot::runHovered);
     QTest::mouseMove(&bench.plot(), {1, 1});  // the pointer may rest there already: then it would not move
     QTest::mouseMove(&bench.plot(), at);
-    QTRY_VERIFY(!hovered.isEmpty());
+    QTRY_VERIFY_WITH_TIMEOUT(!hovered.isEmpty(), patience);
     const QString said = hovered.back().front().toString();
     QVERIFY2(said.contains("Runge-Kutta") && said.contains("Time step") && said.contains("steps"),
              qPrintable(said));
@@ -169,7 +170,7 @@ class StudiesTest : public QObject {
         click(*kinetic->menu(), action_named(*kinetic->menu(), "Largest"));
     });
     QTest::mouseClick(button, Qt::LeftButton);
-    QTRY_COMPARE(line->text(), QString("kinetic_J:max"));
+    QTRY_COMPARE_WITH_TIMEOUT(line->text(), QString("kinetic_J:max"), patience);
     QVERIFY(was_open);
   }
 

@@ -6,6 +6,7 @@
 #include <QProcess>
 
 #include "listed_test.h"
+#include "patience.h"
 #include "studies_bench.h"
 #include "study/study_runs.h"
 
@@ -67,8 +68,9 @@ class StudiesValidationTest : public QObject {
     QVERIFY(study.is_complete());
     QCOMPARE(study.protocols, (std::vector<std::string>{"catenary", "astm-d1388", "picture-frame"}));
     QVERIFY(!bench.part<QLabel>("studyEarlier")->isVisible());
-    QTRY_VERIFY2(bench.line().contains("9 runs") && bench.line().contains("All that is promised holds"),
-                 qPrintable(bench.line()));
+    QTRY_VERIFY2_WITH_TIMEOUT(
+        bench.line().contains("9 runs") && bench.line().contains("All that is promised holds"),
+        qPrintable(bench.line()), patience);
 
     QCOMPARE(bench.part<QComboBox>("against")->count(), 5);    // all, catenary twice, the others' errors
     QCOMPARE(bench.diagram(0).series.size(), std::size_t(2));  // rounding is not drawn with errors of grids

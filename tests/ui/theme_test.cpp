@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "listed_test.h"
+#include "patience.h"
 
 namespace clothlab::test::theme_test {
 namespace {
@@ -230,7 +231,7 @@ class ThemeTest : public QObject {
     const bool desktop = theme().dark;
     qputenv("CLOTHLAB_THEME", desktop ? "light" : "dark");  // stands for a desktop that has changed its mind
     QApplication::sendEvent(&window, &news);
-    QTRY_COMPARE(theme().dark, !desktop);
+    QTRY_COMPARE_WITH_TIMEOUT(theme().dark, !desktop, patience);
 
     qunsetenv("CLOTHLAB_THEME");
     apply_theme(*qApp, !desktop);

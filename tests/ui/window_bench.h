@@ -10,6 +10,7 @@
 
 #include "main_window/lab_window.h"
 #include "part_of.h"
+#include "patience.h"
 #include "theme/theme.h"
 
 namespace clothlab::test {
@@ -20,7 +21,7 @@ class WindowBench {
     window.setAsksToSave(false);
     window.view().setAnimated(false);
     window.show();
-    if (!QTest::qWaitForWindowActive(&window)) qFatal("the window was never active");
+    if (!QTest::qWaitForWindowActive(&window, patience)) qFatal("the window was never active");
     window.openScene(scene);
     settle();
     if (!window.view().frame()) qFatal("no frame came");

@@ -225,7 +225,7 @@ void draw(PlotCanvas& canvas, const ParallelCoordinates& plot) {
 std::string to_brushed_svg(const ParallelCoordinates& plot) {
   std::string svg = to_svg(plot);
   if (plot.table.columns.empty()) return svg;
-  svg.insert(svg.rfind("</svg>"), std::string("<script><![CDATA[") + brush_script + "]]></script>\n");
+  svg.insert(svg.rfind("</svg>"), "<script>" + xml_escaped(brush_script) + "</script>\n");
   return svg;
 }
 

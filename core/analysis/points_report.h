@@ -6,9 +6,9 @@
 
 #include "design/design.h"
 #include "report/html_page.h"
-#include "report/parallel_coordinates.h"
-#include "report/point_table.h"
-#include "report/scatter_matrix.h"
+#include "report/points/parallel_coordinates.h"
+#include "report/points/point_table.h"
+#include "report/points/scatter_matrix.h"
 
 namespace cloth {
 

@@ -6,8 +6,8 @@
 
 #include "design/sensitivity.h"
 #include "report/html_page.h"
-#include "report/interval_bars.h"
 #include "report/line_plot.h"
+#include "report/points/interval_bars.h"
 
 namespace cloth {
 

@@ -24,8 +24,8 @@ inline std::optional<Reduction> reduction_named(std::string_view name) {
 /// The last value, the largest, the smallest, or the mean over time of the straight lines between the rows
 /// (the last value where no time passes). nullopt without rows, and where a value that counts is not finite.
 /// `time` ascends and has the size of `values`.
-inline std::optional<double> reduce(std::span<const double> time, std::span<const double> values,
-                                    Reduction reduction) {
+inline std::optional<double> reduced(std::span<const double> time, std::span<const double> values,
+                                     Reduction reduction) {
   if (values.empty() || !std::isfinite(values.back())) return std::nullopt;
   if (reduction == Reduction::final) return values.back();
   double extreme = values.front(), integral = 0;

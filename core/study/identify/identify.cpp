@@ -55,7 +55,7 @@ std::vector<double> outputs_of(const IdentifyPlan& plan, const std::vector<doubl
   std::vector<double> outputs;
   if (!series) return outputs;
   for (const ColumnTarget& target : plan.targets)
-    outputs.push_back(reduce(series->time, series->columns.at(target.column), target.over).value_or(NAN));
+    outputs.push_back(reduced(series->time, series->columns.at(target.column), target.over).value_or(NAN));
   for (const MeasuredCurve& curve : plan.curves)
     for (const double time : curve.times)
       outputs.push_back(value_at(series->time, series->columns.at(curve.column), time).value_or(NAN));

@@ -13,20 +13,20 @@ const std::vector<double> time{0, 1, 3}, values{2, 4, -1};
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ColumnReduction, IsTheLastTheLargestTheSmallestOrTheMeanOverTime) {
-  EXPECT_EQ(reduce(time, values, Reduction::final), -1);
-  EXPECT_EQ(reduce(time, values, Reduction::max), 4);
-  EXPECT_EQ(reduce(time, values, Reduction::min), -1);
-  EXPECT_EQ(*reduce(time, values, Reduction::mean), (3.0 * 1 + 1.5 * 2) / 3);
-  EXPECT_EQ(reduce(std::vector{2.0}, std::vector{7.0}, Reduction::mean), 7);
+  EXPECT_EQ(reduced(time, values, Reduction::final), -1);
+  EXPECT_EQ(reduced(time, values, Reduction::max), 4);
+  EXPECT_EQ(reduced(time, values, Reduction::min), -1);
+  EXPECT_EQ(*reduced(time, values, Reduction::mean), (3.0 * 1 + 1.5 * 2) / 3);
+  EXPECT_EQ(reduced(std::vector{2.0}, std::vector{7.0}, Reduction::mean), 7);
 }
 
 TEST(ColumnReduction, HasNoValueWhereOneThatCountsIsNone) {
-  EXPECT_FALSE(reduce({}, {}, Reduction::final));
+  EXPECT_FALSE(reduced({}, {}, Reduction::final));
   const std::vector<double> gap{2, none, 5}, end{2, 5, none};
-  EXPECT_EQ(reduce(time, gap, Reduction::final), 5);
+  EXPECT_EQ(reduced(time, gap, Reduction::final), 5);
   for (const Reduction over : {Reduction::max, Reduction::min, Reduction::mean})
-    EXPECT_FALSE(reduce(time, gap, over));
-  EXPECT_FALSE(reduce(time, end, Reduction::final));
+    EXPECT_FALSE(reduced(time, gap, over));
+  EXPECT_FALSE(reduced(time, end, Reduction::final));
 }
 
 TEST(ColumnReduction, HasTheNamesOfItsKinds) {

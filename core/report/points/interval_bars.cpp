@@ -1,4 +1,4 @@
-#include "report/interval_bars.h"
+#include "report/points/interval_bars.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,11 @@
 namespace cloth {
 namespace {
 
-constexpr double bar_height = 15, category_gap = 14, legend_height = 30, name_size = 12.5, value_room = 64;
+constexpr double bar_height = 15, category_gap = 14, bar_legend_height = 30, name_size = 12.5,
+                 value_room = 64;
 
-struct Layout {
-  explicit Layout(const IntervalBars& all)
+struct BarLayout {
+  explicit BarLayout(const IntervalBars& all)
       : plot(all),
         map(with_zero(all.x), values_of(all), 0, 1),
         top(titles_height(all.title, all.subtitle, all.width)) {
@@ -19,7 +20,7 @@ struct Layout {
     for (const std::string& name : plot.categories) widest = std::max(widest, text_width(name, name_size));
     frame.left = plot_margin + std::min(widest, 0.4 * plot.width) + 10;
     frame.right = plot.width - plot_margin - value_room;
-    frame.top = top + legend_height;
+    frame.top = top + bar_legend_height;
     frame.bottom =
         frame.top + category_gap / 2 + category_height() * static_cast<double>(plot.categories.size());
     map.set_places(frame.left, frame.right);
@@ -52,7 +53,7 @@ struct Layout {
   Box frame;
 };
 
-void draw_bar(PlotCanvas& canvas, const Layout& layout, std::size_t category, std::size_t s) {
+void draw_bar(PlotCanvas& canvas, const BarLayout& layout, std::size_t category, std::size_t s) {
   const BarSeries& series = layout.plot.series[s];
   if (category >= series.bars.size() || !std::isfinite(series.bars[category].value)) return;
   const IntervalBar& bar = series.bars[category];
@@ -80,7 +81,7 @@ void draw_bar(PlotCanvas& canvas, const Layout& layout, std::size_t category, st
                .colour = page_colours().muted});
 }
 
-void draw_legend(PlotCanvas& canvas, const Layout& layout) {
+void draw_bar_legend(PlotCanvas& canvas, const BarLayout& layout) {
   double x = layout.frame.left;
   canvas.begin_group("legend");
   for (std::size_t s = 0; s < layout.plot.series.size(); ++s) {
@@ -95,13 +96,13 @@ void draw_legend(PlotCanvas& canvas, const Layout& layout) {
 }  // namespace
 
 double height_of(const IntervalBars& plot) {
-  return Layout(plot).height();
+  return BarLayout(plot).height();
 }
 
 void draw(PlotCanvas& canvas, const IntervalBars& plot) {
-  const Layout layout(plot);
+  const BarLayout layout(plot);
   draw_titles(canvas, plot.title, plot.subtitle, plot.width);
-  draw_legend(canvas, layout);
+  draw_bar_legend(canvas, layout);
   draw_x_axis(canvas, layout.map, axis_title(plot.x, layout.map.tick_exponent()), layout.frame, true);
   canvas.begin_group("bars");
   for (std::size_t category = 0; category < plot.categories.size(); ++category) {

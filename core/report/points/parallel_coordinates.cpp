@@ -1,4 +1,4 @@
-#include "report/parallel_coordinates.h"
+#include "report/points/parallel_coordinates.h"
 
 #include <fmt/format.h>
 
@@ -18,8 +18,8 @@ const PageColour& failed_colour() {
   return run_classes()[static_cast<std::size_t>(RunClass::diverged)].colour;
 }
 
-struct Layout {
-  explicit Layout(const ParallelCoordinates& all) : plot(all) {
+struct ParallelLayout {
+  explicit ParallelLayout(const ParallelCoordinates& all) : plot(all) {
     const std::size_t count = plot.table.columns.size();
     spacing = count > 1 ? (plot.width - 2 * side) / static_cast<double>(count - 1) : 0;
     std::size_t lines = 1;
@@ -49,7 +49,7 @@ struct Layout {
 };
 
 /// As far as it has values, from the first column on.
-std::string path_of(const Layout& layout, std::size_t row) {
+std::string path_of(const ParallelLayout& layout, std::size_t row) {
   std::vector<SvgPoint> points;
   for (std::size_t c = 0; c < layout.maps.size(); ++c) {
     const double value = layout.plot.table.columns[c].values[row];
@@ -60,14 +60,14 @@ std::string path_of(const Layout& layout, std::size_t row) {
 }
 
 /// Of a row whose value has a place between 0 and 1 on the axis that colours.
-std::size_t class_of(const Layout& layout, std::size_t row) {
+std::size_t class_of(const ParallelLayout& layout, std::size_t row) {
   const AxisMap& map = layout.maps[layout.plot.coloured_by];
   const double value = layout.plot.table.columns[layout.plot.coloured_by].values[row];
   return can_show(map.scale(), value) ? ramp_class(-map.place(value), -layout.frame.bottom, -layout.frame.top)
                                       : 0;
 }
 
-void draw_rows(PlotCanvas& canvas, const Layout& layout) {
+void draw_rows(PlotCanvas& canvas, const ParallelLayout& layout) {
   const PointTable& table = layout.plot.table;
   const std::vector<std::size_t> rows = table.some_rows(most_parallel_rows);
   const double opacity = std::clamp(9 / std::sqrt(static_cast<double>(rows.size()) + 1), 0.3, 0.9);
@@ -89,7 +89,7 @@ void draw_rows(PlotCanvas& canvas, const Layout& layout) {
   canvas.end_group();
 }
 
-void draw_axis(PlotCanvas& canvas, const Layout& layout, std::size_t c) {
+void draw_parallel_axis(PlotCanvas& canvas, const ParallelLayout& layout, std::size_t c) {
   const double x = layout.x(c), top = layout.frame.top, end = layout.frame.bottom;
   const PageColours& page = page_colours();
   canvas.line({x, top}, {x, end}, {.stroke = page.ink, .stroke_width = 1.2});
@@ -114,7 +114,7 @@ void draw_axis(PlotCanvas& canvas, const Layout& layout, std::size_t c) {
   }
 }
 
-void draw_legend(PlotCanvas& canvas, const Layout& layout) {
+void draw_ramp_legend(PlotCanvas& canvas, const ParallelLayout& layout) {
   const PointTable& table = layout.plot.table;
   double x = plot_margin;
   const double y = titles_height(layout.plot.title, layout.plot.subtitle, layout.plot.width);
@@ -198,14 +198,14 @@ constexpr const char* brush_script = R"(
 }  // namespace
 
 double height_of(const ParallelCoordinates& plot) {
-  return Layout(plot).height();
+  return ParallelLayout(plot).height();
 }
 
 void draw(PlotCanvas& canvas, const ParallelCoordinates& plot) {
-  const Layout layout(plot);
+  const ParallelLayout layout(plot);
   draw_titles(canvas, plot.title, plot.subtitle, plot.width);
   if (plot.table.columns.empty()) return;
-  draw_legend(canvas, layout);
+  draw_ramp_legend(canvas, layout);
   canvas.begin_group("bars");
   for (std::size_t c = 0; c < layout.maps.size(); ++c)
     canvas.rect({layout.x(c) - bar_width / 2, layout.frame.top}, bar_width, layout.frame.height(),
@@ -213,7 +213,7 @@ void draw(PlotCanvas& canvas, const ParallelCoordinates& plot) {
   canvas.end_group();
   draw_rows(canvas, layout);
   canvas.begin_group("axes", {}, true);
-  for (std::size_t c = 0; c < layout.maps.size(); ++c) draw_axis(canvas, layout, c);
+  for (std::size_t c = 0; c < layout.maps.size(); ++c) draw_parallel_axis(canvas, layout, c);
   canvas.end_group();
   canvas.begin_group("count", {}, true);
   canvas.text({plot.width - plot_margin, titles_height(plot.title, plot.subtitle, plot.width) + 11},

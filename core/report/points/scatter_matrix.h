@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/point_table.h"
+#include "report/points/point_table.h"
 #include "report/svg.h"
 
 namespace cloth {

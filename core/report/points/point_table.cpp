@@ -1,4 +1,4 @@
-#include "report/point_table.h"
+#include "report/points/point_table.h"
 
 #include <algorithm>
 #include <cmath>

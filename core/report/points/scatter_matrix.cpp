@@ -1,4 +1,4 @@
-#include "report/scatter_matrix.h"
+#include "report/points/scatter_matrix.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@ namespace {
 constexpr double gap = 8, left_room = 92, bottom_room = 62, most_panel = 230;
 constexpr std::size_t mean_intervals = 8, histogram_bars = 10;
 
-struct Layout {
-  explicit Layout(const ScatterMatrix& all) : plot(all) {
+struct ScatterLayout {
+  explicit ScatterLayout(const ScatterMatrix& all) : plot(all) {
     for (std::size_t c = 0; c < plot.table.columns.size(); ++c) {
       const bool is_output = plot.table.columns[c].is_output;
       if (!plot.main_effects || !is_output) across.push_back(c);
@@ -43,7 +43,7 @@ struct Layout {
   double panel_width = 0, panel_height = 0, top = 0;
 };
 
-void draw_points(PlotCanvas& canvas, const Layout& layout, const AxisMap& x, const AxisMap& y,
+void draw_points(PlotCanvas& canvas, const ScatterLayout& layout, const AxisMap& x, const AxisMap& y,
                  const PointColumn& of_x, const PointColumn& of_y) {
   std::string circles;  // one path: hundreds of elements in each of dozens of panels are slow to draw
   for (const std::size_t row : layout.plot.table.some_rows(most_scatter_points)) {
@@ -96,7 +96,7 @@ void draw_correlation(PlotCanvas& canvas, const PointColumn& a, const PointColum
                .colour = std::abs(correlation) >= 0.2 ? page_colours().ink : page_colours().muted});
 }
 
-void draw_panel(PlotCanvas& canvas, const Layout& layout, std::size_t row, std::size_t column) {
+void draw_panel(PlotCanvas& canvas, const ScatterLayout& layout, std::size_t row, std::size_t column) {
   const Box box = layout.panel(row, column);
   const PointColumn &of_x = layout.column(layout.across[column]), &of_y = layout.column(layout.down[row]);
   const double inset = 5;
@@ -116,7 +116,7 @@ void draw_panel(PlotCanvas& canvas, const Layout& layout, std::size_t row, std::
 }
 
 /// Ticks and names below the lowest panels and left of the first ones.
-void draw_outer_axes(PlotCanvas& canvas, const Layout& layout) {
+void draw_outer_axes(PlotCanvas& canvas, const ScatterLayout& layout) {
   const double inset = 5;
   canvas.begin_group("axes");
   for (std::size_t k = 0; k < layout.across.size(); ++k) {
@@ -186,11 +186,11 @@ std::vector<SvgPoint> mean_along(const std::vector<double>& x, const std::vector
 }
 
 double height_of(const ScatterMatrix& plot) {
-  return Layout(plot).height();
+  return ScatterLayout(plot).height();
 }
 
 void draw(PlotCanvas& canvas, const ScatterMatrix& plot) {
-  const Layout layout(plot);
+  const ScatterLayout layout(plot);
   draw_titles(canvas, plot.title, plot.subtitle, plot.width);
   if (layout.across.empty() || layout.down.empty()) return;
   for (std::size_t row = 0; row < layout.down.size(); ++row)

@@ -102,7 +102,7 @@ std::optional<cloth::IoError> write_folder(cloth::ResultFolder& folder, const cl
   return folder.finish("identified.json", cloth::fit_index(account, folder.digests()));
 }
 
-int exit_code_of(const cloth::FitResult& result) {
+int exit_code_of_fit(const cloth::FitResult& result) {
   if (result.status == cloth::FitStatus::stopped) return interrupted;
   if (result.status != cloth::FitStatus::converged) return diverged;
   return result.all_identified() ? done : not_identified;
@@ -150,7 +150,7 @@ int identify(const IdentifyArguments& arguments) {
   std::string text = arguments.json ? cloth::fit_json(account) : cloth::fit_text(account);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
   if (const int printed = print(text); printed != done) return printed;
-  return exit_code_of(account.result);
+  return exit_code_of_fit(account.result);
 }
 
 void add_search_options(CLI::App& command, IdentifyArguments& arguments) {

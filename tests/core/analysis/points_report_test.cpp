@@ -151,7 +151,7 @@ TEST(ScatterMatrices, AreWellFormedForAnyTable) {
 }
 
 TEST(SensitivityReport, SaysWhatDecides) {
-  const PointsAccount account = account_of(Design::saltelli, 512);
+  const PointsAccount account = account_of(Design::saltelli, 4096);
   const std::vector<std::string> names{"x1", "x2", "x3"};
   const SobolIndices indices = sobol_indices(account.table.columns[3].values, 3);
   const auto sentences = sentences_of(indices, names, "f");

@@ -16,6 +16,7 @@ void add_work_precision(Program& program);
 void add_stability(Program& program);
 void add_extremes(Program& program);
 void add_convergence(Program& program);
+void add_identify(Program& program);
 void add_study(Program& program);
 void add_reproduce(Program& program);
 void add_validate(Program& program);

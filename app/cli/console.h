@@ -23,6 +23,7 @@ enum ExitCode {
   rate_not_kept = 3,
   io_failed = 4,
   differs = 5,
+  not_identified = 6,
   interrupted = 130
 };
 

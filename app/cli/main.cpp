@@ -12,7 +12,7 @@ const char* const footer =
     "to the last good state is "
     "on disk), or did not keep its deformation rate; "
     "4 a file could not be read or written, or there is not enough memory; 5 a replay did not end in its "
-    "session's state; 130 interrupted.";
+    "session's state; 6 measured values do not identify every parameter; 130 interrupted.";
 
 int run_command(int argc, char** argv) {
   Program program{CLI::App(
@@ -21,8 +21,8 @@ int run_command(int argc, char** argv) {
   program.app.require_subcommand(1);
   program.app.footer(footer);
   for (const auto add : {add_run, add_replay, add_scenes, add_materials, add_mesh, add_explain, add_compare,
-                         add_work_precision, add_stability, add_extremes, add_convergence, add_study,
-                         add_reproduce, add_validate, add_schema, add_parameters})
+                         add_work_precision, add_stability, add_extremes, add_convergence, add_identify,
+                         add_study, add_reproduce, add_validate, add_schema, add_parameters})
     add(program);
   if (const auto ended = parse(program.app, argc, argv)) return *ended;
   return program.chosen();

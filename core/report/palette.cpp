@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "report/ramp.h"
+
 namespace cloth {
 namespace {
 
@@ -64,6 +66,7 @@ std::vector<PageColour> all_colours() {
   std::vector<PageColour> all = {page.surface, page.ink, page.muted, page.grid, page.band};
   for (const PageColour& colour : series_colours()) all.push_back(colour);
   for (const ClassStyle& style : run_classes()) all.push_back(style.colour);
+  for (const PageColour& colour : ramp_colours()) all.push_back(colour);
   return all;
 }
 

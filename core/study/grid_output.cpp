@@ -16,7 +16,9 @@ namespace {
 constexpr const char *lowest_name = "lowest_point_m", *droop_name = "droop_m", *ratio_name = "droop_ratio";
 constexpr std::array<const char*, 4> over_names{"", ":max", ":min", ":mean"};
 
-double read_off(const std::string& quantity, const Simulation& simulation, const Measurement& row) {
+}  // namespace
+
+double value_of_quantity(const std::string& quantity, const Simulation& simulation, const Measurement& row) {
   if (const auto value = recorded_value(quantity, row, simulation.quantities())) return *value;
   const Droop droop =
       measure_droop(simulation.system(), simulation.state().position, gravity_of(simulation.scene()));
@@ -24,8 +26,6 @@ double read_off(const std::string& quantity, const Simulation& simulation, const
   if (quantity == droop_name) return droop.drop;
   return quantity == ratio_name ? droop.ratio() : NAN;
 }
-
-}  // namespace
 
 GridOutput parse_output(const std::string& text) {
   for (std::size_t over = 1; over < over_names.size(); ++over)
@@ -69,7 +69,7 @@ std::string unit_of_output(const std::string& output) {
 }
 
 void OutputReading::add(const Simulation& simulation, const Measurement& row) {
-  const double value = read_off(output_.quantity, simulation, row);
+  const double value = value_of_quantity(output_.quantity, simulation, row);
   if (rows_++ == 0) {
     first_time_ = row.time;
     extreme_ = value;

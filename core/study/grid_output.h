@@ -25,6 +25,9 @@ GridOutput parse_output(const std::string& text);
 /// empty, and its cloth is a grid.
 std::vector<std::string> output_quantities(const Scene& scene);
 
+/// The value of one of these quantities at a row of the record; not a number where there is none.
+double value_of_quantity(const std::string& quantity, const Simulation& simulation, const Measurement& row);
+
 /// The rule that these outputs break; nothing if every quantity is one of `known` and none is there twice.
 std::optional<std::string> broken_outputs_rule(const std::vector<std::string>& outputs,
                                                const std::vector<std::string>& known);

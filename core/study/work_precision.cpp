@@ -12,7 +12,7 @@
 #include "scene/scene_checks.h"
 #include "scene/scene_parameters.h"
 #include "simulation/step_batches.h"
-#include "study/quantile.h"
+#include "design/quantile.h"
 
 namespace cloth {
 namespace {

@@ -1,0 +1,84 @@
+// Parameters of a scene from measured values: what is asked for, the runs, and the fit (fit/fit.h).
+//
+//     IdentifyPlan plan{.scene = scene};
+//     plan.varied.push_back(std::get<VariedParameter>(parse_vary("springs.structural:10:1000", scene)));
+//     plan.targets.push_back(std::get<ColumnTarget>(parse_target("max_strain.max=0.05±0.001", scene,
+//     "--target"))); const FitAccount account = identify(plan);
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "analysis/fit_report.h"
+#include "params/problem.h"
+#include "scene/scene.h"
+#include "study/column_reduction.h"
+#include "study/study_progress.h"
+
+namespace cloth {
+
+struct VariedParameter {
+  std::string path{}, unit{};
+  double low = 0, high = 0;  ///< bounds
+  double start = 0;          ///< the scene's value, within them
+  bool is_whole = false;     ///< a whole number: outputs jump
+};
+
+/// A reduction of a column that was measured.
+struct ColumnTarget {
+  std::string column{};
+  Reduction over = Reduction::final;
+  double measured = 0;
+  std::optional<double> sigma{};
+  bool held_out = false;
+  std::string name() const { return column + "." + name_of(over); }
+};
+
+/// A column that was measured over time.
+struct MeasuredCurve {
+  std::string column{};
+  std::vector<double> times{}, values{};  ///< s, and the column's unit
+  std::vector<double> sigmas{};           ///< empty: not known
+};
+
+struct IdentifyPlan {
+  Scene scene;
+  std::vector<VariedParameter> varied{};
+  std::vector<ColumnTarget> targets{};
+  std::vector<MeasuredCurve> curves{};
+  FitOptions options{};
+  int jobs = 1;           ///< runs beside each other; no bit depends on it
+  StopTest stop{};        ///< asked between batches of steps
+  std::string command{};  ///< that makes it, for its page
+};
+
+/// "PATH" or "PATH:LOW:HIGH" (with units where wanted). Without a range: from a tenth of the scene's value to
+/// ten times it, within what the parameter may be. The coordinate is the logarithm where the range is above
+/// 0.
+std::variant<VariedParameter, Problem> parse_vary(const std::string& text, const Scene& scene);
+
+/// "COLUMN.REDUCTION=VALUE" or "COLUMN.REDUCTION=VALUE±SIGMA" ("+-" too); without a reduction the final
+/// value. Columns are those of record.csv, lowest_point_m, and where particles are pinned droop_m and
+/// droop_ratio.
+std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const Scene& scene,
+                                                 const std::string& option);
+
+/// The columns of a CSV file with a column time_s and others with the names of columns of the record;
+/// NAME_sigma holds the standard deviations of NAME.
+std::variant<std::vector<MeasuredCurve>, std::vector<Problem>> read_curves(const std::string& file,
+                                                                           const Scene& scene);
+
+/// What keeps the plan from being carried out.
+std::vector<Problem> find_problems(const IdentifyPlan& plan);
+
+/// Precondition: find_problems is empty.
+FitAccount identify(const IdentifyPlan& plan);
+
+/// The scene with these values of the varied parameters.
+Scene scene_with(const IdentifyPlan& plan, const std::vector<double>& values);
+
+/// The columns that targets may name.
+std::vector<std::string> identify_columns(const Scene& scene);
+
+}  // namespace cloth

@@ -131,6 +131,16 @@ SweepFolderReading take_sweep_folder(const fs::path& path, const SweepPlan& plan
   return there;
 }
 
+SweepFolderReading resume_sweep_folder(const fs::path& path) {
+  SweepFolderReading there = read_sweep_folder(path);
+  if (!there.folder) return there;
+  SweepFolder wanted{.path = path, .hash = there.folder->hash};
+  wanted.version = version();
+  wanted.instruction_set = name_of(active_instruction_set());
+  if (auto error = difference(*there.folder, wanted)) return {.error = std::move(error)};
+  return there;
+}
+
 ShardFiles read_shard_files(const SweepFolder& folder, const std::optional<Shard>& shard) {
   ShardFiles all;
   std::vector<std::string> names;

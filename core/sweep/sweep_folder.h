@@ -40,7 +40,10 @@ struct SweepFolderReading {
 /// set is refused, as is one that holds other results.
 SweepFolderReading take_sweep_folder(const std::filesystem::path& path, const SweepPlan& plan);
 
-/// One that is there.
+/// The one that is there, for more points by this engine; refused where that is another one.
+SweepFolderReading resume_sweep_folder(const std::filesystem::path& path);
+
+/// One that is there, whatever engine made it.
 SweepFolderReading read_sweep_folder(const std::filesystem::path& path);
 
 /// The shard files, by name; only those that can have points of `shard` where that is given. One of another

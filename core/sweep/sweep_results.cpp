@@ -72,17 +72,22 @@ SweepResults sweep_results(const SweepFolder& folder, const std::vector<ShardFil
   return results;
 }
 
-std::string missing_shards(const SweepResults& results, std::int64_t count) {
+std::string missing_shards(const SweepResults& results, std::int64_t count, std::int64_t after,
+                           std::int64_t most) {
   std::vector<bool> there(static_cast<std::size_t>(results.points), false);
   for (const PointRow& row : results.rows) there[static_cast<std::size_t>(row.point)] = true;
-  std::vector<bool> lacks(static_cast<std::size_t>(count), false);
-  for (std::size_t point = 0; point < there.size(); ++point)
-    if (!there[point]) lacks[point % static_cast<std::size_t>(count)] = true;
+  const std::int64_t shown = std::clamp<std::int64_t>(count - after, 0, most);
+  std::vector<bool> lacks(static_cast<std::size_t>(shown), false);
+  for (std::int64_t point = 0; point < results.points; ++point) {
+    const std::int64_t k = point % count - after;
+    if (k >= 0 && k < shown && !there[static_cast<std::size_t>(point)])
+      lacks[static_cast<std::size_t>(k)] = true;
+  }
   std::string text;
-  for (std::int64_t k = 0; k < count; ++k) {
-    if (!lacks[static_cast<std::size_t>(k)]) continue;
-    std::int64_t last = k;
-    while (last + 1 < count && lacks[static_cast<std::size_t>(last + 1)]) ++last;
+  for (std::size_t k = 0; k < lacks.size(); ++k) {
+    if (!lacks[k]) continue;
+    std::size_t last = k;
+    while (last + 1 < lacks.size() && lacks[last + 1]) ++last;
     text += fmt::format("{}{}", text.empty() ? "" : ",", k + 1);
     if (last > k) text += fmt::format("-{}", last + 1);
     k = last;

@@ -34,8 +34,10 @@ struct SweepResults {
 /// machine, else the one of the file whose name comes first.
 SweepResults sweep_results(const SweepFolder& folder, const std::vector<ShardFile>& files);
 
-/// The shards of `count` with missing points, as --array takes them: "3,7-9"; empty: none is missing.
-std::string missing_shards(const SweepResults& results, std::int64_t count);
+/// Those of the shards from after + 1 to after + most that lack points, counted from `after` on, as --array
+/// takes them: "3,7-9"; empty: none does.
+std::string missing_shards(const SweepResults& results, std::int64_t count, std::int64_t after = 0,
+                           std::int64_t most = std::numeric_limits<std::int64_t>::max());
 
 /// point, a column for each path and one for each output, status, cause, steps, wall_s, host
 CsvTable sweep_table(const SweepPlan& plan, const SweepResults& results);

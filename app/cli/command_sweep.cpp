@@ -9,7 +9,6 @@
 #include "simulation/step_batches.h"
 #include "sweep/run_sweep.h"
 #include "sweep/shard_choice.h"
-#include "sweep/sweep_points.h"
 #include "sweep_commands.h"
 
 namespace clothlab::cli {
@@ -21,19 +20,6 @@ struct SweepArguments {
   int jobs = 0;       ///< 0: all cores
   int stopped_exit_code = interrupted;
 };
-
-struct LoadedPlan {
-  std::optional<cloth::SweepPlan> plan;
-  int exit_code = done;
-};
-
-LoadedPlan load_plan(const std::string& file) {
-  std::string text;
-  if (const auto error = cloth::read_text_file(file, text)) return {std::nullopt, report(*error)};
-  cloth::SweepReading reading = cloth::read_sweep(text, file);
-  if (!reading.plan) return {std::nullopt, report(reading.problems)};
-  return {std::move(reading.plan), done};
-}
 
 /// Runs that are asked to stop may be within a step that takes long. Their rows are lost in any case, and
 /// those of other points are written: so the process ends in time for a scheduler that kills it soon after.
@@ -82,14 +68,12 @@ int sweep(const SweepArguments& arguments) {
       const char* value = std::getenv(name);
       return std::string(value ? value : "");
     });
-    if (const auto* problem = std::get_if<cloth::Problem>(&chosen)) return report(std::vector<cloth::Problem>{*problem});
+    if (const auto* problem = std::get_if<cloth::Problem>(&chosen))
+      return report(std::vector<cloth::Problem>{*problem});
     shard = std::get<cloth::Shard>(chosen);
   }
-  const LoadedPlan loaded = load_plan(arguments.plan);
-  if (!loaded.plan) return loaded.exit_code;
-  if (const auto problem = cloth::unknown_output(*loaded.plan)) return report(std::vector<cloth::Problem>{*problem});
-  const cloth::SweepFolderReading taken = cloth::take_sweep_folder(arguments.folder, *loaded.plan);
-  if (!taken.folder) return taken.error ? report(*taken.error) : report(taken.problems);
+  const TakenFolder taken = take_folder(arguments.plan, arguments.folder);
+  if (!taken.folder) return taken.exit_code;
   const int ended = run_shard(*taken.folder, arguments, shard);
   if (ended != done || shard.count > 1) return ended;
   return merge_folder(*taken.folder);
@@ -101,7 +85,8 @@ void add_sweep(Program& program) {
   const auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = program.app.add_subcommand(
       "sweep", "Run a scene at many points of its parameters; goes on where it was stopped");
-  command->add_option("plan", arguments->plan, "A plan, *.sweep.json");
+  command->add_option("plan", arguments->plan,
+                      "A plan, *.sweep.json; without it that of the folder, which goes on");
   add_path(*command, "--out", arguments->folder, "Folder of the sweep; made if missing");
   add_path(
       *command, "--shard", arguments->shard,
@@ -117,7 +102,6 @@ void add_sweep(Program& program) {
   add_sweep_commands(program, *command);
   command->callback([&program, command, arguments] {
     if (!command->get_subcommands().empty()) return;
-    if (arguments->plan.empty()) throw CLI::RequiredError("plan");
     if (arguments->folder.empty()) throw CLI::RequiredError("--out");
     program.chosen = [arguments] { return sweep(*arguments); };
   });

@@ -129,8 +129,8 @@ std::string snakemake_text(const std::string& text) {
 
 std::string snakefile(const SweepFolder& folder, const EmitOptions& options) {
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
-  const std::string start = snakemake_text(fmt::format("{}={} {} sweep", instruction_set_variable,
-                                                       folder.instruction_set, shell_quoted(options.program)));
+  const std::string start = snakemake_text(fmt::format(
+      "{}={} {} sweep", instruction_set_variable, folder.instruction_set, shell_quoted(options.program)));
   const std::string place = snakemake_text(shell_quoted(folder.path.string()));
   return fmt::format(R"END(# Runs the shards by Snakemake, and merges:
 #     snakemake --snakefile {3} --cores 8
@@ -153,8 +153,8 @@ rule merge:
 )END",
                      quoted(folder.path.string()), options.shards, options.jobs,
                      shell_quoted((folder.path / "snakemake/Snakefile").string()),
-                     quoted(fmt::format("{} --out {} --shard {{wildcards.shard}}/{} --jobs {{threads}}", start,
-                                        place, options.shards)),
+                     quoted(fmt::format("{} --out {} --shard {{wildcards.shard}}/{} --jobs {{threads}}",
+                                        start, place, options.shards)),
                      quoted(fmt::format("{} merge {}", start, place)));
 }
 

@@ -1,5 +1,5 @@
-// Scripts by which schedulers and their like run a sweep's shards. All of them start the same command, "part I
-// of N", and what it has made is skipped when it is started again.
+// Scripts by which schedulers and their like run a sweep's shards. All of them start the same command, "part
+// I of N", and what it has made is skipped when it is started again.
 #pragma once
 
 #include <string>

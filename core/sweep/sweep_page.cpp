@@ -15,9 +15,8 @@ namespace {
 constexpr std::size_t most_failures = 100;
 
 HtmlTable status_table(const SweepResults& results) {
-  HtmlTable table{.caption = "How the points ended",
-                  .columns = {{"status"}, {"points", Align::right}},
-                  .rows = {}};
+  HtmlTable table{
+      .caption = "How the points ended", .columns = {{"status"}, {"points", Align::right}}, .rows = {}};
   const auto add = [&](const std::string& name, std::int64_t count) {
     if (count > 0) table.rows.push_back({.cells = {HtmlCell(name), HtmlCell(std::to_string(count))}});
   };
@@ -29,8 +28,12 @@ HtmlTable status_table(const SweepResults& results) {
 
 HtmlTable output_table(const SweepPlan& plan, const SweepResults& results) {
   HtmlTable table{.caption = "Outputs",
-                  .columns = {{"output"}, {"of"}, {"reduction"}, {"values", Align::right},
-                              {"least", Align::right}, {"largest", Align::right}},
+                  .columns = {{"output"},
+                              {"of"},
+                              {"reduction"},
+                              {"values", Align::right},
+                              {"least", Align::right},
+                              {"largest", Align::right}},
                   .rows = {}};
   for (std::size_t k = 0; k < plan.outputs.size(); ++k) {
     double low = infinity, high = -infinity;
@@ -88,10 +91,12 @@ std::string hosts_text(const SweepResults& results) {
 std::string sweep_page(const SweepFolder& folder, const SweepResults& results,
                        const std::vector<SweepPlot>& plots) {
   const SweepPlan& plan = folder.plan;
-  HtmlPage page("Sweep: " + (plan.title.empty() ? plan.scene.title : plan.title),
-                "One scene at many points of its parameters; every row is in " + html_code("sweep.csv") + ".");
+  HtmlPage page(
+      "Sweep: " + (plan.title.empty() ? plan.scene.title : plan.title),
+      "One scene at many points of its parameters; every row is in " + html_code("sweep.csv") + ".");
   if (results.missing() > 0)
-    page.notice(fmt::format("{} of {} points are missing.", results.missing(), results.points), Verdict::warn);
+    page.notice(fmt::format("{} of {} points are missing.", results.missing(), results.points),
+                Verdict::warn);
   for (const SweepPlot& plot : plots) page.figure(plot.svg, plot.caption);
   page.heading("Points");
   page.table(status_table(results));

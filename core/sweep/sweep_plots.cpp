@@ -45,9 +45,9 @@ Places places_of(const SweepPoints& points, std::int64_t count, std::int64_t str
   places.ascending.erase(std::unique(places.ascending.begin(), places.ascending.end()),
                          places.ascending.end());
   for (const double value : values)
-    places.place_of.push_back(static_cast<std::size_t>(
-        std::lower_bound(places.ascending.begin(), places.ascending.end(), value) -
-        places.ascending.begin()));
+    places.place_of.push_back(
+        static_cast<std::size_t>(std::lower_bound(places.ascending.begin(), places.ascending.end(), value) -
+                                 places.ascending.begin()));
   return places;
 }
 
@@ -74,7 +74,8 @@ struct MapRange {
 HeatCell map_cell(const PointRow& row, double value, const MapRange& range) {
   const std::string point = fmt::format("point {}: ", row.point);
   if (row.status != PointStatus::finished)
-    return {.class_index = colour_steps, .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause)};
+    return {.class_index = colour_steps,
+            .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause)};
   if (!std::isfinite(value)) return {.class_index = colour_steps + 1, .note = point + short_number(value)};
   const double part = range.high > range.low ? (value - range.low) / (range.high - range.low) : 0;
   return {.class_index = std::min(colour_steps - 1, static_cast<int>(part * colour_steps)),
@@ -195,10 +196,10 @@ std::vector<SweepPlot> sweep_plots(const SweepFolder& folder, const SweepResults
     for (const char c : output.name) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
     const auto is_taken = [&](const SweepPlot& plot) { return plot.name == name + ".svg"; };
     if (std::any_of(plots.begin(), plots.end(), is_taken)) name += fmt::format("-{}", k + 1);
-    plots.push_back({.name = name + ".svg",
-                     .svg = maps ? to_svg(output_map(folder, results, k))
-                                 : to_svg(curve_plot(folder, results, k)),
-                     .caption = fmt::format("{}: {} of {}", output.name, name_of(output.reduce), output.of)});
+    plots.push_back(
+        {.name = name + ".svg",
+         .svg = maps ? to_svg(output_map(folder, results, k)) : to_svg(curve_plot(folder, results, k)),
+         .caption = fmt::format("{}: {} of {}", output.name, name_of(output.reduce), output.of)});
   }
   return plots;
 }

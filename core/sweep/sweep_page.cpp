@@ -98,6 +98,11 @@ std::string sweep_page(const SweepFolder& folder, const SweepResults& results,
     page.notice(fmt::format("{} of {} points are missing.", results.missing(), results.points),
                 Verdict::warn);
   for (const SweepPlot& plot : plots) page.figure(plot.svg, plot.caption);
+  if (plots.empty())
+    page.paragraph(
+        "There is no picture: curves are drawn of one parameter and maps of a grid over two, of at most "
+        "20,000 "
+        "points.");
   page.heading("Points");
   page.table(status_table(results));
   page.table(output_table(plan, results));

@@ -13,6 +13,9 @@ namespace {
 
 constexpr int colour_steps = 9;
 
+/// A picture of more points could not be looked at in a browser.
+constexpr std::int64_t most_plotted = 20'000;
+
 /// Viridis (Smith and van der Walt 2015) at nine even steps: read alike on white and on near-black.
 constexpr const char* ramp[colour_steps] = {"#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c",
                                             "#28ae80", "#5ec962", "#addc30", "#fde725"};
@@ -189,7 +192,8 @@ HeatMap output_map(const SweepFolder& folder, const SweepResults& results, std::
 std::vector<SweepPlot> sweep_plots(const SweepFolder& folder, const SweepResults& results) {
   std::vector<SweepPlot> plots;
   const bool maps = has_maps(folder.plan);
-  if (results.rows.empty() || !(maps || has_curves(folder.plan))) return plots;
+  if (results.rows.empty() || results.points > most_plotted || !(maps || has_curves(folder.plan)))
+    return plots;
   for (std::size_t k = 0; k < folder.plan.outputs.size(); ++k) {
     const SweepOutput& output = folder.plan.outputs[k];
     std::string name = "sweep-";

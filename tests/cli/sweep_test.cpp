@@ -15,10 +15,13 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// 60 points, about 10 ms each.
-void write_plan(const std::filesystem::path& file, const std::string& more = "") {
+/// 60 points, about 20 ms for each s that they simulate.
+void write_plan(const std::filesystem::path& file, const std::string& more = "",
+                const std::string& duration = "0.5") {
   std::ofstream(file) << R"({ "format": "clothlab/sweep/1", "scene": "corners-free",
-  "set": { "cloth.rows": 12, "cloth.columns": 12, "duration": 0.5, "integrator.time_step": 0.0005 },
+  "set": { "cloth.rows": 12, "cloth.columns": 12, "integrator.time_step": 0.0005,
+    "duration": )" << duration
+                      << R"( },
   "vary": [ { "path": "springs.structural", "from": 50, "to": 200, "count": 6, "scale": "log" },
             { "path": "damping", "from": 0.001, "to": 0.01, "count": 10 } ],
   "outputs": [ { "name": "peak", "of": "max_strain", "reduce": "max" }, { "of": "sag" } ])"
@@ -67,9 +70,10 @@ TEST(SweepCommand, LeavesTableMapsAndPageAndGoesOnWithoutARun) {
 
 TEST(SweepCommand, KilledThreeTimesAndResumedIsTheSingleRun) {
   const Place place;
-  expect_done(place.run("p.sweep.json --out whole --jobs 1"));
+  write_plan(place / "p.sweep.json", "", "2");  // long enough to be killed in time
+  expect_done(place.run("p.sweep.json --out whole"));
   // Killed when so many rows are there; each time at least the next one was under way.
-  const CommandResult killed = place.sh(R"(
+  const CommandResult killed = place.sh(R"sh(
     rows() { cat parts/shards/*.jsonl 2>/dev/null | grep -c '"point"'; }
     for want in 5 20 40; do
       "$CLI" sweep p.sweep.json --out parts --jobs 2 &
@@ -79,7 +83,7 @@ TEST(SweepCommand, KilledThreeTimesAndResumedIsTheSingleRun) {
       [ $? -eq 137 ] || exit 7
     done
     "$CLI" sweep status parts
-    exec "$CLI" sweep --out parts)");
+    exec "$CLI" sweep --out parts)sh");
   expect_done(killed);
   EXPECT_EQ(place.table("parts"), place.table("whole"));
   EXPECT_TRUE(has(place.run("status parts").output, "4 attempts")) << place.run("status parts").output;
@@ -88,7 +92,7 @@ TEST(SweepCommand, KilledThreeTimesAndResumedIsTheSingleRun) {
 TEST(SweepCommand, ByShardsWhoseNumberChangesHalfWayIsTheSingleRun) {
   const Place place;
   expect_done(place.run("p.sweep.json --out whole"));
-  const CommandResult result = place.sh(R"(
+  const CommandResult result = place.sh(R"sh(
     "$CLI" sweep p.sweep.json --out parts --shard 2/3 &&
     "$CLI" sweep p.sweep.json --out parts --shard 1/7 &&
     [ "$("$CLI" sweep status parts --missing --shards 3)" = 1,3 ] &&
@@ -97,7 +101,7 @@ TEST(SweepCommand, ByShardsWhoseNumberChangesHalfWayIsTheSingleRun) {
     for i in 1 2 3 4 5; do "$CLI" sweep --out parts --shard $i/5 & done
     wait
     [ -z "$("$CLI" sweep status parts --missing --shards 3)" ] &&
-    exec "$CLI" sweep merge parts)");
+    exec "$CLI" sweep merge parts)sh");
   expect_done(result);
   EXPECT_TRUE(has(result.errors, "of 60 points are missing")) << result.errors;
   EXPECT_EQ(place.table("parts"), place.table("whole"));
@@ -106,24 +110,25 @@ TEST(SweepCommand, ByShardsWhoseNumberChangesHalfWayIsTheSingleRun) {
 TEST(SweepCommand, MayRunTwiceAtOnce) {
   const Place place;
   expect_done(place.run("p.sweep.json --out whole"));
-  const CommandResult result = place.sh(R"(
+  const CommandResult result = place.sh(R"sh(
     "$CLI" sweep p.sweep.json --out parts --shard 1/1 > first.txt & first=$!
     "$CLI" sweep p.sweep.json --out parts --shard 1/1 > second.txt & second=$!
-    wait $first && wait $second && exec "$CLI" sweep merge parts)");
+    wait $first && wait $second && exec "$CLI" sweep merge parts)sh");
   expect_done(result);
   EXPECT_EQ(place.table("parts"), place.table("whole"));
 }
 
 TEST(SweepCommand, ThatIsTerminatedHasItsRowsAndAnExitCodeOfItsOwn) {
   const Place place;
-  write_plan(place / "p.sweep.json", R"(, "limits": { "wall_s": 1000 })");
+  write_plan(place / "p.sweep.json", "", "2");
   for (const auto& [option, code] : {std::pair("", 130), std::pair("--stopped-exit-code 99", 99)}) {
-    const CommandResult result = place.sh(std::string(R"(
+    const CommandResult result = place.sh(std::string(R"sh(
       rm -rf parts
-      "$CLI" sweep p.sweep.json --out parts --jobs 1 )") + option + R"( &
+      "$CLI" sweep p.sweep.json --out parts --jobs 1 )sh") +
+                                          option + R"sh( &
       until [ "$(cat parts/shards/*.jsonl 2>/dev/null | wc -l)" -ge 5 ]; do sleep 0.01; done
       kill -TERM $!
-      wait $!)");
+      wait $!)sh");
     EXPECT_EQ(result.exit_code, code) << result.errors;
     EXPECT_TRUE(has(result.errors, "the same command goes on")) << result.errors;
     const auto json = nlohmann::json::parse(place.run("status parts --json").output);
@@ -150,13 +155,13 @@ TEST(SweepCommand, OnAFullDiskExitsWithFourKeepsWholeLinesAndGoesOn) {
 TEST(SweepCommand, MergesNothingWhereAPointDoesNotAgreeAndNamesBothMachines) {
   const Place place;
   expect_done(place.run("p.sweep.json --out parts"));
-  const CommandResult result = place.sh(R"(
+  const CommandResult result = place.sh(R"sh(
     rm parts/sweep.csv
     cd parts/shards
     sed -e '1s/"host":"[^"]*"/"host":"node8"/' -e '1s/"processor":"[^"]*"/"processor":"Other 9000"/' \
       -e '3s/"steps":[0-9]*/"steps":7/' *.jsonl > 1-of-1.node8.1.jsonl
     cd ../..
-    exec "$CLI" sweep merge parts)");
+    exec "$CLI" sweep merge parts)sh");
   EXPECT_EQ(result.exit_code, 5) << result.errors;
   for (const char* part : {"was made twice, and it took", "and 7 steps", "node8 (Other 9000, "})
     EXPECT_TRUE(has(result.errors, part)) << part << ": " << result.errors;
@@ -169,7 +174,7 @@ TEST(SweepCommand, OfABadPlanOrFolderExitsWithTwo) {
   write_plan(place / "other.sweep.json", R"(, "seed": 2)");
   expect_done(place.run("p.sweep.json --out there"));
   const std::pair<const char*, const char*> cases[] = {
-      {"bad.sweep.json --out none", "bad.sweep.json:5:"},
+      {"bad.sweep.json --out none", "bad.sweep.json:6:"},
       {"p.sweep.json", "--out"},
       {"other.sweep.json --out there", "holds a sweep of another plan"},
       {"p.sweep.json --out none --shard 5/4", "--shard"},

@@ -38,6 +38,8 @@ std::vector<Page> pages() {
           {"studies/stability.md", HelpWindow::tr("Study: stability")},
           {"studies/extremes.md", HelpWindow::tr("Study: extreme cases")},
           {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
+          {"studies/sweep.md", HelpWindow::tr("Study: sweeps")},
+          {"studies/cluster.md", HelpWindow::tr("Sweeps on a cluster")},
           {"parameters.md", HelpWindow::tr("Parameters")},
           {"scene-format.md", HelpWindow::tr("Scene files")},
           {"materials.md", HelpWindow::tr("Materials")},

@@ -18,6 +18,7 @@ void add_extremes(Program& program);
 void add_convergence(Program& program);
 void add_identify(Program& program);
 void add_study(Program& program);
+void add_sweep(Program& program);
 void add_reproduce(Program& program);
 void add_validate(Program& program);
 void add_schema(Program& program);

@@ -24,6 +24,10 @@ std::optional<IoError> LineFile::open(const std::filesystem::path& path) {
   return open(path, O_CREAT | O_TRUNC);
 }
 
+std::optional<IoError> LineFile::open_new(const std::filesystem::path& path) {
+  return open(path, O_CREAT | O_EXCL | O_APPEND);
+}
+
 std::optional<IoError> LineFile::open_at_end(const std::filesystem::path& path) {
   if (auto error = open(path, 0)) return error;
   const off_t end = ::lseek(descriptor_, 0, SEEK_END);
@@ -70,11 +74,17 @@ std::optional<IoError> LineFile::flush() {
   return error;
 }
 
+std::optional<IoError> LineFile::sync() const {
+  // Some things that can be written to, such as a pipe, cannot be waited for.
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) return system_error(path_);
+  return std::nullopt;
+}
+
 std::optional<IoError> LineFile::close() {
   if (descriptor_ < 0) return std::nullopt;
   auto error = flush();
-  // Some things that can be written to, such as a pipe, cannot be waited for.
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS && !error) error = system_error(path_);
+  auto unsynced = sync();
+  if (!error) error = std::move(unsynced);
   if (::close(descriptor_) != 0 && !error) error = system_error(path_);
   descriptor_ = -1;
   return error;

@@ -22,6 +22,9 @@ class LineFile {
   /// Makes or empties the file.
   std::optional<IoError> open(const std::filesystem::path& path);
 
+  /// Makes the file; an error where there is one.
+  std::optional<IoError> open_new(const std::filesystem::path& path);
+
   /// Goes on at the end of a file of whole lines; the digest is then of what is added.
   std::optional<IoError> open_at_end(const std::filesystem::path& path);
 
@@ -30,7 +33,10 @@ class LineFile {
 
   /// Hands what has gathered to the system: it outlives this process.
   std::optional<IoError> flush();
-  /// Also waits until it is on the disk: it outlives a loss of power.
+  /// Waits until what was flushed is on the disk: it outlives a loss of power. Another thread may go on
+  /// adding and flushing meanwhile, but not close.
+  std::optional<IoError> sync() const;
+  /// Both, and no more lines follow.
   std::optional<IoError> close();
   bool is_open() const { return descriptor_ >= 0; }
 

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 const std::vector<std::string> rooms{
     "params",  "geometry",   "io",      "design", "fit",         "exact",   "cloth",
     "scene",   "kernels",    "sparse",  "forces", "integrators", "limiter", "contact",
-    "measure", "simulation", "picture", "report", "analysis",    "study",   "compare"};
+    "measure", "simulation", "picture", "report", "analysis",    "study",   "sweep",
+    "compare"};
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);

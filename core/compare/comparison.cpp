@@ -180,6 +180,7 @@ std::optional<std::string> must_be_shared(const std::string& path) {
   if (path.rfind("cloth.pins", 0) == 0) return "must be shared: pins act on all panes alike";
   if (path == "duration" || path == "record.interval")
     return "must be shared: the panes are compared at the same times";
+  if (path.rfind("probes", 0) == 0) return "must be shared: probes measure all panes alike";
   if (path == "title") return "must be shared: a pane has a \"title\" of its own beside its values";
   return std::nullopt;
 }

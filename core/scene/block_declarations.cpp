@@ -193,6 +193,14 @@ BlockRow obstacles_row() {
   return row;
 }
 
+/// A list: a probe's measure decides which parameters it has.
+BlockRow probes_row() {
+  BlockRow row{.path = "probes", .file_place = 14};
+  row.parameters = always(std::vector<Parameter>{});
+  row.is_present = [](const Scene& scene) { return !scene.probes.empty(); };
+  return row;
+}
+
 BlockRow contact_row() {
   BlockRow row = object_row<ContactSettings>(
       {.path = "contact",
@@ -285,9 +293,10 @@ std::vector<BlockRow> all_rows() {
        .title = "Self-contact",
        .doc = "The cloth does not pass through itself."},
       self_contact_fields(), [](Scene& s) { return &s.self_contact; }, starter_self_contact));
+  rows.push_back(probes_row());
   rows.push_back(object_row<MeasuredPoints>(
       {.path = "measured",
-       .file_place = 14,
+       .file_place = 15,
        .title = "Measured points",
        .doc = "What such a cloth did in a laboratory, for clothlab-cli validate; a run does not know of it."},
       measured_fields(), [](Scene& s) { return &s.measured; }, always(MeasuredPoints{.file = "points.csv"})));

@@ -26,7 +26,7 @@ struct BlockRow {
   std::string doc{};       ///< one sentence
   std::string mesh_doc{};  ///< in place of `doc` where the cloth is a mesh
   /// The parameters for scenes of this kind (grid or mesh, method); the scene need not have the block. Empty
-  /// for "obstacles", a list.
+  /// for "obstacles" and "probes", which are lists.
   std::function<std::vector<Parameter>(const Scene&)> parameters{};
   std::function<bool(const Scene&)> is_present{};
   std::optional<OptionalBlock> optional{};  ///< none: every scene has it

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 #include "scene/method_facts.h"
 #include "scene/obstacle_shape.h"
@@ -41,9 +42,9 @@ std::string allowed(const ParameterInfo& info) {
 
 /// "obstacles.0.radius" is one of many: obstacles.N.radius.
 std::string general_path(const std::string& path) {
-  const std::string list = "obstacles.";
-  if (path.rfind(list, 0) != 0) return path;
-  return list + "N" + path.substr(path.find('.', list.size()));
+  for (const std::string list : {"obstacles.", "probes."})
+    if (path.rfind(list, 0) == 0) return list + "N" + path.substr(path.find('.', list.size()));
+  return path;
 }
 
 /// A bar inside a table cell would end the cell.
@@ -99,6 +100,37 @@ std::string section(const Scene& scene, const Block& block) {
   return text;
 }
 
+/// The measures, what each records, and their parameters, each key once.
+std::string probe_section() {
+  std::string text =
+      "\n## Probes\n\nWhat is measured, recorded as columns `probe.NAME.…` and charted; a probe only looks "
+      "on.\n\n"
+      "| `measure` | particles | meaning | columns |\n|---|---|---|---|\n";
+  Scene scene;
+  for (const ProbeFacts& facts : probe_facts()) {
+    const std::string particles = facts.least_particles == facts.most_particles
+                                      ? std::to_string(facts.most_particles)
+                                      : fmt::format("{} to {}", facts.least_particles, facts.most_particles);
+    std::string columns;
+    for (const ProbeValue& value : facts.values)
+      columns += fmt::format("{}`{}`: {}", columns.empty() ? "" : "; ", value.key, value.doc);
+    text += fmt::format("| `{}` | {} | {} | {} |\n", facts.name, facts.is_of_particles() ? particles : "none",
+                        facts.doc, columns);
+    scene.probes.push_back({.name = "NAME", .measure = facts.measure});
+  }
+  text +=
+      "\n| path | label | unit | accepted | start value | meaning | an edit acts |\n"
+      "|---|---|---|---|---|---|---|\n";
+  std::set<std::string> told;
+  for (const Block& block : blocks_of(scene))
+    for (const Parameter& parameter : block.parameters) {
+      if (block.path.rfind("probes.", 0) != 0 || !told.insert(parameter.info.key).second) continue;
+      const ProbeFacts& facts = facts_of(scene.probes[std::stoul(block.path.substr(7))].measure);
+      text += row(scene, parameter, parameter.info.key == "name" ? "" : fmt::format(" of `{}`", facts.name));
+    }
+  return text;
+}
+
 std::string material_section() {
   Scene scene;
   scene.material.emplace();
@@ -122,6 +154,7 @@ std::string reference_page() {
     if (block.path == "integrator") page += method_settings();
     if (block.path == "cloth") page += other_cloth_settings();
     if (block.path == "springs") page += material_section();
+    if (block.path == "self_contact") page += probe_section();
   }
   return page;
 }

@@ -10,6 +10,7 @@
 #include "cloth/cloth_sheet.h"
 #include "cloth/material.h"
 #include "params/parameter.h"
+#include "scene/probe.h"
 #include "scene/scene_mesh.h"
 
 namespace cloth {
@@ -131,6 +132,7 @@ struct Scene {
   IntegratorChoice integrator;
   double duration = 5.0;  ///< s
   Recording record;
+  std::vector<Probe> probes;
   std::optional<MeasuredPoints> measured;
   SceneFolder folder;  ///< for relative paths of mesh files; not written to the file
   bool operator==(const Scene&) const = default;

@@ -201,12 +201,13 @@ void check_steps(const Scene& scene, std::vector<Problem>& problems) {
 
 /// What is made of a list for each of its entries takes time and messages: no real scene has so many.
 void check_counts(const Scene& scene, std::vector<Problem>& problems) {
-  constexpr std::size_t max_obstacles = 1000, max_keyframes = 100'000;
+  constexpr std::size_t max_obstacles = 1000, max_keyframes = 100'000, max_probes = 100;
   const auto check = [&](const std::string& path, std::size_t count, std::size_t most) {
     if (count > most)
       problems.push_back({path, "", fmt::format("has {} entries; there may be at most {}", count, most)});
   };
   check("obstacles", scene.obstacles.size(), max_obstacles);
+  check("probes", scene.probes.size(), max_probes);
   for (std::size_t k = 0; k < scene.obstacles.size() && k <= max_obstacles; ++k)
     check(fmt::format("obstacles.{}.keyframes", k), scene.obstacles[k].keyframes.size(), max_keyframes);
 }
@@ -230,7 +231,10 @@ std::vector<Problem> find_problems(const Scene& scene) {
   const bool has_size = std::none_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.path == "cloth.rows" || problem.path == "cloth.columns";
   });
-  if (has_size) check_pins(scene.cloth, problems);
+  if (has_size) {
+    check_pins(scene.cloth, problems);
+    for (Problem& problem : find_probe_problems(scene)) problems.push_back(std::move(problem));
+  }
   check_directions(scene.cloth, problems);
   check_material(scene, problems);
   check_keyframes(scene, problems);
@@ -252,6 +256,7 @@ std::vector<std::string> scene_notices(const Scene& scene) {
   };
   if (scene.contact) look_at("contact.thickness", scene.contact->thickness);
   if (scene.self_contact) look_at("self_contact.thickness", scene.self_contact->thickness);
+  for (std::string& notice : probe_notices(scene)) notices.push_back(std::move(notice));
   return notices;
 }
 

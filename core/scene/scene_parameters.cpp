@@ -23,6 +23,14 @@ Block obstacle_block(const Scene& scene, std::size_t index) {
           "An obstacle that the cloth's particles cannot enter.", true, std::move(parameters)};
 }
 
+Block probe_block(const Scene& scene, std::size_t index) {
+  const Probe& probe = scene.probes[index];
+  const std::string path = "probes." + std::to_string(index);
+  return {path, "Probe " + probe.name, facts_of(probe.measure).doc, true,
+          bound<Probe>(path, probe_fields(probe.measure),
+                       [index](Scene& s) -> Probe& { return s.probes.at(index); })};
+}
+
 /// Of a cloth from a mesh that is loaded, as its file has it.
 Eigen::AlignedBox3d bounds_of(const ClothSheet& cloth) {
   return cloth.mesh.is_loaded() ? cloth.mesh.loaded->bounds : Eigen::AlignedBox3d(Vec3(Vec3::Zero()));
@@ -45,6 +53,16 @@ Obstacle starter_obstacle(const ObstacleShape& shape, const ClothSheet& cloth) {
   return obstacle;
 }
 
+/// Of a cloth smaller than Cusick's the disc is half as wide.
+Probe starter_probe(const Scene& scene, ProbeMeasure measure) {
+  Probe probe{.name = free_probe_name(scene.probes, measure), .measure = measure};
+  const ClothSheet& cloth = scene.cloth;
+  const double span =
+      cloth.is_mesh() ? bounds_of(cloth).sizes().maxCoeff() : std::min(cloth.width, cloth.height);
+  if (span > 0) probe.radius = std::min(probe.radius, 0.25 * span);
+  return probe;
+}
+
 /// A scene in which every optional block has its starting values: what "default" means.
 Scene starter_scene(const Scene& like) {
   Scene scene;
@@ -55,11 +73,13 @@ Scene starter_scene(const Scene& like) {
   scene.integrator.method = like.integrator.method;
   for (const Obstacle& obstacle : like.obstacles)
     scene.obstacles.push_back(starter_obstacle(shape_of(obstacle), like.cloth));
+  for (const Probe& probe : like.probes)
+    scene.probes.push_back({.name = probe.name, .measure = probe.measure});
   return scene;
 }
 
-std::optional<std::size_t> obstacle_index(const std::string& path) {
-  constexpr std::string_view prefix = "obstacles.";
+/// The number of an entry of a list, by the path of its block.
+std::optional<std::size_t> entry_index(const std::string& path, std::string_view prefix) {
   if (path.rfind(prefix, 0) != 0) return std::nullopt;
   std::size_t index = 0;
   const char* end = path.data() + path.size();
@@ -75,6 +95,8 @@ std::vector<Block> blocks_of(const Scene& scene) {
   for (const BlockRow& row : block_rows()) {
     if (row.path == "obstacles")
       for (std::size_t i = 0; i < scene.obstacles.size(); ++i) blocks.push_back(obstacle_block(scene, i));
+    if (row.path == "probes")
+      for (std::size_t i = 0; i < scene.probes.size(); ++i) blocks.push_back(probe_block(scene, i));
     if (row.title.empty() || !row.is_present(scene)) continue;
     const bool of_mesh = scene.cloth.is_mesh() && !row.mesh_doc.empty();
     blocks.push_back({row.path, row.title, of_mesh ? row.mesh_doc : row.doc, row.optional.has_value(),
@@ -112,15 +134,25 @@ std::vector<BlockOffer> offers_for(const Scene& scene) {
                         s.obstacles.push_back(starter_obstacle(*shape, s.cloth));
                         load_meshes(s);
                       },
-                      true});
+                      BlockOffer::Group::obstacle});
+  for (const ProbeFacts& facts : probe_facts())
+    if (!facts.is_of_particles())
+      offers.push_back(
+          {facts.name, facts.title, facts.doc,
+           [measure = facts.measure](Scene& s) { s.probes.push_back(starter_probe(s, measure)); },
+           BlockOffer::Group::probe});
   return offers;
 }
 
 void remove_block(Scene& scene, const std::string& path) {
   for (const BlockRow& row : block_rows())
     if (row.path == path && row.optional) row.optional->remove(scene);
-  if (const auto index = obstacle_index(path); index && *index < scene.obstacles.size())
-    scene.obstacles.erase(scene.obstacles.begin() + static_cast<long>(*index));
+  const auto erase = [&](auto& list, std::string_view prefix) {
+    if (const auto index = entry_index(path, prefix); index && *index < list.size())
+      list.erase(list.begin() + static_cast<long>(*index));
+  };
+  erase(scene.obstacles, "obstacles.");
+  erase(scene.probes, "probes.");
 }
 
 std::optional<ParameterValue> default_of(const Scene& scene, const std::string& path) {

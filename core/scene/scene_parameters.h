@@ -27,7 +27,7 @@ std::vector<Parameter> cloth_parameters(bool is_mesh);
 
 /// A group of parameters that belongs to one piece of physics. `path` is its identity: "cloth", "springs",
 /// "material", "damping", "gravity", "air", "air.gust", "deformation", "obstacles.N", "contact",
-/// "self_contact", "integrator", "run".
+/// "self_contact", "integrator", "probes.N", "run".
 struct Block {
   std::string path;
   std::string title;
@@ -39,7 +39,8 @@ struct Block {
 /// The blocks that this scene has, in the order of a form.
 std::vector<Block> blocks_of(const Scene& scene);
 
-/// Gives the scene every optional block, obstacles aside, with the values that the Add menu fills in.
+/// Gives the scene every optional block, obstacles and probes aside, with the values that the Add menu fills
+/// in.
 void add_every_block(Scene& scene);
 
 /// Every parameter that this scene has.
@@ -48,14 +49,15 @@ std::vector<Parameter> parameters_of(const Scene& scene);
 /// The parameter at `path`, if this scene has it.
 std::optional<Parameter> find_parameter(const Scene& scene, const std::string& path);
 
-/// What an Add menu offers for this scene: blocks it does not have, and obstacles. `add` fills in sensible
-/// values.
+/// What an Add menu offers for this scene: blocks it does not have, obstacles, and probes of the whole shape.
+/// `add` fills in sensible values.
 struct BlockOffer {
-  std::string path;  ///< of the block it would add; for obstacles the shape's name
+  enum class Group { block, obstacle, probe };
+  std::string path;  ///< of the block it would add; for obstacles the shape's name, for probes the measure's
   std::string title;
   std::string doc;
   std::function<void(Scene&)> add;
-  bool is_obstacle = false;
+  Group group = Group::block;
 };
 std::vector<BlockOffer> offers_for(const Scene& scene);
 

@@ -27,7 +27,7 @@ class SceneReader : public JsonReader<json> {
   Scene read(const json& root) {
     Scene scene;
     if (!object(root, "")) return scene;
-    known_keys(root, "", known_in("", {"format", "obstacles"}, scene));
+    known_keys(root, "", known_in("", {"format", "obstacles", "probes"}, scene));
     format(root, scene_format);
     required(root, "", "cloth", "must be given: a scene needs a cloth");
     for (const BlockRow* row : block_rows_of_file()) {
@@ -35,6 +35,8 @@ class SceneReader : public JsonReader<json> {
         read_cloth(root, scene.cloth);
       else if (row->path == "obstacles")
         read_obstacles(root, scene.obstacles);
+      else if (row->path == "probes")
+        read_probes(root, scene);
       else
         read_row(root, *row, scene);
     }
@@ -192,6 +194,62 @@ class SceneReader : public JsonReader<json> {
       fields(value[i], path, motion_fields(), obstacle);
       if (const json* keys = member(value[i], "keyframes"))
         read_keyframes(*keys, path + ".keyframes", obstacle);
+    }
+  }
+
+  void read_probes(const json& root, Scene& scene) {
+    const json* value = member(root, "probes");
+    if (!value || !list(*value, "probes")) return;
+    for (std::size_t i = 0; i < value->size(); ++i) {
+      const std::string path = fmt::format("probes.{}", i);
+      // What cannot be read must not be found fault with again.
+      Probe& probe = scene.probes.emplace_back(
+          Probe{.name = fmt::format("unread-{}", i), .measure = ProbeMeasure::lowest_point});
+      if (object((*value)[i], path)) read_probe((*value)[i], path, scene.cloth.is_mesh(), probe);
+    }
+  }
+
+  void read_probe(const json& from, const std::string& path, bool is_mesh, Probe& probe) {
+    const std::string names = probe_measure_names();
+    const json* measure = required(from, path, "measure", "must be given: " + names);
+    required(from, path, "name", "must be given: its columns are called by it");
+    if (!measure) return;
+    const auto known = std::find_if(probe_facts().begin(), probe_facts().end(),
+                                    [&](const ProbeFacts& one) { return *measure == one.name; });
+    if (known == probe_facts().end()) return problem(path + ".measure", *measure, "must be " + names);
+    probe.measure = known->measure;
+    std::set<std::string> keys = keys_of(probe_fields(probe.measure), {"measure"});
+    if (known->is_of_particles()) keys.insert("particles");
+    known_keys(from, path, keys);
+    fields(from, path, probe_fields(probe.measure), probe);
+    if (const json* particles = member(from, "particles"); particles && known->is_of_particles())
+      read_places(*particles, path + ".particles", is_mesh, probe.particles);
+  }
+
+  static std::string probe_measure_names() {
+    std::string names;
+    for (const ProbeFacts& facts : probe_facts())
+      names += fmt::format("{}\"{}\"",
+                           names.empty()                     ? ""
+                           : &facts == &probe_facts().back() ? " or "
+                                                             : ", ",
+                           facts.name);
+    return names;
+  }
+
+  void read_places(const json& value, const std::string& path, bool is_mesh,
+                   std::vector<ParticlePlace>& places) {
+    const char* rule =
+        is_mesh ? "must be the number of a vertex, from 0" : "must be [row, column] in whole numbers";
+    if (!list(value, path)) return;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const json& at = value[i];
+      if (is_mesh && small_integer(at))
+        places.push_back({0, at.get<int>()});
+      else if (!is_mesh && at.is_array() && at.size() == 2 && small_integer(at[0]) && small_integer(at[1]))
+        places.push_back({at[0].get<int>(), at[1].get<int>()});
+      else
+        places.push_back({-1, -1}), problem(fmt::format("{}.{}", path, i), at, rule);
     }
   }
 

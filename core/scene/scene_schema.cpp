@@ -102,6 +102,28 @@ json obstacles_schema() {
   return {{"type", "array"}, {"items", {{"anyOf", std::move(shapes)}}}};
 }
 
+/// An alternative for each measure; of a particle its place on a grid, or its number on a mesh.
+json probes_schema() {
+  const json number{{"type", "integer"}, {"minimum", 0}};
+  const json place{{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}};
+  json measures = json::array();
+  for (const ProbeFacts& facts : probe_facts()) {
+    json entry = object_schema(probe_fields(facts.measure), {{"measure", {{"const", facts.name}}}});
+    entry["description"] = facts.doc;
+    entry["properties"]["name"]["pattern"] = "^[A-Za-z][A-Za-z0-9_-]{0,31}$";
+    entry["required"] = json::array({"name", "measure"});
+    if (facts.is_of_particles()) {
+      entry["properties"]["particles"] = {{"type", "array"},
+                                          {"items", {{"anyOf", json::array({place, number})}}},
+                                          {"minItems", facts.least_particles},
+                                          {"maxItems", facts.most_particles}};
+      entry["required"].push_back("particles");
+    }
+    measures.push_back(std::move(entry));
+  }
+  return {{"type", "array"}, {"items", {{"anyOf", std::move(measures)}}}};
+}
+
 /// An alternative for every set of methods with the same settings.
 json integrator_schema() {
   std::map<MethodSettings, json> alternatives;
@@ -159,6 +181,7 @@ void put_blocks(json& root, bool objects) {
   for (const BlockRow* row : block_rows_of_file()) {
     if (objects && row->path == "cloth") root["properties"]["cloth"] = cloth_schema();
     if (objects && row->path == "obstacles") root["properties"]["obstacles"] = obstacles_schema();
+    if (objects && row->path == "probes") root["properties"]["probes"] = probes_schema();
     if (objects && row->path == "integrator") root["properties"]["integrator"] = integrator_schema();
     if (objects && row->path == "material") root["properties"]["material"] = material_block();
     if (row->path == "cloth" || row->path == "integrator" || row->path == "material") continue;

@@ -60,6 +60,22 @@ json obstacles_json(const Scene& scene) {
   return list;
 }
 
+json probes_json(const Scene& scene) {
+  json list = json::array();
+  for (const Probe& probe : scene.probes) {
+    const ProbeFacts& facts = facts_of(probe.measure);
+    json entry;
+    put_fields(Fields<Probe>{probe_fields(probe.measure).front()}, probe, entry);
+    entry["measure"] = facts.name;
+    if (facts.is_of_particles()) entry["particles"] = json::array();
+    for (const ParticlePlace& at : probe.particles)
+      entry["particles"].push_back(scene.cloth.is_mesh() ? json(at.column) : json{at.row, at.column});
+    put_fields(probe_fields(probe.measure), probe, entry);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 /// The place of `path` below `root`, made where it is missing.
 json& object_at(json& root, const std::string& path) {
   if (path.empty()) return root;
@@ -72,6 +88,7 @@ json scene_json(const Scene& scene) {
   for (const BlockRow* row : block_rows_of_file()) {
     if (!row->is_present(scene)) continue;
     if (row->path == "obstacles") root["obstacles"] = obstacles_json(scene);
+    if (row->path == "probes") root["probes"] = probes_json(scene);
     for (const Parameter& parameter : row->parameters(scene))
       object_at(root, parameter.path) = std::visit(ToJson{}, parameter.get(scene));
     if (row->path == "cloth") root["cloth"]["pins"] = pins_json(scene.cloth);

@@ -38,7 +38,8 @@ struct Column {
 
 constexpr auto always = [](const Quantities&) { return true; };
 
-/// Every column that record.csv can have, once; step_time_us follows them all.
+/// Every column that record.csv can have beside those of probes, once; probes and step_time_us follow them
+/// all.
 const std::vector<Column>& columns() {
   using M = const Measurement&;
   using Q = const Quantities&;
@@ -274,6 +275,7 @@ std::vector<std::string> record_columns(const Quantities& quantities) {
   std::vector<std::string> names;
   for (const Column& column : columns())
     if (column.present(quantities)) names.emplace_back(column.name);
+  names.insert(names.end(), quantities.probes.begin(), quantities.probes.end());
   names.emplace_back("step_time_us");
   return names;
 }
@@ -282,6 +284,9 @@ std::optional<double> recorded_value(const std::string& column, const Measuremen
                                      const Quantities& quantities) {
   for (const Column& known : columns())
     if (known.name == column && known.present(quantities)) return known.value(measurement);
+  const auto probe = std::find(quantities.probes.begin(), quantities.probes.end(), column);
+  if (probe != quantities.probes.end())
+    return measurement.probes[static_cast<std::size_t>(probe - quantities.probes.begin())];
   return std::nullopt;
 }
 
@@ -290,6 +295,7 @@ std::vector<std::string> record_row(const Measurement& measurement, const Quanti
   std::vector<std::string> row;
   for (const Column& column : columns())
     if (column.present(quantities)) row.push_back(column.text(measurement));
+  for (const double value : measurement.probes) row.push_back(std::isnan(value) ? "" : csv_number(value));
   row.push_back(csv_number(1e6 * step_time));
   return row;
 }

@@ -19,8 +19,8 @@ std::vector<std::string> record_columns(const Quantities& quantities);
 std::vector<std::string> record_row(const Measurement& measurement, const Quantities& quantities,
                                     double step_time);
 
-/// The number that record.csv has in a column; nullopt where it has no such column of these quantities, and
-/// for step_time_us, which is of the machine.
+/// The number that record.csv has in a column, not a number where its cell is empty; nullopt where it has no
+/// such column of these quantities, and for step_time_us, which is of the machine.
 std::optional<double> recorded_value(const std::string& column, const Measurement& measurement,
                                      const Quantities& quantities);
 

@@ -57,6 +57,13 @@ bool is_same_method(const IntegratorChoice& a, const IntegratorChoice& b) {
   });
 }
 
+bool differ_in_probes_alone(const Scene& a, const Scene& b) {
+  if (a.probes == b.probes) return false;
+  Scene other = b;
+  other.probes = a.probes;
+  return a == other;
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, Preparation prepare)
@@ -104,8 +111,15 @@ void Simulation::assemble() {
                            .hysteresis = forces_->has_history(),
                            .continuous_contact = has_continuous_contact()};
 
+  find_probes();
+
   strongest_pull_ = find_strongest_pull();
   apply_hand();
+}
+
+void Simulation::find_probes() {
+  probes_ = ProbeReader(scene_, system_);
+  quantities_.probes = probes_.columns();
 }
 
 /// A hand as strong as the step allows: it may not push the fastest oscillation over the method's limit, in
@@ -248,6 +262,10 @@ ObstacleTransitions Simulation::find_transitions(const Scene& edited) const {
 }
 
 void Simulation::edit(const Scene& scene) {
+  if (differ_in_probes_alone(scene, scene_)) {
+    scene_.probes = scene.probes;
+    return find_probes();
+  }
   const double before = total_energy();
   const bool new_method = !is_same_method(scene.integrator, scene_.integrator);
   run_.transitions = find_transitions(scene);
@@ -274,8 +292,8 @@ void Simulation::edit(const Scene& scene) {
 }
 
 std::size_t Checkpoint::bytes() const {
-  std::size_t numbers =
-      tension.size() + force_history.size() + memory.numbers.size() + state.position.flat().size() + state.velocity.flat().size();
+  std::size_t numbers = tension.size() + force_history.size() + memory.numbers.size() +
+                        state.position.flat().size() + state.velocity.flat().size();
   for (const Vec3Field& field : memory.fields) numbers += field.flat().size();
   numbers += contact_memory.deferred.size();
   return sizeof(Checkpoint) + sizeof(StepChange) * automatic.changes.size() + sizeof(double) * numbers +
@@ -398,7 +416,8 @@ Measurement Simulation::measure() const {
           .limiter_excess = run_.last_limit.excess,
           .contacts = run_.last_contact.contacts,
           .held_back = run_.last_contact.held_back,
-          .contact_impulse = run_.contact_impulse};
+          .contact_impulse = run_.contact_impulse,
+          .probes = probes_.read(system_, run_.state)};
 }
 
 }  // namespace cloth

@@ -21,6 +21,7 @@
 #include "limiter/step_limiter.h"
 #include "limiter/unreachable_rate.h"
 #include "measure/energy.h"
+#include "measure/probe_reader.h"
 #include "measure/strain.h"
 #include "simulation/run_state.h"
 
@@ -40,6 +41,7 @@ struct Measurement {
   int contacts = 0;
   int held_back = 0;              ///< particles that contact kept from their target positions
   Vec3 contact_impulse{0, 0, 0};  ///< N s, given to the cloth since t = 0; 0 without continuous contact
+  std::vector<double> probes{};   ///< of ProbeReader::columns(); not a number where one is not defined
   /// total - total(0) - works + losses in J: energy that the method itself added or lost
   double energy_error() const { return energy.total() - ledger.initial - ledger.entered(); }
 };
@@ -50,6 +52,7 @@ struct Quantities {
   bool damping = false, air = false, brush = false, pull = false, limiter = false, contact = false;
   bool structural = false, shear = false, bending = false, hysteresis = false;
   bool continuous_contact = false;
+  std::vector<std::string> probes{};  ///< their columns
   bool operator==(const Quantities&) const = default;
 };
 
@@ -87,8 +90,8 @@ class Simulation {
   bool interrupted() const { return interrupted_; }
 
   /// Uses an edited scene from the next step on and keeps the state. Preconditions: those of the constructor,
-  /// and only pins and parameters of EditCost::live differ. The ledger's initial energy changes by the jump
-  /// in energy.
+  /// and only pins, probes and parameters of EditCost::live differ. The ledger's initial energy changes by
+  /// the jump in energy. Where only probes differ the motion goes on as it would have, to the bit.
   void edit(const Scene& scene);
 
   Checkpoint checkpoint() const;
@@ -132,6 +135,7 @@ class Simulation {
   /// Where "auto" has shortened the step since t = 0.
   const std::vector<StepChange>& step_changes() const { return run_.automatic.changes; }
   const Quantities& quantities() const { return quantities_; }
+  const ProbeReader& probes() const { return probes_; }
   const StepCount& count() const { return run_.count; }
   /// Of the last step.
   const LimiterReport& last_limit() const { return run_.last_limit; }
@@ -167,6 +171,7 @@ class Simulation {
 
  private:
   void assemble();
+  void find_probes();
   std::int64_t advance_batch(std::int64_t count);
   void begin_step_length();
   void watch_step(bool at_once);
@@ -225,6 +230,7 @@ class Simulation {
   bool watches_step_ = false, watches_ledger_ = false;  ///< by the ledger: every few steps
   EnergyLedger ledger_before_;                          ///< at the begin of a step that may be taken back
   Quantities quantities_;
+  ProbeReader probes_;
   std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
   std::optional<UnreachableRate> unreachable_;
   PullStrength strongest_pull_, pull_strength_;

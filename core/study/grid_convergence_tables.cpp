@@ -144,6 +144,8 @@ std::string name_of_output(const std::string& output) {
   constexpr const char* over_words[] = {"", ", largest", ", smallest", ", mean"};
   const GridOutput parsed = parse_output(output);
   const std::string unit = unit_of_output(output);
+  const auto probe = words_of_probe_column(parsed.quantity);
+  if (probe) return probe->label + over_words[static_cast<std::size_t>(parsed.over)];
   std::string name = parsed.quantity;
   for (const char* ending : {"_J", "_Ns", "_m", "_s"})
     if (!unit.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());

@@ -39,9 +39,11 @@ std::vector<std::string> output_quantities(const Scene& scene) {
   Scene small = scene;  // the columns follow from its blocks, not from its size
   small.cloth.rows = small.cloth.columns = 3;
   small.cloth.pins.clear();
+  small.probes.clear();
   small.integrator.time_step = scene.record.interval;  // "auto" may find none
   std::vector<std::string> known = record_columns(Simulation(small).quantities());
   std::erase(known, "step_time_us");
+  for (std::string& column : probe_columns(scene.probes)) known.push_back(std::move(column));
   known.emplace_back(lowest_name);
   if (!scene.cloth.pins.empty()) known.insert(known.end(), {droop_name, ratio_name});
   return known;
@@ -63,6 +65,7 @@ std::optional<std::string> broken_outputs_rule(const std::vector<std::string>& o
 
 std::string unit_of_output(const std::string& output) {
   const std::string quantity = parse_output(output).quantity;
+  if (const auto words = words_of_probe_column(quantity)) return words->unit;
   for (const auto& [ending, unit] : {std::pair{"_J", "J"}, {"_Ns", "N s"}, {"_m", "m"}, {"_s", "s"}})
     if (quantity.ends_with(ending)) return unit;
   return "";

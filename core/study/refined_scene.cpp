@@ -147,9 +147,14 @@ int cell_unit(const Scene& scene) {
   int unit = across / std::gcd(across, down);
   PinnedParticle odd;
   const std::vector<Region> regions = regions_of(cloth, odd).value();
+  const auto keep_line = [&](int line) {
+    if (line > 0) unit = std::lcm(unit, across / std::gcd(across, line));
+  };
   for (const Region& region : regions)
     for (const int line : {region.first_row, region.last_row, region.first_column, region.last_column})
-      if (line > 0) unit = std::lcm(unit, across / std::gcd(across, line));
+      keep_line(line);
+  for (const Probe& probe : scene.probes)
+    for (const ParticlePlace& at : probe.particles) keep_line(at.row), keep_line(at.column);
   return unit;
 }
 
@@ -192,6 +197,8 @@ Scene refined_scene(const Scene& scene, int cells) {
   const std::vector<Region> regions = regions_of(scene.cloth, odd).value();
   refined.cloth.columns = cells + 1;
   refined.cloth.rows = scaled(scene.cloth.rows - 1) + 1;
+  for (Probe& probe : refined.probes)
+    for (ParticlePlace& at : probe.particles) at = {scaled(at.row), scaled(at.column)};
   if (regions.empty()) return refined;
   refined.cloth.pins.clear();
   for (const Region& region : regions)

@@ -88,6 +88,7 @@ Scene cell_scene(const Scene& scene, const StabilityOptions& options, const std:
   Scene cell = scene;
   cell.integrator.method = method;
   if (facts_of(method).settings == MethodSettings::error_control) cell.integrator.tolerance = 0;
+  cell.probes.clear();  // the map records none
   set_number(cell, options.x.path, x, "--x");
   set_number(cell, options.y.path, y, "--y");
   if (!options.full_size && cell.obstacles.empty()) make_smaller(cell.cloth);

@@ -148,13 +148,15 @@ TEST(Offers, AddWhatTheSceneLacksAndRemovalTakesItOutAgain) {
     EXPECT_NE(with, scene) << offer.path;
     EXPECT_TRUE(find_problems(with).empty()) << offer.path;
     const bool obstacle = with.obstacles.size() > scene.obstacles.size();
-    remove_block(with, obstacle ? "obstacles.0" : offer.path);
+    const bool probe = with.probes.size() > scene.probes.size();
+    remove_block(with, obstacle ? "obstacles.0" : probe ? "probes.0" : offer.path);
     EXPECT_EQ(with, scene) << offer.path;
   }
   EXPECT_EQ(offered, std::set<std::string>({"springs", "material", "deformation", "damping", "gravity", "air",
-                                            "self_contact", "measured", "sphere", "box", "plane", "mesh"}));
+                                            "self_contact", "measured", "sphere", "box", "plane", "mesh",
+                                            "lowest-point", "extent", "shadow", "drape", "droop", "rest"}));
   for (const BlockOffer& offer : offers_for(full_scene()))
-    EXPECT_TRUE(offer.path == "self_contact" || offer.is_obstacle) << offer.path;
+    EXPECT_TRUE(offer.path == "self_contact" || offer.group != BlockOffer::Group::block) << offer.path;
 }
 
 TEST(RemovingABlock, ThatIsNotThereChangesNothing) {

@@ -52,7 +52,7 @@ TEST(SceneReader, ReportsAllProblemsAtOnceInTheOrderOfTheFile) {
              "name:3:22: cloth.mass = -0.25 kg: must be > 0",
              "name:4:3: sprigns: is not a known key; known here: air, cloth, contact, damping, deformation, "
              "duration, "
-             "format, gravity, integrator, material, measured, obstacles, record, self_contact, springs, title",
+             "format, gravity, integrator, material, measured, obstacles, probes, record, self_contact, springs, title",
              "name:5:14: damping = \"much\": must be a number", "name:6:15: duration = 0 s: must be > 0"}));
 }
 

@@ -4,6 +4,9 @@
 
 #include <array>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "compare/comparison.h"
 
@@ -14,9 +17,11 @@ inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 struct ChartSample {
   double time_s = 0;
   double kinetic_J = 0, elastic_J = 0, gravity_J = 0, total_J = 0;
-  double max_strain = 0;      ///< a fraction; charts show percent
-  double step_ms = no_value;  ///< one simulation step
-  double draw_ms = no_value;  ///< one drawing of the view
+  double max_strain = 0;                                            ///< a fraction; charts show percent
+  double step_ms = no_value;                                        ///< one simulation step
+  double draw_ms = no_value;                                        ///< one drawing of the view
+  std::shared_ptr<const std::vector<std::string>> probe_columns{};  ///< of record.csv; null: none
+  std::vector<double> probes{};                                     ///< one for each of these
   bool is_cut = false;  ///< a marker, not a point: the run went back to this time, and the charts delete all
                         ///< later points
 };

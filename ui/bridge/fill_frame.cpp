@@ -65,6 +65,8 @@ void fill_frame(const cloth::Simulation& simulation, const cloth::ClothState& st
   frame.pinned = system.pinned;
   frame.obstacles = simulation.scene().obstacles;
   fill_poses(simulation, state.time, frame);
+  frame.probes = simulation.probes().probes();
+  frame.probe_values = simulation.probes().read(system, state);
   const auto& deformation = simulation.scene().deformation;
   frame.deformation_rate = simulation.quantities().limiter ? deformation->rate : -1;
   frame.time = state.time;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "measure/probe_reader.h"
 #include "scene/obstacle_motion.h"
 #include "scene/scene.h"
 
@@ -51,8 +52,10 @@ struct ClothFrame {
   std::vector<cloth::Pose>
       targets;  ///< the poses that the obstacles reach when the transition after an edit ends
   ContactPicture contact;
-  double deformation_rate = -1;  ///< pure number; negative: the scene has no limiter
-  double time = 0;               ///< s
+  std::vector<cloth::ProbeReader::Probed> probes;  ///< of the scene
+  std::vector<double> probe_values;  ///< of all probes in order, SI units; not a number: not defined
+  double deformation_rate = -1;      ///< pure number; negative: the scene has no limiter
+  double time = 0;                   ///< s
   std::int64_t step = 0;
 
   bool has_cloth() const { return mesh || (rows > 1 && columns > 1); }

@@ -16,6 +16,7 @@ std::string name_of(const std::string& path, const cloth::Scene& scene) {
   if (const auto parameter = find_parameter(scene, path)) return parameter->info.label;
   for (const cloth::Block& block : blocks_of(scene))
     if (block.path == path) return block.title;
+  if (path == "probes") return "Probes";
   return path;
 }
 

@@ -168,6 +168,13 @@ void SceneRun::take_sample() {
                      .gravity_J = m.energy.gravity,
                      .total_J = m.energy.total(),
                      .max_strain = m.strain.maximum()};
+  if (!m.probes.empty()) {
+    const std::vector<std::string>& columns = simulation_->probes().columns();
+    if (!probe_columns_ || *probe_columns_ != columns)
+      probe_columns_ = std::make_shared<const std::vector<std::string>>(columns);
+    sample.probe_columns = probe_columns_;
+    sample.probes = m.probes;
+  }
   if (steps_since_row_ > 0) sample.step_ms = 1e3 * wall_since_row_ / static_cast<double>(steps_since_row_);
   if (is_recording()) note_record(recording_.add_row(*simulation_, m, wall_since_row_, steps_since_row_));
   forget_cost();

@@ -69,8 +69,9 @@ class SceneRun final : public LiveRun {
   EnergyWatch energy_;
   cloth::BatchSize batch_;
   std::optional<ChartSample>
-      first_sample_;           ///< sent together with the second sample, because one point is not a curve
-  double wall_since_row_ = 0;  ///< s
+      first_sample_;  ///< sent together with the second sample, because one point is not a curve
+  std::shared_ptr<const std::vector<std::string>> probe_columns_;  ///< of the samples sent
+  double wall_since_row_ = 0;                                      ///< s
   std::int64_t steps_since_row_ = 0;
 };
 

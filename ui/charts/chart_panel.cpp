@@ -28,6 +28,10 @@ ChartPanel::ChartPanel(QWidget* parent) : ChartArea({}, TimeView::Span::last_min
   apply_look();
 }
 
+ChartPanel::~ChartPanel() {
+  qDeleteAll(probe_charts_);  // before their specs
+}
+
 void ChartPanel::make_bar() {
   bar_ = new ChartBar(this);
   bar_->apply_look(chart_font(font()));
@@ -35,6 +39,7 @@ void ChartPanel::make_bar() {
   connect(bar_, &ChartBar::live_wanted, this, &ChartPanel::goLive);
   connect(bar_, &ChartBar::save_wanted, this, &ChartPanel::saveWanted);
   connect(bar_, &ChartBar::box_mode_changed, this, [this](bool on) {
+    box_mode_ = on;
     for (LiveChart* chart : stack_.charts()) chart->view().set_box_mode(on);
   });
   connect(this, &ChartArea::liveChanged, bar_, &ChartBar::set_live);
@@ -47,8 +52,37 @@ void ChartPanel::append(std::span<const ChartSample> samples) {
         return s.time_s < record_.samples.last_time();
       });
   record_.append(samples);
+  follow_probes();
   if (reset) stack_.time().follow();
   data_changed();
+}
+
+/// Their charts stand above that of the frame time, which has the labels of the time axis.
+void ChartPanel::follow_probes() {
+  if (record_.probes == charted_probes_) return;
+  charted_probes_ = record_.probes;
+  logarithmicAxes();  // as the user chose them
+  for (LiveChart* chart : probe_charts_) stack_.take(chart);
+  qDeleteAll(probe_charts_);
+  probe_charts_.clear();
+  probe_specs_.clear();
+  for (ChartSpec& spec : probe_chart_specs(charted_probes_)) {
+    probe_specs_.push_back(std::make_unique<ChartSpec>(std::move(spec)));
+    auto* chart = new LiveChart(*probe_specs_.back(), false, this);
+    chart->view().set_box_mode(box_mode_);
+    stack_.insert(stack_.charts().size() - 1, chart);
+    probe_charts_.push_back(chart);
+    chart->show();
+  }
+  setLogarithmicAxes(std::map<QString, bool>(axes_));
+  apply_look();
+}
+
+std::vector<CsvColumn> ChartPanel::csv_columns() const {
+  std::vector<CsvColumn> columns = run_columns();
+  for (std::size_t k = 0; k < record_.probes.size(); ++k)
+    columns.push_back({QByteArray::fromStdString(record_.probes[k]), Source::samples, sample_columns + k});
+  return columns;
 }
 
 void ChartPanel::appendDrawTime(double time_s, double milliseconds) {
@@ -58,6 +92,8 @@ void ChartPanel::appendDrawTime(double time_s, double milliseconds) {
 
 void ChartPanel::clear() {
   record_.clear();
+  record_.set_probes({});
+  follow_probes();
   goLive();
 }
 

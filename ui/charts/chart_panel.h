@@ -1,6 +1,10 @@
-// The window's live charts: energy (J), maximum strain (%) and time per frame (ms) over simulated time (s),
-// stacked and aligned.
+// The window's live charts: energy (J), maximum strain (%), the scene's probes, a chart for each unit, and
+// time per frame (ms) over simulated time (s), stacked and aligned.
 #pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "charts/chart_area.h"
 
@@ -14,6 +18,7 @@ class ChartPanel : public ChartArea {
   using TimeSpan = TimeView::Span;
 
   explicit ChartPanel(QWidget* parent = nullptr);
+  ~ChartPanel() override;
 
   /// New samples in time order. A time before the last one is a reset: what was recorded is cleared first.
   void append(std::span<const ChartSample> samples);
@@ -37,11 +42,16 @@ class ChartPanel : public ChartArea {
 
  private:
   void make_bar();
-  std::vector<CsvColumn> csv_columns() const override { return run_columns(); }
+  void follow_probes();
+  std::vector<CsvColumn> csv_columns() const override;
   void show_message() override;
   int lay_out_head() override;
 
   ChartBar* bar_ = nullptr;
+  bool box_mode_ = false;
+  std::vector<std::string> charted_probes_;
+  std::vector<std::unique_ptr<ChartSpec>> probe_specs_;
+  std::vector<LiveChart*> probe_charts_;
 };
 
 }  // namespace clothlab

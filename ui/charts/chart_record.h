@@ -4,6 +4,7 @@
 #include <QString>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bridge/chart_sample.h"
@@ -13,7 +14,7 @@
 
 namespace clothlab {
 
-/// Columns of ChartRecord::samples, in the order of ChartSample.
+/// The first columns of ChartRecord::samples, in the order of ChartSample; those of probes follow.
 enum SampleColumn : std::size_t { kinetic, elastic, gravity, total, strain, step_time, sample_columns };
 
 struct ChartRecord {
@@ -21,10 +22,13 @@ struct ChartRecord {
   SampleSeries draws{1};  ///< time per drawing (ms), at its own simulated times, because drawing and
                           ///< simulation are not synchronised
   std::optional<double> deformation_rate;  ///< a fraction
+  std::vector<std::string> probes;         ///< their columns in record.csv, in the order of the samples
 
   /// A time before the last one starts a new record: the simulation was reset. A cut deletes only the later
   /// samples.
   void append(std::span<const ChartSample> batch);
+  /// Makes room for these probes; those that are known keep their samples.
+  void set_probes(const std::vector<std::string>& columns);
   void append_draw_time(double time_s, double milliseconds);
   void clear();
   bool empty() const { return samples.empty() && draws.empty(); }
@@ -58,6 +62,8 @@ struct ChartSpec {
 
 /// Energy, strain and frame time, from top to bottom.
 const std::vector<ChartSpec>& chart_specs();
+/// A chart for each unit of these probes' columns; strain and angles in percent and degrees.
+std::vector<ChartSpec> probe_chart_specs(const std::vector<std::string>& probes);
 /// The deformation rate's line, and its factor to the chart's percent.
 const CurveSpec& limit_spec();
 

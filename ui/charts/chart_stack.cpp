@@ -26,6 +26,11 @@ void ChartStack::add(LiveChart* chart) {
   connect_chart(chart);
 }
 
+void ChartStack::insert(std::size_t at, LiveChart* chart) {
+  charts_.insert(charts_.begin() + static_cast<std::ptrdiff_t>(at), chart);
+  connect_chart(chart);
+}
+
 /// All charts share the time axis; each has its own y axis.
 void ChartStack::connect_chart(LiveChart* chart) {
   PlotView* view = &chart->view();

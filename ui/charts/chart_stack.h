@@ -24,6 +24,9 @@ class ChartStack : public QObject {
   /// Adds a chart below the others. The caller owns the chart and deletes it after `clear`.
   void add(LiveChart* chart);
   void clear() { charts_.clear(); }
+  /// The same at a place of the list, and the opposite.
+  void insert(std::size_t at, LiveChart* chart);
+  void take(LiveChart* chart) { std::erase(charts_, chart); }
   const std::vector<LiveChart*>& charts() const { return charts_; }
 
   TimeView& time() { return time_; }

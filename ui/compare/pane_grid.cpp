@@ -50,7 +50,10 @@ void PaneGrid::showComparison(const cloth::Comparison& comparison) {
     panes_.pop_back();
   }
   if (count != before) layOut();
-  for (std::size_t i = 0; i < count; ++i) panes_[i]->showPane(comparison, i, count < cloth::max_panes);
+  for (std::size_t i = 0; i < count; ++i) {
+    panes_[i]->showPane(comparison, i, count < cloth::max_panes);
+    panes_[i]->view().setSheet(comparison.scene.cloth);
+  }
   if (isOne() && colouring_ == Colouring::difference) setMode(mode_);  // there is none
   followColours();
 }
@@ -59,6 +62,7 @@ void PaneGrid::addPane() {
   auto* pane = new PaneView(this);
   ClothView& view = pane->view();
   view.setTool(tool_);
+  view.setProbeMeasure(probe_measure_);
   view.setSmoothAtRest(isOne() || !playing_);
   view.setMode(mode_);
   view.setContact(contact_);
@@ -91,6 +95,7 @@ void PaneGrid::connectView(ClothView& view, std::size_t i) {
   connect(&view, &ClothView::brushChanged, this, &PaneGrid::brushChanged);
   connect(&view, &ClothView::brushEnded, this, &PaneGrid::brushEnded);
   connect(&view, &ClothView::pinToggled, this, &PaneGrid::pinToggled);
+  connect(&view, &ClothView::probeWanted, this, &PaneGrid::probeWanted);
   connect(&view, &ClothView::obstacleMoveStarted, this, &PaneGrid::obstacleMoveStarted);
   connect(&view, &ClothView::obstacleMoved, this, &PaneGrid::obstacleMoved);
   connect(&view, &ClothView::obstacleMoveEnded, this, &PaneGrid::obstacleMoveEnded);
@@ -197,6 +202,11 @@ void PaneGrid::setTool(Tool tool) {
   if (std::exchange(tool_, tool) == tool) return;
   for (PaneView* pane : panes_) pane->view().setTool(tool);
   Q_EMIT toolChanged(tool);
+}
+
+void PaneGrid::setProbeMeasure(cloth::ProbeMeasure measure) {
+  probe_measure_ = measure;
+  for (PaneView* pane : panes_) pane->view().setProbeMeasure(measure);
 }
 
 void PaneGrid::setMode(ViewMode mode, Colouring colouring) {

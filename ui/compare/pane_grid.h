@@ -62,6 +62,7 @@ class PaneGrid : public QWidget {
   ClothView& view() { return panes_.front()->view(); }
 
   void setTool(Tool tool);
+  void setProbeMeasure(cloth::ProbeMeasure measure);
   /// `colouring` counts where the mode shows colours.
   void setMode(ViewMode mode, Colouring colouring = Colouring::strain);
   ViewMode mode() const { return mode_; }
@@ -91,6 +92,7 @@ class PaneGrid : public QWidget {
   void brushChanged(const cloth::BrushGust& gust);
   void brushEnded();
   void pinToggled(int particle);
+  void probeWanted(const cloth::Probe& probe);
   void obstacleMoveStarted(int obstacle);
   void obstacleMoved(int obstacle, const Eigen::Vector3d& by);
   void obstacleMoveEnded(int obstacle, bool kept);
@@ -111,6 +113,7 @@ class PaneGrid : public QWidget {
   bool playing_ = false;
   std::int64_t starts_ = 0;  ///< of the comparison, that the results are from
   Tool tool_ = Tool::pull;
+  cloth::ProbeMeasure probe_measure_ = cloth::ProbeMeasure::particle;
   bool is_low_ = false;
   ViewMode mode_ = ViewMode::textured;
   Colouring colouring_ = Colouring::strain;

@@ -29,6 +29,12 @@ QString broken_rule_of_material(const Scene& edited) {
   return {};
 }
 
+/// The first rule that a probe breaks.
+QString broken_rule_of_probes(const Scene& edited) {
+  const auto problems = find_probe_problems(edited);
+  return problems.empty() ? QString() : QString::fromStdString(problems.front().rule);
+}
+
 /// Of comparisons: own values of parameters that went with their block or method go too. What has one pane
 /// left is that pane's scene.
 void make_consistent(Comparison& comparison) {
@@ -211,14 +217,17 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
   parameter->set(edited, value);
   if (const QString rule = readMeshes(edited); !rule.isEmpty()) return rule;
   if (const QString rule = broken_rule_of_material(edited); !rule.isEmpty()) return rule;
+  if (edited.cloth.rows != before.rows || edited.cloth.columns != before.columns ||
+      edited.cloth.cut != before.cut) {
+    edited.cloth.pins = pins_inside(edited.cloth);
+    edited.probes = probes_inside(edited.cloth, edited.probes);
+  }
+  if (const QString rule = broken_rule_of_probes(edited); !rule.isEmpty()) return rule;
   QString text = verb.arg(in_sentence(parameter->info.label));
   if (is_own) {
     set_own(after.panes[*scope_], path, value);
     text += tr(" of %1").arg(QString::fromStdString(after.panes[*scope_].name));
   } else {
-    if (edited.cloth.rows != before.rows || edited.cloth.columns != before.columns ||
-        edited.cloth.cut != before.cut)
-      edited.cloth.pins = pins_inside(edited.cloth);
     after.scene = std::move(edited);
   }
   push(text, std::move(after), {effect_of(parameter->info.cost), path}, drag_);
@@ -280,6 +289,9 @@ QString LabDocument::setClothMesh(const std::string& file) {
     after.cloth.pins.clear();
     after.cloth.origin = middle_of(shared.cloth) - after.cloth.mesh.loaded->bounds.center();
   }
+  std::erase_if(after.probes,
+                [](const cloth::Probe& probe) { return facts_of(probe.measure).is_of_particles(); });
+  after.probes = probes_inside(after.cloth, after.probes);
   pushShared(file.empty() ? tr("Make the cloth a grid") : tr("Make the cloth a mesh"), std::move(after),
              {Effect::restart, "cloth.mesh"});
   return {};
@@ -301,6 +313,17 @@ void LabDocument::togglePin(int row, int column) {
   after.cloth.pins = toggled_pins(after.cloth, row, column);
   pushShared(pinned ? tr("Free particle") : tr("Pin particle"), std::move(after),
              {Effect::live, "cloth.pins"});
+}
+
+QString LabDocument::addProbe(cloth::Probe probe) {
+  Scene after = comparison_.scene;
+  if (probe.name.empty()) probe.name = free_probe_name(after.probes, probe.measure);
+  const QString name = QString::fromStdString(probe.name);
+  const std::string path = "probes." + std::to_string(after.probes.size());
+  after.probes.push_back(std::move(probe));
+  if (const QString rule = broken_rule_of_probes(after); !rule.isEmpty()) return rule;
+  pushShared(tr("Add probe %1").arg(name), std::move(after), {Effect::live, path});
+  return {};
 }
 
 QString LabDocument::setOwn(std::size_t pane, const std::string& path, const ParameterValue& value) {

@@ -94,6 +94,9 @@ class LabDocument : public QObject {
   void moveObstacle(int number, const cloth::Obstacle& moved);
   /// Pins a free particle or frees a pinned one; see toggled_pins().
   void togglePin(int row, int column);
+  /// Adds a probe, with a name of its own where it has none. On error returns what is wrong with it and
+  /// changes nothing; returns an empty string on success.
+  QString addProbe(cloth::Probe probe);
 
   // --- Panes ---
 

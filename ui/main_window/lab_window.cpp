@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "cloth/cut_grid.h"
 #include "compare/scope_tabs.h"
 #include "main_window/autosave.h"
 #include "main_window/view_bar.h"
@@ -108,10 +107,12 @@ void LabWindow::connectHand() {
     if (document_.scene().air) link_.send(command::Brush{});
   });
   connect(grid_, &PaneGrid::pinToggled, this, [this](int particle) {
-    const cloth::ClothSheet& sheet = document_.scene().cloth;
-    const int place =
-        sheet.is_cut() ? cut_grid(sheet).place.at(static_cast<std::size_t>(particle)) : particle;
-    document_.togglePin(place / sheet.columns, place % sheet.columns);
+    const cloth::ParticlePlace place = place_of(document_.scene().cloth, particle);
+    document_.togglePin(place.row, place.column);
+  });
+  connect(grid_, &PaneGrid::probeWanted, this, [this](const cloth::Probe& probe) {
+    if (const QString rule = document_.addProbe(probe); !rule.isEmpty())
+      say("probe", NoticeBar::Level::warning, tr("The probe was not added: it %1.").arg(rule));
   });
   connect(grid_, &PaneGrid::obstacleMoveStarted, this, &LabWindow::startObstacleMove);
   connect(grid_, &PaneGrid::obstacleMoved, this, &LabWindow::moveObstacle);

@@ -1,5 +1,6 @@
 #include "main_window/view_bar.h"
 
+#include <QComboBox>
 #include <QHBoxLayout>
 #include <QMenu>
 #include <QSpinBox>
@@ -26,6 +27,7 @@ ViewBar::ViewBar(PaneGrid& panes, QAction* save_picture, QWidget* parent) : QFra
   addModes();
   for (const QActionGroup* group : {tools_, modes_}) {
     for (QAction* action : group->actions()) row->addWidget(make_action_button(action, this));
+    if (group == tools_) addProbes(*row);
     row->addSpacing(2 * spacing);
   }
   difference_ = findChild<QWidget*>("modeDifferenceButton");
@@ -43,10 +45,34 @@ void ViewBar::addTools() {
       {Tool::brush, "brush", tr("Wind brush"),
        tr("Drag to blow where the cursor is; also with Shift held. Wheel while blowing: radius"), "2",
        "toolBrush"},
-      {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"}};
+      {Tool::pin, "pin", tr("Pin"), tr("Click a particle to pin or free it"), "3", "toolPin"},
+      {Tool::probe, "probe", tr("Probe"), tr("Click particles to measure them: charted and recorded"), "4",
+       "toolProbe"}};
   tools_ = make_choices(this, tools, [this](Tool tool) { panes_.setTool(tool); });
-  connect(&panes_, &PaneGrid::toolChanged, this,
-          [this](Tool tool) { tools_->actions()[static_cast<int>(tool)]->setChecked(true); });
+  connect(&panes_, &PaneGrid::toolChanged, this, [this](Tool tool) {
+    tools_->actions()[static_cast<int>(tool)]->setChecked(true);
+    probe_measure_->setVisible(tool == Tool::probe);
+    suitWidth();
+  });
+}
+
+/// What the probe tool measures, beside the tools.
+void ViewBar::addProbes(QHBoxLayout& row) {
+  probe_measure_ = named("probeMeasure", new QComboBox(this));
+  probe_measure_->setAccessibleName(tr("What the probe measures"));
+  probe_measure_->setToolTip(
+      tr("What to measure, by clicks on one, two or three particles, or both ends of a line"));
+  for (const cloth::ProbeFacts& facts : cloth::probe_facts())
+    if (facts.is_of_particles()) {
+      probe_measure_->addItem(QString::fromLatin1(facts.title), static_cast<int>(facts.measure));
+      probe_measure_->setItemData(probe_measure_->count() - 1, QString::fromLatin1(facts.doc),
+                                  Qt::ToolTipRole);
+    }
+  probe_measure_->hide();
+  row.addWidget(probe_measure_);
+  connect(probe_measure_, &QComboBox::currentIndexChanged, this, [this] {
+    panes_.setProbeMeasure(static_cast<cloth::ProbeMeasure>(probe_measure_->currentData().toInt()));
+  });
 }
 
 void ViewBar::addModes() {

@@ -9,6 +9,7 @@
 
 #include "compare/pane_grid.h"
 
+class QComboBox;
 class QHBoxLayout;
 class QMenu;
 class QSpinBox;
@@ -64,6 +65,7 @@ class ViewBar : public QFrame {
  private:
   void addTools();
   void addModes();
+  void addProbes(QHBoxLayout& row);
   void addContact(QHBoxLayout& row);
   void addCamera();
   QToolButton* makeCameraButton();
@@ -74,7 +76,8 @@ class ViewBar : public QFrame {
 
   PaneGrid& panes_;
   QActionGroup *tools_ = nullptr, *modes_ = nullptr;
-  QWidget* difference_ = nullptr;  ///< the button of that mode
+  QWidget* difference_ = nullptr;       ///< the button of that mode
+  QComboBox* probe_measure_ = nullptr;  ///< there while the tool is
   QAction* contact_ = nullptr;
   QSpinBox* box_level_ = nullptr;
   QList<QAction*> camera_;

@@ -160,10 +160,9 @@ void ParameterPanel::makeScrollArea() {
 
 void ParameterPanel::fillAddMenu() {
   menu_->clear();
-  bool among_obstacles = false;
+  auto group = cloth::BlockOffer::Group::block;
   for (const cloth::BlockOffer& offer : offers_for(document_.scene())) {
-    if (offer.is_obstacle && !among_obstacles && !menu_->isEmpty()) menu_->addSeparator();
-    among_obstacles = offer.is_obstacle;
+    if (offer.group != std::exchange(group, offer.group) && !menu_->isEmpty()) menu_->addSeparator();
     QAction* action = menu_->addAction(QString::fromStdString(offer.title));
     action->setObjectName("offer:" + QString::fromStdString(offer.path));
     action->setToolTip(QString::fromStdString(offer.doc));

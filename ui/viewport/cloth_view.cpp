@@ -296,7 +296,9 @@ void ClothView::paintOverlays(QPainter& painter) {
   paintContactNote(painter);
   if (clothIsOutOfSight())
     overlay_.hint(painter, size(), look, tr("The cloth has left the picture. Press F to see it."));
+  paintProbes(painter);
   paintHandle(painter);
+  paintProbeTool(painter);
   paintHand(painter);
 }
 
@@ -310,7 +312,7 @@ void ClothView::paintHand(QPainter& painter) {
     const double speed = brush_speed_per_pixel * QLineF(start, cursor_).length();
     overlay_.brush(painter, look, {cursor_, start, brush_radius_, speed, blowing});
   } else if (hovered_ && handle_part_ == ObstacleHandle::Part::none &&
-             (gesture_ == Gesture::none || gesture_ == Gesture::pin)) {
+             (gesture_ == Gesture::none || gesture_ == Gesture::click)) {
     Overlay::Ring ring = Overlay::Ring::highlight;
     if (tool_ == Tool::pin)
       ring = frame_->pinned[static_cast<std::size_t>(*hovered_)] ? Overlay::Ring::remove : Overlay::Ring::add;

@@ -3,6 +3,7 @@
 //
 //   left-drag      on the cloth: pull a particle; beside it: orbit   (tool pin: click pins or frees a
 //   particle) Shift+left     wind brush, also without Shift when it is the tool; wheel while blowing: radius
+//   left click     with the tool probe: chooses a particle; Escape: forgets those chosen
 //   left-drag      on the handle that a hovered obstacle shows: move the obstacle; Escape: back
 //   right, middle  orbit (also Alt+left); with Ctrl+right or Shift+middle: pan; wheel: zoom towards the
 //   cursor
@@ -63,6 +64,10 @@ class ClothView : public QWidget {
   Tool tool() const { return tool_; }
   void setTool(Tool tool);
 
+  /// What the tool probe measures, by how many clicks; and the cloth whose particles it names.
+  void setProbeMeasure(cloth::ProbeMeasure measure);
+  void setSheet(const cloth::ClothSheet& sheet);
+
   /// The contact data to show; frames contain it once the worker has handled contactChosen().
   const ContactChoice& contact() const { return contact_; }
   void setContact(const ContactChoice& choice);
@@ -109,6 +114,7 @@ class ClothView : public QWidget {
   void brushChanged(cloth::BrushGust gust);
   void brushEnded();
   void pinToggled(int particle);
+  void probeWanted(const cloth::Probe& probe);  ///< without a name
   void toolChanged(clothlab::Tool tool);
   void modeChanged(clothlab::ViewMode mode);
   void contactChosen(const clothlab::ContactChoice& choice);
@@ -131,7 +137,7 @@ class ClothView : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  enum class Gesture { none, orbit, pan, pull, brush, pin, obstacle };
+  enum class Gesture { none, orbit, pan, pull, brush, click, obstacle };
 
   void initialiseGl();
   void resizeGl(int width, int height);
@@ -153,9 +159,12 @@ class ClothView : public QWidget {
   void paintOverlays(QPainter& painter);
   void paintHand(QPainter& painter);
   void paintHandle(QPainter& painter);
+  void paintProbes(QPainter& painter);
+  void paintProbeTool(QPainter& painter);
   void paintContactNote(QPainter& painter);
   bool showsMode() const;
   QPointF screenPoint(int particle) const;
+  QPolygonF screenLine(const std::vector<int>& particles) const;
 
   void startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers);
   void endGesture();
@@ -169,6 +178,11 @@ class ClothView : public QWidget {
   void sendObstacleMove();
   void cancelObstacleMove();
   void followShift(bool held);
+  void clickProbe(int particle);
+  void forgetProbeClicks();
+  bool sheetFits() const;  ///< the frame is of this sheet
+  std::vector<cloth::ParticlePlace> probePlaces(std::optional<int> next) const;
+  std::vector<int> previewParticles() const;
   bool brushShown() const;
   void updateCursor();
   std::optional<int> pick(QPointF at) const;
@@ -211,6 +225,9 @@ class ClothView : public QWidget {
   ObstacleHandle::Part handle_part_ = ObstacleHandle::Part::none;
   Eigen::Vector2d handle_start_{0, 0};  // px
   double brush_radius_ = 80;            // px
+  cloth::ProbeMeasure probe_measure_ = cloth::ProbeMeasure::particle;
+  cloth::ClothSheet sheet_;
+  std::vector<cloth::ParticlePlace> probe_clicks_;
 };
 
 }  // namespace clothlab

@@ -18,6 +18,7 @@ constexpr double least_brush_radius = 8, max_brush_radius = 1000;  // px
 void ClothView::setTool(Tool tool) {
   if (tool == tool_) return;
   endGesture();
+  forgetProbeClicks();
   tool_ = tool;
   updateHover();
   repaintOver();
@@ -71,7 +72,7 @@ void ClothView::updateCursor() {
   else if (handle_part_ != ObstacleHandle::Part::none)
     shape = Qt::SizeAllCursor;
   else if (hovered_)
-    shape = tool_ == Tool::pin ? Qt::PointingHandCursor : Qt::OpenHandCursor;
+    shape = tool_ == Tool::pull ? Qt::OpenHandCursor : Qt::PointingHandCursor;
   if (cursor().shape() != shape) setCursor(shape);
 }
 
@@ -110,8 +111,8 @@ void ClothView::startLeftGesture(QPointF at, Qt::KeyboardModifiers modifiers) {
   grabbed_ = pick(at);
   if (!grabbed_) {
     gesture_ = Gesture::orbit;
-  } else if (tool_ == Tool::pin) {
-    gesture_ = Gesture::pin;
+  } else if (tool_ == Tool::pin || tool_ == Tool::probe) {
+    gesture_ = Gesture::click;
   } else {
     gesture_ = Gesture::pull;
     grab_point_ = particle_position(*frame_, *grabbed_);
@@ -125,7 +126,7 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
   cursor_ = event->position();
   cursor_inside_ = rect().contains(cursor_.toPoint());
   shift_held_ = event->modifiers() & Qt::ShiftModifier;
-  if (gesture_ == Gesture::pin &&
+  if (gesture_ == Gesture::click &&
       (cursor_ - gesture_start_).manhattanLength() >= QApplication::startDragDistance())
     gesture_ = Gesture::orbit;  // not a click after all
   switch (gesture_) {
@@ -145,7 +146,7 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
     case Gesture::brush:
       sendBrush();
       break;
-    case Gesture::pin:
+    case Gesture::click:
       break;
   }
   if (gesture_ != Gesture::none || brushShown()) repaintOver();
@@ -153,10 +154,11 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
 
 void ClothView::mouseReleaseEvent(QMouseEvent* event) {
   if (gesture_ == Gesture::none || event->button() != gesture_button_) return event->ignore();
-  const std::optional<int> clicked = gesture_ == Gesture::pin ? grabbed_ : std::nullopt;
+  const std::optional<int> clicked = gesture_ == Gesture::click ? grabbed_ : std::nullopt;
   endGesture();
   updateHover();
-  if (clicked) Q_EMIT pinToggled(*clicked);
+  if (clicked && tool_ == Tool::pin) Q_EMIT pinToggled(*clicked);
+  if (clicked && tool_ == Tool::probe && sheetFits()) clickProbe(*clicked);
 }
 
 void ClothView::endGesture() {
@@ -231,6 +233,10 @@ bool ClothView::eventFilter(QObject* watched, QEvent* event) {
     if (key->key() == Qt::Key_Shift) followShift(event->type() == QEvent::KeyPress);
     if (key->key() == Qt::Key_Escape && gesture_ == Gesture::obstacle) {
       cancelObstacleMove();
+      return true;
+    }
+    if (event->type() == QEvent::KeyPress && key->key() == Qt::Key_Escape && !probe_clicks_.empty()) {
+      forgetProbeClicks();
       return true;
     }
   }

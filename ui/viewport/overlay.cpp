@@ -90,6 +90,39 @@ QRectF place_beside_handle(QPointF at, QSizeF label, const QPolygonF& keys, QSiz
   return up ? above : below;
 }
 
+/// Beside a particle: to the right and above, or where there is room in the view.
+QRectF place_beside(QPointF at, QSizeF room, QSizeF view) {
+  constexpr double gap = 12;
+  const double right = at.x() + gap, left = at.x() - gap - room.width();
+  const double x = right + room.width() <= view.width() || left < 0 ? right : left;
+  const double above = at.y() - gap - room.height();
+  return {QPointF(std::clamp(x, 0.0, std::max(0.0, view.width() - room.width())),
+                  above >= 0 ? above : at.y() + gap),
+          room};
+}
+
+/// The name in bold, then the values in one line.
+QSizeF label_size(const QPainter& painter, const ProbeLabel& label) {
+  const QFontMetricsF bold(font_of(painter, 0.9, QFont::DemiBold), painter.device());
+  const QFontMetricsF plain(note_font(painter), painter.device());
+  return {bold.horizontalAdvance(label.name) + 8 +
+              plain.horizontalAdvance(label.values.join(QStringLiteral("  ·  "))) + 20,
+          plain.height() + 8};
+}
+
+void label_card(QPainter& painter, const QRectF& area, const Theme& theme, const ProbeLabel& label) {
+  card(painter, area, theme);
+  const QFont bold = font_of(painter, 0.9, QFont::DemiBold), plain = note_font(painter);
+  const QFontMetricsF metrics(bold, painter.device());
+  painter.setFont(bold);
+  painter.setPen(theme.accent);
+  painter.drawText(area.adjusted(10, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, label.name);
+  painter.setFont(plain);
+  painter.setPen(theme.text);
+  painter.drawText(area.adjusted(18 + metrics.horizontalAdvance(label.name), 0, 0, 0),
+                   Qt::AlignLeft | Qt::AlignVCenter, label.values.join(QStringLiteral("  ·  ")));
+}
+
 void arrow(QPainter& painter, const QLineF& line, const QColor& colour, const QColor& halo, double width) {
   haloed_line(painter, line, colour, halo, width);
   const double length = line.length(), head = std::min(11.0, 0.5 * length);
@@ -301,13 +334,58 @@ void Overlay::pull_line(QPainter& view, const Theme& theme, QPointF particle, QP
   });
 }
 
+void Overlay::probe(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& particles,
+                    const ProbeLabel* label) {
+  view.save();
+  view.setRenderHint(QPainter::Antialiasing);
+  view.setBrush(Qt::NoBrush);
+  view.setPen(QPen(halo_of(theme), 4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  view.drawPolyline(particles);
+  view.setPen(QPen(theme.accent, label ? 2 : 1.5, label ? Qt::SolidLine : Qt::DashLine, Qt::RoundCap));
+  view.drawPolyline(particles);
+  constexpr qsizetype most_dots = 3;  // of a line only its ends
+  for (qsizetype k = 0; k < particles.size(); ++k) {
+    if (particles.size() > most_dots && k > 0 && k + 1 < particles.size()) continue;
+    view.setBrush(theme.accent);
+    view.setPen(QPen(halo_of(theme), 2));
+    view.drawEllipse(particles[k], 4.5, 4.5);
+  }
+  if (label) {
+    const QPointF anchor = particles.size() > most_dots ? particles[particles.size() / 2]
+                           : particles.size() == 3      ? particles[1]
+                                                        : particles.back();
+    label_card(view, place_beside(anchor, label_size(view, *label), size), theme, *label);
+  }
+  view.restore();
+}
+
+void Overlay::shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label, int row,
+                          bool below_mode) {
+  view.save();
+  view.setRenderHint(QPainter::Antialiasing);
+  const QSizeF room = label_size(view, label);
+  const double top = below_mode ? 3 * spacing + card_size(view, note_font(view), {}).height() : 2 * spacing;
+  label_card(view, QRectF(QPointF(2 * spacing, top + row * (room.height() + spacing / 2.0)), room), theme,
+             label);
+  view.restore();
+}
+
+void Overlay::reading(QPainter& view, QSizeF size, const Theme& theme, QPointF at, const QStringList& lines) {
+  view.save();
+  view.setRenderHint(QPainter::Antialiasing);
+  const QString text = lines.join(QStringLiteral("  ·  "));
+  const QFont font = note_font(view);
+  text_card(view, place_beside(at, card_size(view, font, text), size), theme, font, theme.text, text);
+  view.restore();
+}
+
 void Overlay::hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text) {
   const QFont font = note_font(view);
   QSizeF room = card_size(view, font, text);
   room.setWidth(std::min(room.width(), size.width() - 2 * spacing));
   const QRectF area(QPointF((size.width() - room.width()) / 2, size.height() - room.height() - 2 * spacing),
                     room);
-  hint_.lay(view, area, {}, [&](QPainter& p) {
+  hint_.lay(view, area, {static_cast<double>(qHash(text))}, [&](QPainter& p) {
     const QFontMetricsF metrics(font, view.device());
     text_card(p, area, theme, font, theme.text, metrics.elidedText(text, Qt::ElideRight, area.width() - 12));
   });

@@ -11,6 +11,7 @@
 #include <array>
 #include <functional>
 
+#include "viewport/probe_text.h"
 #include "viewport/view_mode.h"
 
 namespace clothlab {
@@ -62,6 +63,13 @@ class Overlay {
   void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
   /// The way that keyframes lead, from key to key, and beside the handle at `at` what a drag of it moves.
   void motion(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& keys, QPointF at);
+  /// Particles and the lines between them; with a label beside them, or without as what a click would choose.
+  void probe(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& particles,
+             const ProbeLabel* label);
+  /// A probe of the whole shape: a line of the list at the left edge.
+  void shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label, int row, bool below_mode);
+  /// What is read off under the cursor.
+  void reading(QPainter& view, QSizeF size, const Theme& theme, QPointF at, const QStringList& lines);
   /// One line at the lower edge.
   void hint(QPainter& view, QSizeF size, const Theme& theme, const QString& text);
   void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);

@@ -4,6 +4,6 @@
 namespace clothlab {
 
 enum class ViewMode { textured, wireframe, strain };
-enum class Tool { pull, brush, pin };
+enum class Tool { pull, brush, pin, probe };
 
 }  // namespace clothlab

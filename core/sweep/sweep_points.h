@@ -30,7 +30,7 @@ class SweptParameter {
 };
 
 /// The samples of a plan whose design is one, on the unit cube: a row for each point, a column for each axis.
-/// Empty for grids and tables. A problem where this version has no such design.
+/// Empty for grids and tables. A problem where there is no such design of so many samples.
 std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepPlan& plan);
 
 /// How many points there are; 0 where a sample is wanted that there is not.

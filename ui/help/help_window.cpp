@@ -38,13 +38,10 @@ std::vector<Page> pages() {
           {"studies/stability.md", HelpWindow::tr("Study: stability")},
           {"studies/extremes.md", HelpWindow::tr("Study: extreme cases")},
           {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
-<<<<<<< HEAD
-          {"studies/sensitivity.md", HelpWindow::tr("Sensitivity")},
-          {"studies/identify.md", HelpWindow::tr("Parameters from measurements")},
-=======
           {"studies/sweep.md", HelpWindow::tr("Study: sweeps")},
           {"studies/cluster.md", HelpWindow::tr("Sweeps on a cluster")},
->>>>>>> sweep
+          {"studies/sensitivity.md", HelpWindow::tr("Sensitivity")},
+          {"studies/identify.md", HelpWindow::tr("Parameters from measurements")},
           {"parameters.md", HelpWindow::tr("Parameters")},
           {"scene-format.md", HelpWindow::tr("Scene files")},
           {"materials.md", HelpWindow::tr("Materials")},

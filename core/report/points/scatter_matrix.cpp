@@ -52,7 +52,7 @@ void draw_points(PlotCanvas& canvas, const ScatterLayout& layout, const AxisMap&
     if (can_show(x.scale(), a) && can_show(y.scale(), b))
       circles += marker_path(Marker::circle, {x.place(a), y.place(b)}, layout.plot.main_effects ? 1.9 : 1.6);
   }
-  const double opacity = layout.plot.table.rows() > 150 ? 0.4 : 0.65;
+  const double opacity = layout.plot.table.rows() > 250 ? 0.5 : 0.85;
   canvas.path(circles, {.fill = style_of_series(0).colour, .opacity = opacity});
 }
 

@@ -76,7 +76,7 @@ LinePlot morris_plot(const MorrisScreening& screening, const std::vector<std::st
     }
     plot.series.push_back({.name = names[j], .points = {point}, .line = false});
   }
-  PlotSeries equal{.name = "sigma = mu*", .style = static_cast<int>(40), .markers = false};
+  PlotSeries equal{.name = "sigma = mu*", .style = 12, .markers = false};
   equal.points = {{.x = 0, .y = 0}, {.x = farthest, .y = farthest}};
   if (farthest > 0) plot.series.push_back(equal);
   plot.caption = {

@@ -64,6 +64,9 @@ DescentEnd best_end(FitSpace& space, const FitOptions& options, const std::vecto
 /// What standard errors are multiplied by, and what is to be said of it.
 double error_scale(const FitProblem& problem, FitResult& result) {
   const double reduced = result.degrees > 0 ? result.chi_squared / result.degrees : 1;
+  if (result.degrees < 1 && result.chi_squared > improbable_chi_squared(1))
+    result.cautions.emplace_back(
+        "The model does not reach the measured values within the ranges of the parameters.");
   if (!problem.sigmas_known) {
     result.cautions.emplace_back(
         result.degrees > 0 ? "The measured values came without standard deviations: the residuals say how "

@@ -9,7 +9,9 @@ namespace {
 
 constexpr double smallest_gain = 1e-8;    // of chi squared, that a further step is worth
 constexpr double negligible_gain = 0.01;  // a tenth of a standard error: no failure to stop there
-constexpr double longest_step = 1;        // of a coordinate: a factor of e, or the whole range
+constexpr double small_gain = 1e-3;  // of a step; three such in turn are an end: rough outputs go no lower
+constexpr int most_small_gains = 3;
+constexpr double longest_step = 1;  // of a coordinate: a factor of e, or the whole range
 constexpr double most_damping = 1e12;
 
 /// The equations of a step: J'J and J'r of the targets that are fitted.
@@ -50,11 +52,12 @@ DescentEnd levenberg_marquardt(FitSpace& space, const Eigen::VectorXd& start,
                                const Eigen::VectorXd& residuals, std::size_t max_iterations) {
   DescentEnd at{FitStatus::max_iterations, start, residuals, space.chi_squared(residuals)};
   double damping = 1e-3, growth = 2;
+  int small_gains = 0;
   Slopes slopes(space, at.u, at.residuals);
   for (std::size_t k = 0; k < max_iterations; ++k) {
     const Eigen::VectorXd next = space.clamped(at.u + slopes.step(damping));
     const double promised = slopes.gain(next - at.u);
-    const bool is_done = !(promised > smallest_gain);
+    const bool is_done = !(promised > smallest_gain) || small_gains == most_small_gains;
     if (is_done || damping > most_damping) {
       const double left = slopes.gain(slopes.step(0));
       at.status = is_done && left < negligible_gain ? FitStatus::converged : FitStatus::stalled;
@@ -63,6 +66,7 @@ DescentEnd levenberg_marquardt(FitSpace& space, const Eigen::VectorXd& start,
     const auto found = space.residuals(next);
     const double chi = found ? space.chi_squared(*found) : INFINITY;
     const double ratio = (at.chi_squared - chi) / promised;
+    small_gains = at.chi_squared - chi < small_gain && promised < negligible_gain ? small_gains + 1 : 0;
     if (!(ratio > 1e-4)) {
       damping *= growth;
       growth *= 2;

@@ -90,7 +90,7 @@ TEST(Identify, RefusesAPairThatTheValuesCannotTellApart) {
   // One value, two stiffnesses.
   const CommandResult result = cli("identify" + small +
                                    "--vary springs.structural:50:400 --vary springs.shear:1:100 "
-                                   "--target lowest_point_m.final=-0.05±0.001 --starts 2 --descents 1");
+                                   "--target lowest_point_m.final=0.5±0.001 --starts 2 --descents 1");
   EXPECT_EQ(result.exit_code, 6) << result.output << result.errors;
   EXPECT_TRUE(has(result.output, "The data do not see ")) << result.output;
   EXPECT_TRUE(has(result.output, "unseen")) << result.output;

@@ -1,5 +1,7 @@
 #include "report/points/interval_bars.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,10 +77,12 @@ void draw_bar(PlotCanvas& canvas, const BarLayout& layout, std::size_t category,
     strokes({.stroke = page_colours().ink, .stroke_width = 1.4});
     right = std::max(right, b);
   }
+  const int decimals =
+      std::clamp(2 - static_cast<int>(std::floor(std::log10(layout.map.high() - layout.map.low()))), 0, 9);
+  std::string text = fmt::format("{:.{}f}", bar.value, decimals);
+  if (bar.value < 0) text.replace(0, 1, "−");
   canvas.text({right + 6, top + bar_height - 3.5},
-              {.text = short_number(std::abs(bar.value) < 5e-5 ? 0 : bar.value, 3),
-               .size = 11,
-               .colour = page_colours().muted});
+              {.text = text, .size = 11, .colour = page_colours().muted});
 }
 
 void draw_bar_legend(PlotCanvas& canvas, const BarLayout& layout) {

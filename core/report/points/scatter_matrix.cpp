@@ -12,7 +12,8 @@
 namespace cloth {
 namespace {
 
-constexpr double gap = 8, left_room = 92, bottom_room = 62, most_panel = 230;
+constexpr double gap = 8, left_room = 84, bottom_room = 62, most_panel = 230;
+constexpr double inset = 5;  // of points within their panel
 constexpr std::size_t mean_intervals = 8, histogram_bars = 10;
 
 struct ScatterLayout {
@@ -51,7 +52,7 @@ void draw_points(PlotCanvas& canvas, const ScatterLayout& layout, const AxisMap&
     if (can_show(x.scale(), a) && can_show(y.scale(), b))
       circles += marker_path(Marker::circle, {x.place(a), y.place(b)}, layout.plot.main_effects ? 1.9 : 1.6);
   }
-  const double opacity = layout.plot.table.rows() > 150 ? 0.4 : 0.65;
+  const double opacity = layout.plot.table.rows() > 250 ? 0.5 : 0.85;
   canvas.path(circles, {.fill = style_of_series(0).colour, .opacity = opacity});
 }
 
@@ -66,17 +67,21 @@ void draw_mean(PlotCanvas& canvas, const AxisMap& x, const AxisMap& y, const Poi
   for (const SvgPoint& point : line) canvas.marker(Marker::square, point, 2.6, {.fill = colour});
 }
 
+/// Bars from the lowest value to the highest.
 void draw_histogram(PlotCanvas& canvas, const AxisMap& x, const PointColumn& column, const Box& box) {
-  std::array<std::size_t, histogram_bars> counts{};
-  const double bar = box.width() / histogram_bars;
+  std::vector<double> places;
   for (const double value : column.values)
-    if (x.holds(value))
-      ++counts[std::min(static_cast<std::size_t>((x.place(value) - box.left) / bar), histogram_bars - 1)];
-  const auto most =
-      static_cast<double>(std::max<std::size_t>(*std::max_element(counts.begin(), counts.end()), 1));
+    if (x.holds(value)) places.push_back(x.place(value));
+  if (places.empty()) return;
+  const auto [low, high] = std::minmax_element(places.begin(), places.end());
+  const double from = *low, bar = std::max((*high - from) / histogram_bars, 2.0);
+  std::array<std::size_t, histogram_bars> counts{};
+  for (const double place : places)
+    ++counts[std::min(static_cast<std::size_t>((place - from) / bar), histogram_bars - 1)];
+  const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
   for (std::size_t k = 0; k < histogram_bars; ++k) {
     const double height = 0.9 * box.height() * static_cast<double>(counts[k]) / most;
-    canvas.rect({box.left + bar * static_cast<double>(k) + 1, box.bottom - height}, bar - 2, height,
+    canvas.rect({from + bar * static_cast<double>(k) + 0.5, box.bottom - height}, bar - 1, height,
                 {.fill = page_colours().muted, .opacity = 0.45}, fmt::format("{} runs", counts[k]));
   }
 }
@@ -99,7 +104,6 @@ void draw_correlation(PlotCanvas& canvas, const PointColumn& a, const PointColum
 void draw_panel(PlotCanvas& canvas, const ScatterLayout& layout, std::size_t row, std::size_t column) {
   const Box box = layout.panel(row, column);
   const PointColumn &of_x = layout.column(layout.across[column]), &of_y = layout.column(layout.down[row]);
-  const double inset = 5;
   const AxisMap x = map_of(of_x, box.left + inset, box.right - inset),
                 y = map_of(of_y, box.bottom - inset, box.top + inset);
   canvas.rect({box.left, box.top}, box.width(), box.height(), {.stroke = page_colours().grid});
@@ -115,36 +119,56 @@ void draw_panel(PlotCanvas& canvas, const ScatterLayout& layout, std::size_t row
   }
 }
 
+/// Ticks with texts below or left of a panel: closer than on a large plot.
+void draw_panel_ticks(PlotCanvas& canvas, const AxisMap& map, const Box& box, bool below) {
+  const std::vector<Tick> rough = map.ticks(40);
+  for (const Tick& tick : map.ticks(below ? std::max(40.0, widest_tick(rough) + 12) : 26)) {
+    const double place = map.place(tick.value), length = tick.major ? 5 : 3;
+    if (below)
+      canvas.line({place, box.bottom}, {place, box.bottom + length}, {.stroke = page_colours().muted});
+    else
+      canvas.line({box.left - length, place}, {box.left, place}, {.stroke = page_colours().muted});
+    if (!tick.major) continue;
+    canvas.text(below ? SvgPoint{place, box.bottom + 18} : SvgPoint{box.left - 8, place + 4},
+                {.text = tick.text,
+                 .size = tick_size,
+                 .anchor = below ? Anchor::middle : Anchor::end,
+                 .colour = page_colours().muted,
+                 .superscript = tick.superscript});
+  }
+}
+
+/// The name of a column in the middle of `box`, from `place` on downwards, or to the right where it is
+/// turned.
+void draw_column_name(PlotCanvas& canvas, const PointColumn& column, const Box& box, double place,
+                      bool turned) {
+  for (const std::string& line : column_title(column, turned ? box.height() : box.width())) {
+    const SvgPoint at =
+        turned ? SvgPoint{place, (box.top + box.bottom) / 2} : SvgPoint{(box.left + box.right) / 2, place};
+    canvas.text(at, {.text = line,
+                     .size = small_size,
+                     .anchor = Anchor::middle,
+                     .bold = column.is_output,
+                     .turn = turned ? -90.0 : 0.0});
+    place += 14;
+  }
+}
+
 /// Ticks and names below the lowest panels and left of the first ones.
 void draw_outer_axes(PlotCanvas& canvas, const ScatterLayout& layout) {
-  const double inset = 5;
   canvas.begin_group("axes");
   for (std::size_t k = 0; k < layout.across.size(); ++k) {
     const Box box = layout.panel(layout.down.size() - 1, k);
     const PointColumn& column = layout.column(layout.across[k]);
-    draw_x_axis(canvas, map_of(column, box.left + inset, box.right - inset), "", box, false);
-    double y = box.bottom + 36;
-    for (const std::string& line : column_title(column, layout.panel_width)) {
-      canvas.text({(box.left + box.right) / 2, y},
-                  {.text = line, .size = small_size, .anchor = Anchor::middle, .bold = column.is_output});
-      y += 14;
-    }
+    draw_panel_ticks(canvas, map_of(column, box.left + inset, box.right - inset), box, true);
+    draw_column_name(canvas, column, box, box.bottom + 36, false);
   }
   for (std::size_t k = 0; k < layout.down.size(); ++k) {
     const Box box = layout.panel(k, 0);
     const PointColumn& column = layout.column(layout.down[k]);
     if (layout.plot.main_effects || k > 0)  // the first panel's height counts runs
-      draw_y_axis(canvas, map_of(column, box.bottom - inset, box.top + inset), "", box, false);
-    const auto lines = column_title(column, layout.panel_height);
-    double x = 13;
-    for (const std::string& line : lines) {
-      canvas.text({x, (box.top + box.bottom) / 2}, {.text = line,
-                                                    .size = small_size,
-                                                    .anchor = Anchor::middle,
-                                                    .bold = column.is_output,
-                                                    .turn = -90});
-      x += 14;
-    }
+      draw_panel_ticks(canvas, map_of(column, box.bottom - inset, box.top + inset), box, false);
+    draw_column_name(canvas, column, box, plot_margin + 8, true);
   }
   canvas.end_group();
 }

@@ -205,6 +205,13 @@ FitAccount identify(const IdentifyPlan& plan) {
   account.result = fit(problem, options);
   account.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   account.options.progress = {};
+  const FitStatus status = account.result.status;
+  if (!plan.scene.integrator.time_step &&
+      (status == FitStatus::stalled || status == FitStatus::max_iterations))
+    account.result.cautions.emplace_back(
+        "The time step is auto: where it is another for another value, outputs jump a little. A step of its "
+        "own "
+        "(integrator.time_step) keeps it.");
   return account;
 }
 

@@ -208,6 +208,8 @@ TEST(Fit, EndsAtABoundAndSaysSo) {
   EXPECT_EQ(found.status, FitStatus::converged);
   EXPECT_EQ(found.parameters[0].verdict, FitVerdict::at_bound);
   EXPECT_EQ(found.parameters[0].why, "The best value is the upper bound, 10.");
+  ASSERT_EQ(found.cautions.size(), 1u);
+  EXPECT_NE(found.cautions[0].find("does not reach the measured values"), std::string::npos);
   EXPECT_NEAR(found.parameters[1].value, 4, 1e-3);
 }
 

@@ -19,10 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// From the ground up.
-const std::vector<std::string> rooms{"params",  "geometry", "io",      "exact",      "cloth",
-                                     "scene",   "kernels",  "sparse",  "forces",     "integrators",
-                                     "limiter", "contact",  "measure", "simulation", "picture",
-                                     "report",  "study",    "sweep",   "compare"};
+const std::vector<std::string> rooms{"params",      "geometry", "io",      "design",  "exact",
+                                     "cloth",       "scene",    "kernels", "sparse",  "forces",
+                                     "integrators", "limiter",  "contact", "measure", "simulation",
+                                     "picture",     "report",   "study",   "sweep",   "compare"};
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -47,6 +47,22 @@ std::int64_t grid_count(const SweepAxis& axis) {
   return axis.is_list() ? std::ssize(axis.values) : axis.count;
 }
 
+/// Nothing of a grid and a table.
+std::optional<Design> sampled_design(SweepDesign design) {
+  switch (design) {
+    case SweepDesign::latin_hypercube:
+      return Design::latin_hypercube;
+    case SweepDesign::sobol:
+      return Design::sobol;
+    case SweepDesign::saltelli:
+      return Design::saltelli;
+    case SweepDesign::morris:
+      return Design::morris;
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& sweep_design_names() {
@@ -88,6 +104,7 @@ std::optional<Problem> SweptParameter::set(Scene& scene, const ParameterValue& v
   return std::nullopt;
 }
 
+<<<<<<< HEAD
 std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepPlan& plan) {
   const std::optional<Design> design = sampled_design(plan.design);
   if (!design) return std::vector<std::vector<double>>{};
@@ -99,19 +116,35 @@ std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepP
   if (rows > static_cast<std::size_t>(most_sweep_points))
     return Problem{"samples", value, fmt::format("makes {} points; at most {} are run", rows, most_sweep_points)};
   return unit_design(*design, samples, plan.axes.size(), plan.seed);
+=======
+std::optional<Problem> broken_sample(const SweepPlan& plan) {
+  const auto design = sampled_design(plan.design);
+  if (!design) return std::nullopt;
+  const std::string rule =
+      broken_design_rule(*design, static_cast<std::size_t>(plan.samples), plan.axes.size());
+  if (rule.empty()) return std::nullopt;
+  return Problem{"samples", std::to_string(plan.samples), rule};
+}
+
+UnitPoints unit_points(const SweepPlan& plan) {
+  const auto design = sampled_design(plan.design);
+  if (!design) return {};
+  return unit_design(*design, static_cast<std::size_t>(plan.samples), plan.axes.size(), plan.seed);
+>>>>>>> sweep
 }
 
 std::int64_t point_count(const SweepPlan& plan) {
-  const auto samples = unit_points(plan);
-  if (std::holds_alternative<Problem>(samples)) return 0;
-  if (const auto& rows = std::get<0>(samples); !rows.empty()) return std::ssize(rows);
-  double product = 1;
-  for (const SweepAxis& axis : plan.axes) product *= static_cast<double>(grid_count(axis));
-  return static_cast<std::int64_t>(std::min(product, 1e15));
+  double count = 1;
+  if (const auto design = sampled_design(plan.design))
+    count = static_cast<double>(
+        rows_of_design(*design, static_cast<std::size_t>(plan.samples), plan.axes.size()));
+  else
+    for (const SweepAxis& axis : plan.axes) count *= static_cast<double>(grid_count(axis));
+  return static_cast<std::int64_t>(std::min(count, 1e15));
 }
 
 SweepPoints::SweepPoints(const SweepPlan& plan) : plan_(&plan), count_(point_count(plan)) {
-  samples_ = std::get<0>(unit_points(plan));
+  samples_ = unit_points(plan);
   // A value that an axis sets may bring the parameter of a later one about, as a method its settings.
   Scene scene = plan.scene;
   for (const SweepAxis& axis : plan.axes)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "design/design.h"
 #include "scene/scene_parameters.h"
 #include "sweep/sweep_plan.h"
 
@@ -29,11 +30,20 @@ class SweptParameter {
   std::optional<Parameter> parameter_;  ///< none: all stiffnesses
 };
 
+<<<<<<< HEAD
 /// The samples of a plan whose design is one, on the unit cube: a row for each point, a column for each axis.
 /// Empty for grids and tables. A problem where there is no such design of so many samples.
 std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepPlan& plan);
+=======
+/// The rule that the number of samples breaks, of a plan whose design is a sample.
+std::optional<Problem> broken_sample(const SweepPlan& plan);
+>>>>>>> sweep
 
-/// How many points there are; 0 where a sample is wanted that there is not.
+/// The points of a plan whose design is a sample, on the unit cube: a row for each point, a column for each
+/// axis. Empty for grids and tables. Precondition: no broken_sample.
+UnitPoints unit_points(const SweepPlan& plan);
+
+/// How many points there are.
 std::int64_t point_count(const SweepPlan& plan);
 
 class SweepPoints {
@@ -54,8 +64,8 @@ class SweepPoints {
 
   const SweepPlan* plan_;
   std::int64_t count_ = 0;
-  std::vector<SweptParameter> parameters_;    ///< of each path
-  std::vector<std::vector<double>> samples_;  ///< of a design that is a sample
+  std::vector<SweptParameter> parameters_;  ///< of each path
+  UnitPoints samples_;                      ///< of a design that is a sample
 };
 
 /// A problem where an output is of something that the record of the first point's scene does not have. It

@@ -381,8 +381,7 @@ class SweepReader : public JsonReader<json> {
   }
 
   void check_points(const SweepPlan& plan) {
-    const auto samples = unit_points(plan);
-    if (const auto* bad = std::get_if<Problem>(&samples)) {
+    if (const auto bad = broken_sample(plan)) {
       problems.push_back(*bad);
     } else if (const auto count = point_count(plan); count > most_sweep_points) {
       add_problem("vary", fmt::format("makes {} points; at most {} are run", count, most_sweep_points));

@@ -182,6 +182,32 @@ TEST(SweepPoints, SayWhichRuleBetweenParametersAPointBreaks) {
   EXPECT_FALSE(points.scene(1).problems.empty());
 }
 
+TEST(SweepPoints, OfASampleLieInTheirRangesAndAreThoseOfTheSeed) {
+  for (const auto& [design, count] : {std::pair("latin-hypercube", 8), std::pair("sobol", 8),
+                                      std::pair("saltelli", 8 * 4), std::pair("morris", 8 * 3)}) {
+    const auto members = [&, name = design](int seed) {
+      return R"("vary": [ { "path": "springs.structural", "from": 50, "to": 200, "scale": "log" },
+        { "path": "integrator.method", "values": ["verlet", "rk4"] } ], "samples": 8, "design": ")" +
+             std::string(name) + "\", \"seed\": " + std::to_string(seed);
+    };
+    const SweepPlan plan = plan_of(members(1)), same = plan_of(members(1)), other = plan_of(members(2));
+    const SweepPoints points(plan), again(same), moved(other);
+    ASSERT_EQ(points.count(), count) << design;
+    std::set<std::string> methods;
+    bool differs = false;
+    for (std::int64_t p = 0; p < points.count(); ++p) {
+      const auto values = points.values(p);
+      EXPECT_GE(number(values[0]), 50);
+      EXPECT_LE(number(values[0]), 200);
+      methods.insert(std::get<std::string>(values[1]));
+      EXPECT_EQ(values, again.values(p));
+      differs = differs || values != moved.values(p);
+    }
+    EXPECT_EQ(methods.size(), 2u) << design;
+    EXPECT_TRUE(differs) << design;
+  }
+}
+
 TEST(SweepPlan, RefusesMorePointsThanCanBeRun) {
   std::string axes;
   for (const char* path : {"damping", "duration", "springs.shear"})

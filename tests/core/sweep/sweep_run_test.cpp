@@ -100,8 +100,7 @@ TEST(Sweep, GoesOnWhereItWasStoppedWhateverItsShardsWere) {
   EXPECT_TRUE(stopped.stopped);
   EXPECT_EQ(stopped.made, 2);
   EXPECT_EQ(results_of(folder).missing(), 10);
-  EXPECT_EQ(run_sweep(folder, {.shard = {2, 3}}).made, 3)
-      << "points 1, 4, 7 and 10, one of them there already";
+  EXPECT_EQ(run_sweep(folder, {.shard = {1, 3}}).made, 3) << "of the points 0, 3, 6 and 9 the first is there";
   const SweepRun rest = run_sweep(folder, {.jobs = 3});
   EXPECT_TRUE(rest.is_complete());
   EXPECT_EQ(rest.earlier + rest.made, 12);

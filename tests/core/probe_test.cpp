@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 
-#include "measure/drape.h"
+#include "cloth/grid.h"
 #include "measure/probe_measures.h"
 #include "measure/probe_reader.h"
 #include "scene/scene_cloth.h"

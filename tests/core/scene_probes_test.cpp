@@ -145,7 +145,8 @@ TEST(RecordOfProbes, HasTheirColumnsBeforeTheWallTime) {
 TEST(RecordOfProbes, EndsWithWhatTheFinalStateSays) {
   const Scene scene = probed_scene();
   std::vector<double> last;
-  const RunOptions options{.row = [&](const Simulation&, const Measurement& row) { last = row.probes; }};
+  RunOptions options;
+  options.row = [&](const Simulation&, const Measurement& row) { last = row.probes; };
   const RunResult run = run_scene(scene, options);
   const ClothSystem system = Simulation(scene).system();
   const std::vector<double> of_state = ProbeReader(scene, system).read(system, run.final_state);

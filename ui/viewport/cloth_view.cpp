@@ -104,7 +104,7 @@ void ClothView::showFrame(std::shared_ptr<const ClothFrame> frame) {
   const bool new_topology = !frame_ || frame_->topology != frame->topology || frame_->rows != frame->rows ||
                             frame_->columns != frame->columns;
   if (new_topology) {
-    if (gesture_ == Gesture::pull || gesture_ == Gesture::pin || gesture_ == Gesture::obstacle) endGesture();
+    if (gesture_ == Gesture::pull || gesture_ == Gesture::click || gesture_ == Gesture::obstacle) endGesture();
     hovered_.reset();
     strain_range_.reset();
   }

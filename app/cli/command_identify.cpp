@@ -71,7 +71,7 @@ std::vector<cloth::Problem> fill(const IdentifyArguments& arguments, cloth::Iden
     if (const auto* bad = std::get_if<1>(&read))
       problems.insert(problems.end(), bad->begin(), bad->end());
     else
-      for (cloth::MeasuredCurve& curve : std::get<0>(read)) plan.curves.push_back(std::move(curve));
+      for (cloth::FittedCurve& curve : std::get<0>(read)) plan.curves.push_back(std::move(curve));
   }
   if (problems.empty()) problems = find_problems(plan);
   return problems;
@@ -139,7 +139,7 @@ int identify(const IdentifyArguments& arguments) {
     cloth::FolderUse use{
         .kind = "identify",
         .files = {"identified.json", "parameters.csv", "targets.csv", "fitted.scene.json", "report.html"}};
-    for (const cloth::MeasuredCurve& curve : plan.curves) use.files.push_back("fit-" + curve.column + ".svg");
+    for (const cloth::FittedCurve& curve : plan.curves) use.files.push_back("fit-" + curve.column + ".svg");
     use.inputs = {arguments.measured.begin(), arguments.measured.end()};
     use.inputs.emplace_back(arguments.scene);
     if (const auto error = folder.lock(arguments.folder, use)) return report(*error);

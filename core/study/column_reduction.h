@@ -9,15 +9,15 @@
 
 namespace cloth {
 
-enum class Reduction { final, max, min, mean };
+enum class ColumnReduction { final, max, min, mean };
 /// As plans and options have it.
-inline constexpr const char* reduction_names[] = {"final", "max", "min", "mean"};
-inline const char* name_of(Reduction reduction) {
-  return reduction_names[static_cast<std::size_t>(reduction)];
+inline constexpr const char* column_reduction_names[] = {"final", "max", "min", "mean"};
+inline const char* name_of(ColumnReduction reduction) {
+  return column_reduction_names[static_cast<std::size_t>(reduction)];
 }
-inline std::optional<Reduction> reduction_named(std::string_view name) {
-  for (std::size_t k = 0; k < std::size(reduction_names); ++k)
-    if (name == reduction_names[k]) return static_cast<Reduction>(k);
+inline std::optional<ColumnReduction> column_reduction_named(std::string_view name) {
+  for (std::size_t k = 0; k < std::size(column_reduction_names); ++k)
+    if (name == column_reduction_names[k]) return static_cast<ColumnReduction>(k);
   return std::nullopt;
 }
 
@@ -25,16 +25,16 @@ inline std::optional<Reduction> reduction_named(std::string_view name) {
 /// (the last value where no time passes). nullopt without rows, and where a value that counts is not finite.
 /// `time` ascends and has the size of `values`.
 inline std::optional<double> reduced(std::span<const double> time, std::span<const double> values,
-                                     Reduction reduction) {
+                                     ColumnReduction reduction) {
   if (values.empty() || !std::isfinite(values.back())) return std::nullopt;
-  if (reduction == Reduction::final) return values.back();
+  if (reduction == ColumnReduction::final) return values.back();
   double extreme = values.front(), integral = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!std::isfinite(values[k])) return std::nullopt;
-    if (reduction == Reduction::min ? values[k] < extreme : values[k] > extreme) extreme = values[k];
+    if (reduction == ColumnReduction::min ? values[k] < extreme : values[k] > extreme) extreme = values[k];
     if (k > 0) integral += (time[k] - time[k - 1]) * (values[k - 1] + values[k]) / 2;
   }
-  if (reduction != Reduction::mean) return extreme;
+  if (reduction != ColumnReduction::mean) return extreme;
   const double passed = time.back() - time.front();
   return passed > 0 ? integral / passed : values.back();
 }

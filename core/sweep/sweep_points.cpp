@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "contact/start_check.h"
-#include "design/design.h"
 #include "io/csv.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_cloth.h"
@@ -22,24 +21,6 @@ double value_in_range(const SweepAxis& axis, std::size_t path, double unit) {
   if (unit <= 0) return low;
   if (unit >= 1) return high;
   return axis.scale == AxisScale::logarithmic ? low * std::pow(high / low, unit) : low + unit * (high - low);
-}
-
-/// Nothing for grids and tables.
-std::optional<Design> sampled_design(SweepDesign design) {
-  switch (design) {
-    case SweepDesign::latin_hypercube:
-      return Design::latin_hypercube;
-    case SweepDesign::sobol:
-      return Design::sobol;
-    case SweepDesign::saltelli:
-      return Design::saltelli;
-    case SweepDesign::morris:
-      return Design::morris;
-    case SweepDesign::grid:
-    case SweepDesign::points:
-      break;
-  }
-  return std::nullopt;
 }
 
 /// How many values a grid takes of an axis.
@@ -104,19 +85,6 @@ std::optional<Problem> SweptParameter::set(Scene& scene, const ParameterValue& v
   return std::nullopt;
 }
 
-<<<<<<< HEAD
-std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepPlan& plan) {
-  const std::optional<Design> design = sampled_design(plan.design);
-  if (!design) return std::vector<std::vector<double>>{};
-  const auto samples = static_cast<std::size_t>(plan.samples);
-  const std::string value = std::to_string(plan.samples);
-  if (const std::string rule = broken_design_rule(*design, samples, plan.axes.size()); !rule.empty())
-    return Problem{"samples", value, rule};
-  const std::size_t rows = rows_of_design(*design, samples, plan.axes.size());
-  if (rows > static_cast<std::size_t>(most_sweep_points))
-    return Problem{"samples", value, fmt::format("makes {} points; at most {} are run", rows, most_sweep_points)};
-  return unit_design(*design, samples, plan.axes.size(), plan.seed);
-=======
 std::optional<Problem> broken_sample(const SweepPlan& plan) {
   const auto design = sampled_design(plan.design);
   if (!design) return std::nullopt;
@@ -130,7 +98,6 @@ UnitPoints unit_points(const SweepPlan& plan) {
   const auto design = sampled_design(plan.design);
   if (!design) return {};
   return unit_design(*design, static_cast<std::size_t>(plan.samples), plan.axes.size(), plan.seed);
->>>>>>> sweep
 }
 
 std::int64_t point_count(const SweepPlan& plan) {

@@ -30,14 +30,8 @@ class SweptParameter {
   std::optional<Parameter> parameter_;  ///< none: all stiffnesses
 };
 
-<<<<<<< HEAD
-/// The samples of a plan whose design is one, on the unit cube: a row for each point, a column for each axis.
-/// Empty for grids and tables. A problem where there is no such design of so many samples.
-std::variant<std::vector<std::vector<double>>, Problem> unit_points(const SweepPlan& plan);
-=======
 /// The rule that the number of samples breaks, of a plan whose design is a sample.
 std::optional<Problem> broken_sample(const SweepPlan& plan);
->>>>>>> sweep
 
 /// The points of a plan whose design is a sample, on the unit cube: a row for each point, a column for each
 /// axis. Empty for grids and tables. Precondition: no broken_sample.

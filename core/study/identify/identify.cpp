@@ -29,7 +29,7 @@ struct RunSeries {
 std::set<std::string> wanted_columns(const IdentifyPlan& plan) {
   std::set<std::string> columns;
   for (const ColumnTarget& target : plan.targets) columns.insert(target.column);
-  for (const MeasuredCurve& curve : plan.curves) columns.insert(curve.column);
+  for (const FittedCurve& curve : plan.curves) columns.insert(curve.column);
   return columns;
 }
 
@@ -56,7 +56,7 @@ std::vector<double> outputs_of(const IdentifyPlan& plan, const std::vector<doubl
   if (!series) return outputs;
   for (const ColumnTarget& target : plan.targets)
     outputs.push_back(reduced(series->time, series->columns.at(target.column), target.over).value_or(NAN));
-  for (const MeasuredCurve& curve : plan.curves)
+  for (const FittedCurve& curve : plan.curves)
     for (const double time : curve.times)
       outputs.push_back(value_at(series->time, series->columns.at(curve.column), time).value_or(NAN));
   return outputs;
@@ -107,7 +107,7 @@ std::vector<FitTarget> fit_targets(const IdentifyPlan& plan) {
     targets.push_back({target.name(), unit_of_output(target.column), target.measured,
                        target.sigma.value_or(assumed_error * largest_magnitude({target.measured})),
                        target.held_out});
-  for (const MeasuredCurve& curve : plan.curves)
+  for (const FittedCurve& curve : plan.curves)
     for (std::size_t k = 0; k < curve.times.size(); ++k)
       targets.push_back(
           {curve.column, unit_of_output(curve.column), curve.values[k],
@@ -131,7 +131,7 @@ bool has_no_sigma(const IdentifyPlan& plan) {
 std::vector<FitCurve> curves_of(const IdentifyPlan& plan) {
   std::vector<FitCurve> curves;
   std::size_t next = plan.targets.size();
-  for (const MeasuredCurve& curve : plan.curves) {
+  for (const FittedCurve& curve : plan.curves) {
     FitCurve points{.name = curve.column};
     points.x = {.label = "time", .unit = "s"};
     points.y = {.label = curve.column, .unit = unit_of_output(curve.column)};

@@ -28,7 +28,7 @@ struct VariedParameter {
 /// A reduction of a column that was measured.
 struct ColumnTarget {
   std::string column{};
-  Reduction over = Reduction::final;
+  ColumnReduction over = ColumnReduction::final;
   double measured = 0;
   std::optional<double> sigma{};
   bool held_out = false;
@@ -36,7 +36,7 @@ struct ColumnTarget {
 };
 
 /// A column that was measured over time.
-struct MeasuredCurve {
+struct FittedCurve {
   std::string column{};
   std::vector<double> times{}, values{};  ///< s, and the column's unit
   std::vector<double> sigmas{};           ///< empty: not known
@@ -46,7 +46,7 @@ struct IdentifyPlan {
   Scene scene;
   std::vector<VariedParameter> varied{};
   std::vector<ColumnTarget> targets{};
-  std::vector<MeasuredCurve> curves{};
+  std::vector<FittedCurve> curves{};
   FitOptions options{};
   int jobs = 1;           ///< runs beside each other; no bit depends on it
   StopTest stop{};        ///< asked between batches of steps
@@ -66,7 +66,7 @@ std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const 
 
 /// The columns of a CSV file with a column time_s and others with the names of columns of the record;
 /// NAME_sigma holds the standard deviations of NAME.
-std::variant<std::vector<MeasuredCurve>, std::vector<Problem>> read_curves(const std::string& file,
+std::variant<std::vector<FittedCurve>, std::vector<Problem>> read_curves(const std::string& file,
                                                                            const Scene& scene);
 
 /// What keeps the plan from being carried out.

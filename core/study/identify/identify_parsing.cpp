@@ -72,7 +72,7 @@ std::pair<std::size_t, std::size_t> sigma_sign(const std::string& text) {
 
 std::string unknown_column(const Scene& scene) {
   return fmt::format("must be one of {}, alone or with .{}", fmt::join(identify_columns(scene), ", "),
-                     fmt::join(reduction_names, ", ."));
+                     fmt::join(column_reduction_names, ", ."));
 }
 
 /// The value and its standard deviation; "" or the rule that is broken.
@@ -91,7 +91,7 @@ std::string read_measured(const std::string& text, ColumnTarget& target) {
 }
 
 /// The columns that have names of the record, with their standard deviations.
-std::vector<MeasuredCurve> curves_of(TableReader& table, const CsvTable& csv, const Scene& scene) {
+std::vector<FittedCurve> curves_of(TableReader& table, const CsvTable& csv, const Scene& scene) {
   const std::vector<std::string> known = identify_columns(scene);
   const std::vector<double> times = table.column("time_s");
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -101,7 +101,7 @@ std::vector<MeasuredCurve> curves_of(TableReader& table, const CsvTable& csv, co
     if (k > 0 && times[k] <= times[k - 1])
       table.add("time_s", fmt::format("{} s", times[k]), "must be after the one before", k);
   }
-  std::vector<MeasuredCurve> curves;
+  std::vector<FittedCurve> curves;
   for (const std::string& name : csv.header) {
     const bool is_sigma =
         name.ends_with("_sigma") &&
@@ -111,7 +111,7 @@ std::vector<MeasuredCurve> curves_of(TableReader& table, const CsvTable& csv, co
       table.add(name, "", fmt::format("must be one of {}", fmt::join(known, ", ")));
       continue;
     }
-    MeasuredCurve curve{.column = name, .times = times, .values = table.column(name)};
+    FittedCurve curve{.column = name, .times = times, .values = table.column(name)};
     if (table.has(name + "_sigma")) curve.sigmas = table.column(name + "_sigma");
     for (std::size_t k = 0; k < curve.sigmas.size(); ++k)
       if (!(curve.sigmas[k] > 0))
@@ -165,7 +165,7 @@ std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const 
     return problem("must be COLUMN.REDUCTION=VALUE or COLUMN.REDUCTION=VALUE±SIGMA");
   ColumnTarget target{.column = name};
   if (const std::size_t dot = name.rfind('.'); dot != std::string::npos)
-    if (const auto reduction = reduction_named(name.substr(dot + 1))) {
+    if (const auto reduction = column_reduction_named(name.substr(dot + 1))) {
       target.column = name.substr(0, dot);
       target.over = *reduction;
     }
@@ -177,7 +177,7 @@ std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const 
   return target;
 }
 
-std::variant<std::vector<MeasuredCurve>, std::vector<Problem>> read_curves(const std::string& file,
+std::variant<std::vector<FittedCurve>, std::vector<Problem>> read_curves(const std::string& file,
                                                                            const Scene& scene) {
   std::string text;
   if (const auto error = read_text_file(file, text))
@@ -190,7 +190,7 @@ std::variant<std::vector<MeasuredCurve>, std::vector<Problem>> read_curves(const
     table.add("", "", "must have a column time_s, and columns with names of the record");
     return problems;
   }
-  std::vector<MeasuredCurve> curves = curves_of(table, csv, scene);
+  std::vector<FittedCurve> curves = curves_of(table, csv, scene);
   if (curves.empty() && problems.empty()) table.add("", "", "has no column beside time_s");
   if (!problems.empty()) return problems;
   return curves;

@@ -13,26 +13,26 @@ const std::vector<double> time{0, 1, 3}, values{2, 4, -1};
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ColumnReduction, IsTheLastTheLargestTheSmallestOrTheMeanOverTime) {
-  EXPECT_EQ(reduced(time, values, Reduction::final), -1);
-  EXPECT_EQ(reduced(time, values, Reduction::max), 4);
-  EXPECT_EQ(reduced(time, values, Reduction::min), -1);
-  EXPECT_EQ(*reduced(time, values, Reduction::mean), (3.0 * 1 + 1.5 * 2) / 3);
-  EXPECT_EQ(reduced(std::vector{2.0}, std::vector{7.0}, Reduction::mean), 7);
+  EXPECT_EQ(reduced(time, values, ColumnReduction::final), -1);
+  EXPECT_EQ(reduced(time, values, ColumnReduction::max), 4);
+  EXPECT_EQ(reduced(time, values, ColumnReduction::min), -1);
+  EXPECT_EQ(*reduced(time, values, ColumnReduction::mean), (3.0 * 1 + 1.5 * 2) / 3);
+  EXPECT_EQ(reduced(std::vector{2.0}, std::vector{7.0}, ColumnReduction::mean), 7);
 }
 
 TEST(ColumnReduction, HasNoValueWhereOneThatCountsIsNone) {
-  EXPECT_FALSE(reduced({}, {}, Reduction::final));
+  EXPECT_FALSE(reduced({}, {}, ColumnReduction::final));
   const std::vector<double> gap{2, none, 5}, end{2, 5, none};
-  EXPECT_EQ(reduced(time, gap, Reduction::final), 5);
-  for (const Reduction over : {Reduction::max, Reduction::min, Reduction::mean})
+  EXPECT_EQ(reduced(time, gap, ColumnReduction::final), 5);
+  for (const ColumnReduction over : {ColumnReduction::max, ColumnReduction::min, ColumnReduction::mean})
     EXPECT_FALSE(reduced(time, gap, over));
-  EXPECT_FALSE(reduced(time, end, Reduction::final));
+  EXPECT_FALSE(reduced(time, end, ColumnReduction::final));
 }
 
 TEST(ColumnReduction, HasTheNamesOfItsKinds) {
-  for (const Reduction over : {Reduction::final, Reduction::max, Reduction::min, Reduction::mean})
-    EXPECT_EQ(reduction_named(name_of(over)), over);
-  EXPECT_FALSE(reduction_named("median"));
+  for (const ColumnReduction over : {ColumnReduction::final, ColumnReduction::max, ColumnReduction::min, ColumnReduction::mean})
+    EXPECT_EQ(column_reduction_named(name_of(over)), over);
+  EXPECT_FALSE(column_reduction_named("median"));
 }
 
 TEST(ValueAt, IsOnTheLineBetweenTheRowsAround) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "analysis/sensitivity_report.h"
 #include "report/html_page.h"
 
@@ -64,6 +67,25 @@ ScatterMatrix main_effects_plot(const PointsAccount& account) {
   return plot;
 }
 
+LinePlot curve_of_output(const PointsAccount& account, std::size_t output) {
+  const PointTable& table = account.table;
+  const PointColumn &x = table.columns[table.columns_that(false).front()], &y = table.columns[output];
+  LinePlot plot{.title = y.axis.label, .subtitle = account.title, .x = x.axis, .y = y.axis};
+  PlotSeries series{.name = y.axis.label};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::string note = row < table.notes.size() ? table.notes[row] : "";
+    if (std::isfinite(y.values[row]))
+      series.points.push_back(
+          {.x = x.values[row], .y = y.values[row], .note = note, .tag = static_cast<int>(row)});
+    else
+      series.failed.push_back({x.values[row], note.empty() ? "no value" : note, static_cast<int>(row)});
+  }
+  std::stable_sort(series.points.begin(), series.points.end(),
+                   [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  plot.series.push_back(std::move(series));
+  return plot;
+}
+
 void add_points(const PointsAccount& account, HtmlPage& page) {
   const PointTable& table = account.table;
   const std::size_t parameters = table.columns_that(false).size(), outputs = table.columns_that(true).size();
@@ -77,7 +99,7 @@ void add_points(const PointsAccount& account, HtmlPage& page) {
         "Parallel coordinates. Draw along an axis to pick the runs that pass there; a click on the range "
         "takes it away.",
         account.command);
-  if (parameters > 0 && outputs > 0)
+  if (parameters > 1 && outputs > 0)
     page.figure(to_svg(main_effects_plot(account)), "Main effects.", account.command);
   add_sensitivities(account, page);
   if (table.columns.size() > 2 && table.columns.size() <= 12) {

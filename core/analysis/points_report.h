@@ -6,6 +6,7 @@
 
 #include "design/design.h"
 #include "report/html_page.h"
+#include "report/line_plot.h"
 #include "report/points/parallel_coordinates.h"
 #include "report/points/point_table.h"
 #include "report/points/scatter_matrix.h"
@@ -28,8 +29,11 @@ ParallelCoordinates parallel_plot(const PointsAccount& account);
 ScatterMatrix scatter_plot(const PointsAccount& account);
 ScatterMatrix main_effects_plot(const PointsAccount& account);
 
-/// Parallel coordinates with ranges to draw, main effects, scatter matrix, sensitivity. What does not apply
-/// is not there.
+/// Of a table with one parameter: an output (a column) against it, failed runs above.
+LinePlot curve_of_output(const PointsAccount& account, std::size_t output);
+
+/// One parameter: a curve of each output. Parallel coordinates with ranges to draw, main effects, scatter
+/// matrix, sensitivity. What does not apply is not there.
 std::string points_page(const PointsAccount& account);
 
 /// The sections of that page, for another page to take in.

@@ -185,6 +185,20 @@ TEST(PointsPage, HasTheSectionsThatApply) {
   EXPECT_EQ(points_page(plain).find("depends on"), std::string::npos);
 }
 
+TEST(PointsPage, OfOneParameterHasACurveOfEachOutputInItsOrder) {
+  PointsAccount account{.title = "A line"};
+  account.table.columns = {{.axis = {.label = "k"}, .values = {3, 1, 2}},
+                           {.axis = {.label = "y"}, .is_output = true, .values = {30, 10, none}}};
+  const LinePlot plot = curve_of_output(account, 1);
+  ASSERT_EQ(plot.series.size(), 1u);
+  ASSERT_EQ(plot.series[0].points.size(), 2u);
+  EXPECT_EQ(plot.series[0].points[0].x, 1);
+  EXPECT_EQ(plot.series[0].points[1].y, 30);
+  ASSERT_EQ(plot.series[0].failed.size(), 1u);
+  EXPECT_EQ(plot.series[0].failed[0].x, 2);
+  EXPECT_NE(points_page(account).find("1 of 3 runs failed."), std::string::npos);
+}
+
 /// A damped swing: frequency and decay from a noisy curve, by its own formula.
 FitAccount swing_account() {
   FitAccount account{.title = "A damped swing", .command = "clothlab-cli identify swing --vary damping"};

@@ -23,25 +23,27 @@ constexpr std::int64_t most_snakemake_jobs = 1000;
 struct StatusArguments {
   std::string folder;
   bool missing = false, json = false;
-  std::int64_t shards = 0;  ///< 0: as the attempts had it
+  std::int64_t shards = 0;  ///< 0: as the latest attempt had it
   std::int64_t after = 0, at_most = most_shards;
 };
 
 /// A folder and what its shard files say, or the exit code after a message.
 struct LoadedSweep {
   std::optional<cloth::SweepFolder> folder;
-  cloth::SweepResults results;
+  cloth::SweepResults results{};
+  cloth::Shard latest{};  ///< of the attempts
   int exit_code = done;
 };
 
 LoadedSweep load_sweep(const std::string& path) {
   cloth::SweepFolderReading reading = cloth::read_sweep_folder(path);
   if (!reading.folder)
-    return {std::nullopt, {}, reading.error ? report(*reading.error) : report(reading.problems)};
+    return {.folder = std::nullopt,
+            .exit_code = reading.error ? report(*reading.error) : report(reading.problems)};
   const cloth::ShardFiles files = cloth::read_shard_files(*reading.folder);
-  if (files.error) return {std::nullopt, {}, report(*files.error)};
+  if (files.error) return {.folder = std::nullopt, .exit_code = report(*files.error)};
   auto results = cloth::sweep_results(*reading.folder, files.files);
-  return {std::move(reading.folder), std::move(results), done};
+  return {std::move(reading.folder), std::move(results), files.latest.value_or(cloth::Shard{}), done};
 }
 
 std::string counts_text(const cloth::SweepResults& results) {
@@ -66,25 +68,16 @@ std::string status_json(const cloth::SweepResults& results) {
   return root.dump(2) + "\n";
 }
 
-int print_missing(const StatusArguments& arguments, const cloth::SweepResults& results) {
-  std::int64_t count = arguments.shards;
-  for (const cloth::Shard& shard : results.shards) {
-    if (arguments.shards > 0) break;
-    if (count > 0 && count != shard.count) {
-      say("the attempts had different numbers of shards: give --shards N");
-      return bad_input;
-    }
-    count = shard.count;
-  }
-  const std::string text =
-      cloth::missing_shards(results, std::max<std::int64_t>(1, count), arguments.after, arguments.at_most);
+int print_missing(const StatusArguments& arguments, const LoadedSweep& sweep) {
+  const std::int64_t count = arguments.shards > 0 ? arguments.shards : sweep.latest.count;
+  const std::string text = cloth::missing_shards(sweep.results, count, arguments.after, arguments.at_most);
   return text.empty() ? done : print(text + "\n");
 }
 
 int status(const StatusArguments& arguments) {
   const LoadedSweep sweep = load_sweep(arguments.folder);
   if (!sweep.folder) return sweep.exit_code;
-  if (arguments.missing) return print_missing(arguments, sweep.results);
+  if (arguments.missing) return print_missing(arguments, sweep);
   if (arguments.json) return print(status_json(sweep.results));
   std::string text = counts_text(sweep.results);
   text += fmt::format("{} attempts, {} points made twice\n", sweep.results.attempts, sweep.results.twice);
@@ -259,7 +252,8 @@ void add_sweep_commands(Program& program, CLI::App& sweep) {
   status_command.add_flag("--missing", of_status->missing,
                           "Print the shards with missing points alone, as --array takes them: 3,7-9");
   status_command
-      .add_option("--shards", of_status->shards, "Of how many shards; without it as many as the attempts had")
+      .add_option("--shards", of_status->shards,
+                  "Of how many shards; without it as many as the latest attempt had")
       ->check(CLI::Range(std::int64_t{1}, most_shards));
   status_command
       .add_option("--after", of_status->after,

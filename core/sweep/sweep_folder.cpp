@@ -144,11 +144,15 @@ SweepFolderReading resume_sweep_folder(const fs::path& path) {
 ShardFiles read_shard_files(const SweepFolder& folder, const std::optional<Shard>& shard) {
   ShardFiles all;
   std::vector<std::string> names;
+  fs::file_time_type latest = fs::file_time_type::min();
   std::error_code error;
   for (fs::directory_iterator at(folder.shards(), error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
     const auto of = shard_of_file(name);
     if (of && (!shard || may_share_points(*of, *shard))) names.push_back(name);
+    std::error_code ignored;
+    const auto written = at->last_write_time(ignored);
+    if (of && !ignored && (!all.latest || written > latest)) all.latest = of, latest = written;
   }
   if (error && error != std::errc::no_such_file_or_directory) {
     all.error = IoError{folder.shards(), error.message()};

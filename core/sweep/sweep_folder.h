@@ -50,6 +50,7 @@ SweepFolderReading read_sweep_folder(const std::filesystem::path& path);
 /// plan is an error.
 struct ShardFiles {
   std::vector<ShardFile> files{};
+  std::optional<Shard> latest{};  ///< of the file that was written last
   std::optional<IoError> error{};
 };
 ShardFiles read_shard_files(const SweepFolder& folder, const std::optional<Shard>& shard = {});

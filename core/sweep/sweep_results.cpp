@@ -46,9 +46,6 @@ SweepResults sweep_results(const SweepFolder& folder, const std::vector<ShardFil
   std::vector<Made> made;
   for (const ShardFile& file : files) {
     results.damaged += file.damaged;
-    if (!file.attempt.plan.empty() &&
-        std::find(results.shards.begin(), results.shards.end(), file.attempt.shard) == results.shards.end())
-      results.shards.push_back(file.attempt.shard);
     for (const PointRow& row : file.rows)
       if (row.point < results.points) made.push_back({&row, &file});
   }

@@ -25,7 +25,6 @@ struct SweepResults {
   std::int64_t twice = 0;                          ///< points that more than one attempt made
   std::int64_t damaged = 0;                        ///< lines of files that are no rows
   std::vector<SweepDisagreement> disagreements{};  ///< the first hundred
-  std::vector<Shard> shards{};                     ///< of the attempts, each once
 
   std::int64_t missing() const { return points - std::ssize(rows); }
 };

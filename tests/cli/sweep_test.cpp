@@ -94,6 +94,7 @@ TEST(SweepCommand, ByShardsWhoseNumberChangesHalfWayIsTheSingleRun) {
   expect_done(place.run("p.sweep.json --out whole"));
   const CommandResult result = place.sh(R"sh(
     "$CLI" sweep p.sweep.json --out parts --shard 2/3 &&
+    [ "$("$CLI" sweep status parts --missing)" = 1,3 ] &&
     "$CLI" sweep p.sweep.json --out parts --shard 1/7 &&
     [ "$("$CLI" sweep status parts --missing --shards 3)" = 1,3 ] &&
     SLURM_ARRAY_TASK_ID=4 "$CLI" sweep --out parts --shard auto/7 &&

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_of_line = 1000, longest_probe_name = 32;
 
-std::vector<ProbeFacts> all_probe_facts() {
+std::vector<ProbeFacts> facts_of_particle_probes() {
   return {
       {ProbeMeasure::particle,
        "particle",
@@ -63,6 +63,11 @@ std::vector<ProbeFacts> all_probe_facts() {
         {"folds", "folds", "",
          "waves to the sides of the vertical plane through its ends, of more than two hundredths of the "
          "length at the start; empty where one end is straight above the other"}}},
+  };
+}
+
+std::vector<ProbeFacts> facts_of_shape_probes() {
+  return {
       {ProbeMeasure::lowest_point,
        "lowest-point",
        "Lowest point",
@@ -260,7 +265,11 @@ void check_disc(const ClothSheet& cloth, const Probe& probe, const std::string& 
 }  // namespace
 
 const std::vector<ProbeFacts>& probe_facts() {
-  static const std::vector<ProbeFacts> all = all_probe_facts();
+  static const std::vector<ProbeFacts> all = [] {
+    std::vector<ProbeFacts> facts = facts_of_particle_probes();
+    for (ProbeFacts& one : facts_of_shape_probes()) facts.push_back(std::move(one));
+    return facts;
+  }();
   return all;
 }
 

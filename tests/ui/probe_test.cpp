@@ -2,6 +2,7 @@
 #include <QComboBox>
 #include <QDir>
 #include <QFile>
+#include <QPainter>
 
 #include "charts/chart_panel.h"
 #include "listed_test.h"
@@ -189,6 +190,30 @@ class ProbeTest : public QObject {
     QCOMPARE(probes(bench)[0].particles.size(), std::size_t{3});
     bench.settle();
     QVERIFY(bench.status().refusal.empty());
+  }
+
+  /// CLOTHLAB_WRITE_PICTURES=1 makes the picture of docs/guide.md anew.
+  void labels_of_probes_keep_clear_of_each_other() {
+    WindowBench bench("corners-free");
+    LabDocument& document = bench.window.document();
+    for (const Probe& probe :
+         {Probe{.name = "tip", .particles = {{32, 16}}},
+          Probe{.name = "bend", .measure = ProbeMeasure::angle, .particles = {{24, 6}, {24, 8}, {24, 10}}},
+          Probe{.name = "hem", .measure = ProbeMeasure::line, .particles = {{22, 0}, {22, 32}}},
+          Probe{.name = "low", .measure = ProbeMeasure::lowest_point}})
+      QVERIFY(document.addProbe(probe).isEmpty());
+    bench.play_until(0.35);
+    bench.pause();
+    bench.action("toolProbe")->trigger();
+    QTest::mouseMove(&bench.window.view(), bench.pixel_of(10 * 33 + 20));
+    QTRY_VERIFY(bench.window.view().frame()->probes.size() == 4);
+    QTest::qWait(300);
+    if (qEnvironmentVariableIntValue("CLOTHLAB_WRITE_PICTURES") == 0) return;
+    QImage picture = bench.window.grab().toImage();
+    QPainter painter(&picture);
+    painter.drawImage(bench.window.view().mapTo(&bench.window, QPoint()), bench.window.view().grabPicture());
+    painter.end();
+    QVERIFY(picture.save(CLOTHLAB_SOURCE_DIR "/docs/pictures/probes.png"));
   }
 
   void values_are_said_in_percent_degrees_and_with_prefixes() {

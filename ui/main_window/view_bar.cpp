@@ -197,11 +197,14 @@ int ViewBar::leastWidth() const {
   return least;
 }
 
-/// Only the field for boxes may cost the last buttons their place.
+/// The fields for boxes and probes may cost the last buttons their place, and a narrow window the last one.
 QSize ViewBar::minimumSizeHint() const {
-  int all_but_boxes = leastWidth() - (box_level_->isHidden() ? 0 : roomOf(*box_level_));
-  for (const QWidget* button : last_) all_but_boxes += roomOf(*button);
-  return {std::max(leastWidth(), all_but_boxes), layout()->minimumSize().height()};
+  int without_fields = leastWidth();
+  for (const QWidget* field : {static_cast<QWidget*>(box_level_), static_cast<QWidget*>(probe_measure_)})
+    if (!field->isHidden()) without_fields -= roomOf(*field);
+  for (const QWidget* button : last_)
+    if (button != last_.constLast()) without_fields += roomOf(*button);
+  return {std::max(leastWidth(), without_fields), layout()->minimumSize().height()};
 }
 
 void ViewBar::suitWidth() {

@@ -81,6 +81,7 @@ QPolygonF ClothView::screenLine(const std::vector<int>& particles) const {
 
 void ClothView::paintProbes(QPainter& painter) {
   const Theme& look = theme();
+  overlay_.begin_labels();
   std::size_t value = 0;
   int row = 0;
   for (const cloth::ProbeReader::Probed& probed : frame_->probes) {

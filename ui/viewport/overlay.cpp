@@ -90,14 +90,25 @@ QRectF place_beside_handle(QPointF at, QSizeF label, const QPolygonF& keys, QSiz
   return up ? above : below;
 }
 
-/// Beside a particle: to the right and above, or where there is room in the view.
-QRectF place_beside(QPointF at, QSizeF room, QSizeF view) {
+/// Beside a particle, to the right and above; where there is no room in the view, or another label, at
+/// another side or further away.
+QRectF place_beside(QPointF at, QSizeF room, QSizeF view, const std::vector<QRectF>& others) {
   constexpr double gap = 12;
+  constexpr int rounds = 4;
+  const QRectF whole(QPointF(), view);
   const double right = at.x() + gap, left = at.x() - gap - room.width();
-  const double x = right + room.width() <= view.width() || left < 0 ? right : left;
-  const double above = at.y() - gap - room.height();
-  return {QPointF(std::clamp(x, 0.0, std::max(0.0, view.width() - room.width())),
-                  above >= 0 ? above : at.y() + gap),
+  for (int round = 0; round < rounds; ++round) {
+    const double further = gap + round * (room.height() + 2);
+    for (const double y : {at.y() - further - room.height(), at.y() + further})
+      for (const double x : {right, left}) {
+        const QRectF area(QPointF(x, y), room);
+        const bool is_free = std::none_of(others.begin(), others.end(),
+                                          [&](const QRectF& other) { return other.intersects(area); });
+        if (is_free && whole.contains(area)) return area;
+      }
+  }
+  return {QPointF(std::clamp(right, 0.0, std::max(0.0, view.width() - room.width())),
+                  std::clamp(at.y() + gap, 0.0, std::max(0.0, view.height() - room.height()))),
           room};
 }
 
@@ -354,7 +365,9 @@ void Overlay::probe(QPainter& view, QSizeF size, const Theme& theme, const QPoly
     const QPointF anchor = particles.size() > most_dots ? particles[particles.size() / 2]
                            : particles.size() == 3      ? particles[1]
                                                         : particles.back();
-    label_card(view, place_beside(anchor, label_size(view, *label), size), theme, *label);
+    const QRectF area = place_beside(anchor, label_size(view, *label), size, labels_);
+    label_card(view, area, theme, *label);
+    labels_.push_back(area);
   }
   view.restore();
 }
@@ -365,8 +378,9 @@ void Overlay::shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& 
   view.setRenderHint(QPainter::Antialiasing);
   const QSizeF room = label_size(view, label);
   const double top = below_mode ? 3 * spacing + card_size(view, note_font(view), {}).height() : 2 * spacing;
-  label_card(view, QRectF(QPointF(2 * spacing, top + row * (room.height() + spacing / 2.0)), room), theme,
-             label);
+  const QRectF area(QPointF(2 * spacing, top + row * (room.height() + spacing / 2.0)), room);
+  label_card(view, area, theme, label);
+  labels_.push_back(area);
   view.restore();
 }
 
@@ -375,7 +389,7 @@ void Overlay::reading(QPainter& view, QSizeF size, const Theme& theme, QPointF a
   view.setRenderHint(QPainter::Antialiasing);
   const QString text = lines.join(QStringLiteral("  ·  "));
   const QFont font = note_font(view);
-  text_card(view, place_beside(at, card_size(view, font, text), size), theme, font, theme.text, text);
+  text_card(view, place_beside(at, card_size(view, font, text), size, {}), theme, font, theme.text, text);
   view.restore();
 }
 

@@ -10,6 +10,7 @@
 #include <QString>
 #include <array>
 #include <functional>
+#include <vector>
 
 #include "viewport/probe_text.h"
 #include "viewport/view_mode.h"
@@ -63,6 +64,8 @@ class Overlay {
   void handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips, int active);
   /// The way that keyframes lead, from key to key, and beside the handle at `at` what a drag of it moves.
   void motion(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& keys, QPointF at);
+  /// Labels of probes keep clear of those laid since.
+  void begin_labels() { labels_.clear(); }
   /// Particles and the lines between them; with a label beside them, or without as what a click would choose.
   void probe(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& particles,
              const ProbeLabel* label);
@@ -75,6 +78,7 @@ class Overlay {
   void message(QPainter& view, QSizeF size, const Theme& theme, const QString& title, const QString& text);
 
  private:
+  std::vector<QRectF> labels_;  ///< px, of this picture
   PaintedLayer bar_, mode_, contact_, brush_, ring_, line_, hint_, message_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene_checks.h"
+#include "scene/scene_cloth.h"
 #include "scene/scene_json.h"
 #include "support/materials.h"
 
@@ -89,7 +90,7 @@ TEST(MaterialBlock, TakesTheBendingAt45DegreesForTheTwist) {
 }
 
 TEST(MaterialBlock, IsWrittenAndReadBackAndHasNoMassOfItsOwnBesideIt) {
-  Scene scene = complete_scene();
+  Scene scene = complete_material_scene();
   const std::string text = write_scene(scene);
   EXPECT_EQ(text.find("\"mass\""), std::string::npos);
   EXPECT_EQ(text.find("\"drag\""), std::string::npos);

@@ -115,22 +115,6 @@ TEST(MaterialGrid, SlidesThroughAirAsItsTangentialDragSays) {
     EXPECT_NEAR(run.state().velocity[i].y(), -9.81 / rate * (1 - std::exp(-rate * 0.3)), 1e-9);
 }
 
-/// A sheet held by its top edge, with every force of its own and wind.
-Scene complete_scene() {
-  Material m = any_material();
-  m.stretch_damping = 2e-4, m.bending_damping = 1e-3, m.mass_damping = 0.5;
-  m.drag_normal = 0.8, m.drag_tangential = 0.1;
-  Scene scene = material_sheet(7, 9, 0.05, 0.04, m);
-  scene.cloth.down = Vec3(0, -0.6, 0.8);
-  scene.cloth.pins = {NamedPin::top_edge};  // and the next row: it bends at a clamp
-  for (int column = 0; column < 9; ++column) scene.cloth.pins.emplace_back(PinnedParticle{1, column});
-  scene.gravity = Vec3(0, -9.81, 0);
-  scene.air = Air{.wind = {0.5, 0.2, 2}, .gust = std::nullopt};
-  scene.duration = 0.2;
-  scene.record.interval = 0.02;
-  return scene;
-}
-
 TEST(MaterialGrid, AccountsForItsEnergyWithEveryForceOfItsOwn) {
   for (const auto& [method, step, most] : {std::tuple{"semi-implicit-euler", 1e-5, 2e-3},
                                            {"verlet", 1e-4, 1e-4},
@@ -139,7 +123,7 @@ TEST(MaterialGrid, AccountsForItsEnergyWithEveryForceOfItsOwn) {
                                            {"implicit-euler", 2e-5, 2e-2},
                                            {"implicit-midpoint", 2e-4, 2e-4},
                                            {"bdf2", 1e-4, 1e-3}}) {
-    Scene scene = complete_scene();
+    Scene scene = complete_material_scene();
     scene.integrator.method = method, scene.integrator.time_step = step;
     Simulation run(scene);
     double exchanged = 0, error = 0;
@@ -157,7 +141,7 @@ TEST(MaterialGrid, AccountsForItsEnergyWithEveryForceOfItsOwn) {
 }
 
 TEST(MaterialGrid, AnswersTheSameByEveryMethodAsStepsShrink) {
-  expect_the_same_by_every_method(complete_scene());
+  expect_the_same_by_every_method(complete_material_scene());
 }
 
 // ---- stability ----
@@ -215,8 +199,8 @@ TEST(Recorder, HasBendingEnergyOnlyWhereTheClothBends) {
     const auto columns = record_columns(Simulation(scene).quantities());
     return std::find(columns.begin(), columns.end(), "bending_J") != columns.end();
   };
-  EXPECT_TRUE(has_bending(complete_scene()));
-  Scene flat = complete_scene();
+  EXPECT_TRUE(has_bending(complete_material_scene()));
+  Scene flat = complete_material_scene();
   flat.material->bending_warp = flat.material->bending_weft = flat.material->twist = 0;
   EXPECT_FALSE(has_bending(flat));
   EXPECT_FALSE(has_bending(smooth_scene(5, 5)));

@@ -30,6 +30,21 @@ Scene material_sheet(int rows, int columns, double across, double down, const Ma
   return scene;
 }
 
+Scene complete_material_scene() {
+  Material m = any_material();
+  m.stretch_damping = 2e-4, m.bending_damping = 1e-3, m.mass_damping = 0.5;
+  m.drag_normal = 0.8, m.drag_tangential = 0.1;
+  Scene scene = material_sheet(7, 9, 0.05, 0.04, m);
+  scene.cloth.down = Vec3(0, -0.6, 0.8);
+  scene.cloth.pins = {NamedPin::top_edge};  // and the next row: it bends at a clamp
+  for (int column = 0; column < 9; ++column) scene.cloth.pins.emplace_back(PinnedParticle{1, column});
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.air = Air{.wind = {0.5, 0.2, 2}, .gust = std::nullopt};
+  scene.duration = 0.2;
+  scene.record.interval = 0.02;
+  return scene;
+}
+
 std::vector<Scene> grids_of_a_sheet(const Material& material) {
   std::vector<Scene> scenes;
   for (const auto& [rows, columns] : {std::pair{3, 4}, {5, 7}, {9, 7}, {7, 13}, {9, 13}})

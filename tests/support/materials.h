@@ -16,6 +16,9 @@ Material any_material();
 /// but the material's own.
 Scene material_sheet(int rows, int columns, double across, double down, const Material& material);
 
+/// A sheet held by its top edge, with every force of its own and wind.
+Scene complete_material_scene();
+
 /// Grids of one sheet, 0.6 m by 0.4 m, with cells of any shape.
 std::vector<Scene> grids_of_a_sheet(const Material& material);
 

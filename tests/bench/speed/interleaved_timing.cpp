@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "study/quantile.h"
+#include "design/quantile.h"
 
 namespace cloth::speed {
 namespace {

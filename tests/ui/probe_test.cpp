@@ -193,20 +193,22 @@ class ProbeTest : public QObject {
   }
 
   /// CLOTHLAB_WRITE_PICTURES=1 makes the picture of docs/guide.md anew.
-  void labels_of_probes_keep_clear_of_each_other() {
+  void probes_are_drawn_beside_the_cloth() {
     WindowBench bench("corners-free");
     LabDocument& document = bench.window.document();
+    const QImage without = bench.window.view().grabPicture();
     for (const Probe& probe :
          {Probe{.name = "tip", .particles = {{32, 16}}},
           Probe{.name = "bend", .measure = ProbeMeasure::angle, .particles = {{24, 6}, {24, 8}, {24, 10}}},
           Probe{.name = "hem", .measure = ProbeMeasure::line, .particles = {{22, 0}, {22, 32}}},
           Probe{.name = "low", .measure = ProbeMeasure::lowest_point}})
       QVERIFY(document.addProbe(probe).isEmpty());
+    QTRY_VERIFY(bench.window.view().frame()->probes.size() == 4);
+    QVERIFY(bench.window.view().grabPicture() != without);
     bench.play_until(0.35);
     bench.pause();
     bench.action("toolProbe")->trigger();
     QTest::mouseMove(&bench.window.view(), bench.pixel_of(10 * 33 + 20));
-    QTRY_VERIFY(bench.window.view().frame()->probes.size() == 4);
     QTest::qWait(300);
     if (qEnvironmentVariableIntValue("CLOTHLAB_WRITE_PICTURES") == 0) return;
     QImage picture = bench.window.grab().toImage();

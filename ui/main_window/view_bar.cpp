@@ -128,7 +128,7 @@ void ViewBar::addContact(QHBoxLayout& row) {
   box_level_->setToolTip(tr("Boxes that contact is looked for in, so many levels below the one around all"));
   box_level_->setMinimum(-1);
   box_level_->setSpecialValueText(tr("No boxes"));
-  box_level_->setPrefix(tr("Boxes: level "));
+  box_level_->setPrefix(tr("Boxes: "));
   box_level_->setValue(-1);
   box_level_->hide();
   row.addWidget(box_level_);

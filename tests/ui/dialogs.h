@@ -60,12 +60,16 @@ class Answers {
   }
 
   /// Whether each came, in this order, and no other dialog. Then waits until a window, if one is left,
-  /// is active again and takes the next key.
+  /// is active again and takes the next key; a window manager may forget which was, so that it is asked for.
   bool came_true() const {
     const auto takes_keys = [] {
       const QWidgetList windows = QApplication::topLevelWidgets();
-      const auto is_visible = [](const QWidget* window) { return window->isVisible(); };
-      return QApplication::activeWindow() || std::none_of(windows.begin(), windows.end(), is_visible);
+      const auto shown = std::find_if(windows.begin(), windows.end(), [](const QWidget* window) {
+        return window->isVisible() && window->isWindow() && window->windowType() != Qt::Popup;
+      });
+      if (QApplication::activeWindow() || shown == windows.end()) return true;
+      (*shown)->activateWindow();
+      return false;
     };
     return steps_.empty() && unexpected_.isEmpty() && QTest::qWaitFor(takes_keys, patience);
   }

@@ -19,6 +19,30 @@ constexpr double bending = shear * side * side;  // N m: enough to keep the shee
 constexpr double bulge = 0.03;                   // of the start, over the side
 constexpr exact::ShearLaw law = exact::ShearLaw::diagonals;
 
+/// Where a point of the flat sheet is held, and how fast it goes there with gamma (m, m/rad).
+struct FramedPoint {
+  Vec3 place, rate;
+};
+using Framing = FramedPoint (*)(const Vec3& flat, double gamma);
+
+/// The power of what holds the pinned particles of the resting sheet over `speed`, at which what is pulled
+/// moves apart with gamma (m/rad): N. `disturbance` in m moves the free ones at the start.
+ValidationReading pull_at_rest(const Scene& scene, double gamma, Framing framing,
+                               Vec3 (*disturbance)(const Vec3& flat), double speed) {
+  const ClothSystem system = make_cloth(scene);
+  Vec3Field start(system.start.size());
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    start.set(i, framing(system.start[i], gamma).place);
+    if (!system.pinned[i]) start.add(i, disturbance(system.start[i]));
+  }
+  const RestShape rest = find_rest(scene, system, start);
+  const Vec3Field force = conservative_forces(scene, system, rest.position);
+  double power = 0;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    if (system.pinned[i]) power -= force[i].dot(framing(system.start[i], gamma).rate);
+  return {.value = power / speed, .failure = rest.failure};
+}
+
 /// A square between four hinged bars, weft and warp along them.
 Scene framed_scene(int cells) {
   Scene scene;
@@ -37,35 +61,21 @@ Scene framed_scene(int cells) {
   return scene;
 }
 
-/// Where the frame takes a point of the flat square, and how fast it goes there with gamma (m, m/rad). The
-/// pulled diagonal stays where it is.
-struct FramedPoint {
-  Vec3 place, rate;
-};
+/// Where the frame takes a point of the flat square. The pulled diagonal stays where it is.
 FramedPoint framed(const Vec3& flat, double gamma) {
   const double c = std::cos(gamma / 2), s = std::sin(gamma / 2);
   return {{flat.x() * c + flat.y() * s, flat.x() * s + flat.y() * c, 0},
           Vec3(flat.y() * c - flat.x() * s, flat.x() * c - flat.y() * s, 0) / 2};
 }
 
-/// Pull at the corners of the resting sheet, N: the power of what holds its border over the corners' speed.
+/// Pull at the corners of the resting sheet, N.
 ValidationReading pull_of_frame(double gamma, int cells) {
-  const Scene scene = framed_scene(cells);
-  const ClothSystem system = make_cloth(scene);
-  Vec3Field start(system.start.size());
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const Vec3 flat = system.start[i];
-    const double hill = std::sin(std::numbers::pi * flat.x() / side) *
-                        std::sin(std::numbers::pi * flat.y() / side) * bulge * side;
-    start.set(i, framed(flat, gamma).place + (system.pinned[i] ? 0 : hill) * Vec3(1, -0.5, 0.5));
-  }
-  const RestShape rest = find_rest(scene, system, start);
-  const Vec3Field force = conservative_forces(scene, system, rest.position);
-  double power = 0;
-  for (std::size_t i = 0; i < start.size(); ++i)
-    if (system.pinned[i]) power -= force[i].dot(framed(system.start[i], gamma).rate);
-  const double speed = side * std::sin(std::numbers::pi / 4 - gamma / 2);  // d(extension)/d(gamma)
-  return {.value = power / speed, .failure = rest.failure};
+  const auto bulged = [](const Vec3& flat) -> Vec3 {
+    return std::sin(std::numbers::pi * flat.x() / side) * std::sin(std::numbers::pi * flat.y() / side) *
+           bulge * side * Vec3(1, -0.5, 0.5);
+  };
+  const double speed = side * std::sin(std::numbers::pi / 4 - gamma / 2);
+  return pull_at_rest(framed_scene(cells), gamma, framed, bulged, speed);
 }
 
 ValidationProtocol picture_frame() {
@@ -141,24 +151,14 @@ Scene bias_scene(int cells) {
   return scene;
 }
 
-/// Pull at the end of the resting strip, N: the power of what holds its ends over how fast they part.
+/// Pull at the end of the resting strip, N.
 ValidationReading pull_of_strip(double gamma, int cells) {
-  const Scene scene = bias_scene(cells);
-  const ClothSystem system = make_cloth(scene);
-  Vec3Field start(system.start.size());
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const Vec3 flat = system.start[i];
-    const double hill = std::sin(std::numbers::pi * flat.x() / bias_length) * bulge * strip_width;
-    start.set(i, bias_extended(flat, gamma).place + (system.pinned[i] ? 0 : hill) * Vec3(1, -0.5, 0));
-  }
-  const RestShape rest = find_rest(scene, system, start);
-  const Vec3Field force = conservative_forces(scene, system, rest.position);
-  double power = 0;
-  for (std::size_t i = 0; i < start.size(); ++i)
-    if (system.pinned[i]) power -= force[i].dot(bias_extended(system.start[i], gamma).rate);
+  const auto bulged = [](const Vec3& flat) -> Vec3 {
+    return std::sin(std::numbers::pi * flat.x() / bias_length) * bulge * strip_width * Vec3(1, -0.5, 0);
+  };
   const double speed =
       (bias_length - strip_width) / std::numbers::sqrt2 * std::sin(std::numbers::pi / 4 - gamma / 2);
-  return {.value = power / speed, .failure = rest.failure};
+  return pull_at_rest(bias_scene(cells), gamma, bias_extended, bulged, speed);
 }
 
 ValidationProtocol bias_extension() {

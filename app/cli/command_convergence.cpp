@@ -76,9 +76,9 @@ void add_convergence(Program& program) {
       ->allow_extra_args(false);
   command
       .add_option("--output", arguments.options.outputs,
-                  "What to read off, between commas: columns of record.csv, lowest_point_m, droop_m or "
+                  "What to read off, between commas: columns of record.csv, lowest_point, sag or "
                   "droop_ratio; at the end, or with :max, :min or :mean over all rows, e.g. max_strain:max. "
-                  "Without it lowest_point_m,elastic_J")
+                  "Without it lowest_point,elastic_J")
       ->delimiter(',')
       ->allow_extra_args(false);
   command

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/result_folder.h"
+#include "io/text_file.h"
 #include "progress.h"
 #include "scene/scene_json.h"
 #include "simulation/step_batches.h"
@@ -94,9 +95,23 @@ std::vector<std::pair<std::string, std::string>> files_of(const cloth::IdentifyP
   return files;
 }
 
+constexpr const char* runs_name = "runs.jsonl";
+
+/// Takes the runs of an earlier fit of the same model, and begins anew with them.
+std::optional<cloth::IoError> begin_runs(cloth::ResultFolder& folder, cloth::FitRuns& runs) {
+  const bool goes_on = runs.read(folder / runs_name);
+  if (auto error = goes_on ? folder.go_on() : folder.begin_anew()) return error;
+  if (auto error = folder.remove("identified.json")) return error;
+  if (auto error = folder.add(runs_name)) return error;
+  if (runs.read_count() > 0) say(fmt::format("{} runs were made before", runs.read_count()));
+  return runs.open(folder / runs_name);
+}
+
 std::optional<cloth::IoError> write_folder(cloth::ResultFolder& folder, const cloth::IdentifyPlan& plan,
                                            const cloth::FitAccount& account) {
-  if (auto error = folder.begin_anew()) return error;
+  std::string runs;
+  if (auto error = cloth::read_text_file(folder / runs_name, runs)) return error;
+  folder.note(cloth::digest_of(runs_name, runs, false));
   for (const auto& [name, text] : files_of(plan, account))
     if (auto error = folder.write(name, text, name.ends_with(".csv"))) return error;
   return folder.finish("identified.json", cloth::fit_index(account, folder.digests()));
@@ -136,15 +151,21 @@ int identify(const IdentifyArguments& arguments) {
 
   cloth::ResultFolder folder;
   if (!arguments.folder.empty()) {
-    cloth::FolderUse use{
-        .kind = "identify",
-        .files = {"identified.json", "parameters.csv", "targets.csv", "fitted.scene.json", "report.html"}};
+    cloth::FolderUse use{.kind = "identify",
+                         .files = {"identified.json", "parameters.csv", "targets.csv", "fitted.scene.json",
+                                   "report.html", runs_name}};
     for (const cloth::FittedCurve& curve : plan.curves) use.files.push_back("fit-" + curve.column + ".svg");
     use.inputs = {arguments.measured.begin(), arguments.measured.end()};
     use.inputs.emplace_back(arguments.scene);
     if (const auto error = folder.lock(arguments.folder, use)) return report(*error);
   }
+  cloth::FitRuns runs(cloth::model_hash(plan));
+  if (folder.is_open()) {
+    if (const auto error = begin_runs(folder, runs)) return report(*error);
+    plan.runs = &runs;
+  }
   const cloth::FitAccount account = carry_out(plan);
+  if (const auto error = runs.error()) return report(*error);
   if (folder.is_open())
     if (const auto error = write_folder(folder, plan, account)) return report(*error);
   std::string text = arguments.json ? cloth::fit_json(account) : cloth::fit_text(account);
@@ -196,9 +217,9 @@ void add_identify(Program& program) {
       ->allow_extra_args(false);
   command
       .add_option("--target", arguments.targets,
-                  "A measured value, COLUMN.REDUCTION=VALUE or =VALUE±SIGMA (+- too), e.g. "
-                  "max_strain.max=0.05±0.002; columns are those of record.csv, lowest_point_m, droop_m and "
-                  "droop_ratio; reductions final, max, min and mean; may be repeated")
+                  "A measured value, SOURCE=VALUE or SOURCE=VALUE±SIGMA (+- too) at the end of the run, "
+                  "SOURCE:max, :min or :mean over its rows, e.g. max_strain:max=0.05±0.002; sources are the "
+                  "columns of record.csv, lowest_point, sag, droop_ratio and extent; may be repeated")
       ->allow_extra_args(false);
   command
       .add_option("--held-out", arguments.held_out,
@@ -214,7 +235,7 @@ void add_identify(Program& program) {
   add_path(
       command, "--out", arguments.folder,
       "Folder for identified.json, parameters.csv, targets.csv, fitted.scene.json, the curves as SVG and "
-      "report.html; made if missing");
+      "report.html, and for runs.jsonl, by which a fit that was stopped goes on; made if missing");
   add_json(command, arguments.json);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "analysis/sensitivity_report.h"
@@ -19,7 +20,16 @@ std::vector<std::string> parameter_names(const PointTable& table) {
 
 std::string failure_sentence(const PointTable& table) {
   const std::size_t failures = table.failures();
-  return failures == 0 ? "" : fmt::format("{} of {} runs failed.", failures, table.rows());
+  return failures == 0 ? "" : fmt::format("Runs without a value: {} of {}.", failures, table.rows());
+}
+
+SobolIndices sobol_of(const PointsAccount& account, const PointColumn& output, std::size_t parameters) {
+  return sobol_indices(output.values, parameters, account.seed);
+}
+
+MorrisScreening morris_of(const PointsAccount& account, const PointColumn& output, std::size_t parameters) {
+  return morris_screening(unit_design(Design::morris, account.count, parameters, account.seed), output.values,
+                          account.seed);
 }
 
 void add_sensitivities(const PointsAccount& account, HtmlPage& page) {
@@ -29,13 +39,43 @@ void add_sensitivities(const PointsAccount& account, HtmlPage& page) {
   for (const std::size_t c : table.columns_that(true)) {
     const PointColumn& output = table.columns[c];
     if (account.design == Design::saltelli)
-      add_sensitivity(sobol_indices(output.values, names.size(), account.seed), names, output.axis.label,
-                      page);
+      add_sensitivity(sobol_of(account, output, names.size()), names, output.axis.label, page);
     if (account.design == Design::morris)
-      add_sensitivity(morris_screening(unit_design(Design::morris, account.count, names.size(), account.seed),
-                                       output.values, account.seed),
-                      names, output.axis.label, output.axis.unit, page);
+      add_sensitivity(morris_of(account, output, names.size()), names, output.axis.label, output.axis.unit,
+                      page);
   }
+}
+
+void add_sensitivity_files(const PointsAccount& account, std::vector<PointsFile>& files) {
+  const PointTable& table = account.table;
+  const std::vector<std::string> names = parameter_names(table);
+  if (names.empty() || !(account.design == Design::saltelli || account.design == Design::morris)) return;
+  const std::string prefix = account.design == Design::saltelli ? "sobol" : "morris";
+  std::vector<std::string> taken;
+  for (const std::size_t c : table.columns_that(true)) {
+    const PointColumn& output = table.columns[c];
+    const std::string &label = output.axis.label, &unit = output.axis.unit;
+    std::string picture, numbers;
+    if (account.design == Design::saltelli) {
+      const SobolIndices indices = sobol_of(account, output, names.size());
+      picture = to_svg(sobol_plot(indices, names, label)), numbers = sobol_csv(indices, names);
+    } else {
+      const MorrisScreening screening = morris_of(account, output, names.size());
+      picture = to_svg(morris_plot(screening, names, label, unit)), numbers = morris_csv(screening, names);
+    }
+    const std::string stem = file_stem(prefix, label, taken);
+    files.push_back({stem + ".svg", std::move(picture)});
+    files.push_back({stem + ".csv", std::move(numbers)});
+  }
+}
+
+bool has_main_effects(const PointTable& table) {
+  return table.columns_that(false).size() > 1 && !table.columns_that(true).empty();
+}
+
+/// Panels of more columns would be too small to read.
+bool has_scatter(const PointTable& table) {
+  return table.columns.size() > 2 && table.columns.size() <= 12;
 }
 
 }  // namespace
@@ -88,7 +128,6 @@ LinePlot curve_of_output(const PointsAccount& account, std::size_t output) {
 
 void add_points(const PointsAccount& account, HtmlPage& page) {
   const PointTable& table = account.table;
-  const std::size_t parameters = table.columns_that(false).size(), outputs = table.columns_that(true).size();
   if (table.rows() == 0) return;
   page.heading("Every run");
   if (const std::string sentence = failure_sentence(table); !sentence.empty())
@@ -99,13 +138,35 @@ void add_points(const PointsAccount& account, HtmlPage& page) {
         "Parallel coordinates. Draw along an axis to pick the runs that pass there; a click on the range "
         "takes it away.",
         account.command);
-  if (parameters > 1 && outputs > 0)
+  if (has_main_effects(table))
     page.figure(to_svg(main_effects_plot(account)), "Main effects.", account.command);
   add_sensitivities(account, page);
-  if (table.columns.size() > 2 && table.columns.size() <= 12) {
+  if (has_scatter(table)) {
     page.heading("Every pair");
     page.figure(to_svg(scatter_plot(account)), "Scatter matrix.", account.command);
   }
+}
+
+std::string file_stem(const std::string& prefix, const std::string& name, std::vector<std::string>& taken) {
+  std::string stem = prefix + "-";
+  for (const char c : name) stem += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+  std::string free = stem;
+  for (int k = 2; std::find(taken.begin(), taken.end(), free) != taken.end(); ++k)
+    free = fmt::format("{}-{}", stem, k);
+  taken.push_back(free);
+  return free;
+}
+
+std::vector<PointsFile> points_files(const PointsAccount& account) {
+  const PointTable& table = account.table;
+  std::vector<PointsFile> files;
+  if (table.rows() == 0) return files;
+  if (table.columns.size() > 1)
+    files.push_back({"parallel-coordinates.svg", to_brushed_svg(parallel_plot(account))});
+  if (has_main_effects(table)) files.push_back({"main-effects.svg", to_svg(main_effects_plot(account))});
+  if (has_scatter(table)) files.push_back({"scatter-matrix.svg", to_svg(scatter_plot(account))});
+  add_sensitivity_files(account, files);
+  return files;
 }
 
 std::string points_page(const PointsAccount& account) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "design/design.h"
 #include "report/html_page.h"
@@ -38,5 +39,17 @@ std::string points_page(const PointsAccount& account);
 
 /// The sections of that page, for another page to take in.
 void add_points(const PointsAccount& account, HtmlPage& page);
+
+/// The page's pictures, and the tables of its indices, as files:
+///   parallel-coordinates.svg, main-effects.svg, scatter-matrix.svg, and for each output of a design for
+///   sensitivity sobol-OUTPUT.svg and .csv, or morris-OUTPUT.svg and .csv
+struct PointsFile {
+  std::string name{}, text{};
+};
+std::vector<PointsFile> points_files(const PointsAccount& account);
+
+/// prefix-NAME, in which letters and digits of the name stay and all else becomes "-"; where that is among
+/// `taken`, "-2", "-3", ... follow. Adds it to `taken`.
+std::string file_stem(const std::string& prefix, const std::string& name, std::vector<std::string>& taken);
 
 }  // namespace cloth

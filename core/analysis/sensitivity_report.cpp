@@ -48,7 +48,7 @@ std::string percent(double part) {
 std::string failure_sentence(const SobolIndices& indices) {
   if (indices.failed == 0) return "";
   return fmt::format(
-      "{} runs failed; with their rows {} of {} were left out. If they fail where the output "
+      "Runs without a value: {}; with their rows {} of {} were left out. If runs fail where the output "
       "would be extreme, the indices are those of the rest.",
       indices.failed, indices.left_out, indices.left_out + indices.rows);
 }
@@ -180,7 +180,7 @@ std::vector<std::string> sentences_of(const MorrisScreening& screening, const st
   }
   if (screening.failed > 0)
     sentences.push_back(
-        fmt::format("{} runs failed, and the effects beside them are left out.", screening.failed));
+        fmt::format("Runs without a value: {}; the effects beside them are left out.", screening.failed));
   return sentences;
 }
 

@@ -9,8 +9,8 @@
 
 #include "scene/scene_checks.h"
 #include "simulation/recorder.h"
-#include "study/grid_output.h"
 #include "study/refined_scene.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {
@@ -61,12 +61,12 @@ std::optional<GridRun> run_grid(const GridConvergence& study, int cells,
     run.status = GridRunStatus::refused;
     return run;
   }
-  std::vector<OutputReading> readings;
+  std::vector<OutputReducer> readings;
   for (const std::string& output : study.outputs) readings.emplace_back(parse_output(output));
   RunOptions of_run;
   of_run.threads = options.threads;
   of_run.row = [&](const Simulation& simulation, const Measurement& row) {
-    for (OutputReading& reading : readings) reading.add(simulation, row);
+    for (OutputReducer& reading : readings) reading.add(simulation, row);
   };
   of_run.progress = [&](double time) {
     if (is_to_stop(options.stop)) return false;
@@ -78,7 +78,7 @@ std::optional<GridRun> run_grid(const GridConvergence& study, int cells,
   if (summary.status == Status::stopped) return std::nullopt;
   conclude(run, summary);
   if (run.status == GridRunStatus::finished)
-    for (std::size_t k = 0; k < readings.size(); ++k) run.values[k] = readings[k].value();
+    for (std::size_t k = 0; k < readings.size(); ++k) run.values[k] = readings[k].result();
   return run;
 }
 
@@ -109,7 +109,7 @@ void caution_of_particles(const Scene& scene, std::vector<std::string>& cautions
 }  // namespace
 
 const std::vector<std::string>& default_outputs() {
-  static const std::vector<std::string> outputs{"lowest_point_m", "elastic_J"};
+  static const std::vector<std::string> outputs{"lowest_point", "elastic_J"};
   return outputs;
 }
 
@@ -120,8 +120,7 @@ std::vector<Problem> find_problems(const Scene& scene, const GridConvergenceOpti
     if (rule) problems.push_back({option, "", *rule});
   };
   add("--cells", broken_cells_rule(scene, options.cells.empty() ? default_cells(scene) : options.cells));
-  if (!options.outputs.empty())
-    add("--output", broken_outputs_rule(options.outputs, output_quantities(scene)));
+  if (!options.outputs.empty()) add("--output", broken_outputs_rule(options.outputs, output_sources(scene)));
   if (options.time) {
     Scene timed = scene;
     timed.duration = *options.time;

@@ -34,7 +34,7 @@ struct GridRun {
   std::int64_t steps = 0;
   double end_time = 0;         ///< s
   double wall = 0;             ///< s, of stepping alone
-  std::vector<double> values;  ///< one of each output; not a number where there is none
+  std::vector<double> values{};  ///< one of each output; not a number where there is none
 };
 
 struct GridConvergence {
@@ -58,11 +58,11 @@ struct GridConvergenceOptions {
   const GridConvergence* earlier = nullptr;
 };
 
-/// lowest_point_m, elastic_J
+/// lowest_point, elastic_J
 const std::vector<std::string>& default_outputs();
 
 /// What keeps a study from being made, each with the option that it is about; see refined_scene.h and
-/// grid_output.h. Precondition: find_problems(scene) is empty.
+/// run_output.h. Precondition: find_problems(scene) is empty.
 std::vector<Problem> find_problems(const Scene& scene, const GridConvergenceOptions& options);
 
 /// The study without its runs. Precondition of both: find_problems is empty.

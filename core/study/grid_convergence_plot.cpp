@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "study/grid_convergence_report.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {

@@ -32,11 +32,11 @@ void visit_fields(CsvFields& fields, GridRun& run, const GridConvergence& study)
 
 /// What is said of one grid in a table of one output, each empty where there is nothing.
 struct GridRow {
-  std::string value, difference, order, extrapolate, index;
+  std::string value{}, difference{}, order{}, extrapolate{}, index{};
 };
 GridRow row_of(const GridConvergence& study, std::size_t output, std::size_t run);
 
-/// "lowest_point_m:max" as people say it: "lowest point, largest", with the unit "lowest point, largest (m)".
+/// "lowest_point:max" as people say it: "lowest point, largest", with the unit "lowest point, largest (m)".
 std::string name_of_output(const std::string& output);
 std::string words_of_output(const std::string& output);
 

@@ -7,7 +7,7 @@
 #include "report/text_table.h"
 #include "scene/scene_json.h"
 #include "study/grid_convergence_report.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {
@@ -141,16 +141,19 @@ CsvTable table_of(const GridConvergence& study) {
 }
 
 std::string name_of_output(const std::string& output) {
-  constexpr const char* over_words[] = {"", ", largest", ", smallest", ", mean"};
-  const GridOutput parsed = parse_output(output);
+  const RunOutput parsed = parse_output(output);
+  const std::string over = parsed.reduce == Reduction::maximum   ? ", largest"
+                           : parsed.reduce == Reduction::minimum ? ", smallest"
+                           : parsed.reduce == Reduction::mean    ? ", mean"
+                                                                 : "";
   const std::string unit = unit_of_output(output);
-  const auto probe = words_of_probe_column(parsed.quantity);
-  if (probe) return probe->label + over_words[static_cast<std::size_t>(parsed.over)];
-  std::string name = parsed.quantity;
+  const auto probe = words_of_probe_column(parsed.of);
+  if (probe) return probe->label + over;
+  std::string name = parsed.of;
   for (const char* ending : {"_J", "_Ns", "_m", "_s"})
     if (!unit.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name + over_words[static_cast<std::size_t>(parsed.over)];
+  return name + over;
 }
 
 std::string words_of_output(const std::string& output) {

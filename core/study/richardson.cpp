@@ -94,8 +94,8 @@ std::string words_of(const std::vector<GridValue>& grids, const Richardson& foun
 
 GridVerdict verdict_of(const std::vector<GridValue>& grids, const Richardson& found) {
   if (grids.size() < 2) return GridVerdict::too_few;
-  const double rounding = rounding_of(grids), fine = found.differences.back();
-  if (std::abs(fine) <= rounding) return GridVerdict::unchanged;
+  const double least = rounding_of(grids), fine = found.differences.back();
+  if (std::abs(fine) <= least) return GridVerdict::unchanged;
   if (grids.size() == 2) return GridVerdict::two_grids;
   const double coarse = found.differences[found.differences.size() - 2];
   if (std::abs(coarse) <= rounding) return GridVerdict::diverging;

@@ -32,7 +32,7 @@ std::string one_line(const std::vector<Problem>& problems) {
 class PointRun {
  public:
   PointRun(const SweepPlan& plan, const StopTest& stop) : plan_(plan), stop_(stop) {
-    for (const SweepOutput& output : plan.outputs) {
+    for (const RunOutput& output : plan.outputs) {
       reducers_.emplace_back(output);
       auto found = std::find(sources_.begin(), sources_.end(), output.of);
       source_of_.push_back(static_cast<std::size_t>(found - sources_.begin()));

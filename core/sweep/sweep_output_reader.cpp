@@ -22,8 +22,8 @@ class SweepOutputReader : public JsonReader<json> {
   SweepOutputReader(fs::path folder, std::vector<std::string> paths)
       : folder_(std::move(folder)), paths_(std::move(paths)) {}
 
-  std::vector<SweepOutput> read(const json& root) {
-    std::vector<SweepOutput> all;
+  std::vector<RunOutput> read(const json& root) {
+    std::vector<RunOutput> all;
     const json* outputs = required(root, "", "outputs", "must be given: what is kept of each run");
     if (!outputs || !list(*outputs, "outputs")) return all;
     if (outputs->empty() || outputs->size() > most_outputs) {
@@ -39,7 +39,7 @@ class SweepOutputReader : public JsonReader<json> {
   }
 
  private:
-  void read_output(const json& value, const std::string& path, SweepOutput& output) {
+  void read_output(const json& value, const std::string& path, RunOutput& output) {
     if (!object(value, path)) return;
     known_keys(value, path, output_keys);
     if (required(value, path, "of", "must be given: a column of record.csv or a shape measure"))
@@ -55,16 +55,14 @@ class SweepOutputReader : public JsonReader<json> {
         output.reduce = static_cast<Reduction>(found - names.begin());
     }
     read_window(value, path, output);
-    const bool is_crossing =
-        output.reduce == Reduction::first_above || output.reduce == Reduction::first_below;
-    if (const json* bound = member(value, "bound"); bound && !is_crossing)
-      problem(path + ".bound", *bound, "is of first-above and first-below");
-    else if (is_crossing && required(value, path, "bound", "must be given for this reduction"))
+    if (const json* bound = member(value, "bound"); bound && !has_bound(output.reduce))
+      problem(path + ".bound", *bound, "is of first-above, first-below and stays-below");
+    else if (has_bound(output.reduce) && required(value, path, "bound", "must be given for this reduction"))
       number(value, path, "bound", output.bound);
     read_measured(value, path, output);
   }
 
-  void read_window(const json& value, const std::string& path, SweepOutput& output) {
+  void read_window(const json& value, const std::string& path, RunOutput& output) {
     const json* window = member(value, "window");
     if (!window) return;
     const std::string at = path + ".window";
@@ -77,7 +75,7 @@ class SweepOutputReader : public JsonReader<json> {
     output.to = (*window)[1].get<double>();
   }
 
-  void read_measured(const json& value, const std::string& path, SweepOutput& output) {
+  void read_measured(const json& value, const std::string& path, RunOutput& output) {
     const json* measured = member(value, "measured");
     const std::string at = path + ".measured";
     if (measured && output.reduce != Reduction::rms) return problem(at, *measured, "is of rms");
@@ -137,11 +135,11 @@ class SweepOutputReader : public JsonReader<json> {
       add_problem(path, "must have as many values as times, and times that ascend");
   }
 
-  void check_name(const std::string& path, const std::vector<SweepOutput>& outputs) {
+  void check_name(const std::string& path, const std::vector<RunOutput>& outputs) {
     static const std::vector<std::string> taken{"point", "status", "cause", "steps", "wall_s", "host"};
     const std::string& name = outputs.back().name;
     const auto same = std::count_if(outputs.begin(), outputs.end(),
-                                    [&](const SweepOutput& other) { return other.name == name; });
+                                    [&](const RunOutput& other) { return other.name == name; });
     if (name.empty())
       add_problem(path, "must have a name");
     else if (same > 1 || std::find(taken.begin(), taken.end(), name) != taken.end() ||
@@ -161,11 +159,11 @@ bool read_table_number(const std::string& text, double& number) {
   return error == std::errc() && stop == end && !text.empty() && std::isfinite(number);
 }
 
-std::vector<SweepOutput> read_sweep_outputs(const json& plan, const fs::path& folder,
-                                            const std::vector<std::string>& paths,
-                                            std::vector<Problem>& problems) {
+std::vector<RunOutput> read_sweep_outputs(const json& plan, const fs::path& folder,
+                                          const std::vector<std::string>& paths,
+                                          std::vector<Problem>& problems) {
   SweepOutputReader reader(folder, paths);
-  std::vector<SweepOutput> outputs = reader.read(plan);
+  std::vector<RunOutput> outputs = reader.read(plan);
   problems.insert(problems.end(), reader.problems.begin(), reader.problems.end());
   return outputs;
 }

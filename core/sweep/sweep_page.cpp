@@ -6,6 +6,7 @@
 #include "report/html_page.h"
 #include "report/svg.h"
 #include "scene/scene_json.h"
+#include "sweep/sweep_account.h"
 #include "sweep/sweep_points.h"
 #include "sweep/sweep_report.h"
 
@@ -98,11 +99,11 @@ std::string sweep_page(const SweepFolder& folder, const SweepResults& results,
     page.notice(fmt::format("{} of {} points are missing.", results.missing(), results.points),
                 Verdict::warn);
   for (const SweepPlot& plot : plots) page.figure(plot.svg, plot.caption);
-  if (plots.empty())
+  if (has_points(plan)) add_points(points_account(folder, results), page);
+  if (plots.empty() && !has_points(plan))
     page.paragraph(
-        "There is no picture: curves are drawn of one parameter and maps of a grid over two, of at most "
-        "20,000 "
-        "points.");
+        "There is no picture: curves and maps are drawn of parameters that are numbers, and of at most "
+        "20,000 points.");
   page.heading("Points");
   page.table(status_table(results));
   page.table(output_table(plan, results));

@@ -16,7 +16,7 @@
 
 #include "report/axis.h"
 #include "scene/scene_json.h"
-#include "sweep/sweep_output.h"
+#include "study/run_output.h"
 
 namespace cloth {
 
@@ -53,7 +53,7 @@ struct SweepPlan {
   /// Points of latin-hypercube and sobol, base points of saltelli, trajectories of morris.
   std::int64_t samples = 0;
   std::uint64_t seed = 1;
-  std::vector<SweepOutput> outputs{};
+  std::vector<RunOutput> outputs{};
   SweepLimits limits{};
 };
 

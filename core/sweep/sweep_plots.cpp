@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/points_report.h"
 #include "study/study_axis.h"
 #include "sweep/contour.h"
 #include "sweep/sweep_points.h"
@@ -194,14 +195,11 @@ std::vector<SweepPlot> sweep_plots(const SweepFolder& folder, const SweepResults
   const bool maps = has_maps(folder.plan);
   if (results.rows.empty() || results.points > most_plotted || !(maps || has_curves(folder.plan)))
     return plots;
+  std::vector<std::string> taken;
   for (std::size_t k = 0; k < folder.plan.outputs.size(); ++k) {
-    const SweepOutput& output = folder.plan.outputs[k];
-    std::string name = "sweep-";
-    for (const char c : output.name) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
-    const auto is_taken = [&](const SweepPlot& plot) { return plot.name == name + ".svg"; };
-    if (std::any_of(plots.begin(), plots.end(), is_taken)) name += fmt::format("-{}", k + 1);
+    const RunOutput& output = folder.plan.outputs[k];
     plots.push_back(
-        {.name = name + ".svg",
+        {.name = file_stem("sweep", output.name, taken) + ".svg",
          .svg = maps ? to_svg(output_map(folder, results, k)) : to_svg(curve_plot(folder, results, k)),
          .caption = fmt::format("{}: {} of {}", output.name, name_of(output.reduce), output.of)});
   }

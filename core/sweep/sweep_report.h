@@ -1,5 +1,5 @@
 // What a sweep's results look like. One parameter: a curve of each output. Two in a grid: a map of each
-// output with contours, failed points hatched. Other sweeps have no plots here.
+// output with contours, failed points hatched. Plots of other sweeps: sweep_account.h.
 #pragma once
 
 #include "report/heat_map.h"

@@ -96,7 +96,7 @@ CsvTable sweep_table(const SweepPlan& plan, const SweepResults& results) {
   const SweepPoints points(plan);
   CsvTable table{.header = {"point"}, .rows = {}};
   for (const std::string& path : paths_of(plan)) table.header.push_back(path);
-  for (const SweepOutput& output : plan.outputs) table.header.push_back(output.name);
+  for (const RunOutput& output : plan.outputs) table.header.push_back(output.name);
   for (const char* name : {"status", "cause", "steps", "wall_s", "host"}) table.header.emplace_back(name);
   table.rows.reserve(results.rows.size());
   for (std::size_t k = 0; k < results.rows.size(); ++k) {

@@ -61,7 +61,7 @@ json output_schema() {
       {"of", described("string", "A column of record.csv, or a measure of the shape")},
       {"reduce", {{"enum", reduction_names()}}},
       {"window", window},
-      {"bound", described("number", "Of first-above and first-below")},
+      {"bound", described("number", "Of first-above, first-below and stays-below")},
       {"measured",
        {{"anyOf", json::array({json{{"type", "string"}}, curve})},
         {"description", "Of rms: a CSV file with a measured curve"}}},

@@ -35,10 +35,10 @@ json json_of_axis(const SweepAxis& axis) {
   return entry;
 }
 
-json json_of_output(const SweepOutput& output) {
+json json_of_output(const RunOutput& output) {
   json entry{{"name", output.name}, {"of", output.of}, {"reduce", name_of(output.reduce)}};
   if (std::isfinite(output.to)) entry["window"] = {output.from, output.to};
-  if (output.reduce == Reduction::first_above || output.reduce == Reduction::first_below)
+  if (has_bound(output.reduce))
     entry["bound"] = output.bound;
   if (output.reduce == Reduction::rms)
     entry["measured"] = {
@@ -68,7 +68,7 @@ std::string lines_of(const json& list) {
 std::string write_sweep(const SweepPlan& plan) {
   json axes = json::array(), outputs = json::array();
   for (const SweepAxis& axis : plan.axes) axes.push_back(json_of_axis(axis));
-  for (const SweepOutput& output : plan.outputs) outputs.push_back(json_of_output(output));
+  for (const RunOutput& output : plan.outputs) outputs.push_back(json_of_output(output));
   std::string text = fmt::format("{{\n  \"format\": \"{}\",\n", sweep_format);
   text += fmt::format("  \"title\": {},\n",
                       json(plan.title).dump(-1, ' ', false, json::error_handler_t::replace));

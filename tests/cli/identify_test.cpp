@@ -43,7 +43,7 @@ TEST(Identify, GivesAStiffnessBackFromOneValueOfARun) {
   const double largest = *std::max_element(strain.begin(), strain.end());
   const CommandResult result = cli("identify" + small +
                                    "--set springs.structural=100 --vary springs.structural:50:400 "
-                                   "--target max_strain.max=" +
+                                   "--target max_strain:max=" +
                                    text_of(largest) + " --json");
   ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
   const auto json = nlohmann::json::parse(result.output);
@@ -67,17 +67,18 @@ TEST(Identify, FitsACurveAndPredictsWhatIsHeldOut) {
   const std::string out = (folder / "fit").string();
   const CommandResult result =
       cli("identify" + small + "--vary springs.structural:50:400 --measured '" +
-          (folder / "measured.csv").string() + "' --held-out kinetic_J.final=" + text_of(kinetic.back()) +
+          (folder / "measured.csv").string() + "' --held-out kinetic_J=" + text_of(kinetic.back()) +
           "±0.001 --starts 4 --descents 1 --out '" + out + "'");
   ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
   EXPECT_TRUE(has(result.output, "held out")) << result.output;
   std::set<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(out)) files.insert(entry.path().filename());
-  EXPECT_EQ(files, (std::set<std::string>{"identified.json", "parameters.csv", "targets.csv",
-                                          "fitted.scene.json", "fit-elastic_J.svg", "report.html"}));
+  EXPECT_EQ(files,
+            (std::set<std::string>{"identified.json", "parameters.csv", "targets.csv", "fitted.scene.json",
+                                   "fit-elastic_J.svg", "report.html", "runs.jsonl"}));
   const auto json = nlohmann::json::parse(content_of(out + "/identified.json"));
   EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 150, 5);
-  EXPECT_EQ(json["files"].size(), 5u);
+  EXPECT_EQ(json["files"].size(), 6u);
   EXPECT_EQ(cli("run '" + out + "/fitted.scene.json' --out '" + (folder / "again").string() + "'").exit_code,
             0);
   const CsvTable again = parse_csv(content_of(folder / "again/record.csv"));
@@ -90,7 +91,7 @@ TEST(Identify, RefusesAPairThatTheValuesCannotTellApart) {
   // One value, two stiffnesses.
   const CommandResult result = cli("identify" + small +
                                    "--vary springs.structural:50:400 --vary springs.shear:1:100 "
-                                   "--target lowest_point_m.final=0.5±0.001 --starts 2 --descents 1");
+                                   "--target lowest_point=0.5±0.001 --starts 2 --descents 1");
   EXPECT_EQ(result.exit_code, 6) << result.output << result.errors;
   EXPECT_TRUE(has(result.output, "The data do not see ")) << result.output;
   EXPECT_TRUE(has(result.output, "unseen")) << result.output;
@@ -99,11 +100,38 @@ TEST(Identify, RefusesAPairThatTheValuesCannotTellApart) {
 TEST(Identify, HasTheSameBitsHoweverManyRunsGoBesideEachOther) {
   const std::string command =
       "identify" + small +
-      "--vary springs.structural:50:400 --target elastic_J.mean=0.01±0.001 --starts 3 "
+      "--vary springs.structural:50:400 --target elastic_J:mean=0.01±0.001 --starts 3 "
       "--descents 1 --json --jobs ";
   const CommandResult one = cli(command + "1"), three = cli(command + "3");
   EXPECT_FALSE(one.output.empty()) << one.errors;
   EXPECT_EQ(one.output, three.output);
+}
+
+TEST(Identify, GoesOnWithTheRunsOfAFitThatWasKilled) {
+  const TemporaryFolder folder;
+  const auto command = [&](const std::string& name) {
+    return "identify" + small + "--vary springs.structural:50:400 --target elastic_J:mean=0.01±0.001 " +
+           "--starts 3 --descents 1 --json --jobs 1 --out '" + (folder / name).string() + "'";
+  };
+  const CommandResult whole = cli(command("whole"));
+  ASSERT_TRUE(whole.exit_code == 0 || whole.exit_code == 6) << whole.errors;
+  // What a kill leaves: some whole lines of runs, half a line, and no index.
+  const std::string runs = content_of(folder / "whole/runs.jsonl");
+  std::size_t cut = 0;
+  for (int line = 0; line < 4; ++line) cut = runs.find('\n', cut) + 1;
+  ASSERT_GT(std::count(runs.begin(), runs.end(), '\n'), 4);
+  std::filesystem::copy(folder / "whole", folder / "cut");
+  write_text(folder / "cut/runs.jsonl", runs.substr(0, cut + 10));
+  const CommandResult again = cli(command("cut"));
+  EXPECT_TRUE(has(again.errors, "3 runs were made before")) << again.errors;
+  EXPECT_EQ(again.exit_code, whole.exit_code);
+  EXPECT_EQ(again.output, whole.output);
+  EXPECT_EQ(content_of(folder / "cut/parameters.csv"), content_of(folder / "whole/parameters.csv"));
+  const std::string made = content_of(folder / "cut/runs.jsonl");
+  EXPECT_EQ(std::count(made.begin(), made.end(), '\n'), std::count(runs.begin(), runs.end(), '\n'));
+  // Another model's runs are of no use.
+  const CommandResult other = cli(command("cut") + " --set springs.shear=7");
+  EXPECT_FALSE(has(other.errors, "made before")) << other.errors;
 }
 
 TEST(Identify, OfBadOptionsExitsWithTwoAndOneMessage) {
@@ -130,7 +158,7 @@ TEST(Identify, OfBadOptionsExitsWithTwoAndOneMessage) {
       {vary + vary + target, "is there twice"},
       {vary + target + target, "is there twice"},
       {vary + "--target speed=1", "--target: speed: must be one of time_s"},
-      {vary + "--target elastic_J", "must be COLUMN.REDUCTION=VALUE"},
+      {vary + "--target elastic_J", "must be SOURCE=VALUE"},
       {vary + "--target elastic_J.median=1", "--target: elastic_J.median: must be one of"},
       {vary + "--target elastic_J=x", "--target: elastic_J: "},
       {vary + "--target elastic_J=1±0", "its standard deviation must be above 0"},

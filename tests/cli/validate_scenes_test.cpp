@@ -63,7 +63,7 @@ Scene falling_cloth() {
   scene.integrator.time_step = 0.001;
   scene.duration = 0.5;
   scene.measured =
-      MeasuredPoints{.file = "points.csv", .output = "lowest_point_m", .state = "end", .tolerance = 1e-6};
+      MeasuredPoints{.file = "points.csv", .output = "lowest_point", .state = "end", .tolerance = 1e-6};
   return scene;
 }
 

@@ -10,7 +10,7 @@
 #include "scene/builtin_scenes.h"
 #include "simulation/recorder.h"
 #include "study/grid_convergence_report.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 #include "study/refined_scene.h"
 #include "study/study_recorder.h"
 #include "study/study_runs.h"
@@ -28,7 +28,7 @@ Scene hung_by_corners() {
 
 GridConvergenceOptions few_grids() {
   return {.cells = {4, 8, 12},
-          .outputs = {"max_strain:max", "elastic_J", "lowest_point_m", "droop_ratio:mean"}};
+          .outputs = {"max_strain:max", "elastic_J", "lowest_point", "droop_ratio:mean"}};
 }
 
 /// A finished study of grids of a sheet 1 m wide, whose only output has these values.
@@ -134,7 +134,7 @@ TEST(GridConvergence, OfFreeFallIsUnchangedAndTheFallItself) {
   scene.duration = 0.25;
   scene.integrator.time_step = 0.001;
   const GridConvergence study =
-      run_grid_convergence(scene, {.cells = {4, 8, 16}, .outputs = {"lowest_point_m", "lowest_point_m:max"}});
+      run_grid_convergence(scene, {.cells = {4, 8, 16}, .outputs = {"lowest_point", "lowest_point:max"}});
   const Richardson found = richardson_of(study, 0), highest = richardson_of(study, 1);
   EXPECT_EQ(found.verdict, GridVerdict::unchanged) << found.words;
   EXPECT_EQ(highest.verdict, GridVerdict::unchanged) << highest.words;
@@ -153,7 +153,7 @@ TEST(GridConvergence, OfAHangingSheetIsThatOfTheClosedForm) {
   scene.damping = 0.05;
   scene.duration = 20;
   const GridConvergence study =
-      run_grid_convergence(scene, {.cells = {8, 16, 32, 64}, .outputs = {"droop_m"}});
+      run_grid_convergence(scene, {.cells = {8, 16, 32, 64}, .outputs = {"sag"}});
   const double longest = scene.cloth.mass * gravity_of(scene).norm() / (2 * 100);
   for (const GridRun& run : study.runs)
     EXPECT_NEAR(run.values[0], 1 + longest * run.cells / (run.cells + 1), 1e-9) << run.cells;
@@ -203,7 +203,7 @@ TEST(GridConvergence, FindsEveryProblemOfItsOptions) {
   EXPECT_EQ(problems[2].path, "--time");
   EXPECT_TRUE(broken_outputs_rule({"elastic_J", "elastic_J"}, {"elastic_J"}));
   EXPECT_FALSE(broken_outputs_rule({"elastic_J", "elastic_J:max"}, {"elastic_J"}));
-  EXPECT_TRUE(broken_outputs_rule({"step_time_us"}, output_quantities(scene))) << "is of the machine";
+  EXPECT_TRUE(broken_outputs_rule({"step_time_us"}, output_sources(scene))) << "is of the machine";
 }
 
 TEST(GridConvergence, WarnsOfWhatIsAnotherThingOnAnotherGrid) {

@@ -12,7 +12,7 @@
 #include "scene/scene_json.h"
 #include "simulation/recorder.h"
 #include "simulation/session.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 #include "study/refined_scene.h"
 #include "support/scenes.h"
 
@@ -237,7 +237,7 @@ TEST(GridConvergence, HasProbesAmongItsOutputsAndKeepsTheirPlaces) {
   scene.cloth.rows = scene.cloth.columns = 9;
   scene.cloth.pins = {NamedPin::top_left};
   scene.probes = {{.name = "middle", .measure = ProbeMeasure::particle, .particles = {{4, 4}}}};
-  const std::vector<std::string> known = output_quantities(scene);
+  const std::vector<std::string> known = output_sources(scene);
   EXPECT_NE(std::find(known.begin(), known.end(), "probe.middle.sag_m"), known.end());
   EXPECT_EQ(unit_of_output("probe.middle.speed_m_s:max"), "m/s");
   EXPECT_EQ(cell_unit(scene), 2);

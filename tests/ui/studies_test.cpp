@@ -157,7 +157,7 @@ class StudiesTest : public QObject {
     StudiesBench bench("corners-free");
     bench.choose(StudyChoices::Kind::convergence);
     auto* line = bench.part<QLineEdit>("outputNames");
-    QCOMPARE(line->placeholderText(), QString("lowest_point_m, elastic_J"));
+    QCOMPARE(line->placeholderText(), QString("lowest_point, elastic_J"));
     auto* button = bench.part<QToolButton>("addOutput");
     bool was_open = false;
     QTimer::singleShot(300, button, [&] {

@@ -8,7 +8,7 @@
 
 #include "study/grid_convergence.h"
 #include "study/grid_convergence_report.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 
@@ -58,7 +58,7 @@ void OutputsChoice::fillMenu() {
   const std::pair<const char*, QString> kinds[] = {
       {"", tr("At the end")}, {":max", tr("Largest")}, {":min", tr("Smallest")}, {":mean", tr("Mean")}};
   const std::vector<std::string> chosen = outputs();
-  for (const std::string& quantity : cloth::output_quantities(scene_)) {
+  for (const std::string& quantity : cloth::output_sources(scene_)) {
     QMenu* of = menu_->addMenu(QString::fromStdString(cloth::words_of_output(quantity)));
     for (const auto& [ending, title] : kinds) {
       const std::string output = quantity + ending;

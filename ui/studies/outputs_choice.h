@@ -21,7 +21,7 @@ class OutputsChoice : public QWidget {
   /// Whose quantities the menu offers, when it is opened.
   void setScene(const cloth::Scene& scene) { scene_ = scene; }
 
-  /// As typed or chosen, see study/grid_output.h; empty: the usual ones.
+  /// As typed or chosen, see study/run_output.h; empty: the usual ones.
   std::vector<std::string> outputs() const;
 
  Q_SIGNALS:

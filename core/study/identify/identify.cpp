@@ -11,9 +11,10 @@
 #include <set>
 #include <thread>
 
+#include "io/fnv_hash.h"
 #include "scene/scene_checks.h"
+#include "scene/scene_json.h"
 #include "simulation/recorder.h"
-#include "study/grid_output.h"
 #include "study/refined_scene.h"
 #include "study/study_axis.h"
 
@@ -42,11 +43,27 @@ std::optional<RunSeries> run_of(const Scene& scene, const std::set<std::string>&
   options.row = [&](const Simulation& simulation, const Measurement& row) {
     series.time.push_back(row.time);
     for (const std::string& column : wanted)
-      series.columns[column].push_back(value_of_quantity(column, simulation, row));
+      series.columns[column].push_back(value_of_output(column, simulation, row));
   };
   options.progress = [&](double) { return !is_to_stop(stop); };
   if (run_scene(scene, options).summary.status != Status::finished) return std::nullopt;
   return series;
+}
+
+double reduced(const RunSeries& series, const ColumnTarget& target) {
+  OutputReducer reducer({.of = target.column, .reduce = target.over});
+  const std::vector<double>& values = series.columns.at(target.column);
+  for (std::size_t k = 0; k < values.size(); ++k) reducer.add(series.time[k], values[k]);
+  return reducer.result();
+}
+
+/// At a time, on the straight line between the rows around it; outside of them the first or the last value.
+double value_at(const std::vector<double>& times, const std::vector<double>& values, double at) {
+  const auto after = std::lower_bound(times.begin(), times.end(), at);
+  if (after == times.begin()) return values.front();
+  if (after == times.end()) return values.back();
+  const auto k = static_cast<std::size_t>(after - times.begin());
+  return values[k - 1] + (at - times[k - 1]) / (times[k] - times[k - 1]) * (values[k] - values[k - 1]);
 }
 
 /// One number for each target of the fit: the targets, then the points of the curves.
@@ -54,11 +71,20 @@ std::vector<double> outputs_of(const IdentifyPlan& plan, const std::vector<doubl
   const auto series = run_of(scene_with(plan, values), wanted_columns(plan), plan.stop);
   std::vector<double> outputs;
   if (!series) return outputs;
-  for (const ColumnTarget& target : plan.targets)
-    outputs.push_back(reduced(series->time, series->columns.at(target.column), target.over).value_or(NAN));
+  for (const ColumnTarget& target : plan.targets) outputs.push_back(reduced(*series, target));
   for (const FittedCurve& curve : plan.curves)
     for (const double time : curve.times)
-      outputs.push_back(value_at(series->time, series->columns.at(curve.column), time).value_or(NAN));
+      outputs.push_back(value_at(series->time, series->columns.at(curve.column), time));
+  return outputs;
+}
+
+/// The same, of the runs that are kept where it was made before.
+std::vector<double> kept_outputs(const IdentifyPlan& plan, const std::vector<double>& values) {
+  if (!plan.runs) return outputs_of(plan, values);
+  if (auto found = plan.runs->find(values)) return *found;
+  std::vector<double> outputs = outputs_of(plan, values);
+  const bool was_cut_short = outputs.empty() && is_to_stop(plan.stop);
+  if (!was_cut_short) plan.runs->add(values, outputs);
   return outputs;
 }
 
@@ -151,6 +177,18 @@ Scene scene_with(const IdentifyPlan& plan, const std::vector<double>& values) {
   return scene;
 }
 
+std::string model_hash(const IdentifyPlan& plan) {
+  FnvHash hash;
+  hash.add(scene_hash(plan.scene));
+  for (const VariedParameter& varied : plan.varied) hash.add(varied.path + "\n");
+  for (const ColumnTarget& target : plan.targets) hash.add(target.name() + "\n");
+  for (const FittedCurve& curve : plan.curves) {
+    hash.add(curve.column + "\n");
+    hash.add(curve.times);
+  }
+  return hash.text();
+}
+
 std::vector<Problem> find_problems(const IdentifyPlan& plan) {
   std::vector<Problem> problems;
   const auto add = [&](const char* place, const std::string& value, const std::string& rule) {
@@ -194,12 +232,13 @@ FitAccount identify(const IdentifyPlan& plan) {
   FitProblem problem = account.problem;
   problem.evaluate = [&](const std::vector<std::vector<double>>& points) {
     std::vector<std::vector<double>> outputs(points.size());
-    in_threads(points.size(), plan.jobs, [&](std::size_t i) { outputs[i] = outputs_of(plan, points[i]); });
+    in_threads(points.size(), plan.jobs, [&](std::size_t i) { outputs[i] = kept_outputs(plan, points[i]); });
     return outputs;
   };
   const auto start = std::chrono::steady_clock::now();
   FitOptions options = account.options;
   options.progress = [&](const FitProgress& progress) {
+    if (plan.runs && plan.runs->error()) return false;
     return !is_to_stop(plan.stop) && (!account.options.progress || account.options.progress(progress));
   };
   account.result = fit(problem, options);

@@ -9,8 +9,8 @@
 #include "params/quantity.h"
 #include "scene/scene_parameters.h"
 #include "simulation/recorder.h"
-#include "study/grid_output.h"
 #include "study/identify/identify.h"
+#include "study/run_output.h"
 #include "study/study_axis.h"
 
 namespace cloth {
@@ -71,8 +71,8 @@ std::pair<std::size_t, std::size_t> sigma_sign(const std::string& text) {
 }
 
 std::string unknown_column(const Scene& scene) {
-  return fmt::format("must be one of {}, alone or with .{}", fmt::join(identify_columns(scene), ", "),
-                     fmt::join(column_reduction_names, ", ."));
+  return fmt::format("must be one of {}, alone or with {}", fmt::join(output_sources(scene), ", "),
+                     fmt::join(output_endings(), ", "));
 }
 
 /// The value and its standard deviation; "" or the rule that is broken.
@@ -92,7 +92,7 @@ std::string read_measured(const std::string& text, ColumnTarget& target) {
 
 /// The columns that have names of the record, with their standard deviations.
 std::vector<FittedCurve> curves_of(TableReader& table, const CsvTable& csv, const Scene& scene) {
-  const std::vector<std::string> known = identify_columns(scene);
+  const std::vector<std::string> known = output_sources(scene);
   const std::vector<double> times = table.column("time_s");
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (times[k] < 0 || times[k] > scene.duration * (1 + 1e-9))
@@ -123,17 +123,6 @@ std::vector<FittedCurve> curves_of(TableReader& table, const CsvTable& csv, cons
 
 }  // namespace
 
-std::vector<std::string> identify_columns(const Scene& scene) {
-  if (!scene.cloth.is_mesh()) return output_quantities(scene);
-  Scene timed = scene;
-  timed.integrator.time_step = scene.record.interval;  // "auto" may find none
-  std::vector<std::string> known = record_columns(Simulation(timed).quantities());
-  std::erase(known, "step_time_us");
-  known.emplace_back("lowest_point_m");
-  if (!scene.cloth.pins.empty()) known.insert(known.end(), {"droop_m", "droop_ratio"});
-  return known;
-}
-
 std::variant<VariedParameter, Problem> parse_vary(const std::string& text, const Scene& scene) {
   const std::vector<std::string> parts = split(text, ':');
   const auto problem = [&](const std::string& rule) {
@@ -162,14 +151,10 @@ std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const 
     return Problem{.path = name, .value = "", .rule = rule, .place = option};
   };
   if (equals == std::string::npos)
-    return problem("must be COLUMN.REDUCTION=VALUE or COLUMN.REDUCTION=VALUE±SIGMA");
-  ColumnTarget target{.column = name};
-  if (const std::size_t dot = name.rfind('.'); dot != std::string::npos)
-    if (const auto reduction = column_reduction_named(name.substr(dot + 1))) {
-      target.column = name.substr(0, dot);
-      target.over = *reduction;
-    }
-  const std::vector<std::string> known = identify_columns(scene);
+    return problem("must be SOURCE=VALUE or SOURCE:max=VALUE (:min, :mean), each also with ±SIGMA");
+  const RunOutput output = parse_output(name);
+  ColumnTarget target{.column = output.of, .over = output.reduce};
+  const std::vector<std::string> known = output_sources(scene);
   if (std::find(known.begin(), known.end(), target.column) == known.end())
     return problem(unknown_column(scene));
   if (const std::string rule = read_measured(text.substr(equals + 1), target); !rule.empty())
@@ -178,7 +163,7 @@ std::variant<ColumnTarget, Problem> parse_target(const std::string& text, const 
 }
 
 std::variant<std::vector<FittedCurve>, std::vector<Problem>> read_curves(const std::string& file,
-                                                                           const Scene& scene) {
+                                                                         const Scene& scene) {
   std::string text;
   if (const auto error = read_text_file(file, text))
     return std::vector{Problem{.path = "", .value = "", .rule = error->message, .place = file}};

@@ -9,7 +9,7 @@
 
 #include "io/table_reader.h"
 #include "io/text_file.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {
@@ -98,8 +98,8 @@ std::vector<Problem> problems_of_block(const Scene& scene) {
     problems.push_back(
         {"cloth.mesh", '"' + scene.cloth.mesh.file + '"', "has no measured points: a grid has"});
   } else {
-    const std::vector<std::string> known = output_quantities(scene);
-    if (std::find(known.begin(), known.end(), parse_output(measured.output).quantity) == known.end())
+    const std::vector<std::string> known = output_sources(scene);
+    if (std::find(known.begin(), known.end(), parse_output(measured.output).of) == known.end())
       problems.push_back({"measured.output", measured.output,
                           fmt::format("must be {}; or one of {}, alone or with :max, :min or :mean",
                                       fmt::join(measured_lines(), ", "), fmt::join(known, ", "))});
@@ -144,7 +144,7 @@ MeasuredReading read_measured(const Scene& scene) {
     read_quantity(table, scene, reading.data);
   check_value(table, reading.data);
   const bool is_history = reading.data.kind == MeasuredKind::history;
-  if (is_history && (measured.state == "rest" || parse_output(measured.output).over != OverTime::at_end))
+  if (is_history && (measured.state == "rest" || parse_output(measured.output).reduce != Reduction::final_value))
     reading.problems.push_back({"measured.output", measured.output,
                                 "of a file with times must be the quantity alone, and the state end"});
   return reading;

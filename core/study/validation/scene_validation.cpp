@@ -10,7 +10,7 @@
 #include "simulation/recorder.h"
 #include "simulation/rest_shape.h"
 #include "simulation/time_step.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 #include "study/refined_scene.h"
 
 namespace cloth {
@@ -130,7 +130,7 @@ class MeasuredReader {
     if (is_line_) return;
     reading_.add(simulation, row);
     run_.times.push_back(row.time);
-    run_.values.push_back(reading_.value());
+    run_.values.push_back(reading_.result());
   }
   void end(const ClothSystem& system, const Vec3Field& position) {
     if (is_line_) run_.line = points_of_line(output_, system, position);
@@ -142,7 +142,7 @@ class MeasuredReader {
   MeasuredRun& run_;
   const std::string output_;
   const bool is_line_;
-  OutputReading reading_;
+  OutputReducer reading_;
 };
 
 void read_rest(const SceneValidation& study, Scene scene, MeasuredRun& run) {

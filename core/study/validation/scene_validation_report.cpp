@@ -9,7 +9,7 @@
 #include "io/csv.h"
 #include "report/html_page.h"
 #include "report/text_table.h"
-#include "study/grid_output.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {

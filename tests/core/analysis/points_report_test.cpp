@@ -196,7 +196,7 @@ TEST(PointsPage, OfOneParameterHasACurveOfEachOutputInItsOrder) {
   EXPECT_EQ(plot.series[0].points[1].y, 30);
   ASSERT_EQ(plot.series[0].failed.size(), 1u);
   EXPECT_EQ(plot.series[0].failed[0].x, 2);
-  EXPECT_NE(points_page(account).find("1 of 3 runs failed."), std::string::npos);
+  EXPECT_NE(points_page(account).find("Runs without a value: 1 of 3."), std::string::npos);
 }
 
 /// A damped swing: frequency and decay from a noisy curve, by its own formula.

@@ -1,5 +1,5 @@
 // Reductions by hand, measures of a shape by hand, and contours.
-#include "sweep/sweep_output.h"
+#include "study/run_output.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include "support/scenes.h"
 #include "sweep/contour.h"
 
-namespace cloth::test::sweep_output_test {
+namespace cloth::test::run_output_test {
 namespace {
 
 /// Of the values 1, 4, 2, 3 at the times 0, 1, 2, 4.
-double reduced(const SweepOutput& output) {
+double reduced(const RunOutput& output) {
   OutputReducer reducer(output);
   const double times[] = {0, 1, 2, 4}, values[] = {1, 4, 2, 3};
   for (int k = 0; k < 4; ++k) reducer.add(times[k], values[k]);
@@ -28,8 +28,31 @@ TEST(Reduction, IsTheOneByHand) {
   EXPECT_EQ(reduced({.reduce = Reduction::first_above, .bound = 0.5}), 0);
   EXPECT_EQ(reduced({.reduce = Reduction::first_below, .from = 1, .bound = 3}), 1.5);
   EXPECT_TRUE(std::isnan(reduced({.reduce = Reduction::first_above, .bound = 5})));
+  EXPECT_EQ(reduced({.reduce = Reduction::stays_below, .bound = 3.5}), 1.25);
+  EXPECT_EQ(reduced({.reduce = Reduction::stays_below, .bound = 5}), 0);
 }
 
+TEST(Reduction, StaysBelowOnlyIfTheValueDoesNotComeBack) {
+  const auto time_to_rest = [](std::vector<double> values) {
+    OutputReducer reducer({.reduce = Reduction::stays_below, .bound = 1});
+    for (std::size_t k = 0; k < values.size(); ++k) reducer.add(static_cast<double>(k), values[k]);
+    return reducer.result();
+  };
+  EXPECT_EQ(time_to_rest({2, 0, 2, 0, 0.5}), 2.5) << "not 0.5, where it first was below";
+  EXPECT_TRUE(std::isnan(time_to_rest({2, 0, 2}))) << "it ends above";
+  EXPECT_TRUE(std::isnan(time_to_rest({2, 1}))) << "the bound itself is not below it";
+}
+
+TEST(ParseOutput, KnowsItsEndingsAndLeavesTheRest) {
+  EXPECT_EQ(parse_output("elastic_J").reduce, Reduction::final_value);
+  for (const auto& [text, reduction] : {std::pair{"probe.tip.x_m:max", Reduction::maximum},
+                                        {"probe.tip.x_m:min", Reduction::minimum},
+                                        {"probe.tip.x_m:mean", Reduction::mean}}) {
+    EXPECT_EQ(parse_output(text).of, "probe.tip.x_m");
+    EXPECT_EQ(parse_output(text).reduce, reduction);
+  }
+  EXPECT_EQ(parse_output("max_strain:median").of, "max_strain:median") << "no ending: an unknown source";
+}
 TEST(Reduction, LooksAtItsWindowAlone) {
   EXPECT_EQ(reduced({.reduce = Reduction::final_value, .from = 0, .to = 2}), 2);
   EXPECT_EQ(reduced({.reduce = Reduction::maximum, .from = 2, .to = 9}), 3);
@@ -39,7 +62,7 @@ TEST(Reduction, LooksAtItsWindowAlone) {
 }
 
 TEST(Reduction, ToAMeasuredCurveIsTheRootMeanSquareAtItsTimes) {
-  SweepOutput output{.reduce = Reduction::rms};
+  RunOutput output{.reduce = Reduction::rms};
   output.measured = {.times = {0, 0.5, 3}, .values = {1, 2.5, 2.5}};
   EXPECT_EQ(reduced(output), 0) << "the curve lies on the lines between rows";
   output.measured.values = {1, 2.5, 5.5};
@@ -49,7 +72,7 @@ TEST(Reduction, ToAMeasuredCurveIsTheRootMeanSquareAtItsTimes) {
 }
 
 TEST(Reduction, DoesNotLoseAValueThatIsNoNumber) {
-  const SweepOutput output{.reduce = Reduction::maximum};
+  const RunOutput output{.reduce = Reduction::maximum};
   OutputReducer reducer(output);
   for (const double value : {1.0, std::nan(""), 0.5}) reducer.add(0, value);
   EXPECT_TRUE(std::isnan(reducer.result()));
@@ -100,4 +123,4 @@ TEST(ContourLines, KeepAwayFromWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace cloth::test::sweep_output_test
+}  // namespace cloth::test::run_output_test

@@ -65,7 +65,7 @@ class PatchConditions {
     const auto points = static_cast<Index>(corner_.size()), more = rows_ - 3;
     const Eigen::Matrix3d plane = basis_.topLeftCorner(3, 3).inverse(), bent = basis_.topRightCorner(3, 3);
     const MatrixXd by_plane = basis_.block(3, 0, more, 3) * plane;
-    PatchSurface surface{.corner = corner_};
+    PatchSurface surface{.corner = corner_, .slope = {}, .curvature = {}};
     surface.curvature =
         least_energy(basis_.block(3, 3, more, 3) - by_plane * bent,
                      data_.block(3, 0, more, points) - by_plane * data_.topLeftCorner(3, points), weight);

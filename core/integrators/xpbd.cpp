@@ -16,9 +16,36 @@ double largest_squared_speed(const Vec3Field& velocity) {
 
 }  // namespace
 
+bool Xpbd::is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const {
+  const ClothSystem& system = forces.system();
+  return iterations_ == 1 && forces.sweep() && forces.sweep()->projects() && parts.stretch_time == 0 &&
+         !parts.normal && system.bending.empty() && system.sliders.empty() && system.membrane.empty();
+}
+
+void Xpbd::predict_alike(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity) {
+  const ClothSystem& system = forces.system();
+  const Vec3Field& force = forces.position_force();
+  const std::size_t count = velocity.size();
+  alike_.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    alike_[i] =
+        system.inverse_mass[i] == 0 ? 0 : 1 / (system.mass[i] + h * parts.isotropic.of(system.mass[i]));
+  if (parts.held_particle >= 0) {
+    double& held = alike_[static_cast<std::size_t>(parts.held_particle)];
+    if (held != 0) held = 1 / (1 / held + h * parts.held_isotropic + h * h * parts.held_stiffness);
+  }
+  const auto predict = [&](double* v, const double* f) {
+    for (std::size_t i = 0; i < count; ++i)
+      v[i] = alike_[i] == 0 ? v[i] : alike_[i] * (system.mass[i] * v[i] + h * f[i]);
+  };
+  predict(velocity.x(), force.x());
+  predict(velocity.y(), force.y());
+  predict(velocity.z(), force.z());
+}
+
 /// Inverted after Sherman and Morrison (1950): n is of length one or zero.
-void Xpbd::predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity) {
-  const NodeDamping parts = forces.damping_parts();
+void Xpbd::predict(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity) {
+  const ClothSystem& system = forces.system();
   const Vec3Field& force = forces.position_force();
   spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
   bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
@@ -104,10 +131,10 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, V
   return largest;
 }
 
-/// The impulse P on kappa is linear in P where the slider does not yield: P = -h A K (kappa' - slip), kappa' =
-/// kappa + h (u + G P) with u = dkappa/dt without P.
-double Xpbd::visit(const BendingSlider& s, std::size_t number, const Vec3Field& start, double h, Vec3& impulse,
-                   Vec3Field& velocity) const {
+/// The impulse P on kappa is linear in P where the slider does not yield: P = -h A K (kappa' - slip), kappa'
+/// = kappa + h (u + G P) with u = dkappa/dt without P.
+double Xpbd::visit(const BendingSlider& s, std::size_t number, const Vec3Field& start, double h,
+                   Vec3& impulse, Vec3Field& velocity) const {
   const Vec3 n = sliders_->normal[number];
   double stretch = -sliders_->slip[number], give = 0;
   for (std::size_t p = 0; p < static_cast<std::size_t>(s.points); ++p) {
@@ -131,8 +158,8 @@ double Xpbd::visit(const BendingSlider& s, std::size_t number, const Vec3Field& 
   return largest;
 }
 
-/// With J = dq/dx, G = J W J^T and the impulses J^T lambda: (I + h (h + t) K G) lambda = -h K a, a what q' + t
-/// dq'/dt would be without them.
+/// With J = dq/dx, G = J W J^T and the impulses J^T lambda: (I + h (h + t) K G) lambda = -h K a, a what q' +
+/// t dq'/dt would be without them.
 double Xpbd::visit(const MembraneTriangle& t, const Vec3Field& start, double h, Vec3* impulse,
                    Vec3Field& velocity) const {
   std::array<Vec3, 3> v, given, d;  // m/s, W P, edges in m
@@ -146,8 +173,8 @@ double Xpbd::visit(const MembraneTriangle& t, const Vec3Field& start, double h, 
     const std::size_t end = (e + 1) % 3;
     d[e] = edge_of(t, e, start) + h * (v[end] - v[e]);
     const double rate = 2 * d[e].dot(v[end] - v[e]), by_impulse = 2 * d[e].dot(given[end] - given[e]);
-    without[static_cast<Eigen::Index>(e)] = d[e].squaredNorm() - t.rest_square[e] - h * by_impulse +
-                                            membrane_time_ * (rate - by_impulse);
+    without[static_cast<Eigen::Index>(e)] =
+        d[e].squaredNorm() - t.rest_square[e] - h * by_impulse + membrane_time_ * (rate - by_impulse);
   }
   for (std::size_t e = 0; e < 3; ++e)
     for (std::size_t f = 0; f < 3; ++f) {
@@ -208,9 +235,21 @@ std::size_t Xpbd::element_count(const ClothSystem& system) {
   return count;
 }
 
+double Xpbd::substep(const ForceModel& forces, double h, const Vec3Field& position, Vec3Field& velocity) {
+  const NodeDamping parts = forces.damping_parts();
+  if (is_visited_by_kernels(forces, parts)) {
+    predict_alike(forces, parts, h, velocity);
+    return forces.sweep()->project(h, parts.along_springs, alike_, position, velocity);
+  }
+  predict(forces, parts, h, velocity);
+  impulse_.assign(element_count(forces.system()), Vec3::Zero());
+  double changed = 0;
+  for (int k = 0; k < iterations_; ++k) changed = pass(forces.system(), position, h, velocity);
+  return changed;
+}
+
 IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   IntegratorReport report;
-  const ClothSystem& system = forces.system();
   report.inner_steps = substeps_;
   const double h = times.step / substeps_;
 
@@ -219,11 +258,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
     forces.update_external(state.position, end);
     ++report.force_evaluations;
     if (constraint_) constraint_->before_kick(h, h, state);
-    predict(system, forces, h, state.velocity);
-
-    impulse_.assign(element_count(system), Vec3::Zero());
-    double changed = 0;
-    for (int k = 0; k < iterations_; ++k) changed = pass(system, state.position, h, state.velocity);
+    const double changed = substep(forces, h, state.position, state.velocity);
     report.iterations += iterations_;
     const double fastest = largest_squared_speed(state.velocity);
     report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;

@@ -23,6 +23,8 @@
 // A bending element (cloth/bending.h) has the impulse P on s = sum c x, linear in s: P = -h k (s' + t sum c
 // v'). A triangle of constant strain (cloth/membrane.h) has three impulses along its edges, solved for
 // together: lambda = -h K (q' + t dq'/dt), with q' to first order in the change of a visit.
+// On a grid of springs alone, with one iteration, a visit begins without an impulse, and the springs are
+// visited by the kernels, many at a time and in their order (kernels/grid_projection.h).
 // A slider of hysteresis (cloth/bending_sliders.h) has an impulse along its normal, bounded by its yield.
 #pragma once
 
@@ -52,7 +54,14 @@ class Xpbd : public Integrator {
     Vec3 times(const Vec3& v) const { return isotropic * v - along_normal * normal.dot(v) * normal; }
   };
 
-  void predict(const ClothSystem& system, const ForceModel& forces, double h, Vec3Field& velocity);
+  /// One substep from `position` to the velocity at its end; returns the largest squared change of a
+  /// particle's velocity by a visit of the last pass.
+  double substep(const ForceModel& forces, double h, const Vec3Field& position, Vec3Field& velocity);
+  /// Whether the kernels can visit all there is.
+  bool is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const;
+  /// The mobility of every particle, and the prediction with it; where it is the same in all directions.
+  void predict_alike(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity);
+  void predict(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity);
   /// Over all springs and bending elements, once; returns the largest squared change of a particle's velocity
   /// by a visit.
   double pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
@@ -69,11 +78,12 @@ class Xpbd : public Integrator {
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
+  std::vector<double> alike_;  ///< 1/kg
   std::vector<Mobility> mobility_;
   std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run, then of every bending element, then
                                ///< of every slider (its first number), then of every triangle's corners
   const SliderState* sliders_ = nullptr;
-  double spring_damping_ = 0;  ///< N s/m
+  double spring_damping_ = 0;                                       ///< N s/m
   double stretch_time_ = 0, bending_time_ = 0, membrane_time_ = 0;  ///< s
 };
 

@@ -101,6 +101,19 @@ enum StageSum {
   stage_sums = 13,
 };
 
+/// One visit of every spring by XPBD, see grid_projection.h: moves the velocities alone.
+struct Projection {
+  Grid grid;
+  RowBlock position;                        ///< m, at the start of the step; all rows
+  RowBlock velocity;                        ///< m/s, in place
+  const double* mobility = nullptr;         ///< 1/kg; 0 where pinned
+  const unsigned char* is_alike = nullptr;  ///< of each row: whether every particle has `common_mobility`
+  double common_mobility = 0;               ///< 1/kg
+  double spring_damping = 0;                ///< N s/m, of every spring
+  double step = 0;                          ///< s
+  double largest_change = 0;                ///< output: squared, of a particle's velocity by a visit, (m/s)^2
+};
+
 /// The passes of one instruction set.
 struct GridKernels {
   /// v' = v + h a(x, v), x' = x + h v'; or x' = x + h v.
@@ -122,6 +135,8 @@ struct GridKernels {
   void (*damp)(const Pass& pass);
   /// The sums of |v|^2, added in the same order as in a step, into `squares_after`.
   void (*sum_squares)(const Pass& pass);
+  /// Every spring of finite stiffness once, one direction after the other.
+  void (*project)(Projection& projection);
   /// For tests. From squared lengths: result[i] = k - k L / sqrt(s[i]), and k where s[i] is 0; by a refined
   /// estimate [0] and by division [1].
   void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);

@@ -2,6 +2,7 @@
 // Lanes.
 #pragma once
 
+#include "kernels/grid_projection.h"
 #include "kernels/grid_row_chain.h"
 
 namespace cloth::kernels {
@@ -285,6 +286,7 @@ constexpr GridKernels grid_kernels{euler_band,
                                    evaluate_band,
                                    damp_band,
                                    sum_squares_band,
+                                   project_springs,
                                    {spring_scales<false>, spring_scales<true>},
                                    {inverse_roots<false>, inverse_roots<true>}};
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdlib>
 
 #include "cloth/grid.h"
@@ -289,6 +290,35 @@ double GridSweep::squares(const Vec3Field& velocity) {
                   .fields = {{{&Pass::velocity, const_cast<Vec3Field*>(&velocity), 0}}}};  // only read
   run_once(PassKind::sums, plan);
   return sum_of(plan, 0, kernels::squares_after);
+}
+
+bool GridSweep::projects() const {
+  return !has_shares() && std::all_of(std::begin(grid_.kind), std::end(grid_.kind),
+                                      [](const auto& kind) { return std::isfinite(kind.rest_tension); });
+}
+
+double GridSweep::project(double step, double spring_damping, const std::vector<double>& mobility,
+                          const Vec3Field& position, Vec3Field& velocity) {
+  const auto rows = static_cast<std::size_t>(grid_.rows), columns = static_cast<std::size_t>(grid_.columns);
+  const double common = *std::max_element(mobility.begin(), mobility.end());
+  is_alike_.resize(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double* of_row = mobility.data() + row * columns;
+    is_alike_[row] = std::all_of(of_row, of_row + columns, [=](double one) { return one == common; });
+  }
+  kernels::Projection projection{
+      .grid = grid_,
+      // The kernels have one type of block, for what they read and what they write.
+      .position = {const_cast<double*>(position.x()), const_cast<double*>(position.y()),
+                   const_cast<double*>(position.z())},
+      .velocity = {velocity.x(), velocity.y(), velocity.z()},
+      .mobility = mobility.data(),
+      .is_alike = is_alike_.data(),
+      .common_mobility = common,
+      .spring_damping = spring_damping,
+      .step = step};
+  kernels_->project(projection);
+  return projection.largest_change;
 }
 
 }  // namespace cloth

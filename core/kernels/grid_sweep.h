@@ -39,6 +39,9 @@ class GridSweep : public SpringSweep {
   double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
               Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
+  bool projects() const override;
+  double project(double step, double spring_damping, const std::vector<double>& mobility,
+                 const Vec3Field& position, Vec3Field& velocity) override;
 
  private:
   using Kernel = void (*)(const kernels::Pass&);
@@ -90,7 +93,8 @@ class GridSweep : public SpringSweep {
   CellLayout layout_;  ///< empty: all particles and springs are alike
   const kernels::GridKernels* kernels_;
   std::deque<Band> bands_;
-  std::vector<double> sums_;  ///< of every pass of a job, see kernels::Pass
+  std::vector<double> sums_;             ///< of every pass of a job, see kernels::Pass
+  std::vector<unsigned char> is_alike_;  ///< of each row, see kernels::Projection
 };
 
 }  // namespace cloth

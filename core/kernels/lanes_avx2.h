@@ -35,6 +35,16 @@ struct Lanes {
   static V mul(V a, V b) { return _mm256_mul_pd(a, b); }
   static V fma(V a, V b, V c) { return _mm256_fmadd_pd(a, b, c); }
   static V fnma(V a, V b, V c) { return _mm256_fnmadd_pd(a, b, c); }
+  static V div(V a, V b) { return _mm256_div_pd(a, b); }
+  static V max(V a, V b) { return _mm256_max_pd(a, b); }
+  static void pairs_one(V a, V b, V& first, V& second) {
+    first = _mm256_unpacklo_pd(a, b), second = _mm256_unpackhi_pd(a, b);
+  }
+  static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
+  static void pairs_two(V a, V b, V& first, V& second) {
+    first = _mm256_permute2f128_pd(a, b, 0x20), second = _mm256_permute2f128_pd(a, b, 0x31);
+  }
+  static void unpair_two(V first, V second, V& a, V& b) { pairs_two(first, second, a, b); }
   static V shift_two(V before, V now) { return _mm256_permute2f128_pd(before, now, 0x21); }
   static V shift_one(V before, V now) { return _mm256_shuffle_pd(shift_two(before, now), now, 0b0101); }
   static double sum(V a) {

@@ -32,6 +32,19 @@ struct Lanes {
   static V mul(V a, V b) { return _mm512_mul_pd(a, b); }
   static V fma(V a, V b, V c) { return _mm512_fmadd_pd(a, b, c); }
   static V fnma(V a, V b, V c) { return _mm512_fnmadd_pd(a, b, c); }
+  static V div(V a, V b) { return _mm512_div_pd(a, b); }
+  static V max(V a, V b) { return _mm512_max_pd(a, b); }
+  static void pairs_one(V a, V b, V& first, V& second) {
+    first = _mm512_unpacklo_pd(a, b), second = _mm512_unpackhi_pd(a, b);
+  }
+  static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
+  static void pairs_two(V a, V b, V& first, V& second) {
+    first = _mm512_shuffle_f64x2(a, b, 0x88), second = _mm512_shuffle_f64x2(a, b, 0xdd);
+  }
+  static void unpair_two(V first, V second, V& a, V& b) {
+    a = _mm512_permutex2var_pd(first, _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), second);
+    b = _mm512_permutex2var_pd(first, _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15), second);
+  }
   template <int lanes>
   static V shift(V before, V now) {
     return _mm512_castsi512_pd(

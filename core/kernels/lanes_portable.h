@@ -6,6 +6,11 @@
 // last one of `before`. spring_scale(s, k): k - k L / sqrt(s), and k where s is 0. inverse_root(s): 1 /
 // sqrt(s), and 0 where s is 0. scale_at(inverse_root(s), k): as spring_scale.
 //
+// pairs_one(a, b, first, second): of the columns c, c + 1, ... in a and then b the first and the second ends
+// of springs from c, c + 2, ... to the column beside; the order of lanes is the same in both, and
+// unpair_one() brings them back. pairs_two: of springs from c, c + 1, c + 4, c + 5, ... to the column after
+// the next.
+//
 // Only for general meshes:
 // where_positive(k, a): a, and 0 where k is not positive.
 // exact_scale(s, k, kL): as spring_scale, with another spring in each lane. scale(s, k, kL): the same but
@@ -44,6 +49,12 @@ struct Lanes {
   /// a b + c, and c - a b. Here with two roundings.
   static V fma(V a, V b, V c) { return a * b + c; }
   static V fnma(V a, V b, V c) { return c - a * b; }
+  static V div(V a, V b) { return a / b; }
+  static V max(V a, V b) { return V{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]}; }
+  static void pairs_one(V a, V b, V& first, V& second) { first = V{a[0], b[0]}, second = V{a[1], b[1]}; }
+  static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
+  static void pairs_two(V a, V b, V& first, V& second) { first = a, second = b; }
+  static void unpair_two(V first, V second, V& a, V& b) { a = first, b = second; }
   static V shift_one(V before, V now) { return V{before[1], now[0]}; }
   static V shift_two(V before, V) { return before; }
   static double sum(V a) { return a[0] + a[1]; }

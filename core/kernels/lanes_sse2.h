@@ -34,6 +34,14 @@ struct Lanes {
   static V mul(V a, V b) { return _mm_mul_pd(a, b); }
   static V fma(V a, V b, V c) { return _mm_add_pd(_mm_mul_pd(a, b), c); }
   static V fnma(V a, V b, V c) { return _mm_sub_pd(c, _mm_mul_pd(a, b)); }
+  static V div(V a, V b) { return _mm_div_pd(a, b); }
+  static V max(V a, V b) { return _mm_max_pd(a, b); }
+  static void pairs_one(V a, V b, V& first, V& second) {
+    first = _mm_unpacklo_pd(a, b), second = _mm_unpackhi_pd(a, b);
+  }
+  static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
+  static void pairs_two(V a, V b, V& first, V& second) { first = a, second = b; }
+  static void unpair_two(V first, V second, V& a, V& b) { a = first, b = second; }
   static V shift_one(V before, V now) { return _mm_shuffle_pd(before, now, 0b01); }
   static V shift_two(V before, V) { return before; }
   static double sum(V a) { return _mm_cvtsd_f64(a) + _mm_cvtsd_f64(_mm_unpackhi_pd(a, a)); }

@@ -1,6 +1,7 @@
 #include "kernels/spring_sweep.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace cloth {
 
@@ -56,6 +57,11 @@ void SpringSweep::end_job(PassKind kind, const Begun& begun) {
       choice.wants_time() ? std::chrono::duration<double>(std::chrono::steady_clock::now() - begun.at).count()
                           : 0;
   choice.took(seconds, static_cast<int>(begun.passes));
+}
+
+double SpringSweep::project(double, double, const std::vector<double>&, const Vec3Field&, Vec3Field&) {
+  assert(false && "only where projects()");
+  return 0;
 }
 
 }  // namespace cloth

@@ -101,6 +101,13 @@ class SpringSweep {
   /// dissipate.
   virtual double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
+  /// Whether project() is supported: springs of finite stiffness, and of one for each direction.
+  virtual bool projects() const { return false; }
+  /// XPBD's first visit of every spring in a step from `position` (kernels/grid_projection.h), in an order of
+  /// its own: changes `velocity`. `mobility`: 1/kg, of each particle, 0 where pinned. `spring_damping`: N
+  /// s/m. Returns the largest squared change of a particle's velocity by a visit. Precondition: projects().
+  virtual double project(double step, double spring_damping, const std::vector<double>& mobility,
+                         const Vec3Field& position, Vec3Field& velocity);
   /// The sum of |v|^2, in the order in which the steps add it up.
   virtual double squares(const Vec3Field& velocity) = 0;
 

@@ -9,7 +9,7 @@ namespace cloth {
 namespace {
 
 constexpr int cells_of_seeds = 64;
-constexpr std::uint64_t first_seed = 1, seeds = 5;
+constexpr std::uint64_t first_seed = 1, seed_count = 5;
 
 /// What was published, and where.
 struct PublishedDrape {
@@ -95,7 +95,7 @@ bool measure_other_seeds(ValidationRow& row, const StopTest& stop) {
   for (const ValidationValue& grid : row.grids)
     if (grid.cells == row.seed_cells && grid.drape)
       row.seeds.push_back({first_seed, grid.value, *grid.drape});
-  for (std::uint64_t seed = first_seed + 1; seed < first_seed + seeds; ++seed) {
+  for (std::uint64_t seed = first_seed + 1; seed < first_seed + seed_count; ++seed) {
     if (is_to_stop(stop)) return false;
     const DrapeReading reading =
         measure_drape_of(fabric_of(row).material(), row.seed_cells, seed);

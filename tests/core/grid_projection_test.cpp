@@ -16,12 +16,12 @@
 namespace cloth::test::grid_projection_test {
 namespace {
 
-class EveryInstructionSet : public ::testing::TestWithParam<InstructionSet> {
+class ProjectionOfEverySet : public ::testing::TestWithParam<InstructionSet> {
  protected:
   void SetUp() override { set_instruction_set(GetParam()); }
   void TearDown() override { set_instruction_set(std::nullopt); }
 };
-INSTANTIATE_TEST_SUITE_P(Projection, EveryInstructionSet, ::testing::ValuesIn(supported_instruction_sets()),
+INSTANTIATE_TEST_SUITE_P(Kernels, ProjectionOfEverySet, ::testing::ValuesIn(supported_instruction_sets()),
                          [](const auto& set) { return std::string(name_of(set.param)); });
 
 constexpr std::pair<int, int> sizes[] = {{2, 2},   {2, 3},   {3, 2},  {3, 17},  {7, 9},  {33, 33}, {40, 7},
@@ -138,7 +138,7 @@ std::vector<double> mobilities(std::size_t count, double of_each) {
   return std::vector<double>(count, of_each);
 }
 
-TEST_P(EveryInstructionSet, VisitsTheSpringsInThePromisedOrder) {
+TEST_P(ProjectionOfEverySet, VisitsTheSpringsInThePromisedOrder) {
   Random random;
   for (const auto& [rows, columns] : sizes)
     for (const double damping : {0.0, 0.05}) {
@@ -147,13 +147,13 @@ TEST_P(EveryInstructionSet, VisitsTheSpringsInThePromisedOrder) {
     }
 }
 
-TEST_P(EveryInstructionSet, LeavesOutDirectionsThatHaveNoSprings) {
+TEST_P(ProjectionOfEverySet, LeavesOutDirectionsThatHaveNoSprings) {
   Random random;
   for (int families = 1; families < 7; ++families)
     compare(sheet(9, 13, families, 0), mobilities(9 * 13, 80), random);
 }
 
-TEST_P(EveryInstructionSet, TakesAnyMobilitiesWithPinsAmongThem) {
+TEST_P(ProjectionOfEverySet, TakesAnyMobilitiesWithPinsAmongThem) {
   Random random;
   for (const auto& [rows, columns] : {std::pair{12, 10}, {7, 33}, {2, 3}})
     for (const double damping : {0.0, 0.05}) {
@@ -166,7 +166,7 @@ TEST_P(EveryInstructionSet, TakesAnyMobilitiesWithPinsAmongThem) {
     }
 }
 
-TEST_P(EveryInstructionSet, LeavesSpringsWithoutLengthAlone) {
+TEST_P(ProjectionOfEverySet, LeavesSpringsWithoutLengthAlone) {
   const Scene scene = sheet(4, 9, 1, 0);
   const ClothSystem system = make_grid(scene.cloth, *scene.springs);
   GridSweep sweep(system, *grid_springs(system), common_mass(system));

@@ -22,25 +22,33 @@ bool Xpbd::is_visited_by_kernels(const ForceModel& forces, const NodeDamping& pa
          !parts.normal && system.bending.empty() && system.sliders.empty() && system.membrane.empty();
 }
 
-void Xpbd::predict_alike(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity) {
+void Xpbd::begin_kernel_visits(const ForceModel& forces, const NodeDamping& parts, double h) {
   const ClothSystem& system = forces.system();
-  const Vec3Field& force = forces.position_force();
-  const std::size_t count = velocity.size();
-  alike_.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    alike_[i] =
-        system.inverse_mass[i] == 0 ? 0 : 1 / (system.mass[i] + h * parts.isotropic.of(system.mass[i]));
-  if (parts.held_particle >= 0) {
-    double& held = alike_[static_cast<std::size_t>(parts.held_particle)];
-    if (held != 0) held = 1 / (1 / held + h * parts.held_isotropic + h * h * parts.held_stiffness);
+  const std::size_t count = system.mass.size();
+  mass_.resize(count), alike_.resize(count), kept_.resize(count), pushed_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) mass_[i] = system.mass[i] + h * parts.isotropic.of(system.mass[i]);
+  if (parts.held_particle >= 0)
+    mass_[static_cast<std::size_t>(parts.held_particle)] +=
+        h * parts.held_isotropic + h * h * parts.held_stiffness;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_pinned = system.inverse_mass[i] == 0;
+    alike_[i] = is_pinned ? 0 : 1 / mass_[i];
+    kept_[i] = is_pinned ? 1 : system.mass[i] / mass_[i];
+    pushed_[i] = is_pinned ? 0 : h / mass_[i];
   }
+  forces.sweep()->begin_projections(alike_);
+}
+
+double Xpbd::visit_by_kernels(const ForceModel& forces, const NodeDamping& parts, double h,
+                              const Vec3Field& position, Vec3Field& velocity) const {
+  const Vec3Field& force = forces.position_force();
   const auto predict = [&](double* v, const double* f) {
-    for (std::size_t i = 0; i < count; ++i)
-      v[i] = alike_[i] == 0 ? v[i] : alike_[i] * (system.mass[i] * v[i] + h * f[i]);
+    for (std::size_t i = 0; i < kept_.size(); ++i) v[i] = kept_[i] * v[i] + pushed_[i] * f[i];
   };
   predict(velocity.x(), force.x());
   predict(velocity.y(), force.y());
   predict(velocity.z(), force.z());
+  return forces.sweep()->project(h, parts.along_springs, position, velocity);
 }
 
 /// Inverted after Sherman and Morrison (1950): n is of length one or zero.
@@ -235,12 +243,8 @@ std::size_t Xpbd::element_count(const ClothSystem& system) {
   return count;
 }
 
-double Xpbd::substep(const ForceModel& forces, double h, const Vec3Field& position, Vec3Field& velocity) {
-  const NodeDamping parts = forces.damping_parts();
-  if (is_visited_by_kernels(forces, parts)) {
-    predict_alike(forces, parts, h, velocity);
-    return forces.sweep()->project(h, parts.along_springs, alike_, position, velocity);
-  }
+double Xpbd::substep(const ForceModel& forces, const NodeDamping& parts, double h, const Vec3Field& position,
+                     Vec3Field& velocity) {
   predict(forces, parts, h, velocity);
   impulse_.assign(element_count(forces.system()), Vec3::Zero());
   double changed = 0;
@@ -252,16 +256,23 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
   IntegratorReport report;
   report.inner_steps = substeps_;
   const double h = times.step / substeps_;
+  const NodeDamping parts = forces.damping_parts();
+  const bool by_kernels = is_visited_by_kernels(forces, parts);
+  if (by_kernels) begin_kernel_visits(forces, parts, h);
 
   for (int n = 0; n < substeps_; ++n) {
     const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
     forces.update_external(state.position, end);
     ++report.force_evaluations;
     if (constraint_) constraint_->before_kick(h, h, state);
-    const double changed = substep(forces, h, state.position, state.velocity);
+    const double changed = by_kernels
+                               ? visit_by_kernels(forces, parts, h, state.position, state.velocity)
+                               : substep(forces, forces.damping_parts(), h, state.position, state.velocity);
     report.iterations += iterations_;
-    const double fastest = largest_squared_speed(state.velocity);
-    report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;
+    if (n + 1 == substeps_) {
+      const double fastest = largest_squared_speed(state.velocity);
+      report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;
+    }
 
     add_scaled(h, state.velocity, state.position);
     if (constraint_) constraint_->after_drift(0, state);

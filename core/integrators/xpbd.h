@@ -56,11 +56,13 @@ class Xpbd : public Integrator {
 
   /// One substep from `position` to the velocity at its end; returns the largest squared change of a
   /// particle's velocity by a visit of the last pass.
-  double substep(const ForceModel& forces, double h, const Vec3Field& position, Vec3Field& velocity);
-  /// Whether the kernels can visit all there is.
+  double substep(const ForceModel& forces, const NodeDamping& parts, double h, const Vec3Field& position,
+                 Vec3Field& velocity);
+  /// Whether the kernels can visit all there is; what they need for substeps of h; and a substep by them.
   bool is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const;
-  /// The mobility of every particle, and the prediction with it; where it is the same in all directions.
-  void predict_alike(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity);
+  void begin_kernel_visits(const ForceModel& forces, const NodeDamping& parts, double h);
+  double visit_by_kernels(const ForceModel& forces, const NodeDamping& parts, double h,
+                          const Vec3Field& position, Vec3Field& velocity) const;
   void predict(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity);
   /// Over all springs and bending elements, once; returns the largest squared change of a particle's velocity
   /// by a visit.
@@ -78,7 +80,8 @@ class Xpbd : public Integrator {
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
-  std::vector<double> alike_;  ///< 1/kg
+  // Of kernel visits: W^-1 (kg), W (1/kg, 0 where pinned), and v* = kept v + pushed p.
+  std::vector<double> mass_, alike_, kept_, pushed_;
   std::vector<Mobility> mobility_;
   std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run, then of every bending element, then
                                ///< of every slider (its first number), then of every triangle's corners

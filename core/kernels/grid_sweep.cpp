@@ -297,24 +297,29 @@ bool GridSweep::projects() const {
                                       [](const auto& kind) { return std::isfinite(kind.rest_tension); });
 }
 
-double GridSweep::project(double step, double spring_damping, const std::vector<double>& mobility,
-                          const Vec3Field& position, Vec3Field& velocity) {
+void GridSweep::begin_projections(const std::vector<double>& mobility) {
   const auto rows = static_cast<std::size_t>(grid_.rows), columns = static_cast<std::size_t>(grid_.columns);
-  const double common = *std::max_element(mobility.begin(), mobility.end());
+  mobility_ = mobility.data();
+  common_mobility_ = *std::max_element(mobility.begin(), mobility.end());
   is_alike_.resize(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    const double* of_row = mobility.data() + row * columns;
-    is_alike_[row] = std::all_of(of_row, of_row + columns, [=](double one) { return one == common; });
+    const double* of_row = mobility_ + row * columns;
+    is_alike_[row] =
+        std::all_of(of_row, of_row + columns, [&](double one) { return one == common_mobility_; });
   }
+}
+
+double GridSweep::project(double step, double spring_damping, const Vec3Field& position,
+                          Vec3Field& velocity) {
   kernels::Projection projection{
       .grid = grid_,
       // The kernels have one type of block, for what they read and what they write.
       .position = {const_cast<double*>(position.x()), const_cast<double*>(position.y()),
                    const_cast<double*>(position.z())},
       .velocity = {velocity.x(), velocity.y(), velocity.z()},
-      .mobility = mobility.data(),
+      .mobility = mobility_,
       .is_alike = is_alike_.data(),
-      .common_mobility = common,
+      .common_mobility = common_mobility_,
       .spring_damping = spring_damping,
       .step = step};
   kernels_->project(projection);

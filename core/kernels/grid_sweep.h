@@ -40,8 +40,8 @@ class GridSweep : public SpringSweep {
               Vec3Field& product) override;
   double squares(const Vec3Field& velocity) override;
   bool projects() const override;
-  double project(double step, double spring_damping, const std::vector<double>& mobility,
-                 const Vec3Field& position, Vec3Field& velocity) override;
+  void begin_projections(const std::vector<double>& mobility) override;
+  double project(double step, double spring_damping, const Vec3Field& position, Vec3Field& velocity) override;
 
  private:
   using Kernel = void (*)(const kernels::Pass&);
@@ -93,8 +93,11 @@ class GridSweep : public SpringSweep {
   CellLayout layout_;  ///< empty: all particles and springs are alike
   const kernels::GridKernels* kernels_;
   std::deque<Band> bands_;
-  std::vector<double> sums_;             ///< of every pass of a job, see kernels::Pass
-  std::vector<unsigned char> is_alike_;  ///< of each row, see kernels::Projection
+  std::vector<double> sums_;  ///< of every pass of a job, see kernels::Pass
+  // Of begin_projections, see kernels::Projection.
+  const double* mobility_ = nullptr;
+  double common_mobility_ = 0;  ///< the largest
+  std::vector<unsigned char> is_alike_;
 };
 
 }  // namespace cloth

@@ -59,7 +59,11 @@ void SpringSweep::end_job(PassKind kind, const Begun& begun) {
   choice.took(seconds, static_cast<int>(begun.passes));
 }
 
-double SpringSweep::project(double, double, const std::vector<double>&, const Vec3Field&, Vec3Field&) {
+void SpringSweep::begin_projections(const std::vector<double>&) {
+  assert(false && "only where projects()");
+}
+
+double SpringSweep::project(double, double, const Vec3Field&, Vec3Field&) {
   assert(false && "only where projects()");
   return 0;
 }

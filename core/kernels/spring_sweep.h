@@ -103,11 +103,13 @@ class SpringSweep {
                       Vec3Field& product) = 0;
   /// Whether project() is supported: springs of finite stiffness, and of one for each direction.
   virtual bool projects() const { return false; }
+  /// Takes the mobilities (1/kg, of each particle, 0 where pinned) for the calls of project() that follow;
+  /// they must stay where they are. Precondition: projects().
+  virtual void begin_projections(const std::vector<double>& mobility);
   /// XPBD's first visit of every spring in a step from `position` (kernels/grid_projection.h), in an order of
-  /// its own: changes `velocity`. `mobility`: 1/kg, of each particle, 0 where pinned. `spring_damping`: N
-  /// s/m. Returns the largest squared change of a particle's velocity by a visit. Precondition: projects().
-  virtual double project(double step, double spring_damping, const std::vector<double>& mobility,
-                         const Vec3Field& position, Vec3Field& velocity);
+  /// its own: changes `velocity`. `spring_damping`: N s/m. Returns the largest squared change of a particle's
+  /// velocity by a visit.
+  virtual double project(double step, double spring_damping, const Vec3Field& position, Vec3Field& velocity);
   /// The sum of |v|^2, in the order in which the steps add it up.
   virtual double squares(const Vec3Field& velocity) = 0;
 

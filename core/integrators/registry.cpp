@@ -56,6 +56,11 @@ double verlet_limit(double omega, double) {
   return omega > 0 ? 2 / omega : infinity;
 }
 
+Stepper made_predicting_verlet(bool fused) {
+  if (fused) return std::make_unique<FusedPredictedVerlet>();
+  return std::make_unique<Verlet>(EndVelocity::predicted);
+}
+
 /// One entry holds all that is known of a method.
 std::vector<Entry> explicit_methods() {
   return {
@@ -94,10 +99,7 @@ std::vector<Entry> explicit_methods() {
        made<Verlet>,
        FusedVerlet::suits,
        []() -> Stepper { return std::make_unique<FusedVerlet>(); },
-       [](bool fused) -> Stepper {
-         if (fused) return std::make_unique<FusedPredictedVerlet>();
-         return std::make_unique<Verlet>(EndVelocity::predicted);
-       }},
+       made_predicting_verlet},
       {{.name = "rk4",
         .title = "Runge-Kutta 4",
         .order = 4,

@@ -278,6 +278,7 @@ ObstacleTransitions Simulation::find_transitions(const Scene& edited) const {
 }
 
 void Simulation::edit(const Scene& scene) {
+  if (scene == scene_) return;
   if (differ_in_probes_alone(scene, scene_)) {
     scene_.probes = scene.probes;
     return find_probes();

@@ -203,7 +203,9 @@ bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const
     const Vec3 speed = state.velocity[i];
     const double approach = approach_of(particle, surface.normal, begin);
     const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, normal_load / mass);
-    Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
+    Vec3 answer = stopped;
+    if (approach > 0)
+      answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
     const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
     const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, normal_load);
     const double square = 0.5 * mass * (answer - stopped).squaredNorm();

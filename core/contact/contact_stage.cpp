@@ -13,10 +13,11 @@ class ParticleContact : public ContactStage {
       : contact_(scene.obstacles, gravity_of(scene).norm()), long_steps_(long_steps) {}
 
   ContactReport resolve(const ContactStep& step, ClothState& state) override {
-    if (!contact_.touches(step.system, state)) return {};
     ContactBegin begin{step.position_before, step.velocity_before, step.times.step, step.memory};
+    if (!long_steps_) return contact_.apply(step.system, begin, state);
+    if (!contact_.touches(step.system, state)) return {};
     ConstrainedStep constrained;
-    if (long_steps_ && !contact_.is_inside(step.system, step.position_before)) {
+    if (!contact_.is_inside(step.system, step.position_before)) {
       constrained.weight = step.stage_weight * step.times.step;
       constrained.position = state.position;
       constrained.held =

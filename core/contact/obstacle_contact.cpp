@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/contact_work.h"
 
@@ -22,9 +23,54 @@ double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds,
   return work_of(contact, speeds);
 }
 
+/// A signed measure of how far each particle is from the obstacle, at most 0 for every particle inside and
+/// for some within rounding of its surface; the least of it and what `nearest` holds. Plain loops over all
+/// particles: penetration() need only be asked for those.
+void add_nearest(const Obstacle& obstacle, const Vec3Field& position, std::vector<double>& nearest) {
+  const double *x = position.x(), *y = position.y(), *z = position.z();
+  double* to = nearest.data();
+  const Vec3 c = obstacle.center;
+  switch (shape_of(obstacle).body) {
+    case BodyKind::half_space: {
+      const Vec3 n = obstacle.normal.normalized(), p = obstacle.point;
+      for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const double height = n.x() * (x[i] - p.x()) + n.y() * (y[i] - p.y()) + n.z() * (z[i] - p.z());
+        to[i] = std::min(to[i], height - above_rounding);
+      }
+      break;
+    }
+    case BodyKind::ball: {
+      const double reach = obstacle.radius + above_rounding, square = reach * reach;
+      for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const double dx = x[i] - c.x(), dy = y[i] - c.y(), dz = z[i] - c.z();
+        to[i] = std::min(to[i], dx * dx + dy * dy + dz * dz - square);
+      }
+      break;
+    }
+    case BodyKind::box: {
+      const Vec3 half = (0.5 * obstacle.size).array() + above_rounding;
+      for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const double dx = std::abs(x[i] - c.x()) - half.x(), dy = std::abs(y[i] - c.y()) - half.y(),
+                     dz = std::abs(z[i] - c.z()) - half.z();
+        to[i] = std::min(to[i], std::max(dx, std::max(dy, dz)));
+      }
+      break;
+    }
+    case BodyKind::surface:
+      break;  // has no inside
+  }
+}
+
+std::vector<double> nearest_of(const std::vector<Obstacle>& obstacles, const Vec3Field& position) {
+  std::vector<double> nearest(position.size(), infinity);
+  for (const Obstacle& obstacle : obstacles) add_nearest(obstacle, position, nearest);
+  return nearest;
+}
+
 bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3Field& position) {
+  const std::vector<double> nearest = nearest_of({obstacle}, position);
   for (std::size_t i = 0; i < position.size(); ++i)
-    if (!system.pinned[i] && penetration(obstacle, position[i])) return true;
+    if (nearest[i] <= 0 && !system.pinned[i] && penetration(obstacle, position[i])) return true;
   return false;
 }
 
@@ -99,8 +145,14 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
   begin.memory.resize(state.position.size());
   std::span<const HeldParticle> held;
   if (begin.constrained) held = begin.constrained->held;
+  const std::vector<double> nearest =
+      begin.constrained ? std::vector<double>() : nearest_of(obstacles_, state.position);
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (system.pinned[i]) continue;
+    if (!begin.constrained && !(nearest[i] <= 0)) {
+      begin.memory.held[i] = 0;
+      continue;
+    }
     Particle particle{i, state.position[i], state.velocity[i], {}, begin.velocity[i]};
     while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
       particle.held = held.first(particle.held.size() + 1);
@@ -151,7 +203,9 @@ bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const
     const Vec3 speed = state.velocity[i];
     const double approach = approach_of(particle, surface.normal, begin);
     const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, normal_load / mass);
-    Vec3 answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
+    Vec3 answer = stopped;
+    if (approach > 0)
+      answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
     const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
     const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, normal_load);
     const double square = 0.5 * mass * (answer - stopped).squaredNorm();
@@ -178,8 +232,15 @@ bool ObstacleContact::is_inside(const ClothSystem& system, const Vec3Field& posi
 }
 
 bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state) const {
-  return std::any_of(obstacles_.begin(), obstacles_.end(),
-                     [&](const Obstacle& obstacle) { return any_inside(obstacle, system, state.position); });
+  const std::vector<double> nearest = nearest_of(obstacles_, state.position);
+  const auto is_touched = [&](std::size_t i) {
+    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
+      return penetration(obstacle, state.position[i]).has_value();
+    });
+  };
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    if (nearest[i] <= 0 && !system.pinned[i] && is_touched(i)) return true;
+  return false;
 }
 
 void ObstacleContact::append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const {

@@ -79,6 +79,27 @@ class FusedVerlet : public Verlet {
   void evaluate(ForceModel& forces, const ClothState& state) override;
 };
 
+/// Verlet with every force at the predicted velocity (EndVelocity::predicted), dampers along springs and air
+/// in the pass. With a constraint the pass is divided where that acts; a step in which it moves particles is
+/// one of the general method.
+class FusedPredictedVerlet : public Verlet {
+ public:
+  FusedPredictedVerlet() : Verlet(EndVelocity::predicted) {}
+  static bool suits(const ForceModel& forces) {
+    return forces.is_swept_whole() && forces.sweep()->takes_predicted();
+  }
+
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
+
+ private:
+  void begin_force(ForceModel& forces, double time, ClothState& state);
+  Work power_of(const ForceModel& forces, const StepSums& sums) const;
+  void keep_opening(ForceModel& forces, double time);
+
+  ClothState before_;  ///< at the beginning of a step with a constraint
+};
+
 class FusedRk4 : public FusedStepper {
  public:
   FusedRk4() : FusedStepper(kutta_stages) {}

@@ -24,6 +24,7 @@ struct Entry {
   Stepper (*make)(const IntegratorChoice&);
   bool (*suits_fused)(const ForceModel&, bool constrained) = nullptr;
   Stepper (*make_fused)() = nullptr;
+  Stepper (*make_predicting)(bool fused) = nullptr;
 };
 
 template <class Method>
@@ -53,6 +54,11 @@ double semi_implicit_euler_limit(double omega, double c) {
 
 double verlet_limit(double omega, double) {
   return omega > 0 ? 2 / omega : infinity;
+}
+
+Stepper made_predicting_verlet(bool fused) {
+  if (fused) return std::make_unique<FusedPredictedVerlet>();
+  return std::make_unique<Verlet>(EndVelocity::predicted);
 }
 
 /// One entry holds all that is known of a method.
@@ -86,12 +92,14 @@ std::vector<Entry> explicit_methods() {
         .evaluations_per_step = 1,
         .source = "Verlet 1967; report, Eq. (14)",
         .keeps_force = true,
+        .predicts_damping = true,
         .oscillator = {.family = Family::verlet},
         .limit = verlet_limit,
         .may_heat = true},
        made<Verlet>,
        FusedVerlet::suits,
-       []() -> Stepper { return std::make_unique<FusedVerlet>(); }},
+       []() -> Stepper { return std::make_unique<FusedVerlet>(); },
+       made_predicting_verlet},
       {{.name = "rk4",
         .title = "Runge-Kutta 4",
         .order = 4,
@@ -214,15 +222,24 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice) {
   return entry_of(choice.method).make(choice);
 }
 
-bool suits_fused_stepper(const std::string& method, const ForceModel& forces, bool constrained) {
+/// Where the end velocity has a closed form for each particle and no pass gains by a prediction, it is
+/// solved.
+StepperKind stepper_kind(const std::string& method, const ForceModel& forces, const StepperNeeds& needs) {
   const Entry& entry = entry_of(method);
-  return entry.suits_fused && entry.suits_fused(forces, constrained);
+  StepperKind kind;
+  if (entry.make_predicting && needs.predicts_damping) {
+    const bool sweeps = FusedPredictedVerlet::suits(forces);
+    kind.predicts = forces.couples_particles() || (sweeps && forces.swept().air);
+    kind.fused = kind.predicts && sweeps;
+  }
+  if (!kind.predicts) kind.fused = entry.suits_fused && entry.suits_fused(forces, needs.constrained);
+  return kind;
 }
 
-std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const ForceModel& forces,
-                                         bool constrained) {
-  return suits_fused_stepper(choice.method, forces, constrained) ? entry_of(choice.method).make_fused()
-                                                                 : make_integrator(choice);
+std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const StepperKind& kind) {
+  const Entry& entry = entry_of(choice.method);
+  if (kind.predicts) return entry.make_predicting(kind.fused);
+  return kind.fused ? entry.make_fused() : make_integrator(choice);
 }
 
 }  // namespace cloth

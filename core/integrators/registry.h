@@ -16,13 +16,23 @@ struct IntegratorChoice;
 /// integrator_names().
 std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice);
 
-/// Whether the method has a fused stepper (fused_steppers.h) that supports all of `forces`; `constrained`:
-/// together with a DriftConstraint.
-bool suits_fused_stepper(const std::string& method, const ForceModel& forces, bool constrained);
+/// What decides between the steppers of a method, beside the forces.
+struct StepperNeeds {
+  bool constrained = false;       ///< it steps together with a DriftConstraint
+  bool predicts_damping = false;  ///< the damping is weak enough for EndVelocity::predicted (verlet.h)
+};
 
-/// The fused stepper where it is suitable, else the general method. Call it again after a change of the
-/// forces, the cloth or the constraint.
-std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const ForceModel& forces,
-                                         bool constrained);
+struct StepperKind {
+  bool fused = false;  ///< a stepper of fused_steppers.h, else the general method
+  bool predicts =
+      false;  ///< EndVelocity::predicted; only Verlet, where damping couples particles or is air's
+  bool operator==(const StepperKind&) const = default;
+};
+
+/// The fastest stepper of the method that supports all of `forces`. Ask again after a change of the forces,
+/// the cloth or the needs.
+StepperKind stepper_kind(const std::string& method, const ForceModel& forces, const StepperNeeds& needs);
+
+std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const StepperKind& kind);
 
 }  // namespace cloth

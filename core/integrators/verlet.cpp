@@ -5,6 +5,8 @@
 namespace cloth {
 
 IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
+  if (end_ == EndVelocity::predicted && forces.has_damping())
+    return predicted_step(forces, times, state, work);
   IntegratorReport report;
   const double h = times.step;
   if (!holds_position_force_) {
@@ -19,8 +21,7 @@ IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothS
   add_acceleration(forces.system(), 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
-  if (corrects && constraint_->opening_change())
-    work.damping_loss -= 0.5 * h * dot(opening_damping_.flat(), constraint_->opening_change()->flat());
+  if (corrects) correct_opening(0.5 * h, work);
   forces.update(state.position, times.end);
   ++report.force_evaluations;
   report.velocity_iterations = finish_velocity(forces, 0.5 * h, state);
@@ -29,6 +30,48 @@ IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothS
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
   holds_position_force_ = true;
   return report;
+}
+
+IntegratorReport Verlet::predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                        Work& work) {
+  IntegratorReport report;
+  const double half = 0.5 * times.step;
+  const bool corrects = constraint_ && forces.has_damping_loss();
+  if (!holds_position_force_ && (corrects || !holds_force_)) forces.update(state.position, times.begin);
+  if (!holds_force_) {
+    evaluate(forces, state);
+    ++report.force_evaluations;
+  }
+  work += half * power_;
+  if (constraint_) constraint_->before_kick(half, times.step, state);
+  if (corrects) keep_damping(forces, opening_damping_);
+  add_acceleration(forces.system(), half, force_, state.velocity);
+  add_scaled(times.step, state.velocity, state.position);
+  add_acceleration(forces.system(), half, force_, state.velocity);
+  if (constraint_) constraint_->after_drift(half, state);
+  if (corrects) correct_opening(half, work);
+  report.force_evaluations += finish_predicted(forces, times, state, work);
+  return report;
+}
+
+int Verlet::finish_predicted(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
+  const double half = 0.5 * times.step;
+  opening_force_ = force_;
+  forces.update(state.position, times.end);
+  power_ = forces.force_and_power(state.position, state.velocity, force_);
+  const auto from = opening_force_.flat();
+  const std::span<const double> to = force_.flat();
+  for (std::size_t k = 0; k < from.size(); ++k) from[k] = to[k] - from[k];
+  add_acceleration(forces.system(), half, opening_force_, state.velocity);
+  work += half * power_;
+  work.damping_loss += closing_correction_ = closing_correction(forces, times.step);
+  holds_position_force_ = holds_force_ = true;
+  return 1;
+}
+
+void Verlet::correct_opening(double half_step, Work& work) const {
+  if (const Vec3Field* change = constraint_->opening_change())
+    work.damping_loss -= half_step * dot(opening_damping_.flat(), change->flat());
 }
 
 /// - D v of the force that is known.
@@ -64,6 +107,14 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
 /// From the velocity at half the step; `force_` is the guess. Returns the iterations.
 int Verlet::finish_velocity(ForceModel& forces, double half_step, ClothState& state) {
   holds_force_ = false;
+  if (forces.has_damping() && end_ == EndVelocity::predicted) {
+    Vec3Field& predicted = opening_force_;
+    predicted = state.velocity;
+    add_acceleration(forces.system(), half_step, force_, predicted);
+    forces.force(state.position, predicted, force_);
+    add_acceleration(forces.system(), half_step, force_, state.velocity);
+    return 0;
+  }
   if (forces.has_damping()) return solver_.solve(forces, half_step, state.position, state.velocity, force_);
   add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
   return 0;
@@ -89,6 +140,23 @@ void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& ti
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
   add_acceleration(forces.system(), 0.5 * times.step, force(forces), state.velocity);
+}
+
+IntegratorMemory Verlet::remember() const {
+  if (end_ == EndVelocity::solved || !holds_force_) return {};
+  return {.fields = {force_},
+          .numbers = {power_.damping_loss, power_.hysteresis_loss, power_.air, power_.brush, power_.pull,
+                      closing_correction_}};
+}
+
+void Verlet::recall(const IntegratorMemory& memory) {
+  forget(Change::state);
+  if (end_ == EndVelocity::solved || memory.fields.empty()) return;
+  force_ = memory.fields[0];
+  const std::vector<double>& n = memory.numbers;
+  power_ = {n[0], n[1], n[2], n[3], n[4]};
+  closing_correction_ = n[5];
+  holds_force_ = true;
 }
 
 /// The next step would begin with this evaluation.

@@ -1,22 +1,34 @@
 // Velocity Verlet with the damping centred in time. Without velocity-dependent forces its positions are the
 // report's Eq. (14), x(t+h) = 2 x(t) - x(t-h) + h^2 a(t).
 //
-//     v_half = v + h/2 a(x, v, t)
+//     v_half = v + h/2 a
 //     x'     = x + h v_half
-//     v'     = v_half + h/2 a(x', v', t+h)      solved for v', a is affine in it
+//     v'     = v_half + h/2 a'
 //
-// The accelerations hold every force of the scene, a = (p - D v) / m (forces/force.h). Every D v, of air drag
-// as of viscous and spring damping, enters twice: in the opening kick with the velocity v at t, and in the
-// closing kick, where D is part of the linear system that VelocitySolver solves for v' (with known = v_half
-// and weight = h/2). Wind is part of p at both times. After continuous contact has moved the positions, the
-// closing kick is repeated at the new ones (update_velocity_for_positions()), and once more with the damping
-// at the velocities that contact has set (update_velocity_for_damping()).
+// The accelerations hold every force of the scene, a(x, v, t) = (p - D v) / m (forces/force.h), wind as part
+// of p. Two ways to take D v, of air drag as of viscous and spring damping (EndVelocity):
+//
+// solved:    a = a(x, v, t), a' = a(x', v', t+h). The last line is solved for v' (VelocitySolver, with
+//            known = v_half and weight = h/2): closed where no damping couples particles, else by conjugate
+//            gradients. Stable for omega h < 2 at every damping ratio.
+// predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
+//            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
+//            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step
+//            are the roots of z^3 + (w^2 + 3/2 g - 2) z^2 + (1 - 2 g) z + g/2, w = omega h, g = c h; by
+//            Jury's test none exceeds 1 where w^2 + 4 g < 4. Each eigenvalue of m x'' = -K x - D x' is such a
+//            root for the Rayleigh quotients of its own eigenvector, so that a step with h^2 K + 4 h D < 4 m
+//            is stable, whether K and D have common eigenvectors or not. predicted_damping_load() of
+//            measure/stability_limit.h bounds the left side for a scene.
+//
+// After continuous contact has moved the positions, the closing kick is repeated at the new ones
+// (update_velocity_for_positions()), and once more with the damping at the velocities that contact has set
+// (update_velocity_for_damping()).
 //
 // A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
-// v_half.
+// v_half; where the damping is predicted, on x' and the predicted velocity.
 //
 // Order 2 with damping, drag and wind. A step costs one force evaluation, and a second one where contact or
-// an edit has changed the state since the last step. Stable for omega h < 2 at every damping ratio.
+// an edit has changed the state since the last step.
 #pragma once
 
 #include "forces/velocity_solver.h"
@@ -24,8 +36,13 @@
 
 namespace cloth {
 
+/// How the damping at the end of a step is found, see above.
+enum class EndVelocity { solved, predicted };
+
 class Verlet : public Integrator {
  public:
+  explicit Verlet(EndVelocity end = EndVelocity::solved) : end_(end) {}
+
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
@@ -38,26 +55,39 @@ class Verlet : public Integrator {
                                      const Vec3Field& half_velocity, ClothState& state) override;
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = false; }
+  /// A predicted velocity is not part of the state: what was computed with it is remembered.
+  IntegratorMemory remember() const override;
+  void recall(const IntegratorMemory& memory) override;
 
  protected:
   /// Computes the power and, where forces depend on the velocity, the force p - D v. The positions are those
   /// of the last ForceModel::update.
   virtual void evaluate(ForceModel& forces, const ClothState& state);
+  /// Of a step with predicted velocity: `state` after the drift holds the prediction. Returns force
+  /// evaluations.
+  int finish_predicted(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
+  /// Takes from `work` what the damping that is known did at the opening, as far as the constraint had
+  /// changed the velocity.
+  void correct_opening(double half_step, Work& work) const;
+  void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
 
+  DriftConstraint* constraint_ = nullptr;
   Work power_;                         ///< at the end of the last step
+  Vec3Field force_;                    ///< p - D v, N; used only where has_damping()
+  Vec3Field opening_damping_;          ///< -D v in the opening kick, N; used only with a constraint
+  double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
+  bool holds_force_ = false;           ///< `force_` and `power_` are those with which the next step begins
 
  private:
-  void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
+  IntegratorReport predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
   double closing_correction(const ForceModel& forces, double step);
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(ForceModel& forces, double half_step, ClothState& state);
 
-  DriftConstraint* constraint_ = nullptr;
-  Vec3Field force_;                              ///< p - D v, N; used only where has_damping()
-  Vec3Field opening_damping_, closing_damping_;  ///< -D v in the two kicks, N; used only with a constraint
-  double closing_correction_ = 0;  ///< J, of the constraint's part of the damping loss, last step
-  bool holds_force_ = false;       ///< `force_` and `power_` are those at the state
+  EndVelocity end_;
+  Vec3Field closing_damping_;  ///< -D v in the closing kick, N; used only with a constraint
+  Vec3Field opening_force_;    ///< N, of a step with predicted velocity
   VelocitySolver solver_;
 };
 

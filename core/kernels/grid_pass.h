@@ -72,7 +72,7 @@ struct Pass {
   Grid grid;
   int first = 0, last = 0;
   BandField position, velocity;
-  BandField force;                                      ///< of Verlet, evaluate and damp
+  BandField force;                                      ///< of Verlet, predicted Verlet, evaluate and damp
   const double* inverse_mass = nullptr;                 ///< 1/kg; 0 where pinned
   const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, additional force on each particle; may be null
   double weight[3] = {0, 0, 0};                         ///< N, of every particle; with shares, of a whole one
@@ -127,6 +127,12 @@ struct GridKernels {
   void (*verlet_open)(const Pass& pass);
   void (*verlet_between)(const Pass& pass);
   void (*verlet_close)(const Pass& pass);
+  /// Velocity Verlet with every force at the predicted velocity v + h f/m: `force` holds f before and after.
+  /// In parts: `predicted_open` drifts and leaves the predicted velocity in `velocity`, `predicted_close`
+  /// computes f there and completes the velocity; with a step of 0 it only computes f at `velocity`.
+  void (*predicted)(const Pass& pass);
+  void (*predicted_open)(const Pass& pass);
+  void (*predicted_close)(const Pass& pass);
   /// Kutta's method of order four.
   void (*runge_kutta)(const Pass& pass);
   /// force = springs + weight + load. `load` may be `force` itself. No sums.

@@ -120,6 +120,59 @@ void verlet_between_band(const Pass& pass) {
   pass.shares.part ? verlet_between_rows<Share::by_cell>(pass) : verlet_between_rows<Share::equal>(pass);
 }
 
+void drift_predict_row(const Pass& pass, int row) {
+  if (row >= pass.grid.rows) return;
+  const Row x = row_of(pass, pass.position, row), v = row_of(pass, pass.velocity, row);
+  const ConstRow f = row_of(pass, pass.force, row);
+  const double* inverse_mass = inverse_masses(pass, row);
+  const V half_step = Lanes::set(0.5 * pass.step), step = Lanes::set(pass.step);
+  const int columns = pass.grid.columns;
+  int j = 0;
+  for (; j + Lanes::width <= columns; j += Lanes::width)
+    drift_predict_block<false>(x, v, f, inverse_mass, half_step, step, j, Lanes::width);
+  if (j < columns) drift_predict_block<true>(x, v, f, inverse_mass, half_step, step, j, columns - j);
+}
+
+template <bool Drift, Law law, Share share>
+void predicted_rows(const Pass& pass) {
+  PredictedUpdate<share> update{};
+  update.half_step = Lanes::set(0.5 * pass.step), update.damping = Lanes::set(pass.damping);
+  const int start = first_row_of_springs(pass.first);
+  if (Drift) drift_predict_row(pass, start);
+  if (Drift) drift_predict_row(pass, start + 1);
+  band_pass<law, share>(
+      pass, update,
+      [&](int row, bool own) {
+        if (Drift) drift_predict_row(pass, row + 2);
+        if (!own) return;
+        update.velocity = row_of(pass, pass.velocity, row);
+        update.force = row_of(pass, pass.force, row);
+        update.inverse_mass = inverse_masses(pass, row);
+        update.shares = row_shares<share>(pass, row);
+        update.before = update.after = Lanes::zero();
+      },
+      [&](int row, const Powers& powers) {
+        store_sum(pass, squares_before, row, update.before);
+        store_sum(pass, squares_after, row, update.after);
+        if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, powers.dampers);
+        if (pass.air_drag > 0) store_sum(pass, air_before, row, powers.air);
+      });
+}
+
+template <bool Drift>
+void predicted_band(const Pass& pass) {
+  if (pass.shares.part)
+    pass.has_dampers ? predicted_rows<Drift, Law::damped, Share::by_cell>(pass)
+                     : predicted_rows<Drift, Law::elastic, Share::by_cell>(pass);
+  else
+    pass.has_dampers ? predicted_rows<Drift, Law::damped, Share::equal>(pass)
+                     : predicted_rows<Drift, Law::elastic, Share::equal>(pass);
+}
+
+void predicted_open_band(const Pass& pass) {
+  for (int row = pass.first; row < pass.last; ++row) drift_predict_row(pass, row);
+}
+
 template <Share share>
 void evaluate_rows(const Pass& pass) {
   EvaluateUpdate update{};
@@ -282,6 +335,9 @@ constexpr GridKernels grid_kernels{euler_band,
                                    verlet_open_band,
                                    verlet_between_band,
                                    verlet_band<false>,
+                                   predicted_band<true>,
+                                   predicted_open_band,
+                                   predicted_band<false>,
                                    runge_kutta_band,
                                    evaluate_band,
                                    damp_band,

@@ -188,6 +188,13 @@ double GridSweep::sum_of(const Plan& plan, std::size_t pass, int which) const {
   return ordered_sum(rows, [p = sums_.data() + first](std::size_t row) { return p[row]; });
 }
 
+StepSums GridSweep::step_sums_of(const Plan& plan, std::size_t pass) const {
+  StepSums sums{sum_of(plan, pass, kernels::squares_before), sum_of(plan, pass, kernels::squares_after)};
+  if (plan.loads.has_dampers()) sums.dampers = sum_of(plan, pass, kernels::dampers_before);
+  if (plan.loads.air.drag > 0) sums.air = sum_of(plan, pass, kernels::air_before);
+  return sums;
+}
+
 void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, std::span<StepSums> sums,
                       ClothState& state) {
   assert(has_common_mass() && (!loads.load || sums.size() == 1));
@@ -200,12 +207,7 @@ void GridSweep::euler(double step, bool drift_first, const SweepLoads& loads, st
                               {&Pass::velocity, &state.velocity, velocity_halo}}}};
   in_jobs(kind_of(sums.size()), sums.size(), [&](std::size_t first, std::size_t count, int threads) {
     run(plan, count, threads);
-    for (std::size_t k = 0; k < count; ++k) {
-      StepSums& of_step = sums[first + k];
-      of_step = {sum_of(plan, k, kernels::squares_before), sum_of(plan, k, kernels::squares_after)};
-      if (loads.has_dampers()) of_step.dampers = sum_of(plan, k, kernels::dampers_before);
-      if (loads.air.drag > 0) of_step.air = sum_of(plan, k, kernels::air_before);
-    }
+    for (std::size_t k = 0; k < count; ++k) sums[first + k] = step_sums_of(plan, k);
   });
 }
 
@@ -236,6 +238,42 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
     run(plan, count + 1, threads);
     for (std::size_t k = 0; k < count; ++k) squares[first + k] = sum_of(plan, k + 1, kernels::squares_after);
   });
+}
+
+StepSums GridSweep::predicted(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
+  assert(has_common_mass() && !loads.load);
+  const Plan plan{.kernel = kernels_->predicted,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, kernels::step_halo},
+                              {&Pass::velocity, &state.velocity, kernels::step_halo},
+                              {&Pass::force, &force, kernels::step_halo}}}};
+  run_once(PassKind::step, plan);
+  return step_sums_of(plan, 0);
+}
+
+void GridSweep::predicted_open(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) {
+  const Plan plan{.kernel = kernels_->predicted_open,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, 0},
+                              {&Pass::velocity, &state.velocity, 0},
+                              {&Pass::force, &force, 0}}}};
+  run_once(PassKind::drift, plan);
+}
+
+StepSums GridSweep::predicted_close(double step, const SweepLoads& loads, Vec3Field& force,
+                                    ClothState& state) {
+  assert(has_common_mass() && !loads.load);
+  const int velocity_halo = loads.has_dampers() ? kernels::step_halo : 0;
+  const Plan plan{.kernel = kernels_->predicted_close,
+                  .loads = loads,
+                  .step = step,
+                  .fields = {{{&Pass::position, &state.position, 0},  // only read
+                              {&Pass::velocity, &state.velocity, velocity_halo},
+                              {&Pass::force, &force, 0}}}};
+  run_once(PassKind::closing, plan);
+  return step_sums_of(plan, 0);
 }
 
 void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,

@@ -29,6 +29,11 @@ class GridSweep : public SpringSweep {
   double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
+  StepSums predicted(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
+  void predicted_open(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
+  StepSums predicted_close(double step, const SweepLoads& loads, Vec3Field& force,
+                           ClothState& state) override;
+  bool takes_predicted() const override { return true; }
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
   bool has_shares() const override { return !layout_.part.empty(); }
@@ -87,6 +92,7 @@ class GridSweep : public SpringSweep {
   void publish(const Plan& plan, std::size_t index, std::size_t pass);
   void await_neighbours(const Plan& plan, std::size_t index, std::size_t pass);
   double sum_of(const Plan& plan, std::size_t pass, int which) const;
+  StepSums step_sums_of(const Plan& plan, std::size_t pass) const;
 
   const ClothSystem* system_;
   kernels::Grid grid_;

@@ -37,7 +37,7 @@ struct SweepLoads {
   double stretch_time = 0;          ///< s; only of grids assembled cell by cell
   double bending_time = 0;          ///< s; likewise
   bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
-  SweptAir air{};  ///< only for euler() and runge_kutta(), and only if takes_air()
+  SweptAir air{};  ///< only for euler(), predicted() and runge_kutta(), and only if takes_air()
 };
 
 /// Sums over all particles and springs that a step computes in the same pass.
@@ -82,6 +82,19 @@ class SpringSweep {
   /// Stores the sum of |v|^2 after each step in `squares`.
   virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                             ClothState& state) = 0;
+  /// One step of velocity Verlet in which every force, with dampers and air, is taken at the predicted
+  /// velocity v + h f/m (integrators/verlet.h). `force` (N) holds f before and after. No load. Only if
+  /// takes_predicted(). The sums `before`, `dampers` and `air` are those at the predicted velocity.
+  virtual StepSums predicted(double /*step*/, const SweepLoads&, Vec3Field& /*force*/, ClothState&) {
+    return {};
+  }
+  /// The same in two parts: the drift, which leaves the predicted velocity in the state; and f there with the
+  /// end of the step. With step = 0 the second part only computes f at the state.
+  virtual void predicted_open(double /*step*/, const SweepLoads&, Vec3Field& /*force*/, ClothState&) {}
+  virtual StepSums predicted_close(double /*step*/, const SweepLoads&, Vec3Field& /*force*/, ClothState&) {
+    return {};
+  }
+  virtual bool takes_predicted() const { return false; }
   /// Kutta's method of order four (kutta.h). Takes as many steps as there are `sums`. No load.
   virtual void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                            ClothState& state) = 0;
@@ -115,8 +128,8 @@ class SpringSweep {
 
  protected:
   /// Each kind is timed separately and chooses its own number of threads.
-  enum class PassKind { step, several_steps, evaluation, dampers, sums, copies };
-  static constexpr std::size_t pass_kinds = 6;
+  enum class PassKind { step, several_steps, evaluation, dampers, sums, copies, drift, closing };
+  static constexpr std::size_t pass_kinds = 8;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
   /// Smallest number of particles per thread. With fewer, waking the threads takes as long as the pass.
   static constexpr int fewest_particles = 1000;

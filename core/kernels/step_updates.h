@@ -114,6 +114,43 @@ struct VerletBetweenUpdate {
   }
 };
 
+/// v += h/2 f/m, x += h v, v += h/2 f/m for a row: the drift of velocity Verlet, and in `v` the velocity that
+/// the force f predicts at its end.
+template <bool Edge>
+CLOTHLAB_INLINE void drift_predict_block(const Row& x, const Row& v, const ConstRow& f,
+                                         const double* inverse_mass, V half_step, V step, int j, int count) {
+  const V scale = Lanes::mul(
+      half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
+  const Vector force = load_part<Edge>(f, j, count);
+  const Vector half = plus(load_part<Edge>(v, j, count), scale, force);
+  store<Edge>(x, j, count, plus(load_part<Edge>(x, j, count), step, half));
+  store<Edge>(v, j, count, plus(half, scale, force));
+}
+
+/// The closing kick after drift_predict_block: f' = p(x') - c v, with dampers and air in p, at the predicted
+/// velocity v; v' = v + h/2 (f' - f)/m. With half_step = 0 the velocity stays as it is.
+template <Share share>
+struct PredictedUpdate {
+  RowShares<share> shares{};
+  V half_step, damping;
+  Row velocity, force;
+  const double* inverse_mass;
+  V before, after;  ///< |v|^2 and |v'|^2
+
+  template <bool Edge>
+  CLOTHLAB_INLINE void operator()(int j, int count, const Vector&, const Vector& p) {
+    const V scale = Lanes::mul(half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero())
+                                               : Lanes::load(inverse_mass + j));
+    const Vector v = load_part<Edge>(velocity, j, count);
+    const Vector total = minus(p, shares.of(damping, j), v);
+    const Vector next = plus(v, scale, total - load_part<Edge>(force, j, count));
+    before = shares.plus_square(before, v, j);
+    after = shares.plus_square(after, next, j);
+    store<Edge>(velocity, j, count, next);
+    store<Edge>(force, j, count, total);
+  }
+};
+
 /// force = springs + weight + load
 struct EvaluateUpdate {
   Row force;

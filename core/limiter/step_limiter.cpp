@@ -85,8 +85,9 @@ bool StepLimiter::move(ClothState& state) {
   if (!tensions_ || !opened_) {
     report_.excess = limiter_.excess(state.position);
     if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
-    if (limiter_.accepts(report_.excess) && (!tensions_ || report_.excess <= target_residual(state)))
-      return false;
+    const bool is_small = limiter_.accepts(report_.excess) &&
+                          (!tensions_ || report_.excess == 0 || report_.excess <= target_residual(state));
+    if (is_small) return false;
   }
   drifted_ = state.position;
   if (!tensions_) {

@@ -317,21 +317,24 @@ std::optional<double> step_below(const std::string& method, const Scene& scene, 
   return stable_step(method, frequency.of_scene(scene), rates_of(scene, frequency));
 }
 
-/// Semi-implicit Euler on x'' = -(K x + C x')/m does not grow while h^2 K + 2 h C < 4 m. Springs and dampers
-/// are bounded together here: the wave that is largest for the one need not be so for the other. s
-double joint_euler_step(const Scene& scene) {
-  const double mass = particle_mass(scene);
+/// A bound on the largest eigenvalue of h^2 K + weight h C in every shape of a grid of springs, N/m. Springs
+/// and dampers are bounded together: the wave that is largest for the one need not be so for the other.
+double joint_stiffness(const Scene& scene, double h, double weight) {
   const SpringMaterial& springs = *scene.springs;
   const SpringMaterial dampers = dampers_of(springs);
   const NodeDamping damping = particle_damping(scene);
+  const double mass = particle_mass(scene);
   const double drag = damping.isotropic.of(mass) + damping.along_normal.positive().of(mass);
-  const auto is_stable = [&](double h) {
-    const SpringMaterial both{h * h * springs.structural + 2 * h * dampers.structural,
-                              h * h * springs.shear + 2 * h * dampers.shear,
-                              h * h * springs.flexion + 2 * h * dampers.flexion, 0};
-    return laplacian_stiffness(both) + 2 * h * drag <= 4 * mass;
-  };
-  double stable = 0, unstable = 2 / guaranteed_frequency(scene.cloth, springs);
+  const SpringMaterial both{h * h * springs.structural + weight * h * dampers.structural,
+                            h * h * springs.shear + weight * h * dampers.shear,
+                            h * h * springs.flexion + weight * h * dampers.flexion, 0};
+  return laplacian_stiffness(both) + weight * h * drag;
+}
+
+/// Semi-implicit Euler on x'' = -(K x + C x')/m does not grow while h^2 K + 2 h C < 4 m. s
+double joint_euler_step(const Scene& scene) {
+  const auto is_stable = [&](double h) { return joint_stiffness(scene, h, 2) <= 4 * particle_mass(scene); };
+  double stable = 0, unstable = 2 / guaranteed_frequency(scene.cloth, *scene.springs);
   if (is_stable(unstable)) return unstable;
   for (int halving = 0; halving < 60; ++halving) {
     const double middle = 0.5 * (stable + unstable);
@@ -393,6 +396,12 @@ std::optional<double> guaranteed_step(const std::string& method, const Scene& sc
       !(scene.springs->damping > 0))
     return apart;
   return joint_euler_step(scene);
+}
+
+double predicted_damping_load(const Scene& scene, double step) {
+  if (scene.springs && !scene.material && !scene.cloth.is_mesh())
+    return joint_stiffness(scene, step, 4) / (4 * particle_mass(scene));
+  return 0.25 * std::pow(step * guaranteed_frequency(scene), 2) + step * rates_of(scene, in_any_shape).most;
 }
 
 double explicit_step_limit(const Scene& scene) {

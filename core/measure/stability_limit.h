@@ -23,9 +23,10 @@ double largest_frequency(const ClothSheet& sheet, const SpringMaterial& material
 double guaranteed_frequency(const ClothSheet& sheet, const SpringMaterial& material);
 
 /// The same of a scene, of springs or of a material; 0 where it has neither. Of a material the first is that
-/// of the wave that oscillates fastest, or of a motion at the edges of a small sheet of the same cells, the second 2 sqrt of the largest eigenvalue that a cell, a line and a
-/// twist alone have (Irons and Treharne 1971): 4/m max(k_x + 2 k_d, k_y + 2 k_d, k_x + k_y) of the springs,
-/// 16 (w_x + w_y + w_t)/m of the bending elements, m the mass of a particle inside.
+/// of the wave that oscillates fastest, or of a motion at the edges of a small sheet of the same cells, the
+/// second 2 sqrt of the largest eigenvalue that a cell, a line and a twist alone have (Irons and Treharne
+/// 1971): 4/m max(k_x + 2 k_d, k_y + 2 k_d, k_x + k_y) of the springs, 16 (w_x + w_y + w_t)/m of the bending
+/// elements, m the mass of a particle inside.
 double largest_frequency(const Scene& scene);
 double guaranteed_frequency(const Scene& scene);
 
@@ -64,6 +65,15 @@ std::optional<double> stable_step(const std::string& method, const Scene& scene)
 /// The limit of `method` for every shape of the cloth, with damping at its bounds: below it no stretching or
 /// crumpling makes energy grow exponentially. The stability gauge compares the time step with it.
 std::optional<double> guaranteed_step(const std::string& method, const Scene& scene);
+
+/// A bound on the largest eigenvalue of (h^2 K + 4 h D)/(4 m) in every shape of the cloth, K its stiffness
+/// and D its damping: below 1 Verlet is stable at the step h (s) with its damping at predicted velocities
+/// (integrators/verlet.h). Springs and dampers of a grid are bounded together, by the waves of the grid's
+/// graph Laplacian; those of meshes and of materials each by itself.
+double predicted_damping_load(const Scene& scene, double step);
+/// Up to this load damping is predicted: the rest is left for rounding and for motions near the limit, which
+/// the prediction damps too little.
+inline constexpr double largest_predicted_load = 0.95;
 
 /// 2 / omega in s at the guaranteed frequency: no explicit method with one force evaluation is stable at a
 /// longer step. infinity without springs.

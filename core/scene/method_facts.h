@@ -31,6 +31,7 @@ struct MethodFacts {
   /// Reuses the force at the end of a step in the next one. It is evaluated once more where something else
   /// has changed the state in between, such as contact.
   bool keeps_force = false;
+  bool predicts_damping = false;  ///< where damping is weak: predicted_damping_load() of stability_limit.h
   OscillatorStep oscillator = {};
   /// The largest stable step in s for the oscillator with omega and c in 1/s, not both 0: 0 if none is
   /// stable. No closed form: scanned_limit() of measure/amplification.h. Not asked where `a_stable`.

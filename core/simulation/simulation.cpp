@@ -113,6 +113,9 @@ void Simulation::assemble() {
 
   find_probes();
 
+  damping_load_ = facts_of(scene_.integrator.method).predicts_damping && forces_->has_damping()
+                      ? predicted_damping_load(scene_, run_.automatic.longest)
+                      : infinity;
   strongest_pull_ = find_strongest_pull();
   apply_hand();
 }
@@ -157,15 +160,28 @@ void Simulation::apply_hand() {
   choose_stepper();
 }
 
-/// Whenever forces or constraints have become others. Methods that remember more than forces have no fused
-/// stepper, so that nothing is lost where one takes over from the other.
+/// Whether the damping, with that of the hand, is weak enough at the longest step.
+bool Simulation::predicts_damping() const {
+  double load = damping_load_;
+  if (run_.pull) {
+    const double h = run_.automatic.longest,
+                 mass = *std::min_element(system_.mass.begin(), system_.mass.end());
+    load += (h * h * pull_strength_.stiffness + 4 * h * pull_strength_.damping) / (4 * mass);
+  }
+  return load <= largest_predicted_load;
+}
+
+/// Whenever forces or constraints have become others. What one stepper remembers beside the state is lost
+/// where one of another kind takes over: it begins with the forces at the state.
 void Simulation::choose_stepper() {
-  const bool fused = suits_fused_stepper(scene_.integrator.method, *forces_, limiter_.has_value());
-  if (!integrator_ || fused != is_fused_)
-    integrator_ = make_stepper(scene_.integrator, *forces_, limiter_.has_value());
+  const StepperKind kind =
+      stepper_kind(scene_.integrator.method, *forces_,
+                   {.constrained = limiter_.has_value(), .predicts_damping = predicts_damping()});
+  if (!integrator_ || kind != stepper_kind_)
+    integrator_ = make_stepper(scene_.integrator, kind);
   else
     integrator_->forget(Change::forces);
-  is_fused_ = fused;
+  stepper_kind_ = kind;
   limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
 }
 
@@ -262,6 +278,7 @@ ObstacleTransitions Simulation::find_transitions(const Scene& edited) const {
 }
 
 void Simulation::edit(const Scene& scene) {
+  if (scene == scene_) return;
   if (differ_in_probes_alone(scene, scene_)) {
     scene_.probes = scene.probes;
     return find_probes();

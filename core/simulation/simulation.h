@@ -18,6 +18,7 @@
 #include "forces/force_model.h"
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"
+#include "integrators/registry.h"
 #include "limiter/step_limiter.h"
 #include "limiter/unreachable_rate.h"
 #include "measure/energy.h"
@@ -181,6 +182,7 @@ class Simulation {
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
   void apply_hand();
+  bool predicts_damping() const;
   void choose_stepper();
   void share_work();
   void make_limiter(const std::vector<double>& tension);
@@ -218,7 +220,8 @@ class Simulation {
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
-  bool is_fused_ = false;  ///< `integrator_` is a fused stepper
+  StepperKind stepper_kind_;  ///< of `integrator_`
+  double damping_load_ = 0;   ///< predicted_damping_load() at the longest step; infinity: not asked
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::unique_ptr<ContactStage> contact_;

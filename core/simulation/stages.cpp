@@ -9,7 +9,9 @@
 #include "integrators/integrator.h"
 #include "integrators/registry.h"
 #include "limiter/deformation_limiter.h"
+#include "measure/stability_limit.h"
 #include "scene/scene_cloth.h"
+#include "simulation/time_step.h"
 
 namespace cloth {
 namespace {
@@ -51,20 +53,39 @@ std::string evaluations_text(const MethodFacts& method) {
   return fmt::format("{} force evaluation{} a step", count, count == 1 ? "" : "s");
 }
 
+/// How Verlet takes the damping, and why.
+std::string damping_text(const Scene& scene, const ClothSystem& system, bool limited) {
+  const auto step = resolved_time_step(scene);
+  const ForceModel forces(scene, system);
+  if (!facts_of(scene.integrator.method).predicts_damping || !step || !forces.has_damping()) return "";
+  const double load = predicted_damping_load(scene, *step);
+  const StepperKind kind =
+      stepper_kind(scene.integrator.method, forces, {.constrained = limited, .predicts_damping = true});
+  if (!kind.predicts) return ", damping solved for each particle by itself";
+  if (load <= largest_predicted_load)
+    return fmt::format(", damping at the predicted velocity{} (h^2 K + 4 h D is {:.2f} of 4 m, at most {})",
+                       kind.fused ? " in the pass of the forces" : "", load, largest_predicted_load);
+  return fmt::format(
+      ", damping solved for by conjugate gradients (h^2 K + 4 h D may reach {:.2f} of 4 m; predicted up to "
+      "{})",
+      load, largest_predicted_load);
+}
+
 }  // namespace
 
 std::vector<StageInfo> explain_stages(const Scene& scene) {
   const ClothSystem system = make_cloth(scene);
   const MethodFacts& method = facts_of(scene.integrator.method);
   const bool limits_within = make_integrator(scene.integrator)->set_drift_constraint(nullptr);
-  const bool moved_later = contact_stage(scene).present || scene.self_contact ||
-                           (!limits_within && limiter_stage(scene, system).present);
+  const bool limited = limiter_stage(scene, system).present;
+  const bool moved_later = contact_stage(scene).present || scene.self_contact || (!limits_within && limited);
   std::vector<StageInfo> stages;
   for (const ForceEntry& force : force_registry())
     for (StageInfo& stage : force.explain(scene, system)) stages.push_back(std::move(stage));
   stages.push_back(
       {"integrate", true,
        fmt::format("{}: order {}, {}", method.title, method.order, evaluations_text(method)) +
+           damping_text(scene, system, limited) +
            (method.keeps_force && moved_later ? ", one more after a step that the stages below changed"
                                               : "")});
   stages.push_back(limiter_stage(scene, system));

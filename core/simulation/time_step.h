@@ -14,8 +14,10 @@ namespace cloth {
 inline constexpr double auto_flat_fraction = 0.8, auto_guaranteed_fraction = 0.95;
 
 /// The scene's step in s, or the one that "auto" means: the largest one that divides the record interval
-/// into whole steps and is not above 80 % of the flat cloth's limit nor 95 % of the guaranteed one. nullopt
-/// where the method has no stable step for the scene.
+/// into whole steps and is not above 80 % of the flat cloth's limit nor 95 % of the guaranteed one; of Verlet
+/// on a grid with dampers and without continuous contact one step more to an interval, where that lets it
+/// predict its damping (predicted_damping_load() of measure/stability_limit.h). nullopt where the method has
+/// no stable step for the scene.
 std::optional<double> resolved_time_step(const Scene& scene);
 
 /// `time_step` where it divides `interval` into whole steps; else the longest shorter one that does. s

@@ -52,13 +52,43 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_TRUE(json["rows"].empty());
   EXPECT_GE(json["scenes"].size(), 10u);
-  for (const auto& scene : json["scenes"]) EXPECT_GT(scene["simulated_per_wall"], 0) << scene.dump();
+  for (const auto& scene : json["scenes"]) {
+    EXPECT_GT(scene["simulated_per_stepping"], 0) << scene.dump();
+    EXPECT_GT(scene["ratio_to_bare"], 0) << scene.dump();
+    EXPECT_TRUE(scene["size"].is_null()) << scene.dump();
+  }
+  EXPECT_TRUE(json["scene_growth"].empty());
   EXPECT_EQ(json["memory"].size(), 9u) << "bare, and with each thing that a scene may have";
   for (const auto& row : json["memory"])
     EXPECT_TRUE(row["held_bytes_per_particle"].is_null() || row["held_bytes_per_particle"] > 48)
         << row.dump();
   ASSERT_EQ(json["start"].size(), 3u);
   for (const auto& start : json["start"]) EXPECT_GT(start["ms"]["median"], 0) << start.dump();
+}
+
+TEST(Bench, RefinesScenesToTheSizesAndSaysWhichItCannot) {
+  const std::string some = "--quick --only scenes --scenes curtain,flag,disc --sizes 9,13,17 ";
+  const CommandResult result = bench(some + "--json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  ASSERT_EQ(json["scenes"].size(), 3u + 3u + 1u) << "the disc is a mesh: once";
+  for (const auto& scene : json["scenes"]) {
+    EXPECT_GT(scene["ratio_to_bare"], 0) << scene.dump();
+    if (scene["name"] != "disc") {
+      EXPECT_EQ(std::max(scene["rows"].get<int>(), scene["columns"].get<int>()), scene["size"].get<int>());
+      EXPECT_TRUE(scene["remark"].is_null()) << scene.dump();
+      continue;
+    }
+    EXPECT_TRUE(scene["size"].is_null());
+    EXPECT_TRUE(has(scene["remark"], "mesh")) << scene.dump();
+  }
+  ASSERT_EQ(json["scene_growth"].size(), 2u);
+  EXPECT_EQ(json["scene_growth"][0]["scene"], "curtain");
+  EXPECT_TRUE(json["scene_growth"][0]["exponent"].is_number());
+  const std::string text = bench(some + "--markdown").output;
+  for (const char* part :
+       {"/ bare", "17 particles along the longer side", "not refined", "Growth of the scenes"})
+    EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
 TEST(Bench, SaysWhatContactAddsToAStep) {

@@ -10,6 +10,7 @@
 #include "bench/speed/speed_tables.h"
 #include "integrators/registry.h"
 #include "report/text_table.h"
+#include "scene/builtin_scenes.h"
 
 namespace cloth::speed::speed_test {
 namespace {
@@ -160,6 +161,37 @@ TEST(SpeedStudy, WantsEveryMethodBareAndTwoWithEveryFeature) {
   EXPECT_TRUE(wants(512, {"rk4", "bare", 1})) << "ratios need it";
   EXPECT_FALSE(wants(512, {"rk4", "sphere", 1}));
   EXPECT_FALSE(wants(512, {"verlet", "bare", 1}));
+}
+
+TEST(SceneSpeeds, RefineAGridInItsProportionsAndLeaveAStableStep) {
+  const Scene flag = builtin_scene("flag");
+  std::string why;
+  const auto same = refined(flag, 40, why), finer = refined(flag, 79, why), coarser = refined(flag, 14, why);
+  ASSERT_TRUE(same && finer && coarser) << why;
+  EXPECT_EQ(same->cloth, flag.cloth);
+  EXPECT_EQ(same->integrator, flag.integrator);
+  EXPECT_EQ(finer->cloth.columns, 79);
+  EXPECT_EQ(finer->cloth.rows, 49);
+  EXPECT_EQ(coarser->cloth.columns, 14);
+  EXPECT_EQ(coarser->cloth.rows, 9);
+  EXPECT_EQ(refined(flag, 257, why)->integrator.time_step, std::nullopt) << "auto";
+  EXPECT_FALSE(refined(builtin_scene("disc"), 33, why));
+  EXPECT_NE(why.find("mesh"), std::string::npos) << why;
+}
+
+TEST(SceneGrowth, IsThePowerOfTheParticlesByWhichAStepGrows) {
+  std::vector<SceneSpeed> rows;
+  for (const int particles : {100, 400, 1600}) {
+    rows.push_back({.name = "linear", .particles = particles, .nanoseconds = 20});
+    rows.push_back({.name = "steep", .particles = particles, .nanoseconds = 0.1 * std::sqrt(particles)});
+  }
+  rows.push_back({.name = "once", .particles = 100, .nanoseconds = 5});
+  const std::vector<SceneGrowth> growth = fit_scene_growth(rows);
+  ASSERT_EQ(growth.size(), 2u);
+  EXPECT_NEAR(growth[0].exponent.value, 1, 1e-12);
+  EXPECT_NEAR(growth[1].exponent.value, 1.5, 1e-12);
+  EXPECT_EQ(growth[1].smallest, 100);
+  EXPECT_EQ(growth[1].largest, 1600);
 }
 
 TEST(SpeedStudy, ThatIsEndedKeepsWhatWasFinished) {

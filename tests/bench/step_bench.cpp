@@ -8,6 +8,7 @@
 #include "cli/progress.h"
 #include "integrators/registry.h"
 #include "io/result_folder.h"
+#include "scene/builtin_scenes.h"
 
 namespace {
 
@@ -30,7 +31,10 @@ std::vector<std::string> feature_names() {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   SpeedOptions& study = arguments.study;
-  app.add_option("--sizes", study.sizes, "Particles along an edge, e.g. 64,128; 32 to 512 without")
+  app.add_option(
+         "--sizes", study.sizes,
+         "Particles along an edge, e.g. 64,128; 32 to 512 without. Scenes are refined to them, and as they "
+         "are without")
       ->delimiter(',')
       ->check(CLI::Range(4, 2048));
   add_names(app, "--methods", study.methods, "Only these methods, e.g. verlet,rk4",
@@ -46,6 +50,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(3, 1000));
   add_names(app, "--only", study.parts, fmt::format("Only these parts: {}", fmt::join(speed_parts(), ", ")),
             speed_parts());
+  std::vector<std::string> scenes;
+  for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) scenes.push_back(scene.name);
+  add_names(app, "--scenes", study.scenes, "Only these scenes, e.g. flag,wind", scenes);
+  app.add_option("--scene-seconds", study.scene_seconds, "Seconds of stepping for each scene and size")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 3600.0));
   app.add_flag("--quick", study.quick, "Small sizes and short timings: a look, not a measurement");
   add_path(app, "--out", arguments.folder,
            "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot go on "

@@ -101,8 +101,8 @@ TEST(SkinFriction, LetsNoExplicitMethodUseAFusedStepThatDoesNotKnowIt) {
   DirectRun run(scene, "rk4");
   ASSERT_TRUE(run.forces.sweeps_steps());
   EXPECT_FALSE(run.forces.is_swept_whole());
-  EXPECT_FALSE(suits_fused_stepper("verlet", run.forces, false));
-  EXPECT_FALSE(suits_fused_stepper("rk4", run.forces, false));
+  EXPECT_FALSE(stepper_kind("verlet", run.forces, {}).fused);
+  EXPECT_FALSE(stepper_kind("rk4", run.forces, {}).fused);
 }
 
 }  // namespace

@@ -33,12 +33,29 @@ TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysWithinBothLimits) {
       const double longest =
           std::min(0.8 * *stable_step(method, scene), 0.95 * guaranteed_step(method, scene).value());
       EXPECT_LE(*step, longest * (1 + 1e-12));
-      // and no longer step does both
-      if (parts > 1.5) {
-        EXPECT_GT(scene.record.interval / (std::round(parts) - 1), longest);
+      // and no longer step does both, or the next longer one is too long to predict the damping
+      const double longer = scene.record.interval / (std::round(parts) - 1);
+      if (parts > 1.5 && longer <= longest) {
+        EXPECT_TRUE(facts_of(method).predicts_damping) << builtin.name;
+        EXPECT_GT(predicted_damping_load(scene, longer), largest_predicted_load) << builtin.name;
+        EXPECT_LE(predicted_damping_load(scene, *step), largest_predicted_load) << builtin.name;
+        EXPECT_GT(scene.record.interval / (std::round(parts) - 2), longest) << builtin.name;
       }
     }
   }
+}
+
+TEST(AutomaticTimeStep, OfVerletIsOneStepMoreToARowWhereThatLetsItPredictItsDamping) {
+  const Scene scene = builtin_scene("tablecloth");
+  const double step = *resolved_time_step(scene), parts = scene.record.interval / step;
+  EXPECT_LE(predicted_damping_load(scene, step), largest_predicted_load);
+  EXPECT_GT(predicted_damping_load(scene, scene.record.interval / (parts - 1)), largest_predicted_load);
+  Scene stiff = scene;
+  stiff.springs->damping *= 20;
+  EXPECT_NEAR(scene.record.interval / *resolved_time_step(stiff), parts - 1, 1e-9) << "out of reach";
+  Scene undamped = scene;
+  undamped.springs->damping = 0;
+  EXPECT_NEAR(scene.record.interval / *resolved_time_step(undamped), parts - 1, 1e-9) << "nothing to predict";
 }
 
 TEST(AutomaticTimeStep, IsTheRecordIntervalWhereEveryStepIsStable) {

@@ -24,9 +24,9 @@ DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoic
     : system(std::move(made)), state(starting_state(system)), forces(scene, system), choice_(choice) {}
 
 Integrator& DirectRun::integrator() {
-  const bool fused = suits_fused_stepper(choice_.method, forces, false);
-  if (!integrator_ || fused != is_fused_) integrator_ = make_stepper(choice_, forces, false);
-  is_fused_ = fused;
+  const StepperKind kind = stepper_kind(choice_.method, forces, {.predicts_damping = predicts_damping_});
+  if (!integrator_ || kind != kind_) integrator_ = make_stepper(choice_, kind);
+  kind_ = kind;
   return *integrator_;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "integrators/integrator.h"
+#include "integrators/registry.h"
 #include "scene/scene.h"
 
 namespace cloth::test {
@@ -32,6 +33,9 @@ class DirectRun {
   /// The stepper that suits the forces now.
   Integrator& integrator();
 
+  /// Verlet takes damping at predicted velocities from now on: whether the step allows it is not asked here.
+  void predict_damping() { predicts_damping_ = true; }
+
   ClothSystem system;
   ClothState state;
   ForceModel forces;
@@ -40,7 +44,8 @@ class DirectRun {
 
  private:
   IntegratorChoice choice_;
-  bool is_fused_ = false;
+  bool predicts_damping_ = false;
+  StepperKind kind_;
   std::unique_ptr<Integrator> integrator_;
 };
 

@@ -100,13 +100,28 @@ json contact_json(const ContactCost& cost) {
 json scene_json(const SceneSpeed& scene) {
   return {{"name", scene.name},
           {"method", scene.method},
+          {"size", scene.size > 0 ? json(scene.size) : json()},
+          {"rows", scene.rows > 0 ? json(scene.rows) : json()},
+          {"columns", scene.columns > 0 ? json(scene.columns) : json()},
           {"particles", scene.particles},
-          {"time_step_s", scene.time_step},
+          {"time_step_s", positive(scene.time_step)},
+          {"duration_s", finite(scene.duration)},
           {"simulated_s", finite(scene.simulated)},
-          {"wall_s", finite(scene.wall)},
-          {"simulated_per_wall", finite(scene.speed())},
-          {"ns_per_particle_step", finite(scene.nanoseconds)},
+          {"stepping_s", finite(scene.seconds)},
+          {"simulated_per_stepping", finite(scene.speed())},
+          {"ns_per_particle_step", positive(scene.nanoseconds)},
+          {"bare_ns_per_particle_step", positive(scene.bare)},
+          {"ratio_to_bare", positive(scene.to_bare())},
           {"remark", text_or_null(scene.remark)}};
+}
+
+json scene_growth_json(const SceneGrowth& row) {
+  return {{"scene", row.name},
+          {"sizes", row.exponent.points},
+          {"fewest_particles", row.smallest},
+          {"most_particles", row.largest},
+          {"exponent", finite(row.exponent.value)},
+          {"standard_error", row.exponent.points > 2 ? finite(row.exponent.standard_error) : json()}};
 }
 
 json memory_json(const MemoryCost& row) {
@@ -147,6 +162,7 @@ std::string speed_json(const SpeedReport& report) {
                   {"growth", list_of(report.growth, growth_json)},
                   {"contact", list_of(report.contact, contact_json)},
                   {"scenes", list_of(report.scenes, scene_json)},
+                  {"scene_growth", list_of(report.scene_growth, scene_growth_json)},
                   {"memory", list_of(report.memory, memory_json)},
                   {"start", list_of(report.starts, start_json)}};
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

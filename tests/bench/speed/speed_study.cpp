@@ -110,15 +110,37 @@ class Study {
   }
 
   bool measure_scenes() {
-    const auto& scenes = builtin_scenes();
-    const double longest = options_.quick ? 0.02 : 1;
+    std::vector<std::string> names = options_.scenes;
+    if (names.empty())
+      for (const BuiltinScene& scene : builtin_scenes()) names.push_back(scene.name);
+    const std::vector<int> sizes = options_.sizes.empty() ? std::vector<int>{0} : options_.sizes;
     double done = 0;
-    for (const BuiltinScene& scene : scenes) {
-      if (!goes_on({0.08, 0.15}, done++ / static_cast<double>(scenes.size()), "scene " + scene.name))
-        return false;
-      report_.scenes.push_back(measure_scene(scene.name, builtin_scene(scene.name), longest, 1));
-    }
+    for (const int size : sizes)
+      for (const std::string& name : names) {
+        const double all = static_cast<double>(names.size() * sizes.size());
+        const std::string text = "scene " + name + (size > 0 ? fmt::format(", {}", size) : "");
+        if (!goes_on({0.08, 0.15}, done++ / all, text)) return false;
+        add_scene(name, size);
+      }
+    report_.scene_growth = fit_scene_growth(report_.scenes);
     return true;
+  }
+
+  /// What cannot be refined is timed once, as it is.
+  void add_scene(const std::string& name, int size) {
+    Scene scene = builtin_scene(name);
+    std::string why;
+    if (size > 0) {
+      if (const auto finer = refined(scene, size, why))
+        scene = *finer;
+      else if (std::any_of(report_.scenes.begin(), report_.scenes.end(),
+                           [&](const SceneSpeed& row) { return row.name == name; }))
+        return;
+    }
+    SceneSpeed row = measure_scene(name, scene, options_.quick ? 0.02 : options_.scene_seconds, 1);
+    row.size = why.empty() ? size : 0;
+    if (!why.empty()) row.remark += (row.remark.empty() ? "" : "; ") + why;
+    report_.scenes.push_back(std::move(row));
   }
 
   bool measure_contacts() {

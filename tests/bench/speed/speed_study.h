@@ -23,8 +23,12 @@ namespace cloth::speed {
 const std::vector<std::string>& speed_parts();
 
 struct SpeedOptions {
-  std::vector<std::string> parts;     ///< of speed_parts(); empty: all
-  std::vector<int> sizes;             ///< empty: 32 to 512, but to 128 with methods that solve equations
+  std::vector<std::string> parts;  ///< of speed_parts(); empty: all
+  /// Empty: 32 to 512, but to 128 with methods that solve equations; scenes as they are. Else scenes are
+  /// refined to these.
+  std::vector<int> sizes;
+  std::vector<std::string> scenes;    ///< of builtin_scenes(); empty: all
+  double scene_seconds = 1;           ///< of stepping each scene at each size
   std::vector<std::string> methods;   ///< of integrator_names(); empty: all
   std::vector<std::string> features;  ///< names of features() beside the bare cloth; empty: all
   std::vector<int> threads;           ///< empty: one, and as many as the machine has
@@ -44,7 +48,8 @@ struct SpeedReport {
   double disagreement = 0;     ///< m, the largest of all sizes, see SizeCosts
   std::vector<Growth> growth;
   std::vector<ContactCost> contact;
-  std::vector<SceneSpeed> scenes;
+  std::vector<SceneSpeed> scenes;  ///< by size
+  std::vector<SceneGrowth> scene_growth;
   std::vector<MemoryCost> memory;
   std::vector<StartCost> starts;
 

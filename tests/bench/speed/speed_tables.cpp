@@ -153,21 +153,39 @@ TextTable contact_table(const std::vector<ContactCost>& costs) {
   return table;
 }
 
-TextTable scene_table(const std::vector<SceneSpeed>& scenes) {
+TextTable scene_table(const std::vector<SceneSpeed>& scenes, int size) {
   TextTable table;
   table.columns = {{"Scene"},
                    {"Method"},
                    {"Particles", true},
                    {"Time step (s)", true},
                    {"Simulated (s)", true},
-                   {"Wall (s)", true},
-                   {"Simulated / wall", true},
+                   {"of (s)", true},
+                   {"Simulated / stepping", true},
                    {"Per particle and step (ns)", true},
+                   {"Bare (ns)", true},
+                   {"/ bare", true},
                    {"Remark"}};
-  for (const SceneSpeed& scene : scenes)
-    table.rows.push_back({scene.name, scene.method, std::to_string(scene.particles),
-                          fmt::format("{:.4g}", scene.time_step), number(scene.simulated), number(scene.wall),
-                          number(scene.speed()), number(scene.nanoseconds), scene.remark});
+  for (const SceneSpeed& scene : scenes) {
+    if (scene.size != size) continue;
+    table.rows.push_back(
+        {scene.name, scene.method,
+         scene.rows > 0 ? fmt::format("{} x {}", scene.columns, scene.rows) : std::to_string(scene.particles),
+         fmt::format("{:.4g}", scene.time_step), number(scene.simulated), number(scene.duration),
+         number(scene.speed()), number(scene.nanoseconds), number(scene.bare), number(scene.to_bare()),
+         scene.remark});
+  }
+  return table;
+}
+
+TextTable scene_growth_table(const std::vector<SceneGrowth>& growth) {
+  TextTable table;
+  table.columns = {{"Scene"}, {"Particles"}, {"Exponent", true}, {"Standard error", true}};
+  for (const SceneGrowth& row : growth)
+    table.rows.push_back(
+        {row.name, fmt::format("{} to {}", row.smallest, row.largest),
+         fmt::format("{:.3f}", row.exponent.value),
+         row.exponent.points > 2 ? fmt::format("{:.3f}", row.exponent.standard_error) : "-"});
   return table;
 }
 
@@ -228,6 +246,28 @@ void add_steps(Page& page, const SpeedReport& report) {
   page.table(growth_table(report.growth));
 }
 
+void add_scenes(Page& page, const SpeedReport& report) {
+  page.heading("The built-in scenes");
+  page.paragraph(
+      "From the start, each with its own method. Bare: Verlet's step of a grid of as many rows and columns "
+      "(of "
+      "a mesh, of a square of as many particles) with springs in six directions and gravity alone, in turns "
+      "with the scene, and the median of its turns.");
+  std::vector<int> sizes;
+  for (const SceneSpeed& scene : report.scenes)
+    if (std::find(sizes.begin(), sizes.end(), scene.size) == sizes.end()) sizes.push_back(scene.size);
+  std::sort(sizes.begin(), sizes.end());
+  for (const int size : sizes) {
+    if (size > 0) page.heading(fmt::format("The scenes with {} particles along the longer side", size));
+    if (size == 0 && sizes.size() > 1) page.heading("Scenes that are not refined");
+    page.table(scene_table(report.scenes, size));
+  }
+  if (report.scene_growth.empty()) return;
+  page.heading("Growth of the scenes");
+  page.paragraph("The power of the number of particles by which the time of a step grows, by least squares.");
+  page.table(scene_growth_table(report.scene_growth));
+}
+
 std::string built(const SpeedReport& report, bool markdown) {
   Page page(markdown);
   const MachineFacts& machine = report.machine;
@@ -243,10 +283,7 @@ std::string built(const SpeedReport& report, bool markdown) {
         "obstacles and self-contact and with them.");
     page.table(contact_table(report.contact));
   }
-  if (!report.scenes.empty()) {
-    page.heading("The built-in scenes");
-    page.table(scene_table(report.scenes));
-  }
+  if (!report.scenes.empty()) add_scenes(page, report);
   if (!report.memory.empty()) {
     page.heading("Memory");
     page.paragraph("After the first step: what is held, and the most resident memory until then.");

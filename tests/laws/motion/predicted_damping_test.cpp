@@ -1,0 +1,290 @@
+// Verlet with its damping at the velocity that a step predicts (integrators/verlet.h): its recurrence, its
+// limit from both sides, its order, the fused pass against the general method, and when it is chosen.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "integrators/fused_steppers.h"
+#include "integrators/registry.h"
+#include "measure/stability_limit.h"
+#include "scene/builtin_scenes.h"
+#include "scene/scene_cloth.h"
+#include "simulation/simulation.h"
+#include "simulation/stages.h"
+#include "support/direct_run.h"
+#include "support/scenes.h"
+#include "support/states.h"
+
+namespace cloth::test::predicted_damping_test {
+namespace {
+
+constexpr double stiffness = 40, mass = 0.1, spacing = 0.5;
+const double omega = std::sqrt(stiffness / mass);
+
+/// Two particles below two pins that move up and down together: one oscillator, x'' = -omega^2 x - c x', with
+/// c = rate from dampers along its springs.
+class DampedOscillator {
+ public:
+  DampedOscillator(double rate, double start) : run_(scene(rate), "verlet"), start_(start) {
+    run_.predict_damping();
+    for (const std::size_t i : {2u, 3u}) run_.state.position.add(i, {0, start, 0});
+  }
+  double x() const { return (run_.state.position[2].y() + spacing) / start_; }
+  void step(double h) { run_.advance(1, h); }
+  StepperKind kind() { return stepper_kind("verlet", run_.forces, {.predicts_damping = true}); }
+
+ private:
+  static Scene scene(double rate) {
+    Scene scene = bare_sheet(2, 2, spacing, mass);
+    scene.cloth.pins = {NamedPin::top_edge};
+    scene.springs = only(SpringFamily::structural, stiffness);
+    scene.springs->damping = rate * mass;
+    return scene;
+  }
+  DirectRun run_;
+  double start_;
+};
+
+TEST(PredictedDamping, MovesAnOscillatorByItsRecurrence) {
+  for (const double w : {0.1, 0.7, 1.5})
+    for (const double g : {0.01, 0.1, 0.4}) {
+      DampedOscillator oscillator(g * omega / w, 0.01);
+      ASSERT_EQ(oscillator.kind(), (StepperKind{.fused = true, .predicts = true}));
+      std::vector<double> x;
+      for (int n = 0; n < 40; ++n) {
+        x.push_back(oscillator.x());
+        oscillator.step(w / omega);
+      }
+      EXPECT_LT(std::abs(x[39]), 1.1);
+      for (std::size_t n = 1; n + 3 < x.size(); ++n)
+        EXPECT_NEAR(x[n + 3] + (w * w + 1.5 * g - 2) * x[n + 2] + (1 - 2 * g) * x[n + 1] + 0.5 * g * x[n], 0,
+                    1e-12)
+            << w << " " << g << " " << n;
+    }
+}
+
+/// A thousand steps from a start of a micrometre.
+double growth(double w, double g) {
+  DampedOscillator oscillator(g * omega / w, 1e-6);
+  double largest = 0;
+  for (int n = 0; n < 1000; ++n) {
+    oscillator.step(w / omega);
+    if (n >= 900) largest = std::max(largest, std::abs(oscillator.x()));
+  }
+  return largest;
+}
+
+TEST(PredictedDamping, IsStableBelowItsLimitAndGrowsAboveIt) {
+  for (const double share : {0.1, 0.3, 0.6, 0.9}) {  // of the limit that the damping takes
+    const auto at = [&](double load) { return growth(std::sqrt(4 * load * (1 - share)), load * share); };
+    EXPECT_LT(at(0.98), 1e-3) << share;
+    EXPECT_GT(at(1.02), 10) << share;
+  }
+}
+
+Scene damped_scene() {
+  Scene scene = smooth_scene(6, 6);
+  scene.springs->damping = 0.05;
+  return scene;
+}
+
+/// With skin friction, which no pass knows: the general method.
+Scene generally_damped_scene() {
+  Scene scene = damped_scene();
+  scene.air->skin_friction = 0.002;
+  return scene;
+}
+
+void expect_order_two(const Scene& scene, bool fused) {
+  constexpr double time = 0.4;  // s
+  const auto solve = [&](const char* method, int steps) {
+    DirectRun run(scene, exactly(method));
+    run.predict_damping();
+    const StepperKind kind = stepper_kind(method, run.forces, {.predicts_damping = true});
+    EXPECT_EQ(kind.predicts, std::string(method) == "verlet");
+    if (kind.predicts) {
+      EXPECT_EQ(kind.fused, fused);
+    }
+    run.advance(steps, time / steps);
+    return run.state;
+  };
+  const ClothState exact = solve("rk4", 12800);
+  std::vector<double> position, velocity;
+  for (const int steps : {400, 800, 1600, 3200}) {
+    const ClothState state = solve("verlet", steps);
+    position.push_back(rms_distance(state.position, exact.position));
+    velocity.push_back(rms_distance(state.velocity, exact.velocity));
+  }
+  for (const auto* errors : {&position, &velocity})
+    for (std::size_t k = 1; k < errors->size(); ++k)
+      EXPECT_NEAR(std::log2((*errors)[k - 1] / (*errors)[k]), 2, 0.1);
+  EXPECT_GT(position.back(), 1e-12) << "nothing to be measured";
+}
+
+TEST(PredictedDamping, IsOfOrderTwoWithDampersDragWindAndGusts) {
+  expect_order_two(damped_scene(), true);
+}
+
+TEST(PredictedDamping, IsOfOrderTwoInTheGeneralMethodToo) {
+  expect_order_two(generally_damped_scene(), false);
+}
+
+Scene material_in_wind() {
+  Scene scene = builtin_scene("wind-denim");
+  scene.cloth.rows = 7, scene.cloth.columns = 9;
+  scene.deformation.reset();
+  scene.material->stretch_damping = scene.material->bending_damping = 1e-6;
+  scene.material->drag_tangential = scene.material->mass_damping = 0;
+  return scene;
+}
+
+TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethod) {
+  for (const Scene& scene : {damped_scene(), material_in_wind()}) {
+    const ClothSystem system = make_cloth(scene);
+    ForceModel forces(scene, system);
+    ASSERT_TRUE(FusedPredictedVerlet::suits(forces));
+    FusedPredictedVerlet fused;
+    Verlet general(EndVelocity::predicted);
+    ClothState a = starting_state(system), b = a;
+    Work work_a, work_b;
+    const double h = 0.2 / guaranteed_frequency(scene);
+    for (int n = 0; n < 200; ++n) {
+      const StepTimes times{n * h, (n + 1) * h, h};
+      EXPECT_EQ(fused.step(forces, times, a, work_a).force_evaluations,
+                general.step(forces, times, b, work_b).force_evaluations);
+    }
+    EXPECT_LT(rms_distance(a.position, b.position), 1e-13);
+    EXPECT_LT(rms_distance(a.velocity, b.velocity), 1e-10);
+    EXPECT_GT(rms_distance(a.position, system.start), 1e-6) << "nothing moved";
+    EXPECT_NEAR(work_a.damping_loss, work_b.damping_loss, 1e-9 * std::abs(work_b.damping_loss));
+    EXPECT_NEAR(work_a.air, work_b.air, 1e-9 * std::abs(work_b.air));
+    EXPECT_GT(work_a.damping_loss, 0);
+    EXPECT_NE(work_a.air, 0);
+  }
+}
+
+TEST(PredictedDamping, HasTheSameBitsOnAnyNumberOfThreads) {
+  Scene scene = builtin_scene("flag");
+  scene.cloth.rows = 61, scene.cloth.columns = 71;
+  scene.integrator.time_step.reset();
+  for (const bool limited : {false, true}) {
+    if (!limited) scene.deformation.reset();
+    if (limited) scene.deformation = Deformation{.rate = 0.1};
+    Simulation one(scene), three(scene);
+    three.set_threads(3, ThreadUse::always);
+    ASSERT_GT(three.threads(), 1);
+    for (Simulation* simulation : {&one, &three}) ASSERT_FALSE(simulation->advance(150));
+    EXPECT_EQ(one.state(), three.state()) << limited;
+    EXPECT_EQ(one.measure().ledger.forces.damping_loss, three.measure().ledger.forces.damping_loss);
+    EXPECT_EQ(one.measure().ledger.forces.air, three.measure().ledger.forces.air);
+  }
+}
+
+TEST(PredictedDamping, GoesOnFromACheckpointToTheBit) {
+  const Scene scene = builtin_scene("flag");
+  Simulation simulation(scene);
+  ASSERT_FALSE(simulation.advance(300));
+  const Checkpoint there = simulation.checkpoint();
+  ASSERT_FALSE(simulation.advance(300));
+  const ClothState state = simulation.state();
+  const double loss = simulation.measure().ledger.forces.damping_loss;
+  Simulation other(scene);
+  for (Simulation* again : {&simulation, &other}) {
+    again->restore(there);
+    ASSERT_FALSE(again->advance(300));
+    EXPECT_EQ(again->state(), state);
+    EXPECT_EQ(again->measure().ledger.forces.damping_loss, loss);
+  }
+}
+
+std::string integrate_text(const Scene& scene) {
+  for (const StageInfo& stage : explain_stages(scene))
+    if (stage.name == "integrate") return stage.reason;
+  return "";
+}
+
+std::int64_t velocity_iterations(const Scene& scene) {
+  Simulation simulation(scene);
+  EXPECT_FALSE(simulation.advance(20));
+  return simulation.count().velocity_iterations;
+}
+
+TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
+  Scene scene = builtin_scene("flag");
+  EXPECT_EQ(velocity_iterations(scene), 0);
+  EXPECT_NE(integrate_text(scene).find("damping at the predicted velocity in the pass"), std::string::npos)
+      << integrate_text(scene);
+  scene.springs->damping *= 50;
+  EXPECT_GT(predicted_damping_load(scene, *scene.integrator.time_step), largest_predicted_load);
+  EXPECT_GT(velocity_iterations(scene), 0);
+  EXPECT_NE(integrate_text(scene).find("conjugate gradients"), std::string::npos) << integrate_text(scene);
+  scene.springs->damping = 0, scene.air.reset(), scene.damping = 0.001;
+  EXPECT_NE(integrate_text(scene).find("for each particle by itself"), std::string::npos)
+      << integrate_text(scene);
+}
+
+TEST(PredictedDamping, IsGivenUpWhileAHandPullsTooHardForIt) {
+  Scene scene = builtin_scene("wind");
+  Simulation simulation(scene);
+  ASSERT_FALSE(simulation.advance(20));
+  const std::int64_t before = simulation.count().velocity_iterations;
+  simulation.set_pull(Pull{.particle = 500, .target = {0, 0.5, 0.2}});
+  ASSERT_FALSE(simulation.advance(20));
+  const bool solved = simulation.count().velocity_iterations > before;
+  const double h = simulation.time_step();
+  EXPECT_TRUE(solved || predicted_damping_load(scene, h) < 0.9);
+  simulation.set_pull(std::nullopt);
+  const std::int64_t then = simulation.count().velocity_iterations;
+  ASSERT_FALSE(simulation.advance(20));
+  EXPECT_EQ(simulation.count().velocity_iterations, then);
+  EXPECT_EQ(before, 0);
+}
+
+/// (h^2 K + 4 h D)/(4 m) of random shapes and motions, by the forces' own differences.
+TEST(PredictedDampingLoad, IsAboveTheRayleighQuotientOfEveryShape) {
+  const Scene scene = damped_scene();
+  const double h = 0.01, bound = predicted_damping_load(scene, h);
+  const ClothSystem system = make_cloth(scene);
+  ForceModel forces(scene, system);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1, 1);
+  double largest = 0;
+  for (int shape = 0; shape < 20; ++shape) {
+    Vec3Field x = system.start, d(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x.add(i, 0.3 * Vec3(any(random), any(random), any(random)));
+    for (std::size_t i = 0; i < x.size(); ++i) d.set(i, Vec3(any(random), any(random), any(random)));
+    for (int power = 0; power < 60; ++power) {  // towards the largest eigenvalue
+      double square = 0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        if (system.pinned[i]) d.set(i, Vec3::Zero());
+      for (const double value : d.flat()) square += value * value;
+      for (double& value : d.flat()) value /= std::sqrt(square);
+      const double eps = 1e-6;
+      Vec3Field ahead = x, behind = x, f_ahead(x.size()), f_behind(x.size()), still(x.size());
+      for (std::size_t i = 0; i < x.size(); ++i) ahead.add(i, eps * d[i]), behind.add(i, -eps * d[i]);
+      forces.update(ahead, 0);
+      f_ahead = forces.position_force();
+      forces.update(behind, 0);
+      f_behind = forces.position_force();
+      forces.update(x, 0);
+      Vec3Field damped(x.size());
+      forces.force(x, d, damped);  // p - D d
+      Vec3Field product(x.size());
+      double quotient = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const Vec3 k = (f_behind[i] - f_ahead[i]) / (2 * eps), c = forces.position_force()[i] - damped[i];
+        const Vec3 both = (h * h * k + 4 * h * c) / (4 * system.mass[i]);
+        quotient += both.dot(d[i]);
+        product.set(i, both);
+      }
+      largest = std::max(largest, quotient);
+      d = product;
+    }
+  }
+  EXPECT_LE(largest, bound * (1 + 1e-6));
+  EXPECT_GT(largest, 0.4 * bound) << "the bound says little";
+}
+
+}  // namespace
+}  // namespace cloth::test::predicted_damping_test

@@ -78,11 +78,16 @@ HeatCell map_cell(const PointRow& row, double value, const MapRange& range) {
   const std::string point = fmt::format("point {}: ", row.point);
   if (row.status != PointStatus::finished)
     return {.class_index = colour_steps,
-            .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause)};
-  if (!std::isfinite(value)) return {.class_index = colour_steps + 1, .note = point + short_number(value)};
+            .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause),
+            .tag = static_cast<int>(row.point)};
+  if (!std::isfinite(value))
+    return {.class_index = colour_steps + 1,
+            .note = point + short_number(value),
+            .tag = static_cast<int>(row.point)};
   const double part = range.high > range.low ? (value - range.low) / (range.high - range.low) : 0;
   return {.class_index = std::min(colour_steps - 1, static_cast<int>(part * colour_steps)),
-          .note = point + short_number(value)};
+          .note = point + short_number(value),
+          .tag = static_cast<int>(row.point)};
 }
 
 /// Contours between the colours, where the axes' own scales are straight.
@@ -146,9 +151,12 @@ LinePlot curve_plot(const SweepFolder& folder, const SweepResults& results, std:
     const double x = number_of(points.values(row.point).front()).value_or(0);
     const std::string note = fmt::format("point {}", row.point);
     if (row.status != PointStatus::finished)
-      series.failed.push_back({.x = x, .cause = fmt::format("{}: {}", name_of(row.status), row.cause)});
+      series.failed.push_back({.x = x,
+                               .cause = fmt::format("{}: {}", name_of(row.status), row.cause),
+                               .tag = static_cast<int>(row.point)});
     else
-      series.points.push_back({.x = x, .y = row.outputs[output], .note = note});
+      series.points.push_back(
+          {.x = x, .y = row.outputs[output], .note = note, .tag = static_cast<int>(row.point)});
   }
   std::stable_sort(series.points.begin(), series.points.end(),
                    [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });

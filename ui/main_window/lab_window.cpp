@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compare/scope_tabs.h"
+#include "document/varied_ranges.h"
 #include "main_window/autosave.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
@@ -156,6 +157,8 @@ void LabWindow::connectPanes() {
   for (ChartArea* charts : {static_cast<ChartArea*>(charts_), static_cast<ChartArea*>(pane_charts_)})
     connect(charts, &ChartArea::saveWanted, this, &LabWindow::saveCharts);
   connect(studies_, &StudiesPanel::runOpened, this, &LabWindow::openRun);
+  connect(studies_, &StudiesPanel::pointOpened, this, &LabWindow::openPoint);
+  connect(&document_.varied(), &VariedRanges::added, this, &LabWindow::showVaried);
 }
 
 void LabWindow::connectRun() {

@@ -10,6 +10,7 @@
 #include "document/lab_document.h"
 #include "studies/study_choices.h"
 #include "studies/study_plot.h"
+#include "studies/sweep_study.h"
 
 class QComboBox;
 class QLabel;
@@ -22,6 +23,14 @@ class QToolButton;
 
 namespace clothlab {
 
+/// A run of a sweep that is to be looked at.
+struct SweptRun {
+  cloth::SweepPlan plan;
+  cloth::Scene scene;   ///< of the point
+  QString words;        ///< "Structural stiffness = 120 N/m"
+  bool beside = false;  ///< in a pane of its own, beside those that are open
+};
+
 class StudiesPanel : public QWidget {
   Q_OBJECT
 
@@ -30,7 +39,7 @@ class StudiesPanel : public QWidget {
   explicit StudiesPanel(LabDocument& document, QWidget* parent = nullptr);
   ~StudiesPanel() override;
 
-  bool isRunning() const { return runner_.is_running(); }
+  bool isRunning() const { return runner_.is_running() || sweep_.isRunning(); }
   /// Cancels, and waits for one step and the writing of what is finished.
   void stop();
   /// Shows a folder that the command line or the window wrote. Errors are shown in the panel.
@@ -42,10 +51,13 @@ class StudiesPanel : public QWidget {
   StudyChoices& choices() { return *choices_; }
   const cloth::StudyTable* table() const { return table_.get(); }
   QString folder() const { return folder_; }  ///< of what is shown
+  SweepStudy& sweep() { return sweep_; }
 
  Q_SIGNALS:
   /// The user opened a run: its scene, and a note with what the scene does not contain.
   void runOpened(const cloth::Scene& scene, const QString& note);
+  /// The user clicked on a point of a sweep.
+  void pointOpened(const clothlab::SweptRun& run);
   void finished();
 
  private:
@@ -54,7 +66,12 @@ class StudiesPanel : public QWidget {
   void makeDiagram(QWidget* right);
   QWidget* makeRight();
   void start();
+  void startSweep();
   void poll();
+  void pollSweep();
+  void showSweepStatus();
+  void openPoint(int point, bool beside);
+  void showProblemOrSummary(const StudyStatus& status);
   void show(std::shared_ptr<const cloth::StudyTable> table);
   void offerDiagrams();
   void refreshDiagram();
@@ -68,6 +85,7 @@ class StudiesPanel : public QWidget {
 
   LabDocument& document_;
   StudyRunner runner_;
+  SweepStudy sweep_;  ///< shown where it has a folder
   std::shared_ptr<const cloth::StudyTable> table_;
   QString folder_;
   bool was_running_ = false;
@@ -81,7 +99,7 @@ class StudiesPanel : public QWidget {
   QLabel *title_ = nullptr, *earlier_ = nullptr, *line_ = nullptr, *empty_ = nullptr;
   QComboBox* against_ = nullptr;
   QProgressBar* bar_ = nullptr;
-  QPushButton *start_ = nullptr, *cancel_ = nullptr;
+  QPushButton *start_ = nullptr, *cancel_ = nullptr, *go_on_ = nullptr;
   QToolButton *save_ = nullptr, *open_ = nullptr;
   QMenu* recent_ = nullptr;
 

@@ -15,6 +15,7 @@
 #include "studies/axis_choice.h"
 #include "studies/outputs_choice.h"
 #include "studies/study_library.h"
+#include "studies/sweep_choices.h"
 #include "study/refined_scene.h"
 #include "study/stability_map.h"
 #include "study/stability_report.h"
@@ -31,6 +32,10 @@ const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
   switch (kind) {
+    case StudyChoices::Kind::sweep:
+      return QObject::tr(
+          "How does a value depend on parameters? A run for each combination of their values, on all cores; "
+          "it goes on where it was stopped.");
     case StudyChoices::Kind::work_precision:
       return QObject::tr(
           "Which method reaches an error in the least time? Every method over a series of "
@@ -143,10 +148,11 @@ std::vector<std::string> checked(const QListWidget& list) {
 
 }  // namespace
 
-StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
+StudyChoices::StudyChoices(LabDocument& document, QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
-  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases"), tr("Grid convergence"),
-                   tr("Materials against exact solutions")});
+  sweep_ = new SweepChoices(document, this);
+  kind_->addItems({tr("Sweep"), tr("Work-precision"), tr("Stability map"), tr("Extreme cases"),
+                   tr("Grid convergence"), tr("Materials against exact solutions")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
@@ -198,6 +204,7 @@ void StudyChoices::makeRows() {
   form_->setLabelAlignment(Qt::AlignLeading);
   form_->addRow(kind_);
   form_->addRow(purpose_);
+  form_->addRow(sweep_);
   form_->addRow(methods_);
   form_->addRow(protocols_);
   form_->addRow(tr("Horizon (s)"), horizon_);
@@ -224,6 +231,7 @@ void StudyChoices::connectRows() {
     Q_EMIT changed();
   });
   connect(protocols_, &QListWidget::itemChanged, this, &StudyChoices::changed);
+  connect(sweep_, &SweepChoices::changed, this, &StudyChoices::changed);
   connect(horizon_, &QLineEdit::textChanged, this, &StudyChoices::changed);
   connect(repeats_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
@@ -239,6 +247,10 @@ StudyChoices::Kind StudyChoices::kind() const {
   return static_cast<Kind>(kind_->currentIndex());
 }
 
+void StudyChoices::choose(Kind kind) {
+  kind_->setCurrentIndex(static_cast<int>(kind));
+}
+
 void StudyChoices::follow() {
   const Kind now = kind();
   purpose_->setText(purpose_of(now));
@@ -252,7 +264,10 @@ void StudyChoices::follow() {
   for (QWidget* field :
        {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
     form_->setRowVisible(field, now == Kind::convergence);
-  form_->setRowVisible(methods_, now != Kind::convergence && now != Kind::validation);  // they have their own
+  form_->setRowVisible(sweep_, now == Kind::sweep);
+  const bool any_method =
+      now == Kind::work_precision || now == Kind::stability || now == Kind::extremes;  // or their own
+  form_->setRowVisible(methods_, any_method);
   form_->setRowVisible(protocols_, now == Kind::validation);
   const auto own = own_methods_.find(now);
   if (own != own_methods_.end())
@@ -289,6 +304,7 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
   cells_->setPlaceholderText(cloth::refinement_problem(scene) ? QString()
                                                               : cells_text(cloth::default_cells(scene)));
   outputs_->setScene(scene);
+  sweep_->refresh();
   time_->setPlaceholderText(number_text(scene.duration, 4));
   Q_EMIT changed();
 }
@@ -362,6 +378,7 @@ std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
 }
 
 std::variant<StudyOrder, QString> StudyChoices::inputs() const {
+  if (kind() == Kind::sweep) return QString();  // see sweepOrder
   if (kind() == Kind::convergence) return convergenceInputs();
   if (kind() == Kind::validation) return validationInputs();
   if (methods().empty()) return tr("Choose at least one method.");
@@ -372,18 +389,23 @@ std::variant<StudyOrder, QString> StudyChoices::inputs() const {
   return StudyOrder{scene_, options, {}, made_by};
 }
 
+/// As typed, else a new one.
+std::filesystem::path StudyChoices::folder() const {
+  const QString typed = path_from(folder_->text().trimmed());
+  const QString title = kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title);
+  return (typed.isEmpty() ? new_study_folder(kind_->currentText(), title) : typed).toStdString();
+}
+
 std::variant<StudyOrder, QString> StudyChoices::order() const {
   auto result = inputs();
-  if (auto* order = std::get_if<StudyOrder>(&result)) {
-    const QString folder = path_from(folder_->text().trimmed());
-    order->folder =
-        (folder.isEmpty()
-             ? new_study_folder(kind_->currentText(),
-                                kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title))
-             : folder)
-            .toStdString();
-  }
+  if (auto* order = std::get_if<StudyOrder>(&result)) order->folder = folder();
   return result;
+}
+
+std::variant<SweepOrder, QString> StudyChoices::sweepOrder() const {
+  auto plan = sweep_->plan();
+  if (auto* problem = std::get_if<QString>(&plan)) return *problem;
+  return SweepOrder{folder(), std::get<cloth::SweepPlan>(std::move(plan))};
 }
 
 bool StudyChoices::describes(const cloth::StudyTable& table) const {

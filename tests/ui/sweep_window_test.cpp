@@ -29,8 +29,7 @@ QStringList rows_of(const cloth::CsvTable& table) {
   for (const auto& row : table.rows) {
     QStringList fields;
     for (std::size_t k = 0; k < row.size(); ++k)
-      if (table.header[k] != "wall_s" && table.header[k] != "host")
-        fields << QString::fromStdString(row[k]);
+      if (table.header[k] != "wall_s" && table.header[k] != "host") fields << QString::fromStdString(row[k]);
     rows << fields.join(',');
   }
   return rows;
@@ -114,12 +113,11 @@ class SweepWindowTest : public QObject {
     apply_theme(*qApp, false);
     QVERIFY(folder_.isValid());
     scene_ = folder_.filePath("small.scene.json");
-    std::ofstream(scene_.toStdString())
-        << R"({"format": "clothlab/scene/1", "title": "A small sheet",
+    std::ofstream(scene_.toStdString()) << R"({"format": "clothlab/scene/1", "title": "A small sheet",
  "cloth": {"columns": 5, "rows": 5, "width": 1, "height": 1, "mass": 0.25, "origin": [-0.5, 1, 0],
            "across": [1, 0, 0], "down": [0, -0.3, 0.95], "pins": ["top-left", "top-right"]},
  "springs": {"structural": 50, "shear": 20, "flexion": 5}, "damping": 0.01, "gravity": [0, -9.81, 0],
- "integrator": {"method": "verlet", "time_step": 0.0005}, "duration": 0.5, "record": {"interval": 0.01}})";
+ "integrator": {"method": "verlet", "time_step": 0.0005}, "duration": 2, "record": {"interval": 0.01}})";
   }
 
   /// From the window as it opens, with its default scene, to the diagram: each press of a button and each

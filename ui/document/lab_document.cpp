@@ -389,7 +389,7 @@ void LabDocument::setReference(const std::string& reference) {
 void LabDocument::setPaneTitle(std::size_t pane, const QString& title) {
   Comparison after = comparison_;
   after.panes[pane].title = title.toStdString();
-  push(tr("Name pane %1").arg(QString::fromStdString(after.panes[pane].name)), std::move(after), {});
+  push(tr("Name pane %1").arg(QString::fromStdString(comparison_.panes[pane].name)), std::move(after), {});
 }
 
 void LabDocument::follow(const Comparison& run) {

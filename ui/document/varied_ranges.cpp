@@ -13,10 +13,6 @@ constexpr int usual_counts[] = {12, 9, 5};  // of the first, the second and furt
 constexpr double usual_factor = 4;          // to each side of the present value, on a logarithmic scale
 constexpr double usual_part = 0.25;         // of the slider's range to each side, on a linear one
 
-bool is_number(const cloth::ParameterInfo& info) {
-  return info.kind == cloth::Kind::number || info.kind == cloth::Kind::integer;
-}
-
 std::optional<double> number_of(const cloth::ParameterValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
@@ -59,6 +55,11 @@ int largest_count(const cloth::ParameterInfo& info, const VariedRange& range) {
 }
 
 }  // namespace
+
+bool can_be_varied(const cloth::ParameterInfo& info) {
+  const bool is_number = info.kind == cloth::Kind::number || info.kind == cloth::Kind::integer;
+  return is_number && info.slider_maximum > info.slider_minimum;
+}
 
 class VariedRanges::Command : public SideCommand {
  public:
@@ -115,7 +116,7 @@ QString VariedRanges::label(const std::string& path) const {
 
 void VariedRanges::add(const std::string& path) {
   const auto parameter = find_parameter(document_.scene(), path);
-  if (!parameter || !is_number(parameter->info) || find(path) || list().size() >= most) return;
+  if (!parameter || !can_be_varied(parameter->info) || find(path) || list().size() >= most) return;
   VariedRange range = range_around(*parameter, number_of(parameter->get(document_.scene())));
   range.count = std::min(usual_counts[std::min<std::size_t>(list().size(), std::size(usual_counts) - 1)],
                          largest_count(parameter->info, range));

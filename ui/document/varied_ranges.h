@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "params/parameter.h"
 #include "report/axis.h"
 
 namespace clothlab {
@@ -27,6 +28,9 @@ struct VariedRange {
   cloth::AxisScale scale = cloth::AxisScale::linear;
   bool operator==(const VariedRange&) const = default;
 };
+
+/// Whether a parameter can be: a number whose declaration has a range.
+bool can_be_varied(const cloth::ParameterInfo& info);
 
 class VariedRanges : public QObject {
   Q_OBJECT

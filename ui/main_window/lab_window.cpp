@@ -159,6 +159,8 @@ void LabWindow::connectPanes() {
   connect(studies_, &StudiesPanel::runOpened, this, &LabWindow::openRun);
   connect(studies_, &StudiesPanel::pointOpened, this, &LabWindow::openPoint);
   connect(&document_.varied(), &VariedRanges::added, this, &LabWindow::showVaried);
+  connect(charts_, &ChartPanel::tableDropped, this, &LabWindow::fitTo);
+  connect(&studies_->choices(), &StudyChoices::changed, this, &LabWindow::showMeasured);
 }
 
 void LabWindow::connectRun() {

@@ -144,6 +144,9 @@ class LabWindow : public QMainWindow {
   void openPoint(const SweptRun& run);
   void openPointInPane(const SweptRun& run);
   void showVaried(const std::string& path);
+  void fitTo(const QString& file, const std::string& column);
+  void chooseMeasured();
+  void showMeasured();
 
   // lab_window_memory.cpp
   void remember();

@@ -1,10 +1,10 @@
 // LabWindow: parameters that are varied, and runs of a sweep in the panes.
-#include <QScopeGuard>
 #include <QTimer>
 #include <algorithm>
 
 #include "main_window/lab_window.h"
 #include "scene/scene_parameters.h"
+#include "studies/fit_choices.h"
 #include "studies/studies_panel.h"
 #include "studies/sweep_choices.h"
 
@@ -38,6 +38,29 @@ void LabWindow::showVaried(const std::string& path) {
     auto* from = editor ? editor->findChild<QWidget*>("rangeFrom") : nullptr;
     if (from) from->setFocus(Qt::OtherFocusReason);
   });
+}
+
+void LabWindow::fitTo(const QString& file, const std::string& column) {
+  showStudies();
+  studies_->fitTo(file, column);
+}
+
+void LabWindow::chooseMeasured() {
+  showStudies();
+  if (!studies_->isRunning()) studies_->choices().choose(StudyChoices::Kind::fit);
+  if (auto* choose = studies_->findChild<QWidget*>("fitChoose")) choose->setFocus(Qt::OtherFocusReason);
+}
+
+/// Over the charts, as long as the form of a fit is shown.
+void LabWindow::showMeasured() {
+  std::optional<MeasuredDots> dots;
+  const StudyChoices& choices = studies_->choices();
+  if (choices.kind() == StudyChoices::Kind::fit && choices.fit().hasTable()) {
+    const auto chosen = choices.fit().curve();
+    if (const auto* curve = std::get_if<cloth::FittedCurve>(&chosen))
+      dots = {.column = curve->column, .times = curve->times, .values = curve->values};
+  }
+  charts_->setMeasured(dots);
 }
 
 /// A run of another scene than the document's takes its place; one of the same scene is an edit.

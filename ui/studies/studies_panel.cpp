@@ -88,6 +88,7 @@ QWidget* StudiesPanel::makeLeft() {
   connect(cancel_, &QPushButton::clicked, this, [this] {
     runner_.cancel();
     sweep_.cancel();
+    fit_.cancel();
     poll();
   });
   return left;
@@ -135,14 +136,23 @@ QWidget* StudiesPanel::makeRight() {
   go_on_ = named("goOn", new QPushButton(tr("Go on here"), right));
   go_on_->setToolTip(tr("Make the points that the folder does not have, on this machine"));
   go_on_->hide();
+  use_ = named("useFit", new QPushButton(tr("Use the values"), right));
+  use_->setToolTip(tr("Put the fitted values into the scene"));
+  use_->hide();
   auto* head = spaced(new QHBoxLayout, spacing);
   head->addWidget(title_, 1);
   head->addWidget(go_on_);
+  head->addWidget(use_);
   head->addWidget(against_);
   head->addWidget(open_);
   head->addWidget(save_);
 
   makeDiagram(right);
+  values_ = named("fitValues", new QLabel(right));
+  values_->setTextFormat(Qt::RichText);
+  values_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  values_->setWordWrap(true);
+  values_->hide();
   bar_ = named("studyProgress", new QProgressBar(right));
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
@@ -153,6 +163,7 @@ QWidget* StudiesPanel::makeRight() {
   auto* column = spaced(new QVBoxLayout(right), spacing / 2);
   column->addLayout(head);
   column->addWidget(earlier_);
+  column->addWidget(values_);
   column->addWidget(stack_, 1);
   column->addWidget(bar_);
   column->addWidget(line_);
@@ -160,6 +171,7 @@ QWidget* StudiesPanel::makeRight() {
   connect(save_, &QToolButton::clicked, this, &StudiesPanel::saveAs);
   connect(recent_, &QMenu::aboutToShow, this, &StudiesPanel::fillRecentMenu);
   connect(plot_, &StudyPlot::runActivated, this, &StudiesPanel::openRun);
+  connect(use_, &QPushButton::clicked, this, &StudiesPanel::useFit);
   connect(plot_, &StudyPlot::runClicked, this, &StudiesPanel::openPoint);
   connect(go_on_, &QPushButton::clicked, this, [this] {
     sweep_.goOn();

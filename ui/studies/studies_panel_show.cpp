@@ -19,6 +19,7 @@
 #include "document/result_files.h"
 #include "document/save_dialog.h"
 #include "params/panel_parts.h"
+#include "studies/fit_choices.h"
 #include "studies/studies_panel.h"
 #include "studies/study_library.h"
 #include "studies/sweep_choices.h"
@@ -92,7 +93,8 @@ QString kind_title(const cloth::StudyTable& table) {
 
 void StudiesPanel::start() {
   if (const StudyStatus status = runner_.status(); status.running && !status.writing) return;
-  if (sweep_.isRunning()) return;
+  if (sweep_.isRunning() || fit_.is_running()) return;
+  if (choices_->kind() == StudyChoices::Kind::fit) return startFit();
   if (choices_->kind() == StudyChoices::Kind::sweep) return startSweep();
   if (was_running_ && table_) recent_studies.remember(folder_);  // which is still being written
   auto order = choices_->order();
@@ -102,6 +104,7 @@ void StudiesPanel::start() {
   }
   StudyOrder& chosen = std::get<StudyOrder>(order);
   sweep_.leave();
+  leaveFit();
   plot_->setClickOpens(false);
   choices_->keepAxes();
   folder_ = QString::fromStdString(chosen.folder.string());
@@ -122,6 +125,7 @@ void StudiesPanel::startSweep() {
   SweepOrder& chosen = std::get<SweepOrder>(order);
   folder_ = QString::fromStdString(chosen.folder.string());
   table_.reset();
+  leaveFit();
   plot_->setClickOpens(true);
   stack_->setCurrentIndex(0);
   empty_->setText(tr("<p><b>The sweep runs.</b></p><p>Its first runs will be drawn here.</p>"));
@@ -133,7 +137,9 @@ void StudiesPanel::startSweep() {
 
 void StudiesPanel::stop() {
   runner_.cancel();
+  fit_.cancel();
   sweep_.stop();
+  fit_.wait();
   runner_.wait();
   poll();
 }
@@ -191,6 +197,7 @@ void StudiesPanel::openPoint(int point, bool beside) {
 }
 
 void StudiesPanel::poll() {
+  if (shows_fit_) return pollFit();
   if (sweep_.isShown()) return pollSweep();
   const StudyStatus status = runner_.status();
   if (auto table = runner_.take()) show(std::move(table));
@@ -239,6 +246,7 @@ void StudiesPanel::showProblemOrSummary(const StudyStatus& status) {
 }
 
 QString StudiesPanel::summary() const {
+  if (shows_fit_) return fitSummary();
   if (sweep_.isShown()) return sweep_.summary();
   if (!table_) return {};
   QString text = tr("%1 runs%2, in %3")
@@ -270,6 +278,7 @@ void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {
 
 /// Says so where what is shown is not what the form would give now.
 void StudiesPanel::compareWithForm() {
+  if (shows_fit_) return earlier_->hide();
   if (sweep_.isShown()) {
     const bool same = choices_->kind() == StudyChoices::Kind::sweep && sweep_.view() &&
                       choices_->sweep().describes(sweep_.view()->folder.plan);
@@ -290,6 +299,7 @@ void StudiesPanel::offerDiagrams() {
 }
 
 void StudiesPanel::refreshDiagram() {
+  if (shows_fit_) return fitted_ ? showFitDiagram() : void();
   if (const auto& view = sweep_.view()) {
     auto diagram = sweep_diagram(*view, static_cast<std::size_t>(std::max(0, against_->currentIndex())));
     if (diagram) plot_->setDiagram(std::move(*diagram));
@@ -312,6 +322,7 @@ void StudiesPanel::openFolder(const QString& folder) {
   if (SweepStudy::isSweep(folder)) {
     folder_ = QDir::cleanPath(folder);
     table_.reset();
+    leaveFit();
     plot_->setClickOpens(true);
     stack_->setCurrentIndex(0);
     empty_->setText(tr("<p><b>No run is there yet.</b></p><p>Runs are drawn as they come.</p>"));
@@ -326,6 +337,7 @@ void StudiesPanel::openFolder(const QString& folder) {
     return;
   }
   sweep_.leave();
+  leaveFit();
   plot_->setClickOpens(false);
   folder_ = folder;
   recent_studies.remember(folder);
@@ -350,10 +362,11 @@ void StudiesPanel::fillRecentMenu() {
 
 QString StudiesPanel::save(const QString& name) {
   const auto& view = sweep_.view();
-  if (!table_ && !view) return tr("There is no study to save.");
+  if (!table_ && !view && !fitted_) return tr("There is no study to save.");
   if (!name.endsWith(".csv", Qt::CaseInsensitive)) return save_diagram(plot_->diagram(), name, font());
-  const std::string csv =
-      view ? csv_text(sweep_table(view->folder.plan, view->results), "\n") : cloth::study_csv(*table_);
+  const std::string csv = fitted_ ? targets_csv(fitted_->account)
+                          : view  ? csv_text(sweep_table(view->folder.plan, view->results), "\n")
+                                  : cloth::study_csv(*table_);
   const QString problem = write_file(name, QByteArray::fromStdString(csv));
   return problem.isEmpty() ? problem : tr("%1: %2").arg(name, problem);
 }

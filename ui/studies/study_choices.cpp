@@ -13,6 +13,7 @@
 #include "integrators/registry.h"
 #include "params/wording.h"
 #include "studies/axis_choice.h"
+#include "studies/fit_choices.h"
 #include "studies/outputs_choice.h"
 #include "studies/study_library.h"
 #include "studies/sweep_choices.h"
@@ -36,6 +37,10 @@ QString purpose_of(StudyChoices::Kind kind) {
       return QObject::tr(
           "How does a value depend on parameters? A run for each combination of their values, on all cores; "
           "it goes on where it was stopped.");
+    case StudyChoices::Kind::fit:
+      return QObject::tr(
+          "Which values make the scene do what was measured, and how sure are they? Runs of the scene come "
+          "closer and closer to a measured curve.");
     case StudyChoices::Kind::work_precision:
       return QObject::tr(
           "Which method reaches an error in the least time? Every method over a series of "
@@ -151,8 +156,9 @@ std::vector<std::string> checked(const QListWidget& list) {
 StudyChoices::StudyChoices(LabDocument& document, QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
   sweep_ = new SweepChoices(document, this);
-  kind_->addItems({tr("Sweep"), tr("Work-precision"), tr("Stability map"), tr("Extreme cases"),
-                   tr("Grid convergence"), tr("Materials against exact solutions")});
+  fit_ = new FitChoices(document, this);
+  kind_->addItems({tr("Sweep"), tr("Fit to measured values"), tr("Work-precision"), tr("Stability map"),
+                   tr("Extreme cases"), tr("Grid convergence"), tr("Materials against exact solutions")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
@@ -205,6 +211,7 @@ void StudyChoices::makeRows() {
   form_->addRow(kind_);
   form_->addRow(purpose_);
   form_->addRow(sweep_);
+  form_->addRow(fit_);
   form_->addRow(methods_);
   form_->addRow(protocols_);
   form_->addRow(tr("Horizon (s)"), horizon_);
@@ -232,6 +239,7 @@ void StudyChoices::connectRows() {
   });
   connect(protocols_, &QListWidget::itemChanged, this, &StudyChoices::changed);
   connect(sweep_, &SweepChoices::changed, this, &StudyChoices::changed);
+  connect(fit_, &FitChoices::changed, this, &StudyChoices::changed);
   connect(horizon_, &QLineEdit::textChanged, this, &StudyChoices::changed);
   connect(repeats_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
@@ -265,6 +273,8 @@ void StudyChoices::follow() {
        {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
     form_->setRowVisible(field, now == Kind::convergence);
   form_->setRowVisible(sweep_, now == Kind::sweep);
+  form_->setRowVisible(fit_, now == Kind::fit);
+  form_->setRowVisible(folder_, now != Kind::fit);
   const bool any_method =
       now == Kind::work_precision || now == Kind::stability || now == Kind::extremes;  // or their own
   form_->setRowVisible(methods_, any_method);
@@ -305,6 +315,7 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
                                                               : cells_text(cloth::default_cells(scene)));
   outputs_->setScene(scene);
   sweep_->refresh();
+  fit_->refresh();
   time_->setPlaceholderText(number_text(scene.duration, 4));
   Q_EMIT changed();
 }
@@ -378,7 +389,7 @@ std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
 }
 
 std::variant<StudyOrder, QString> StudyChoices::inputs() const {
-  if (kind() == Kind::sweep) return QString();  // see sweepOrder
+  if (kind() == Kind::sweep || kind() == Kind::fit) return QString();  // by other runners
   if (kind() == Kind::convergence) return convergenceInputs();
   if (kind() == Kind::validation) return validationInputs();
   if (methods().empty()) return tr("Choose at least one method.");

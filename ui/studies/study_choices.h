@@ -19,6 +19,7 @@ class QSpinBox;
 namespace clothlab {
 
 class AxisChoice;
+class FitChoices;
 class LabDocument;
 class OutputsChoice;
 class SweepChoices;
@@ -27,7 +28,7 @@ class StudyChoices : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Kind { sweep, work_precision, stability, extremes, convergence, validation };
+  enum class Kind { sweep, fit, work_precision, stability, extremes, convergence, validation };
 
   explicit StudyChoices(LabDocument& document, QWidget* parent = nullptr);
 
@@ -41,6 +42,7 @@ class StudyChoices : public QWidget {
   /// Likewise of a sweep, which is run by another runner.
   std::variant<SweepOrder, QString> sweepOrder() const;
   const SweepChoices& sweep() const { return *sweep_; }
+  FitChoices& fit() const { return *fit_; }
   /// The axes of what is started stay, whatever scene comes.
   void keepAxes();
 
@@ -84,6 +86,7 @@ class StudyChoices : public QWidget {
   QLineEdit *cells_, *time_;
   OutputsChoice* outputs_;
   SweepChoices* sweep_;
+  FitChoices* fit_;
   QLineEdit* folder_;
 };
 

@@ -2,17 +2,15 @@
 
 #include <QLabel>
 #include <QListWidget>
-#include <QMenu>
 #include <QScopedValueRollback>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 
 #include "document/varied_ranges.h"
-#include "params/range_row.h"
 #include "scene/probe.h"
 #include "simulation/step_batches.h"
 #include "studies/sweep_diagrams.h"
+#include "studies/varied_list.h"
 #include "study/grid_output.h"
 #include "study/study_axis.h"
 #include "sweep/sweep_points.h"
@@ -68,20 +66,14 @@ QString time_words(double seconds) {
   return QObject::tr("about %1 h").arg(number_text(seconds / 3600, 2));
 }
 
-bool is_varied_number(const cloth::ParameterInfo& info) {
-  const bool is_number = info.kind == cloth::Kind::number || info.kind == cloth::Kind::integer;
-  return is_number && info.slider_maximum > info.slider_minimum;
-}
-
 }  // namespace
 
 std::vector<std::string> varied_paths(const cloth::SweepPlan& plan, const cloth::Scene& scene) {
   std::vector<std::string> paths;
   for (const std::string& path : paths_of(plan))
     for (const cloth::Parameter& parameter : cloth::parameters_of(scene))
-      if (parameter.path == path ||
-          (path == cloth::all_stiffnesses_path && parameter.path.starts_with("springs.") &&
-           is_varied_number(parameter.info)))
+      if (parameter.path == path || (path == cloth::all_stiffnesses_path &&
+                                     parameter.path.starts_with("springs.") && can_be_varied(parameter.info)))
         paths.push_back(parameter.path);
   return paths;
 }
@@ -96,12 +88,8 @@ void copy_varied(const cloth::SweepPlan& plan, const cloth::Scene& from, cloth::
 SweepChoices::SweepChoices(LabDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
   setObjectName("sweepChoices");
   auto* column = spaced(new QVBoxLayout(this), spacing / 2);
-  hint_ = named("sweepHint", muted(new QLabel(this)));
-  hint_->setWordWrap(true);
-  column->addWidget(hint_);
-  ranges_ = spaced(new QVBoxLayout, spacing);
-  column->addLayout(ranges_);
-  makeVaryButton();
+  varied_ = new VariedList(document, this);
+  column->addWidget(varied_);
   makeOutputs();
   time_ = named("sweepTime", new QLabel(this));
   time_->setWordWrap(true);
@@ -111,26 +99,12 @@ SweepChoices::SweepChoices(LabDocument& document, QWidget* parent) : QWidget(par
   take_.setInterval(time_interval);
   connect(&ask_, &QTimer::timeout, this, &SweepChoices::askForTime);
   connect(&take_, &QTimer::timeout, this, &SweepChoices::takeTime);
-  connect(&document.varied(), &VariedRanges::changed, this, &SweepChoices::followRanges);
+  connect(varied_, &VariedList::changed, this, &SweepChoices::changed);
+  connect(varied_, &VariedList::ruleBroken, this, &SweepChoices::showRule);
   connect(this, &SweepChoices::changed, this, [this] {
     showTime(std::nullopt);
     if (isVisible()) ask_.start();
   });
-  followRanges();
-}
-
-void SweepChoices::makeVaryButton() {
-  auto* button = named("sweepVary", new QToolButton(this));
-  button->setText(tr("Vary a parameter"));
-  button->setIcon(icon("add"));
-  button->setIconSize({16, 16});
-  button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  button->setPopupMode(QToolButton::InstantPopup);
-  button->setToolTip(tr("Every number of the scene; in the form, the menu beside a parameter does the same"));
-  vary_menu_ = named("sweepVaryMenu", new QMenu(button));
-  button->setMenu(vary_menu_);
-  connect(vary_menu_, &QMenu::aboutToShow, this, &SweepChoices::fillVaryMenu);
-  layout()->addWidget(button);
 }
 
 void SweepChoices::makeOutputs() {
@@ -150,67 +124,16 @@ void SweepChoices::makeOutputs() {
   });
 }
 
-/// A menu for each block.
-void SweepChoices::fillVaryMenu() {
-  vary_menu_->clear();
-  for (const cloth::Block& block : cloth::blocks_of(document_.scene())) {
-    QMenu* of_block = nullptr;
-    for (const cloth::Parameter& parameter : block.parameters) {
-      if (!is_varied_number(parameter.info)) continue;
-      if (!of_block) of_block = vary_menu_->addMenu(QString::fromStdString(block.title));
-      QAction* action = of_block->addAction(QString::fromStdString(parameter.info.label));
-      action->setObjectName("vary:" + QString::fromStdString(parameter.path));
-      action->setEnabled(!document_.varied().find(parameter.path));
-      connect(action, &QAction::triggered, this,
-              [this, path = parameter.path] { document_.varied().add(path); });
-    }
-  }
-}
-
-void SweepChoices::followRanges() {
-  const std::vector<VariedRange> ranges = document_.varied().list();
-  const bool same =
-      std::equal(ranges.begin(), ranges.end(), rows_.begin(), rows_.end(),
-                 [](const VariedRange& range, const RangeRow* row) { return range.path == row->path(); });
-  if (same) {
-    for (RangeRow* row : rows_) row->refresh();
-  } else {
-    for (RangeRow* row : std::exchange(rows_, {})) {
-      row->abandonEdits();
-      row->hide();
-      row->deleteLater();
-    }
-    for (const VariedRange& range : ranges) {
-      rows_.push_back(new RangeRow(document_, *find_parameter(document_.scene(), range.path),
-                                   RangeRow::Place::dock, this));
-      connect(rows_.back(), &RangeRow::ruleBroken, this, [this](const QString& rule) {
-        if (rule.isEmpty()) return showTime(std::nullopt);
-        time_->setProperty("state", "error");
-        time_->style()->polish(time_);
-        time_->setText(tr("The range %1.").arg(rule));
-      });
-      ranges_->addWidget(rows_.back());
-    }
-    orderTabs();
-  }
-  hint_->setVisible(ranges.empty());
-  hint_->setText(tr("Nothing is varied yet: choose “Vary…” in the menu ⋮ of a parameter, or here:"));
-  Q_EMIT changed();
-}
-
-void SweepChoices::orderTabs() {
-  QWidget* last = nullptr;
-  for (const RangeRow* row : rows_)
-    for (QWidget* stop : row->tabStops()) {
-      if (last) QWidget::setTabOrder(last, stop);
-      last = stop;
-    }
-  if (last) QWidget::setTabOrder(last, findChild<QToolButton*>("sweepVary"));
+void SweepChoices::showRule(const QString& rule) {
+  if (rule.isEmpty()) return showTime(std::nullopt);
+  time_->setProperty("state", "error");
+  time_->style()->polish(time_);
+  time_->setText(tr("The range %1.").arg(rule));
 }
 
 void SweepChoices::refresh() {
   offerOutputs();
-  followRanges();
+  varied_->refresh();
 }
 
 /// Ticks the usual outputs, or those that the user ticked as far as the scene has them.

@@ -13,12 +13,10 @@
 
 class QLabel;
 class QListWidget;
-class QMenu;
-class QVBoxLayout;
 
 namespace clothlab {
 
-class RangeRow;
+class VariedList;
 
 class SweepChoices : public QWidget {
   Q_OBJECT
@@ -42,11 +40,8 @@ class SweepChoices : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  void makeVaryButton();
   void makeOutputs();
-  void fillVaryMenu();
-  void followRanges();
-  void orderTabs();
+  void showRule(const QString& rule);
   void offerOutputs();
   std::vector<cloth::SweepOutput> outputs() const;
   void askForTime();
@@ -57,11 +52,9 @@ class SweepChoices : public QWidget {
   std::vector<cloth::SweepOutput> offered_;
   std::set<std::string> own_;  ///< names that the user ticked
   bool has_own_ = false, offering_ = false;
-  std::vector<RangeRow*> rows_;
-  QVBoxLayout* ranges_ = nullptr;
-  QLabel *hint_ = nullptr, *time_ = nullptr;
+  VariedList* varied_ = nullptr;
+  QLabel* time_ = nullptr;
   QListWidget* list_ = nullptr;
-  QMenu* vary_menu_ = nullptr;
   QTimer ask_, take_;
   SweepEstimator estimator_;
 };

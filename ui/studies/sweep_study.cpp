@@ -2,6 +2,7 @@
 
 #include <QDir>
 #include <QFileInfo>
+#include <utility>
 
 #include "simulation/step_batches.h"
 #include "studies/study_library.h"
@@ -99,6 +100,7 @@ bool SweepStudy::isFollowed() const {
 }
 
 bool SweepStudy::poll() {
+  if (const auto done = status().done; isRunning() && std::exchange(done_, done) != done) watch_.look();
   auto newest = watch_.take();
   if (!newest) return false;
   view_ = std::move(newest);

@@ -59,6 +59,7 @@ class SweepStudy : public QObject {
   QString folder_;
   std::shared_ptr<const SweepView> view_;
   bool was_running_ = false;
+  std::int64_t done_ = 0;  ///< points, at the last poll
 };
 
 }  // namespace clothlab

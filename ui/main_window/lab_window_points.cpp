@@ -31,7 +31,8 @@ std::vector<cloth::OwnValue> varied_values(const cloth::SweepPlan& plan, const c
 /// The study that takes the ranges comes into sight beside the form, and the range gets the focus.
 void LabWindow::showVaried(const std::string& path) {
   showStudies();
-  if (!studies_->isRunning()) studies_->choices().choose(StudyChoices::Kind::sweep);
+  const bool is_fit = studies_->choices().kind() == StudyChoices::Kind::fit;  // its bounds are ranges, too
+  if (!studies_->isRunning() && !is_fit) studies_->choices().choose(StudyChoices::Kind::sweep);
   QTimer::singleShot(0, this, [this, path] {
     if (!parameters_->reveal(path)) return;
     const auto* editor = parameters_->findChild<QWidget*>("param:" + QString::fromStdString(path));

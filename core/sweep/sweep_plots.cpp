@@ -61,9 +61,12 @@ std::int64_t size_of(const SweepAxis& axis) {
 std::vector<ClassStyle> map_classes(double low, double high) {
   std::vector<ClassStyle> classes;
   const double step = (high - low) / colour_steps;
+  // As many digits as tell one step from the next.
+  const double steps = step > 0 ? std::max(std::abs(low), std::abs(high)) / step : 1;
+  const int digits = std::clamp(1 + static_cast<int>(std::ceil(std::log10(std::max(steps, 1.0)))), 3, 12);
   for (int k = 0; k < colour_steps; ++k)
-    classes.push_back({.name = fmt::format("{} to {}", short_number(low + k * step, 3),
-                                           short_number(low + (k + 1) * step, 3)),
+    classes.push_back({.name = fmt::format("{} to {}", short_number(low + k * step, digits),
+                                           short_number(low + (k + 1) * step, digits)),
                        .colour = {fmt::format("viridis{}", k), ramp[k], ramp[k]}});
   classes.push_back({.name = "failed", .colour = page_colours().band, .mark = CellMark::slash});
   classes.push_back({.name = "no value", .colour = page_colours().surface, .mark = CellMark::dot});

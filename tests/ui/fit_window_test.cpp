@@ -54,8 +54,7 @@ class FitWindowTest : public QObject {
     apply_theme(*qApp, false);
     QVERIFY(folder_.isValid());
     scene_ = folder_.filePath("swing.scene.json");
-    std::ofstream(scene_.toStdString())
-        << R"({"format": "clothlab/scene/1", "title": "A swinging sheet",
+    std::ofstream(scene_.toStdString()) << R"({"format": "clothlab/scene/1", "title": "A swinging sheet",
  "cloth": {"columns": 5, "rows": 5, "width": 1, "height": 1, "mass": 0.25, "origin": [-0.5, 1, 0],
            "across": [1, 0, 0], "down": [0, -0.3, 0.95], "pins": ["top-left", "top-right"]},
  "springs": {"structural": 80, "shear": 20, "flexion": 5}, "damping": 0.01, "gravity": [0, -9.81, 0],
@@ -88,6 +87,9 @@ class FitWindowTest : public QObject {
              qPrintable(QString::number(result.parameters[0].value)));
     QTRY_VERIFY_WITH_TIMEOUT(bench.part<QLabel>("fitValues")->text().contains("identified"), patience);
     QVERIFY(std::holds_alternative<cloth::LinePlot>(bench.plot().diagram()));
+    bench.play_until(0.55);
+    bench.pause();
+    bench.write_picture("fit-window");
     bench.push("useFit");
     QCOMPARE(bench.window.document().scene().springs->structural, result.parameters[0].value);
     bench.window.document().undoStack().undo();

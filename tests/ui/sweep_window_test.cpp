@@ -23,6 +23,9 @@
 namespace clothlab::test::sweep_window_test {
 namespace {
 
+/// Of the map: values of the stiffness, and of the damping. 1,000 points.
+constexpr int across = 40, up = 25;
+
 /// The rows of a table without what belongs to the machine.
 QStringList rows_of(const cloth::CsvTable& table) {
   QStringList rows;
@@ -117,7 +120,7 @@ class SweepWindowTest : public QObject {
  "cloth": {"columns": 5, "rows": 5, "width": 1, "height": 1, "mass": 0.25, "origin": [-0.5, 1, 0],
            "across": [1, 0, 0], "down": [0, -0.3, 0.95], "pins": ["top-left", "top-right"]},
  "springs": {"structural": 50, "shear": 20, "flexion": 5}, "damping": 0.01, "gravity": [0, -9.81, 0],
- "integrator": {"method": "verlet", "time_step": 0.0005}, "duration": 2, "record": {"interval": 0.01}})";
+ "integrator": {"method": "verlet", "time_step": 0.0005}, "duration": 1, "record": {"interval": 0.01}})";
   }
 
   /// From the window as it opens, with its default scene, to the diagram: each press of a button and each
@@ -157,6 +160,7 @@ class SweepWindowTest : public QObject {
     QCOMPARE(curve->y.unit, std::string("m"));
     QVERIFY(curve->series.front().points.size() >= 9);
     QVERIFY2(actions <= 6, qPrintable(QString::number(actions)));
+    bench.write_picture("sweep-curve");
   }
 
   void a_range_is_set_by_fields_handles_and_keys_and_undone() {
@@ -198,8 +202,8 @@ class SweepWindowTest : public QObject {
     for (int attempt = 0; attempt < 4; ++attempt) {
       SweepBench bench(scene_);
       if (attempt == 0) {
-        bench.vary("springs.structural", "10", "400", "25");
-        bench.vary("damping", "0.001", "0.1", "16");
+        bench.vary("springs.structural", "10", "400", QString::number(across));
+        bench.vary("damping", "0.001", "0.1", QString::number(up));
         bench.type("studyFolder", here);
         bench.push("startStudy");
       } else {
@@ -212,17 +216,18 @@ class SweepWindowTest : public QObject {
         break;
       }
       const auto made = [&bench] { return bench.view() ? std::ssize(bench.view()->results.rows) : 0; };
-      const auto wanted = 30 + 90 * attempt;
+      const auto wanted = 50 + 250 * attempt;
       QTRY_VERIFY_WITH_TIMEOUT(made() > wanted, 60000);
       if (attempt == 0) bench.push("cancelStudy");  // the others are stopped by closing the window
       if (attempt == 0) QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning(), patience);
+      if (attempt == 1) bench.write_picture("sweep-map");
     }
     QProcess cli;
     cli.start(CLOTHLAB_CLI, {"sweep", plan_file(here, folder_.filePath("again.sweep.json")), "--out", there});
     QVERIFY(cli.waitForFinished(120000));
     QCOMPARE(cli.exitCode(), 0);
     const QStringList rows = rows_of(there);
-    QCOMPARE(rows.size(), 25 * 16);
+    QCOMPARE(rows.size(), across * up);
     QCOMPARE(rows_of(here), rows);
   }
 
@@ -238,19 +243,19 @@ class SweepWindowTest : public QObject {
     LabDocument& document = bench.window.document();
     const cloth::SweepPoints points(bench.view()->folder.plan);
     const auto structural = [&](int point) { return std::get<double>(points.values(point)[0]); };
-    click(5 * 16 + 3);
+    click(5 * up + 3);
     QCOMPARE(document.paneCount(), 1u);
-    QCOMPARE(document.scene().springs->structural, structural(5 * 16 + 3));
-    click(9 * 16 + 3, Qt::ControlModifier);
-    click(14 * 16 + 3, Qt::ControlModifier);
-    click(20 * 16 + 3, Qt::ControlModifier);
-    click(22 * 16 + 3, Qt::ControlModifier);  // there is no fifth
+    QCOMPARE(document.scene().springs->structural, structural(5 * up + 3));
+    click(9 * up + 3, Qt::ControlModifier);
+    click(14 * up + 3, Qt::ControlModifier);
+    click(20 * up + 3, Qt::ControlModifier);
+    click(22 * up + 3, Qt::ControlModifier);  // there is no fifth
     QCOMPARE(document.paneCount(), 4u);
-    QCOMPARE(scene_of(document.comparison(), 3).springs->structural, structural(20 * 16 + 3));
-    click(22 * 16 + 3);  // in the last pane
+    QCOMPARE(scene_of(document.comparison(), 3).springs->structural, structural(20 * up + 3));
+    click(22 * up + 3);  // in the last pane
     QCOMPARE(document.paneCount(), 4u);
-    QCOMPARE(scene_of(document.comparison(), 3).springs->structural, structural(22 * 16 + 3));
-    QCOMPARE(scene_of(document.comparison(), 0).springs->structural, structural(5 * 16 + 3));
+    QCOMPARE(scene_of(document.comparison(), 3).springs->structural, structural(22 * up + 3));
+    QCOMPARE(scene_of(document.comparison(), 0).springs->structural, structural(5 * up + 3));
     while (document.undoStack().canUndo()) document.undoStack().undo();
     QCOMPARE(document.paneCount(), 1u);
     QCOMPARE(document.scene().springs->structural, 50.0);
@@ -265,11 +270,11 @@ class SweepWindowTest : public QObject {
     QTest::keyClick(&bench.plot(), Qt::Key_Right);  // the first one
     QTest::keyClick(&bench.plot(), Qt::Key_Right);  // another stiffness
     QTest::keyClick(&bench.plot(), Qt::Key_Up);     // another damping
-    QVERIFY(bench.plot().accessibleDescription().contains("point 17"));
+    QVERIFY(bench.plot().accessibleDescription().contains("point 26"));
     QTest::keyClick(&bench.plot(), Qt::Key_Return);
     bench.settle();
     const cloth::SweepPoints points(bench.view()->folder.plan);
-    QCOMPARE(bench.window.document().scene().springs->structural, std::get<double>(points.values(17)[0]));
+    QCOMPARE(bench.window.document().scene().springs->structural, std::get<double>(points.values(up + 1)[0]));
   }
 
   /// Another process fills the folder.
@@ -285,10 +290,10 @@ class SweepWindowTest : public QObject {
     shard("1/4");
     SweepBench bench(scene_);
     bench.panel().openFolder(there);
-    QTRY_VERIFY_WITH_TIMEOUT(bench.view() && bench.view()->results.rows.size() == 100, patience);
+    QTRY_VERIFY_WITH_TIMEOUT(bench.view() && bench.view()->results.rows.size() == 250, patience);
     QVERIFY(std::holds_alternative<cloth::HeatMap>(bench.plot().diagram()));
     shard("3/4");
-    QTRY_VERIFY_WITH_TIMEOUT(bench.view()->results.rows.size() == 200, patience);
+    QTRY_VERIFY_WITH_TIMEOUT(bench.view()->results.rows.size() == 500, patience);
     shard("2/4");
     shard("4/4");
     QTRY_VERIFY_WITH_TIMEOUT(bench.view()->results.missing() == 0, patience);

@@ -101,7 +101,10 @@ QString FitChoices::openTable(const QString& file, const std::string& column) {
   file_->setText(QFileInfo(file).fileName());
   file_->setToolTip(file);
   offerColumns();
-  offerQuantities(column.empty() ? value_->currentText().toStdString() : column);
+  const std::string named = value_->currentText().toStdString();
+  const std::vector<std::string> known = quantities_of(document_.scene());
+  const bool says_it = std::find(known.begin(), known.end(), named) != known.end();
+  offerQuantities(says_it || column.empty() ? named : column);
   Q_EMIT changed();
   return {};
 }

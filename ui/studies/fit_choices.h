@@ -24,7 +24,7 @@ class FitChoices : public QWidget {
   explicit FitChoices(LabDocument& document, QWidget* parent = nullptr);
 
   void refresh();
-  /// Takes a CSV file; `column` is the quantity of the record that it is likely of, empty: as its names say.
+  /// Takes a CSV file. Where the measured column is not named as one of the record, it is likely of `column`.
   /// Empty, or what is wrong with it.
   QString openTable(const QString& file, const std::string& column = {});
   bool hasTable() const { return table_.has_value(); }

@@ -21,6 +21,7 @@
 #include "document/save_dialog.h"
 #include "params/panel_parts.h"
 #include "studies/study_library.h"
+#include "studies/sweep_choices.h"
 #include "study/extremes_report.h"
 #include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
@@ -80,6 +81,11 @@ QWidget* StudiesPanel::makeLeft() {
   cancel_->setToolTip(tr("Stop at the next step. What is finished is kept."));
   auto* column = spaced(new QVBoxLayout(left), spacing);
   column->addWidget(scroll, 1);
+  column->addWidget(choices_->sweep().time());
+  connect(choices_, &StudyChoices::changed, this, [this] {
+    choices_->sweep().time()->setVisible(choices_->kind() == StudyChoices::Kind::sweep &&
+                                         !choices_->sweep().time()->text().isEmpty());
+  });
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(start_, 1);
   buttons->addWidget(cancel_);

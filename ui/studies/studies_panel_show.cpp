@@ -289,7 +289,9 @@ void StudiesPanel::compareWithForm() {
 
 /// The choice stays while the kind of study does.
 void StudiesPanel::offerDiagrams() {
-  const QStringList diagrams = sweep_.isShown() ? sweep_diagram_names(*sweep_.view()) : diagrams_of(*table_);
+  const QStringList diagrams = shows_fit_         ? fitDiagrams()
+                               : sweep_.isShown() ? sweep_diagram_names(*sweep_.view())
+                                                  : diagrams_of(*table_);
   QStringList offered;
   for (int k = 0; k < against_->count(); ++k) offered << against_->itemText(k);
   if (offered == diagrams) return;

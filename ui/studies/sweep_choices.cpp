@@ -93,7 +93,6 @@ SweepChoices::SweepChoices(LabDocument& document, QWidget* parent) : QWidget(par
   makeOutputs();
   time_ = named("sweepTime", new QLabel(this));
   time_->setWordWrap(true);
-  column->addWidget(time_);
   ask_.setSingleShot(true);
   ask_.setInterval(pause_of_typing);
   take_.setInterval(time_interval);

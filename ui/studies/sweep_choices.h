@@ -26,6 +26,8 @@ class SweepChoices : public QWidget {
 
   /// The document's scene is another one: offers its outputs.
   void refresh();
+  /// Says how many runs it would be, and how long they would take; to be placed where it is in sight.
+  QLabel* time() const { return time_; }
   /// The plan, or a sentence that says what is missing.
   std::variant<cloth::SweepPlan, QString> plan() const;
   /// Whether a sweep is the one that the form would make now, whatever values the scene itself has of what

@@ -62,9 +62,12 @@ std::int64_t size_of(const SweepAxis& axis) {
 std::vector<ClassStyle> map_classes(double low, double high) {
   std::vector<ClassStyle> classes;
   const double step = (high - low) / colour_steps;
+  // As many digits as tell one step from the next.
+  const double steps = step > 0 ? std::max(std::abs(low), std::abs(high)) / step : 1;
+  const int digits = std::clamp(1 + static_cast<int>(std::ceil(std::log10(std::max(steps, 1.0)))), 3, 12);
   for (int k = 0; k < colour_steps; ++k)
-    classes.push_back({.name = fmt::format("{} to {}", short_number(low + k * step, 3),
-                                           short_number(low + (k + 1) * step, 3)),
+    classes.push_back({.name = fmt::format("{} to {}", short_number(low + k * step, digits),
+                                           short_number(low + (k + 1) * step, digits)),
                        .colour = {fmt::format("viridis{}", k), ramp[k], ramp[k]}});
   classes.push_back({.name = "failed", .colour = page_colours().band, .mark = CellMark::slash});
   classes.push_back({.name = "no value", .colour = page_colours().surface, .mark = CellMark::dot});
@@ -79,11 +82,16 @@ HeatCell map_cell(const PointRow& row, double value, const MapRange& range) {
   const std::string point = fmt::format("point {}: ", row.point);
   if (row.status != PointStatus::finished)
     return {.class_index = colour_steps,
-            .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause)};
-  if (!std::isfinite(value)) return {.class_index = colour_steps + 1, .note = point + short_number(value)};
+            .note = fmt::format("{}{}: {}", point, name_of(row.status), row.cause),
+            .tag = static_cast<int>(row.point)};
+  if (!std::isfinite(value))
+    return {.class_index = colour_steps + 1,
+            .note = point + short_number(value),
+            .tag = static_cast<int>(row.point)};
   const double part = range.high > range.low ? (value - range.low) / (range.high - range.low) : 0;
   return {.class_index = std::min(colour_steps - 1, static_cast<int>(part * colour_steps)),
-          .note = point + short_number(value)};
+          .note = point + short_number(value),
+          .tag = static_cast<int>(row.point)};
 }
 
 /// Contours between the colours, where the axes' own scales are straight.
@@ -147,9 +155,12 @@ LinePlot curve_plot(const SweepFolder& folder, const SweepResults& results, std:
     const double x = number_of(points.values(row.point).front()).value_or(0);
     const std::string note = fmt::format("point {}", row.point);
     if (row.status != PointStatus::finished)
-      series.failed.push_back({.x = x, .cause = fmt::format("{}: {}", name_of(row.status), row.cause)});
+      series.failed.push_back({.x = x,
+                               .cause = fmt::format("{}: {}", name_of(row.status), row.cause),
+                               .tag = static_cast<int>(row.point)});
     else
-      series.points.push_back({.x = x, .y = row.outputs[output], .note = note});
+      series.points.push_back(
+          {.x = x, .y = row.outputs[output], .note = note, .tag = static_cast<int>(row.point)});
   }
   std::stable_sort(series.points.begin(), series.points.end(),
                    [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });

@@ -3,6 +3,8 @@
 
 #include <QAction>
 #include <QApplication>
+#include <QImage>
+#include <QPainter>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QToolButton>
@@ -71,6 +73,21 @@ class WindowBench {
     const auto& at = window.view().frame()->positions;
     const auto i = static_cast<std::size_t>(3 * particle);
     return {at[i], at[i + 1], at[i + 2]};
+  }
+
+  /// The window as it is on the display, with what OpenGL draws in its first pane.
+  QImage picture() {
+    QTest::qWait(300);
+    QImage picture = window.grab().toImage();
+    QPainter painter(&picture);
+    painter.drawImage(window.view().mapTo(&window, QPoint()), window.view().grabPicture());
+    return picture;
+  }
+  /// CLOTHLAB_WRITE_PICTURES=1 makes a picture of the docs anew.
+  void write_picture(const char* name) {
+    if (qEnvironmentVariableIntValue("CLOTHLAB_WRITE_PICTURES") == 0) return;
+    QVERIFY(
+        picture().save(QStringLiteral(CLOTHLAB_SOURCE_DIR "/docs/pictures/%1.png").arg(QLatin1String(name))));
   }
 
   LabWindow window;

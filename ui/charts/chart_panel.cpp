@@ -1,6 +1,9 @@
 #include "charts/chart_panel.h"
 
+#include <QDragEnterEvent>
 #include <QKeyEvent>
+#include <QMimeData>
+#include <QUrl>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +15,16 @@ namespace clothlab {
 
 namespace {
 
+/// The one file that is dragged, where it is a table; else empty.
+QString dropped_table(const QMimeData& data) {
+  const QList<QUrl> urls = data.urls();
+  if (urls.size() != 1 || !urls.front().isLocalFile()) return {};
+  const QString file = urls.front().toLocalFile();
+  for (const char* suffix : {".csv", ".tsv", ".txt"})
+    if (file.endsWith(QLatin1String(suffix), Qt::CaseInsensitive)) return file;
+  return {};
+}
+
 constexpr double key_pan = 0.1, key_zoom = 0.8;
 constexpr QSize smallest{260, 290};  // px: with legends in two rows each plot has some 30
 
@@ -21,6 +34,7 @@ ChartPanel::ChartPanel(QWidget* parent) : ChartArea({}, TimeView::Span::last_min
   setObjectName(QStringLiteral("chart_panel"));
   setFocusPolicy(Qt::ClickFocus);
   setProperty(keeps_arrow_keys, true);
+  setAcceptDrops(true);
   const auto& specs = chart_specs();
   for (std::size_t i = 0; i < specs.size(); ++i)
     stack_.add(new LiveChart(specs[i], i + 1 == specs.size(), this));
@@ -102,6 +116,39 @@ void ChartPanel::setDeformationRate(std::optional<double> fraction) {
   if (record_.deformation_rate == fraction) return;
   record_.deformation_rate = fraction;
   view_changed();
+}
+
+void ChartPanel::setMeasured(const std::optional<MeasuredDots>& dots) {
+  if (record_.measured == dots) return;
+  record_.measured = dots;
+  view_changed();
+}
+
+/// Other files are for the window.
+void ChartPanel::dragEnterEvent(QDragEnterEvent* event) {
+  if (!dropped_table(*event->mimeData()).isEmpty())
+    event->acceptProposedAction();
+  else
+    event->ignore();
+}
+
+void ChartPanel::dropEvent(QDropEvent* event) {
+  const QString file = dropped_table(*event->mimeData());
+  if (file.isEmpty()) return event->ignore();
+  event->acceptProposedAction();
+  std::string column;
+  for (const LiveChart* chart : stack_.charts())
+    if (chart->geometry().contains(event->position().toPoint())) column = column_of(*chart);
+  Q_EMIT tableDropped(file, column);
+}
+
+/// The column of the record that a chart's first curve is of; of the energies the kinetic one.
+std::string ChartPanel::column_of(const LiveChart& chart) const {
+  const CurveSpec& curve = chart.spec().curves.front();
+  if (chart.spec().key == "energy") return "kinetic_J";
+  if (chart.spec().key == "strain") return "max_strain";
+  const bool is_of_probe = curve.source == Source::samples && curve.column >= sample_columns;
+  return is_of_probe ? record_.probes[curve.column - sample_columns] : std::string();
 }
 
 void ChartPanel::setTimeSpan(TimeSpan span) {

@@ -29,6 +29,9 @@ class ChartPanel : public ChartArea {
   /// The strain (a fraction) that the scene's limiter allows, drawn as a dashed line; none without a limiter.
   void setDeformationRate(std::optional<double> fraction);
 
+  /// Draws measured values over the curve of their quantity; none: no longer.
+  void setMeasured(const std::optional<MeasuredDots>& dots);
+
   void setTimeSpan(TimeSpan span);  ///< and follows the run again
   TimeSpan timeSpan() const { return stack_.time().span(); }
   Range shownTimes() const { return stack_.shown_times(); }  ///< s
@@ -36,12 +39,19 @@ class ChartPanel : public ChartArea {
   QSize sizeHint() const override { return {460, 560}; }
   QSize minimumSizeHint() const override;
 
+ Q_SIGNALS:
+  /// A table was dropped on a chart: `column` of the record is what that chart shows first; empty: none.
+  void tableDropped(const QString& file, const std::string& column);
+
  protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
   void changeEvent(QEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
   void make_bar();
+  std::string column_of(const LiveChart& chart) const;
   void follow_probes();
   std::vector<CsvColumn> csv_columns() const override;
   void show_message() override;

@@ -65,6 +65,19 @@ Range ChartRecord::times() const {
   return {0, 0};
 }
 
+std::optional<std::size_t> ChartRecord::measured_column() const {
+  if (!measured) return std::nullopt;
+  for (const auto& [name, column] : {std::pair{"kinetic_J", kinetic},
+                                     {"elastic_J", elastic},
+                                     {"gravity_J", gravity},
+                                     {"total_J", total},
+                                     {"max_strain", strain}})
+    if (measured->column == name) return column;
+  const auto probe = std::find(probes.begin(), probes.end(), measured->column);
+  if (probe == probes.end()) return std::nullopt;
+  return sample_columns + static_cast<std::size_t>(probe - probes.begin());
+}
+
 const std::vector<ChartSpec>& chart_specs() {
   using M = Marker;
   static const std::vector<ChartSpec> specs{

@@ -17,12 +17,20 @@ namespace clothlab {
 /// The first columns of ChartRecord::samples, in the order of ChartSample; those of probes follow.
 enum SampleColumn : std::size_t { kinetic, elastic, gravity, total, strain, step_time, sample_columns };
 
+/// Values measured in a laboratory, drawn over the curve of the same quantity.
+struct MeasuredDots {
+  std::string column{};                   ///< of record.csv
+  std::vector<double> times{}, values{};  ///< s, and the column's unit
+  bool operator==(const MeasuredDots&) const = default;
+};
+
 struct ChartRecord {
   SampleSeries samples{sample_columns};
   SampleSeries draws{1};  ///< time per drawing (ms), at its own simulated times, because drawing and
                           ///< simulation are not synchronised
   std::optional<double> deformation_rate;  ///< a fraction
   std::vector<std::string> probes;         ///< their columns in record.csv, in the order of the samples
+  std::optional<MeasuredDots> measured;
 
   /// A time before the last one starts a new record: the simulation was reset. A cut deletes only the later
   /// samples.
@@ -31,6 +39,8 @@ struct ChartRecord {
   void set_probes(const std::vector<std::string>& columns);
   void append_draw_time(double time_s, double milliseconds);
   void clear();
+  /// The column of the samples that the measured values are of; nothing where none is.
+  std::optional<std::size_t> measured_column() const;
   bool empty() const { return samples.empty() && draws.empty(); }
   /// From the first to the last sample (s); draw times count only while there are no samples.
   Range times() const;

@@ -136,6 +136,20 @@ bool LiveChart::limit_on(const ChartRecord& record) const {
 }
 
 /// Of the curves shown, in the chart's unit; low above high when there is nothing.
+/// Measured values within the times shown, where their curve is.
+template <class Include>
+void LiveChart::include_measured(const ChartRecord& record, bool positive, const Include& include) const {
+  const auto column = record.measured_column();
+  for (std::size_t i = 0; column && i < spec_.curves.size(); ++i) {
+    const CurveSpec& curve = spec_.curves[i];
+    if (!legend_[i]->isChecked() || curve.source != Source::samples || curve.column != *column) continue;
+    for (std::size_t k = 0; k < record.measured->times.size(); ++k) {
+      const double value = record.measured->values[k] * curve.scale;
+      if (frame_.time.contains(record.measured->times[k]) && (!positive || value > 0)) include(value, value);
+    }
+  }
+}
+
 Range LiveChart::data_range(const ChartRecord& record, bool positive) const {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto include = [&range](double low, double high) {
@@ -151,6 +165,7 @@ Range LiveChart::data_range(const ChartRecord& record, bool positive) const {
     else if (std::isfinite(found.min_positive))
       include(found.min_positive * curve.scale, found.max * curve.scale);
   }
+  include_measured(record, positive, include);
   const bool some = range.low <= range.high;
   if (limit_on(record) && (some || !positive)) {
     const double limit = *record.deformation_rate * limit_spec().scale;

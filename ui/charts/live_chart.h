@@ -67,6 +67,8 @@ class LiveChart : public QWidget {
   bool legend_beside_title(int width) const;
   int header_height(int width) const;
   Range automatic_y(const ChartRecord& record);
+  template <class Include>
+  void include_measured(const ChartRecord& record, bool positive, const Include& include) const;
   Range data_range(const ChartRecord& record, bool positive) const;
   void choose_ticks(PlotFrame& frame, QSizeF plot_size) const;
   double height_below_plot() const;

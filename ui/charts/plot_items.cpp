@@ -124,10 +124,12 @@ void CurvesItem::set_limit(std::optional<double> y_px) {
 void CurvesItem::build(const ChartRecord& record, const ChartSpec& spec, const std::vector<bool>& shown,
                        const PlotMap& map, bool logarithmic) {
   curves_.clear();
+  measured_.clear();
   const int pixels = std::max(1, static_cast<int>(map.plot.width()));
   for (std::size_t i = 0; i < spec.curves.size(); ++i) {
     if (!shown[i]) continue;
     const CurveSpec& curve = spec.curves[i];
+    add_measured(record, curve, map, logarithmic);
     const SampleSeries& series = curve.series(record);
     series.query(curve.column, map.time.low, map.time.high, pixels,
                  logarithmic ? Keep::positive : Keep::finite, points_);
@@ -137,6 +139,18 @@ void CurvesItem::build(const ChartRecord& record, const ChartSpec& spec, const s
     if (curve.style.marker != Marker::none) add_markers(drawn, series, phase, map, logarithmic);
   }
   update();
+}
+
+void CurvesItem::add_measured(const ChartRecord& record, const CurveSpec& curve, const PlotMap& map,
+                              bool logarithmic) {
+  if (curve.source != Source::samples || record.measured_column() != curve.column) return;
+  const MeasuredDots& dots = *record.measured;
+  for (std::size_t k = 0; k < dots.times.size(); ++k) {
+    const double value = dots.values[k] * curve.scale;
+    if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
+    const QPointF at(map.x_of(dots.times[k]), map.y_of(axis_coordinate(value, logarithmic)));
+    if (map.plot.adjusted(-edge_px, -edge_px, edge_px, edge_px).contains(at)) measured_ << at;
+  }
 }
 
 void CurvesItem::add_pieces(DrawnCurve& curve, const PlotMap& map, bool logarithmic) {
@@ -195,6 +209,9 @@ void CurvesItem::paint(QPainter* painter, const QStyleOptionGraphicsItem*, QWidg
     for (const QPointF& at : curve.markers)
       paint_marker(*painter, at, curve.spec->style.marker, theme_->*curve.spec->style.colour, theme_->field,
                    marker_radius_px);
+  painter->setPen(QPen(theme_->text, 1.3));
+  painter->setBrush(Qt::NoBrush);
+  for (const QPointF& at : measured_) painter->drawEllipse(at, marker_radius_px, marker_radius_px);
   painter->restore();
 }
 

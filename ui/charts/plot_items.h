@@ -42,11 +42,14 @@ class CurvesItem : public QGraphicsItem {
   void set_limit(std::optional<double> y_px);
 
   const std::vector<DrawnCurve>& curves() const { return curves_; }
+  /// Of measured values, px.
+  const QPolygonF& measured() const { return measured_; }
   QRectF boundingRect() const override { return plot_.adjusted(-spacing, -spacing, spacing, spacing); }
   void paint(QPainter* painter, const QStyleOptionGraphicsItem* option, QWidget* widget) override;
 
  private:
   void add_pieces(DrawnCurve& curve, const PlotMap& map, bool logarithmic);
+  void add_measured(const ChartRecord& record, const CurveSpec& curve, const PlotMap& map, bool logarithmic);
   static void add_markers(DrawnCurve& curve, const SampleSeries& series, double phase, const PlotMap& map,
                           bool logarithmic);
 
@@ -54,6 +57,7 @@ class CurvesItem : public QGraphicsItem {
   const Theme* theme_ = nullptr;
   std::vector<DrawnCurve> curves_;
   std::optional<double> limit_y_;
+  QPolygonF measured_;
   std::vector<CurvePoint> points_;  ///< scratch
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "document/cloth_edits.h"
+#include "document/varied_ranges.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_edits.h"
 
@@ -118,12 +119,29 @@ class LabDocument::EditCommand : public QUndoCommand {
 
 LabDocument::LabDocument(QObject* parent) : QObject(parent), comparison_(cloth::comparison_of_one({})) {
   qRegisterMetaType<SceneChange>();
-  connect(&undo_stack_, &QUndoStack::cleanChanged, this, [this] { Q_EMIT modifiedChanged(isModified()); });
+  varied_ = std::make_unique<VariedRanges>(*this);
+  connect(&undo_stack_, &QUndoStack::indexChanged, this, &LabDocument::noteModified);
+  connect(&undo_stack_, &QUndoStack::cleanChanged, this, &LabDocument::noteModified);
 }
 
 LabDocument::~LabDocument() {
   // The stack is cleared after this body, when no signal may be sent any more.
   undo_stack_.disconnect(this);
+}
+
+/// Edits beside the scene do not count.
+bool LabDocument::isModified() const {
+  if (unsaved_) return true;
+  const int clean = undo_stack_.cleanIndex(), now = undo_stack_.index();
+  if (clean < 0) return true;
+  for (int k = std::min(clean, now); k < std::max(clean, now); ++k)
+    if (!dynamic_cast<const SideCommand*>(undo_stack_.command(k))) return true;
+  return false;
+}
+
+void LabDocument::noteModified() {
+  if (std::exchange(announced_modified_, isModified()) != announced_modified_)
+    Q_EMIT modifiedChanged(announced_modified_);
 }
 
 void LabDocument::markSaved(const QString& path) {
@@ -137,7 +155,7 @@ void LabDocument::markSaved(const QString& path) {
 void LabDocument::setUnsaved(bool unsaved) {
   if (unsaved == unsaved_) return;
   unsaved_ = unsaved;
-  Q_EMIT modifiedChanged(isModified());
+  noteModified();
 }
 
 QString LabDocument::title() const {
@@ -238,8 +256,8 @@ QString LabDocument::change(const std::string& path, const ParameterValue& value
 /// on the way are there again when the drag ends on a larger one.
 Comparison LabDocument::comparisonBefore(const std::string& path) const {
   if (drag_ == 0 || undo_stack_.index() == 0 || undo_stack_.isClean()) return comparison_;
-  const auto* last = static_cast<const EditCommand*>(undo_stack_.command(undo_stack_.index() - 1));
-  return last->belongs_to(drag_, path, scope_) ? last->before() : comparison_;
+  const auto* last = dynamic_cast<const EditCommand*>(undo_stack_.command(undo_stack_.index() - 1));
+  return last && last->belongs_to(drag_, path, scope_) ? last->before() : comparison_;
 }
 
 bool LabDocument::addBlock(const std::string& offer_path) {
@@ -366,6 +384,12 @@ void LabDocument::setReference(const std::string& reference) {
   Comparison after = comparison_;
   after.reference = reference;
   push(tr("Change the reference"), std::move(after), {});
+}
+
+void LabDocument::setPaneTitle(std::size_t pane, const QString& title) {
+  Comparison after = comparison_;
+  after.panes[pane].title = title.toStdString();
+  push(tr("Name pane %1").arg(QString::fromStdString(comparison_.panes[pane].name)), std::move(after), {});
 }
 
 void LabDocument::follow(const Comparison& run) {

@@ -9,6 +9,7 @@
 #include <QObject>
 #include <QUndoStack>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,8 @@
 #include "document/scene_change.h"
 
 namespace clothlab {
+
+class VariedRanges;
 
 class LabDocument : public QObject {
   Q_OBJECT
@@ -33,7 +36,7 @@ class LabDocument : public QObject {
   QString path() const { return path_is_comparison_ == isComparison() ? path_ : QString(); }
   /// The document's title, else the file's name, else "Untitled".
   QString title() const;
-  bool isModified() const { return unsaved_ || !undo_stack_.isClean(); }
+  bool isModified() const;
   /// Records that the file `path` contains the document as it is now.
   void markSaved(const QString& path);
 
@@ -54,6 +57,9 @@ class LabDocument : public QObject {
   /// Replaces the content and clears the undo history. `unsaved`: no file contains it yet.
   void load(cloth::Scene scene, const QString& path = {}, bool unsaved = false);
   void load(cloth::Comparison comparison, const QString& path = {}, bool unsaved = false);
+
+  /// What a sweep of the scene in scope would vary.
+  VariedRanges& varied() { return *varied_; }
 
   // --- Edits of the scene in scope ---
 
@@ -110,6 +116,8 @@ class LabDocument : public QObject {
   /// Nothing if it is the only one. The last one that stays is a scene.
   void removePane(std::size_t pane);
   void setReference(const std::string& reference);
+  /// What the pane is called beside its letter; empty: its method.
+  void setPaneTitle(std::size_t pane, const QString& title);
 
   /// Adopts what the run has in force after it has moved in its own history. Consecutive calls are one undo
   /// step, or none if the document ends where it began. If there are no edits to undo, as after opening a
@@ -138,10 +146,12 @@ class LabDocument : public QObject {
   void apply(const cloth::Comparison& target, const SceneChange& change);
   cloth::Scene sceneOfScope() const;
   void setUnsaved(bool unsaved);
+  void noteModified();
 
   QString path_;
   bool path_is_comparison_ = false;
   bool unsaved_ = false, loaded_ = false;
+  bool announced_modified_ = false;
   QUndoStack undo_stack_;
   MeshReader mesh_reader_;
   cloth::Comparison comparison_;
@@ -149,6 +159,7 @@ class LabDocument : public QObject {
   cloth::Scene scene_;  ///< of the scope
   int drag_ = 0;        ///< number of the present drag; 0: none
   int last_drag_ = 0;
+  std::unique_ptr<VariedRanges> varied_;
 };
 
 }  // namespace clothlab

@@ -93,7 +93,7 @@ FileType type_by_text(const QString& name) {
 }  // namespace
 
 FileType type_of(const QString& name) {
-  if (QDir(name).exists("study.json")) return FileType::study;
+  if (QDir(name).exists("study.json") || QDir(name).exists("sweep.json")) return FileType::study;
   const QString suffix = suffix_of(name);
   if (suffix == ".obj") return FileType::mesh;
   if (comparison_kind().suffixes.front() == suffix) return FileType::comparison;

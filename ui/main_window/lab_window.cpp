@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compare/scope_tabs.h"
+#include "document/varied_ranges.h"
 #include "main_window/autosave.h"
 #include "main_window/view_bar.h"
 #include "simulation/time_step.h"
@@ -87,6 +88,7 @@ void LabWindow::connectDocument() {
     startRun();
   });
   connect(&document_, &LabDocument::titleChanged, this, &LabWindow::updateTitle);
+  connect(&document_.undoStack(), &QUndoStack::indexChanged, this, [this] { notice_->withdraw("run"); });
   connect(autosave_, &Autosave::failed, this, [this](const QString& problem) {
     say("autosave", NoticeBar::Level::warning,
         tr("Unsaved changes could not be saved aside. %1").arg(problem));
@@ -156,6 +158,10 @@ void LabWindow::connectPanes() {
   for (ChartArea* charts : {static_cast<ChartArea*>(charts_), static_cast<ChartArea*>(pane_charts_)})
     connect(charts, &ChartArea::saveWanted, this, &LabWindow::saveCharts);
   connect(studies_, &StudiesPanel::runOpened, this, &LabWindow::openRun);
+  connect(studies_, &StudiesPanel::pointOpened, this, &LabWindow::openPoint);
+  connect(&document_.varied(), &VariedRanges::added, this, &LabWindow::showVaried);
+  connect(charts_, &ChartPanel::tableDropped, this, &LabWindow::fitTo);
+  connect(&studies_->choices(), &StudyChoices::changed, this, &LabWindow::showMeasured);
 }
 
 void LabWindow::connectRun() {
@@ -253,6 +259,8 @@ void LabWindow::showDocument() {
 
 /// Arranges the widgets for a scene or for a comparison.
 void LabWindow::showKind() {
+  const bool studies = studies_dock_->isVisible();
+  const int studies_height = studies_dock_->height();
   shows_comparison_ = document_.isComparison();
   charts_->setVisible(!shows_comparison_);
   pane_charts_->setVisible(shows_comparison_);
@@ -260,7 +268,12 @@ void LabWindow::showKind() {
   setWidths();
   ranking_dock_->setVisible(shows_comparison_);
   ranking_dock_->toggleViewAction()->setVisible(shows_comparison_);
-  if (shows_comparison_) resizeDocks({ranking_dock_}, {ranking_height}, Qt::Vertical);
+  // A study whose runs are opened keeps its diagram.
+  if (studies) studies_dock_->raise();
+  if (studies)
+    resizeDocks({studies_dock_}, {studies_height}, Qt::Vertical);
+  else if (shows_comparison_)
+    resizeDocks({ranking_dock_}, {ranking_height}, Qt::Vertical);
   transport_->gauge().setVisible(!shows_comparison_);
   view_bar_->showComparison(shows_comparison_);
   save_session_->setEnabled(!shows_comparison_);

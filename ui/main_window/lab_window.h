@@ -26,6 +26,7 @@ class StudiesPanel;
 class ViewBar;
 struct OpenedComparison;
 struct OpenedScene;
+struct SweptRun;
 
 class LabWindow : public QMainWindow {
   Q_OBJECT
@@ -138,6 +139,14 @@ class LabWindow : public QMainWindow {
   void compareMethods();
   void savePicture();
   void saveCloth();
+
+  // lab_window_points.cpp
+  void openPoint(const SweptRun& run);
+  void openPointInPane(const SweptRun& run);
+  void showVaried(const std::string& path);
+  void fitTo(const QString& file, const std::string& column);
+  void chooseMeasured();
+  void showMeasured();
 
   // lab_window_memory.cpp
   void remember();

@@ -77,6 +77,7 @@ void LabWindow::makeMenus() {
   run->addSeparator();
   run->addAction(icon("chart"), tr("Studies…"), QKeySequence("Ctrl+T"), this, &LabWindow::showStudies)
       ->setObjectName("studies");
+  run->addAction(tr("Fit to measured values…"), this, &LabWindow::chooseMeasured)->setObjectName("fitTo");
 
   QMenu* compare = menuBar()->addMenu(tr("&Compare"));
   compare->addAction(duplicate_);

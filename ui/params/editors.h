@@ -15,8 +15,10 @@ namespace clothlab {
 
 class MeshButton;
 class QuietCombo;
+class RangeRow;
 
 /// A number or integer: slider, exact field with its unit, and an "auto" toggle where that word is a value.
+/// Its menu varies it for a sweep: a slider with two handles and fields for its range come below.
 class NumberEditor : public ParameterEditor {
   Q_OBJECT
 
@@ -28,13 +30,17 @@ class NumberEditor : public ParameterEditor {
 
   QList<QWidget*> tabStops() const override;
   void abandonEdits() override;
+  void hideTitle() override;
 
  protected:
   void showValue(const cloth::ParameterValue& value) override;
   void showDefault(const std::optional<cloth::ParameterValue>& fallback) override;
   void markInvalid(bool invalid) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
+  void makeMenu();
+  void followRange();
   void makeAutoToggle();
   void commitText(const QString& text);
   void commitNumber(double number);
@@ -47,6 +53,8 @@ class NumberEditor : public ParameterEditor {
   ValueSlider* slider_;
   ExactField* field_;
   QCheckBox* auto_ = nullptr;
+  QToolButton* menu_ = nullptr;
+  RangeRow* range_ = nullptr;  ///< while it is varied
   std::optional<double> auto_value_, last_number_;
 };
 

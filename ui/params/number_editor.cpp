@@ -1,10 +1,15 @@
 #include <QCheckBox>
+#include <QContextMenuEvent>
 #include <QHBoxLayout>
+#include <QMenu>
 #include <QToolButton>
+#include <QVBoxLayout>
 #include <cmath>
 
 #include "params/editors.h"
 #include "params/exact_field.h"
+#include "params/parameter_menu.h"
+#include "params/range_row.h"
 #include "params/value_slider.h"
 #include "params/wording.h"
 #include "widgets/numbers.h"
@@ -40,7 +45,45 @@ NumberEditor::NumberEditor(LabDocument& document, const cloth::Parameter& parame
       slider_, field_, [this](double position) { commitNumber(scale_.value_at(position)); },
       [this](int steps) { step(steps); });
   connect(field_, &ExactField::committed, this, &NumberEditor::commitText);
+  makeMenu();
+  connect(&this->document().varied(), &VariedRanges::changed, this, &NumberEditor::followRange);
+  followRange();
   refresh();
+}
+
+/// At the end of the title, above the button that resets the value.
+void NumberEditor::makeMenu() {
+  menu_ = make_parameter_menu(document(), parameter(), this);
+  titleEnd().addWidget(menu_);
+}
+
+/// Without a title it stands beside the control.
+void NumberEditor::hideTitle() {
+  ParameterEditor::hideTitle();
+  controlRow().addWidget(menu_);
+}
+
+void NumberEditor::contextMenuEvent(QContextMenuEvent* event) {
+  const QPoint below = menu_->mapToGlobal(QPoint(0, menu_->height()));
+  menu_->menu()->popup(event->reason() == QContextMenuEvent::Mouse ? event->globalPos() : below);
+}
+
+void NumberEditor::followRange() {
+  const bool varied = document().varied().find(path()).has_value();
+  if (varied && !range_) {
+    range_ = new RangeRow(document(), parameter(), RangeRow::Place::form, this);
+    static_cast<QVBoxLayout*>(layout())->insertWidget(2, range_);
+    connect(range_, &RangeRow::ruleBroken, this, &NumberEditor::showMessage);
+    range_->show();
+  } else if (!varied && range_) {
+    range_->abandonEdits();
+    range_->hide();
+    range_->deleteLater();
+    range_ = nullptr;
+  } else if (range_) {
+    return range_->refresh();
+  }
+  Q_EMIT tabStopsChanged();
 }
 
 void NumberEditor::makeAutoToggle() {
@@ -53,10 +96,12 @@ void NumberEditor::makeAutoToggle() {
 QList<QWidget*> NumberEditor::tabStops() const {
   QList<QWidget*> stops{slider_, field_, &resetButton()};
   if (auto_) stops.prepend(auto_);
+  if (range_) stops << range_->tabStops();
   return stops;
 }
 
 void NumberEditor::abandonEdits() {
+  if (range_) range_->abandonEdits();
   const QSignalBlocker quiet(field_);
   field_->abandonEdit();
 }
@@ -67,6 +112,7 @@ void NumberEditor::showValue(const cloth::ParameterValue& value) {
   slider_->setEnabled(number || auto_value_);
   if (!number) return showAuto();
   last_number_ = number;
+  if (range_) range_->refresh();
   field_->showValue(*number);
   // During a drag, rounding the value must not move the handle.
   if (!slider_->isSliderDown()) slider_->setPosition(scale_.position_of(*number));

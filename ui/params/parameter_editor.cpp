@@ -74,8 +74,11 @@ void ParameterEditor::makeTitle(QVBoxLayout& column) {
     title_row_->addWidget(unit);
   }
   auto* to_end_of_control = spaced(new QHBoxLayout, spacing / 2);
-  to_end_of_control->addWidget(title_);
-  to_end_of_control->addSpacing(reset_width);
+  to_end_of_control->addWidget(title_, 1);
+  auto* end = new QWidget(this);
+  end->setFixedWidth(reset_width);
+  title_end_ = spaced(new QHBoxLayout(end), 0);
+  to_end_of_control->addWidget(end);
   column.addLayout(to_end_of_control);
 }
 
@@ -177,6 +180,11 @@ void ParameterEditor::showRule(const QString& rule) {
   const auto kept = value();
   message_->say(MessageBubble::Level::error,
                 kept ? tr("%1. Still %2.").arg(sentence, value_in_words(info(), *kept)) : sentence);
+}
+
+void ParameterEditor::showMessage(const QString& rule) {
+  if (rule.isEmpty()) return message_->withdraw();
+  message_->say(MessageBubble::Level::error, capitalised(typographic(rule)) + '.');
 }
 
 void ParameterEditor::setNote(const QString& note, const QString& button) {

@@ -39,7 +39,7 @@ class ParameterEditor : public QWidget {
   void refreshDefault();
   void setNote(const QString& note, const QString& button = {});
   /// For the only parameter of a section, whose header shows label and unit.
-  void hideTitle() { title_->hide(); }
+  virtual void hideTitle() { title_->hide(); }
 
   /// The widgets of the tab order.
   virtual QList<QWidget*> tabStops() const = 0;
@@ -48,6 +48,7 @@ class ParameterEditor : public QWidget {
 
  Q_SIGNALS:
   void noteButtonClicked();
+  void tabStopsChanged();
 
  protected:
   ParameterEditor(LabDocument& document, cloth::Parameter parameter, QWidget* parent);
@@ -59,13 +60,16 @@ class ParameterEditor : public QWidget {
   /// Sets the value in the document. If it breaks a rule, shows the rule at the control and returns false. A
   /// value beyond all sense is set, with a warning.
   bool commit(const cloth::ParameterValue& value);
-  void showRule(const QString& rule);  ///< empty: none
+  void showRule(const QString& rule);     ///< empty: none
+  void showMessage(const QString& rule);  ///< likewise, about another part than the value
 
   const cloth::ParameterInfo& info() const { return parameter_.info; }
   LabDocument& document() { return document_; }
   std::optional<cloth::ParameterValue> value() const { return document_.value(path()); }
 
+  const cloth::Parameter& parameter() const { return parameter_; }
   QHBoxLayout& titleRow() { return *title_row_; }
+  QHBoxLayout& titleEnd() { return *title_end_; }  ///< above the reset button
   QHBoxLayout& controlRow() { return *control_row_; }
   QToolButton& resetButton() const { return *reset_; }
   /// A drag of the slider, and a run of steps by key in the field, are one undo step each.
@@ -84,7 +88,7 @@ class ParameterEditor : public QWidget {
   cloth::Parameter parameter_;
   std::optional<cloth::ParameterValue> default_;
   QWidget* title_ = nullptr;
-  QHBoxLayout* title_row_ = nullptr;
+  QHBoxLayout *title_row_ = nullptr, *title_end_ = nullptr;
   QHBoxLayout* control_row_ = nullptr;
   ElidedLabel* label_ = nullptr;
   QList<QWidget*> named_;

@@ -202,6 +202,7 @@ ParameterSection* ParameterPanel::makeSection(const cloth::Block& block) {
   for (const cloth::Parameter& parameter : block.parameters) {
     ParameterEditor* made = section->editor(parameter.path);
     applyNotes(*made);
+    connect(made, &ParameterEditor::tabStopsChanged, this, &ParameterPanel::orderTabs);
     connect(made, &ParameterEditor::noteButtonClicked, this,
             [this, path = parameter.path] { Q_EMIT noteButtonClicked(path); });
   }

@@ -102,7 +102,9 @@ void PainterCanvas::draw(const QPainterPath& shape, const cloth::SvgStyle& own, 
   painter_.drawPath(shape);
   painter_.restore();
   const bool answers = !tip.text.empty() && (groups_.empty() || !groups_.back().untouchable);
-  if (answers) touches_.push_back({shape.boundingRect(), sentence_text(tip.text), tip.tag});
+  if (answers)
+    touches_.push_back({shape.boundingRect(), sentence_text(tip.text), tip.tag,
+                        style.fill || tip.tag < 0 ? QPainterPath() : shape});
 }
 
 void PainterCanvas::path(const std::string& data, const cloth::SvgStyle& style, const cloth::SvgTip& tip) {

@@ -5,6 +5,7 @@
 #include <QColor>
 #include <QFont>
 #include <QPainter>
+#include <QPainterPath>
 #include <QRectF>
 #include <limits>
 #include <vector>
@@ -17,7 +18,8 @@ namespace clothlab {
 struct PlotTouch {
   QRectF box;
   QString text;
-  int tag = -1;  ///< the run's number; -1: none
+  int tag = -1;         ///< the run's number; -1: none
+  QPainterPath line{};  ///< of a shape without a fill, which is where its line is; else empty
 };
 
 class PainterCanvas : public cloth::PlotCanvas {

@@ -21,6 +21,7 @@
 #include "document/save_dialog.h"
 #include "params/panel_parts.h"
 #include "studies/study_library.h"
+#include "studies/sweep_choices.h"
 #include "study/extremes_report.h"
 #include "study/grid_convergence_report.h"
 #include "study/stability_report.h"
@@ -36,55 +37,6 @@ namespace {
 
 constexpr int poll_interval = 100;  // ms
 constexpr int choices_width = 346;  // px
-
-QString time_text(double seconds) {
-  const int whole = static_cast<int>(std::ceil(seconds));
-  return whole < 60 ? QObject::tr("%1 s").arg(whole)
-                    : QObject::tr("%1 min %2 s").arg(whole / 60).arg(whole % 60, 2, 10, QChar('0'));
-}
-
-bool is_timed(const cloth::WorkPrecision& study) {
-  return std::any_of(study.methods.begin(), study.methods.end(), [](const cloth::MethodStudy& method) {
-    return std::any_of(method.runs.begin(), method.runs.end(),
-                       [](const cloth::WorkPrecisionRun& run) { return !run.samples.empty(); });
-  });
-}
-
-/// What the box above the diagram offers of a kind of study; nothing: it has one diagram.
-QStringList diagrams_of(const cloth::StudyTable& table) {
-  if (std::holds_alternative<cloth::WorkPrecision>(table))
-    return {QObject::tr("against run time"), QObject::tr("against step"),
-            QObject::tr("against force evaluations")};
-  if (std::holds_alternative<cloth::GridConvergence>(table))
-    return {QObject::tr("values"), QObject::tr("errors")};
-  QStringList names;
-  if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
-    for (const std::string& name : cloth::diagram_names(*validation)) names << QString::fromStdString(name);
-  return names;
-}
-
-/// `which` of diagrams_of the table.
-Diagram diagram_of(const cloth::StudyTable& table, int which) {
-  if (const auto* study = std::get_if<cloth::WorkPrecision>(&table)) {
-    // Before the first timing there is nothing to show against the time.
-    const auto against = static_cast<cloth::PlotAgainst>(which);
-    const bool timed = against != cloth::PlotAgainst::run_time || is_timed(*study);
-    return cloth::study_plot(*study, timed ? against : cloth::PlotAgainst::force_evaluations);
-  }
-  if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::study_plot(*map);
-  if (const auto* grids = std::get_if<cloth::GridConvergence>(&table))
-    return cloth::study_plot(*grids, static_cast<cloth::GridPlot>(which));
-  if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
-    return cloth::study_plot(*validation, static_cast<std::size_t>(which));
-  return cloth::study_plot(std::get<cloth::ExtremesTable>(table));
-}
-
-QString kind_title(const cloth::StudyTable& table) {
-  const QString titles[] = {QObject::tr("Work-precision"), QObject::tr("Stability map"),
-                            QObject::tr("Extreme cases"), QObject::tr("Grid convergence"),
-                            QObject::tr("Materials against exact solutions")};
-  return titles[table.index()];
-}
 
 }  // namespace
 
@@ -118,7 +70,7 @@ void StudiesPanel::makeLayout() {
 QWidget* StudiesPanel::makeLeft() {
   auto* left = new QWidget(this);
   left->setFixedWidth(choices_width);
-  choices_ = new StudyChoices(left);
+  choices_ = new StudyChoices(document_, left);
   auto* scroll = new QScrollArea(left);
   scroll->setWidget(choices_);
   scroll->setWidgetResizable(true);
@@ -129,6 +81,11 @@ QWidget* StudiesPanel::makeLeft() {
   cancel_->setToolTip(tr("Stop at the next step. What is finished is kept."));
   auto* column = spaced(new QVBoxLayout(left), spacing);
   column->addWidget(scroll, 1);
+  column->addWidget(choices_->sweep().time());
+  connect(choices_, &StudyChoices::changed, this, [this] {
+    choices_->sweep().time()->setVisible(choices_->kind() == StudyChoices::Kind::sweep &&
+                                         !choices_->sweep().time()->text().isEmpty());
+  });
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(start_, 1);
   buttons->addWidget(cancel_);
@@ -136,6 +93,8 @@ QWidget* StudiesPanel::makeLeft() {
   connect(start_, &QPushButton::clicked, this, &StudiesPanel::start);
   connect(cancel_, &QPushButton::clicked, this, [this] {
     runner_.cancel();
+    sweep_.cancel();
+    fit_.cancel();
     poll();
   });
   return left;
@@ -180,13 +139,26 @@ QWidget* StudiesPanel::makeRight() {
   open_->setPopupMode(QToolButton::InstantPopup);
   recent_ = new QMenu(open_);
   open_->setMenu(recent_);
+  go_on_ = named("goOn", new QPushButton(tr("Go on here"), right));
+  go_on_->setToolTip(tr("Make the points that the folder does not have, on this machine"));
+  go_on_->hide();
+  use_ = named("useFit", new QPushButton(tr("Use the values"), right));
+  use_->setToolTip(tr("Put the fitted values into the scene"));
+  use_->hide();
   auto* head = spaced(new QHBoxLayout, spacing);
   head->addWidget(title_, 1);
+  head->addWidget(go_on_);
+  head->addWidget(use_);
   head->addWidget(against_);
   head->addWidget(open_);
   head->addWidget(save_);
 
   makeDiagram(right);
+  values_ = named("fitValues", new QLabel(right));
+  values_->setTextFormat(Qt::RichText);
+  values_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  values_->setWordWrap(true);
+  values_->hide();
   bar_ = named("studyProgress", new QProgressBar(right));
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
@@ -197,6 +169,7 @@ QWidget* StudiesPanel::makeRight() {
   auto* column = spaced(new QVBoxLayout(right), spacing / 2);
   column->addLayout(head);
   column->addWidget(earlier_);
+  column->addWidget(values_);
   column->addWidget(stack_, 1);
   column->addWidget(bar_);
   column->addWidget(line_);
@@ -204,6 +177,14 @@ QWidget* StudiesPanel::makeRight() {
   connect(save_, &QToolButton::clicked, this, &StudiesPanel::saveAs);
   connect(recent_, &QMenu::aboutToShow, this, &StudiesPanel::fillRecentMenu);
   connect(plot_, &StudyPlot::runActivated, this, &StudiesPanel::openRun);
+  connect(use_, &QPushButton::clicked, this, &StudiesPanel::useFit);
+  connect(plot_, &StudyPlot::runClicked, this, &StudiesPanel::openPoint);
+  connect(go_on_, &QPushButton::clicked, this, [this] {
+    sweep_.goOn();
+    was_running_ = true;
+    timer_.start(poll_interval);
+    poll();
+  });
   connect(plot_, &StudyPlot::runHovered, this, [this](const QString& text) {
     if (!isRunning()) say(text.isEmpty() ? summary() : QString(text).replace('\n', ", "));
   });
@@ -219,180 +200,6 @@ void StudiesPanel::showEvent(QShowEvent*) {
   if (choices_stale_) choices_->setScene(document_.scene());
   choices_stale_ = false;
   compareWithForm();
-}
-
-void StudiesPanel::start() {
-  if (const StudyStatus status = runner_.status(); status.running && !status.writing) return;
-  if (was_running_ && table_) recent_studies.remember(folder_);  // which is still being written
-  auto order = choices_->order();
-  if (const QString* problem = std::get_if<QString>(&order)) {
-    say(*problem, true);
-    return;
-  }
-  StudyOrder& chosen = std::get<StudyOrder>(order);
-  choices_->keepAxes();
-  folder_ = QString::fromStdString(chosen.folder.string());
-  table_.reset();
-  compareWithForm();
-  stack_->setCurrentIndex(0);
-  empty_->setText(tr("<p><b>The study runs.</b></p><p>Its first results will be drawn here.</p>"));
-  runner_.start(std::move(chosen));
-  was_running_ = true;
-  timer_.start();
-  poll();
-}
-
-void StudiesPanel::stop() {
-  runner_.cancel();
-  runner_.wait();
-  poll();
-}
-
-void StudiesPanel::poll() {
-  const StudyStatus status = runner_.status();
-  if (auto table = runner_.take()) show(std::move(table));
-  showStatus(status);
-  if (status.running || !was_running_) return;
-  was_running_ = false;
-  timer_.stop();
-  if (status.problem.empty() && table_) recent_studies.remember(folder_);
-  Q_EMIT finished();
-}
-
-void StudiesPanel::showStatus(const StudyStatus& status) {
-  const bool computing = status.running && !status.writing;
-  start_->setEnabled(!computing);
-  choices_->setEnabled(!computing);
-  cancel_->setVisible(computing);
-  cancel_->setEnabled(!status.stopping);
-  open_->setEnabled(!status.running);
-  save_->setEnabled(table_ != nullptr);
-  bar_->setVisible(status.running);
-  bar_->setValue(static_cast<int>(1000 * status.fraction));
-  against_->setVisible(table_ && against_->count() > 0);
-  title_->setText(
-      table_ ? tr("%1: %2").arg(kind_title(*table_), QString::fromStdString(cloth::title_of(*table_)))
-             : QString());
-  if (!status.earlier_problem.empty()) {
-    say(tr("The results of the study before could not be written. %1")
-            .arg(QString::fromStdString(status.earlier_problem)),
-        true);
-  } else if (status.running) {
-    QString text = status.stopping && computing ? tr("stopping") : sentence_text(status.text);
-    if (computing) text += tr(" – %1 %").arg(static_cast<int>(100 * status.fraction));
-    if (status.left && !status.stopping) text += tr(", about %1 left").arg(time_text(*status.left));
-    say(text);
-  } else if (!status.problem.empty()) {
-    say(tr("The results could not be written. %1").arg(QString::fromStdString(status.problem)), true);
-  } else if (was_running_ || table_) {
-    say(summary());
-  }
-}
-
-QString StudiesPanel::summary() const {
-  if (!table_) return {};
-  QString text = tr("%1 runs%2, in %3")
-                     .arg(cloth::finished_runs(*table_))
-                     .arg(cloth::is_complete(*table_) ? QString() : tr(" (stopped before the end)"))
-                     .arg(shown_path(folder_));
-  if (const auto* grids = std::get_if<cloth::GridConvergence>(table_.get()))
-    for (std::size_t k = 0; k < grids->outputs.size(); ++k)
-      text += QString(". %1: %2")
-                  .arg(QString::fromStdString(cloth::words_of_output(grids->outputs[k])),
-                       QString::fromStdString(cloth::richardson_of(*grids, k).words).chopped(1));
-  if (const auto* validation = std::get_if<cloth::ValidationStudy>(table_.get())) {
-    QStringList failed;
-    for (const cloth::ValidationRow& row : validation->rows)
-      if (!row.holds()) failed << QString::fromStdString(cloth::name_of(row));
-    text += failed.isEmpty() ? tr(". All that is promised holds")
-                             : tr(". Not what is promised: %1").arg(failed.join(", "));
-  }
-  return text;
-}
-
-void StudiesPanel::show(std::shared_ptr<const cloth::StudyTable> table) {
-  table_ = std::move(table);
-  offerDiagrams();
-  refreshDiagram();
-  compareWithForm();
-  stack_->setCurrentIndex(1);
-}
-
-/// Says so where what is shown is not what the form would give now.
-void StudiesPanel::compareWithForm() {
-  earlier_->setVisible(table_ && !choices_->describes(*table_));
-}
-
-/// The choice stays while the kind of study does.
-void StudiesPanel::offerDiagrams() {
-  const QStringList diagrams = diagrams_of(*table_);
-  QStringList offered;
-  for (int k = 0; k < against_->count(); ++k) offered << against_->itemText(k);
-  if (offered == diagrams) return;
-  const QSignalBlocker quiet(against_);
-  against_->clear();
-  against_->addItems(diagrams);
-}
-
-void StudiesPanel::refreshDiagram() {
-  if (table_) plot_->setDiagram(diagram_of(*table_, std::max(0, against_->currentIndex())));
-}
-
-void StudiesPanel::openRun(int run) {
-  if (!table_) return;
-  if (const auto found = cloth::run_of(*table_, run))
-    Q_EMIT runOpened(found->scene, sentence_text(found->note));
-}
-
-void StudiesPanel::openFolder(const QString& folder) {
-  cloth::StudyReading reading = cloth::read_study(folder.toStdString());
-  if (!reading.study) {
-    say(tr("The study was not opened. %1").arg(QString::fromStdString(reading.problem)), true);
-    return;
-  }
-  folder_ = folder;
-  recent_studies.remember(folder);
-  show(std::make_shared<const cloth::StudyTable>(std::move(reading.study->table)));
-  showStatus({});
-}
-
-void StudiesPanel::fillRecentMenu() {
-  recent_->clear();
-  recent_->addAction(tr("Open a folder…"), this, [this] {
-    const QString folder =
-        QFileDialog::getExistingDirectory(this, tr("The folder of a study"), studies_folder());
-    if (!folder.isEmpty()) openFolder(folder);
-  });
-  recent_->addSeparator();
-  const QStringList recent = recent_studies.list();
-  for (const QString& folder : recent)
-    recent_->addAction(QDir(folder).dirName(), this, [this, folder] { openFolder(folder); })
-        ->setToolTip(folder);
-  if (recent.isEmpty()) recent_->addAction(tr("No study was made yet"))->setEnabled(false);
-}
-
-QString StudiesPanel::save(const QString& name) {
-  if (!table_) return tr("There is no study to save.");
-  if (!name.endsWith(".csv", Qt::CaseInsensitive)) return save_diagram(plot_->diagram(), name, font());
-  const QString problem = write_file(name, QByteArray::fromStdString(cloth::study_csv(*table_)));
-  return problem.isEmpty() ? problem : tr("%1: %2").arg(name, problem);
-}
-
-void StudiesPanel::saveAs() {
-  const QString name = ask_where_to_save(
-      this, tr("Save the study"),
-      {{tr("Drawing"), {".svg"}}, {tr("Picture"), {".png"}}, {tr("Page"), {".pdf"}}, {tr("Runs"), {".csv"}}},
-      QDir(folder_).filePath("study.svg"));
-  if (name.isEmpty()) return;
-  const QString problem = save(name);
-  say(problem.isEmpty() ? saved_in(tr("study"), name) : problem, !problem.isEmpty());
-}
-
-void StudiesPanel::say(const QString& text, bool error) {
-  line_->setProperty("state", error ? "error" : "");
-  line_->style()->polish(line_);
-  line_->setText(text);
-  line_->setToolTip(text);
 }
 
 }  // namespace clothlab

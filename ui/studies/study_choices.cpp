@@ -13,8 +13,11 @@
 #include "integrators/registry.h"
 #include "params/wording.h"
 #include "studies/axis_choice.h"
+#include "studies/fit_choices.h"
 #include "studies/outputs_choice.h"
+#include "studies/study_inputs.h"
 #include "studies/study_library.h"
+#include "studies/sweep_choices.h"
 #include "study/refined_scene.h"
 #include "study/stability_map.h"
 #include "study/stability_report.h"
@@ -31,6 +34,14 @@ const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
   switch (kind) {
+    case StudyChoices::Kind::sweep:
+      return QObject::tr(
+          "How does a value depend on parameters? A run for each combination of their values, on all cores; "
+          "it goes on where it was stopped.");
+    case StudyChoices::Kind::fit:
+      return QObject::tr(
+          "Which values make the scene do what was measured, and how sure are they? Runs of the scene come "
+          "closer and closer to a measured curve.");
     case StudyChoices::Kind::work_precision:
       return QObject::tr(
           "Which method reaches an error in the least time? Every method over a series of "
@@ -72,47 +83,6 @@ std::optional<std::vector<int>> cells_from(const QString& text) {
   return cells;
 }
 
-std::vector<std::string> names_of(const std::vector<cloth::MethodStudy>& methods) {
-  std::vector<std::string> names;
-  for (const cloth::MethodStudy& method : methods) names.push_back(method.ladder.facts.name);
-  return names;
-}
-
-bool is_same(const cloth::StudyAxis& a, const cloth::StudyAxis& b) {
-  return a.path == b.path && a.low == b.low && a.high == b.high && a.count == b.count && a.scale == b.scale;
-}
-
-bool has_inputs(const cloth::WorkPrecision& study, const cloth::Scene& given,
-                const cloth::WorkPrecisionOptions& options) {
-  const cloth::Scene scene = cloth::studied_scene(given);
-  return study.scene == scene && names_of(study.methods) == options.methods &&
-         study.repeats == options.repeats &&
-         study.horizon == options.horizon.value_or(cloth::default_horizon(scene));
-}
-
-bool has_inputs(const cloth::StabilityMap& map, const cloth::Scene& scene,
-                const cloth::StabilityOptions& options) {
-  return map.scene == scene && map.options.methods == options.methods &&
-         map.options.criterion.periods == options.criterion.periods && is_same(map.options.x, options.x) &&
-         is_same(map.options.y, options.y);
-}
-
-bool has_inputs(const cloth::GridConvergence& study, const cloth::Scene& scene,
-                const cloth::GridConvergenceOptions& options) {
-  const cloth::GridConvergence plan = cloth::plan_grid_convergence(scene, options);
-  return study.scene == plan.scene && study.cells == plan.cells && study.outputs == plan.outputs;
-}
-
-bool has_inputs(const cloth::ExtremesTable& table, const cloth::Scene&,
-                const cloth::ExtremesOptions& options) {
-  return table.scene == options.scene && table.methods == options.methods;
-}
-
-bool has_inputs(const cloth::ValidationStudy& study, const cloth::Scene&,
-                const cloth::ValidationOptions& options) {
-  return study.protocols == options.protocols;
-}
-
 /// Boxes to check, all of them checked, in columns.
 QListWidget* boxes(const char* name, const QString& accessible, int rows, QWidget* parent) {
   auto* list = named(name, new QListWidget(parent));
@@ -143,10 +113,12 @@ std::vector<std::string> checked(const QListWidget& list) {
 
 }  // namespace
 
-StudyChoices::StudyChoices(QWidget* parent) : QWidget(parent) {
+StudyChoices::StudyChoices(LabDocument& document, QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
-  kind_->addItems({tr("Work-precision"), tr("Stability map"), tr("Extreme cases"), tr("Grid convergence"),
-                   tr("Materials against exact solutions")});
+  sweep_ = new SweepChoices(document, this);
+  fit_ = new FitChoices(document, this);
+  kind_->addItems({tr("Sweep"), tr("Fit to measured values"), tr("Work-precision"), tr("Stability map"),
+                   tr("Extreme cases"), tr("Grid convergence"), tr("Materials against exact solutions")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
@@ -198,6 +170,8 @@ void StudyChoices::makeRows() {
   form_->setLabelAlignment(Qt::AlignLeading);
   form_->addRow(kind_);
   form_->addRow(purpose_);
+  form_->addRow(sweep_);
+  form_->addRow(fit_);
   form_->addRow(methods_);
   form_->addRow(protocols_);
   form_->addRow(tr("Horizon (s)"), horizon_);
@@ -224,6 +198,8 @@ void StudyChoices::connectRows() {
     Q_EMIT changed();
   });
   connect(protocols_, &QListWidget::itemChanged, this, &StudyChoices::changed);
+  connect(sweep_, &SweepChoices::changed, this, &StudyChoices::changed);
+  connect(fit_, &FitChoices::changed, this, &StudyChoices::changed);
   connect(horizon_, &QLineEdit::textChanged, this, &StudyChoices::changed);
   connect(repeats_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
@@ -239,6 +215,10 @@ StudyChoices::Kind StudyChoices::kind() const {
   return static_cast<Kind>(kind_->currentIndex());
 }
 
+void StudyChoices::choose(Kind kind) {
+  kind_->setCurrentIndex(static_cast<int>(kind));
+}
+
 void StudyChoices::follow() {
   const Kind now = kind();
   purpose_->setText(purpose_of(now));
@@ -252,7 +232,12 @@ void StudyChoices::follow() {
   for (QWidget* field :
        {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
     form_->setRowVisible(field, now == Kind::convergence);
-  form_->setRowVisible(methods_, now != Kind::convergence && now != Kind::validation);  // they have their own
+  form_->setRowVisible(sweep_, now == Kind::sweep);
+  form_->setRowVisible(fit_, now == Kind::fit);
+  form_->setRowVisible(folder_, now != Kind::fit);
+  const bool any_method =
+      now == Kind::work_precision || now == Kind::stability || now == Kind::extremes;  // or their own
+  form_->setRowVisible(methods_, any_method);
   form_->setRowVisible(protocols_, now == Kind::validation);
   const auto own = own_methods_.find(now);
   if (own != own_methods_.end())
@@ -262,9 +247,10 @@ void StudyChoices::follow() {
   Q_EMIT changed();
 }
 
-/// A label's least height is that of a single line: rows below it would be squeezed before the form scrolls.
+/// A label's least height is that of a single line, and its usual one that of a narrow column: rows below it
+/// would be squeezed before the form scrolls, or leave a gap.
 void StudyChoices::keepPurposeWhole() {
-  purpose_->setMinimumHeight(purpose_->heightForWidth(width()));
+  purpose_->setFixedHeight(purpose_->heightForWidth(width()));
 }
 
 void StudyChoices::resizeEvent(QResizeEvent* event) {
@@ -289,6 +275,8 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
   cells_->setPlaceholderText(cloth::refinement_problem(scene) ? QString()
                                                               : cells_text(cloth::default_cells(scene)));
   outputs_->setScene(scene);
+  sweep_->refresh();
+  fit_->refresh();
   time_->setPlaceholderText(number_text(scene.duration, 4));
   Q_EMIT changed();
 }
@@ -362,6 +350,7 @@ std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
 }
 
 std::variant<StudyOrder, QString> StudyChoices::inputs() const {
+  if (kind() == Kind::sweep || kind() == Kind::fit) return QString();  // by other runners
   if (kind() == Kind::convergence) return convergenceInputs();
   if (kind() == Kind::validation) return validationInputs();
   if (methods().empty()) return tr("Choose at least one method.");
@@ -372,31 +361,29 @@ std::variant<StudyOrder, QString> StudyChoices::inputs() const {
   return StudyOrder{scene_, options, {}, made_by};
 }
 
+/// As typed, else a new one.
+std::filesystem::path StudyChoices::folder() const {
+  const QString typed = path_from(folder_->text().trimmed());
+  const QString title = kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title);
+  return (typed.isEmpty() ? new_study_folder(kind_->currentText(), title) : typed).toStdString();
+}
+
 std::variant<StudyOrder, QString> StudyChoices::order() const {
   auto result = inputs();
-  if (auto* order = std::get_if<StudyOrder>(&result)) {
-    const QString folder = path_from(folder_->text().trimmed());
-    order->folder =
-        (folder.isEmpty()
-             ? new_study_folder(kind_->currentText(),
-                                kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title))
-             : folder)
-            .toStdString();
-  }
+  if (auto* order = std::get_if<StudyOrder>(&result)) order->folder = folder();
   return result;
+}
+
+std::variant<SweepOrder, QString> StudyChoices::sweepOrder() const {
+  auto plan = sweep_->plan();
+  if (auto* problem = std::get_if<QString>(&plan)) return *problem;
+  return SweepOrder{folder(), std::get<cloth::SweepPlan>(std::move(plan))};
 }
 
 bool StudyChoices::describes(const cloth::StudyTable& table) const {
   const auto now = inputs();
   const auto* order = std::get_if<StudyOrder>(&now);
-  if (!order) return false;
-  return std::visit(
-      [order](const auto& shown, const auto& options) {
-        if constexpr (requires { has_inputs(shown, order->scene, options); })
-          return has_inputs(shown, order->scene, options);
-        return false;  // another kind
-      },
-      table, order->options);
+  return order && has_inputs(table, *order);
 }
 
 }  // namespace clothlab

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bridge/study_runner.h"
+#include "bridge/sweep_runner.h"
 
 class QComboBox;
 class QFormLayout;
@@ -18,22 +19,30 @@ class QSpinBox;
 namespace clothlab {
 
 class AxisChoice;
+class FitChoices;
+class LabDocument;
 class OutputsChoice;
+class SweepChoices;
 
 class StudyChoices : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Kind { work_precision, stability, extremes, convergence, validation };
+  enum class Kind { sweep, fit, work_precision, stability, extremes, convergence, validation };
 
-  explicit StudyChoices(QWidget* parent = nullptr);
+  explicit StudyChoices(LabDocument& document, QWidget* parent = nullptr);
 
   /// Suggests what the user has not set.
   void setScene(const cloth::Scene& scene);
   Kind kind() const;
+  void choose(Kind kind);
 
   /// The order, or a sentence that says which choice breaks a rule.
   std::variant<StudyOrder, QString> order() const;
+  /// Likewise of a sweep, which is run by another runner.
+  std::variant<SweepOrder, QString> sweepOrder() const;
+  const SweepChoices& sweep() const { return *sweep_; }
+  FitChoices& fit() const { return *fit_; }
   /// The axes of what is started stay, whatever scene comes.
   void keepAxes();
 
@@ -54,6 +63,7 @@ class StudyChoices : public QWidget {
   void follow();  ///< the kind
   void checkMethods(const std::vector<std::string>& names);
   std::vector<std::string> methods() const;
+  std::filesystem::path folder() const;
   /// An order without its folder.
   std::variant<StudyOrder, QString> inputs() const;
   std::variant<StudyOrder, QString> stabilityInputs() const;
@@ -75,6 +85,8 @@ class StudyChoices : public QWidget {
   QComboBox* cases_;
   QLineEdit *cells_, *time_;
   OutputsChoice* outputs_;
+  SweepChoices* sweep_;
+  FitChoices* fit_;
   QLineEdit* folder_;
 };
 

@@ -2,15 +2,18 @@
 
 #include <QBuffer>
 #include <QEvent>
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPdfWriter>
 #include <QStyle>
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "document/result_files.h"
 #include "theme/theme.h"
+#include "widgets/building.h"
 #include "widgets/numbers.h"
 
 namespace clothlab {
@@ -61,6 +64,10 @@ void fit(Diagram& diagram, QSizeF room) {
     }
     map->columns = best;
     fill_height(diagram, 60, room.height(), room.height(), [&](double h) { map->highest = h; });
+  } else if (auto* lines = std::get_if<cloth::ParallelCoordinates>(&diagram)) {
+    lines->width = room.width();
+    fill_height(diagram, lowest_plot, room.height(), room.height(),
+                [&](double h) { lines->plot_height = h; });
   } else {
     std::get<cloth::CategoryMap>(diagram).width = room.width();
   }
@@ -76,6 +83,9 @@ double lowest(Diagram diagram, double width) {
     map->highest = lowest_panel;
     const int panels = std::max(1, static_cast<int>(map->panels.size()));
     map->columns = std::clamp(static_cast<int>((width - beside_panels) / narrowest_panel), 1, panels);
+  } else if (auto* lines = std::get_if<cloth::ParallelCoordinates>(&diagram)) {
+    lines->width = width;
+    lines->plot_height = lowest_plot;
   } else {
     std::get<cloth::CategoryMap>(diagram).width = width;
   }
@@ -86,12 +96,26 @@ double lowest(Diagram diagram, double width) {
 Diagram for_screen(Diagram diagram) {
   std::visit([](auto& plot) { plot.title.clear(), plot.subtitle.clear(); }, diagram);
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
+  if (auto* lines = std::get_if<cloth::ParallelCoordinates>(&diagram)) lines->caption.clear();
   if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
     map->caption.clear();
     map->y.label =
         map->y.label.substr(0, map->y.label.find(','));  // no room for what qualifies it: the files have it
   }
   return diagram;
+}
+
+double distance_to(const QPainterPath& line, QPointF at) {
+  double least = INFINITY;
+  for (int k = 1; k < line.elementCount(); ++k) {
+    const QPointF from(line.elementAt(k - 1)), to(line.elementAt(k));
+    const QPointF along = to - from, away = at - from;
+    const double length = QPointF::dotProduct(along, along);
+    const double part = length > 0 ? std::clamp(QPointF::dotProduct(away, along) / length, 0.0, 1.0) : 0;
+    const QPointF off = away - part * along;
+    least = std::min(least, std::hypot(off.x(), off.y()));
+  }
+  return least;
 }
 
 QString written(const QString& name, const QByteArray& bytes) {
@@ -110,9 +134,21 @@ StudyPlot::StudyPlot(QWidget* parent) : QWidget(parent) {
 void StudyPlot::setDiagram(Diagram diagram) {
   diagram_ = std::move(diagram);
   stale_ = true;
-  marked_ = {};
+  const std::optional<PlotTouch> before = std::exchange(marked_, std::nullopt);
   keepLegible();
   update();
+  // A diagram that fills keeps the mark of a run.
+  if (before && before->tag >= 0) {
+    refresh();
+    for (const PlotTouch& touch : touches_)
+      if (touch.tag == before->tag) marked_ = touch;
+  }
+}
+
+void StudyPlot::setClickOpens(bool opens) {
+  click_opens_ = opens;
+  setFocusPolicy(opens ? Qt::StrongFocus : Qt::NoFocus);
+  setProperty(keeps_arrow_keys, opens);
 }
 
 void StudyPlot::setRoom(QSize room) {
@@ -161,41 +197,110 @@ const PlotTouch* StudyPlot::touchAt(QPointF at) const {
   double least = INFINITY;
   for (const PlotTouch& touch : touches_) {
     const QRectF& box = touch.box;
-    const bool large = box.width() > 4 * reach;  // a cell: its neighbours begin where it ends
+    const bool large = box.width() > 4 * reach && touch.line.isEmpty();  // a cell: its neighbours begin there
     const double margin = large ? 0 : reach;
     if (!box.adjusted(-margin, -margin, margin, margin).contains(at)) continue;
     const QPointF away = box.center() - at;
-    const double distance = std::hypot(away.x(), away.y());
+    const bool is_line = !touch.line.isEmpty() && box.width() > 4 * reach;
+    const double distance = is_line ? distance_to(touch.line, at) : std::hypot(away.x(), away.y());
+    if (is_line && distance > reach) continue;
     if (distance <= least) least = distance, nearest = &touch;
   }
   return nearest;
 }
 
-void StudyPlot::hover(QPointF at) {
-  const PlotTouch* touch = touchAt(at);
-  const QRectF marked = touch ? touch->box : QRectF();
-  if (marked == marked_) return;
-  marked_ = marked;
+void StudyPlot::mark(const PlotTouch* touch) {
+  const bool same = touch ? marked_ && marked_->box == touch->box && marked_->tag == touch->tag : !marked_;
+  if (same) return;
+  marked_ = touch ? std::optional(*touch) : std::nullopt;
   update();
   setCursor(touch && touch->tag >= 0 ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  setAccessibleDescription(touch ? touch->text : QString());
   Q_EMIT runHovered(touch ? touch->text : QString());
+}
+
+void StudyPlot::hover(QPointF at) {
+  const PlotTouch* touch = touchAt(at);
+  const bool same = touch ? marked_ && marked_->box == touch->box && marked_->tag == touch->tag : !marked_;
+  if (same) return;
+  mark(touch);
   if (touch) {
     QString tip = touch->text.toHtmlEscaped().replace('\n', "<br>");
-    if (touch->tag >= 0) tip += tr("<br><i>Double-click to open this run</i>");
+    if (touch->tag >= 0)
+      tip += click_opens_ ? tr("<br><i>Click to open this run, with Ctrl beside those that are open</i>")
+                          : tr("<br><i>Double-click to open this run</i>");
     QToolTip::showText(mapToGlobal(at.toPoint()), tip, this);
   } else {
     QToolTip::hideText();
   }
 }
 
+/// The nearest run in a direction from the marked one; the first one where none is marked.
+const PlotTouch* StudyPlot::next(int dx, int dy) const {
+  const PlotTouch* best = nullptr;
+  double least = INFINITY;
+  for (const PlotTouch& touch : touches_) {
+    if (touch.tag < 0) continue;
+    if (!marked_) {
+      if (!best || touch.tag < best->tag) best = &touch;
+      continue;
+    }
+    const QPointF away = touch.box.center() - marked_->box.center();
+    const double along = dx * away.x() + dy * away.y();
+    const double across = std::abs(dy * away.x()) + std::abs(dx * away.y());
+    if (along < 1) continue;
+    // On a curve the next point may be far above or below.
+    const double distance =
+        along + (dx != 0 && std::holds_alternative<cloth::LinePlot>(diagram_) ? 0.01 : 3) * across;
+    if (distance < least) least = distance, best = &touch;
+  }
+  return best;
+}
+
+void StudyPlot::keyPressEvent(QKeyEvent* event) {
+  if (!click_opens_) return QWidget::keyPressEvent(event);
+  refresh();
+  const PlotTouch* to = nullptr;
+  switch (event->key()) {
+    case Qt::Key_Left:
+      to = next(-1, 0);
+      break;
+    case Qt::Key_Right:
+      to = next(1, 0);
+      break;
+    case Qt::Key_Up:
+      to = next(0, -1);
+      break;
+    case Qt::Key_Down:
+      to = next(0, 1);
+      break;
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+      if (marked_ && marked_->tag >= 0)
+        Q_EMIT runClicked(marked_->tag, event->modifiers().testFlag(Qt::ControlModifier));
+      return;
+    default:
+      return QWidget::keyPressEvent(event);
+  }
+  if (to) mark(to);
+}
+
 void StudyPlot::paintEvent(QPaintEvent*) {
   refresh();
   QPainter painter(this);
   painter.drawPixmap(0, 0, picture_);
-  if (marked_.isNull()) return;
   painter.setRenderHint(QPainter::Antialiasing);
-  painter.setPen(QPen(theme().accent, 2));
-  painter.drawRoundedRect(marked_.adjusted(-3, -3, 3, 3), 3, 3);
+  if (hasFocus()) {
+    painter.setPen(QPen(theme().accent, 1, Qt::DotLine));
+    painter.drawRect(rect().adjusted(0, 0, -1, -1));
+  }
+  if (!marked_) return;
+  const bool is_line = !marked_->line.isEmpty() && marked_->box.width() > 4 * reach;
+  painter.setPen(QPen(theme().accent, is_line ? 3 : 2));
+  if (is_line)
+    painter.drawPath(marked_->line);
+  else
+    painter.drawRoundedRect(marked_->box.adjusted(-3, -3, 3, 3), 3, 3);
 }
 
 void StudyPlot::changeEvent(QEvent* event) {
@@ -209,14 +314,22 @@ void StudyPlot::changeEvent(QEvent* event) {
 
 void StudyPlot::resizeEvent(QResizeEvent*) {
   stale_ = true;
-  marked_ = {};
+  marked_.reset();
 }
 
 void StudyPlot::mouseMoveEvent(QMouseEvent* event) {
   hover(event->position());
 }
 
+void StudyPlot::mouseReleaseEvent(QMouseEvent* event) {
+  if (!click_opens_ || event->button() != Qt::LeftButton) return;
+  const PlotTouch* touch = touchAt(event->position());
+  if (touch && touch->tag >= 0)
+    Q_EMIT runClicked(touch->tag, event->modifiers().testFlag(Qt::ControlModifier));
+}
+
 void StudyPlot::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (click_opens_) return;
   const PlotTouch* touch = touchAt(event->position());
   if (touch && touch->tag >= 0) Q_EMIT runActivated(touch->tag);
 }

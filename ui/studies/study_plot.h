@@ -1,20 +1,22 @@
 // A study's diagram: the engine's plot, fitted into the widget. Resting the pointer on a run names it, a
-// double-click asks for it.
+// double-click asks for it; of a sweep a click does, and the arrow keys and Enter.
 #pragma once
 
 #include <QPixmap>
 #include <QWidget>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "report/category_map.h"
 #include "report/heat_map.h"
 #include "report/line_plot.h"
+#include "report/points/parallel_coordinates.h"
 #include "studies/painter_canvas.h"
 
 namespace clothlab {
 
-using Diagram = std::variant<cloth::LinePlot, cloth::HeatMap, cloth::CategoryMap>;
+using Diagram = std::variant<cloth::LinePlot, cloth::HeatMap, cloth::CategoryMap, cloth::ParallelCoordinates>;
 
 class StudyPlot : public QWidget {
   Q_OBJECT
@@ -24,6 +26,9 @@ class StudyPlot : public QWidget {
 
   void setDiagram(Diagram diagram);
   const Diagram& diagram() const { return diagram_; }
+
+  /// A click on a run opens it, with Ctrl beside those that are open; otherwise a double-click.
+  void setClickOpens(bool opens);
 
   /// Where a run is drawn, in the widget's px; empty if it is not.
   QRectF placeOf(int run) const;
@@ -42,27 +47,32 @@ class StudyPlot : public QWidget {
  Q_SIGNALS:
   void runHovered(const QString& text);  ///< empty: none
   void runActivated(int run);
+  void runClicked(int run, bool beside);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
   void changeEvent(QEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
   void leaveEvent(QEvent*) override { hover({-1e6, -1e6}); }
 
  private:
   void refresh();
   void keepLegible();
   void hover(QPointF at);
+  void mark(const PlotTouch* touch);
+  const PlotTouch* next(int dx, int dy) const;
 
   Diagram diagram_;
   QPixmap picture_;
   std::vector<PlotTouch> touches_;
   QSize room_;
   double smallest_label_ = 0;  // px
-  bool stale_ = true;
-  QRectF marked_;  // of the hovered run
+  bool stale_ = true, click_opens_ = false;
+  std::optional<PlotTouch> marked_;  // the run under the pointer, or chosen by key
 };
 
 /// The diagram as a file, on white paper, with its title and caption; `name` ends in .svg, .png or .pdf.

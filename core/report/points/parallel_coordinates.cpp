@@ -76,14 +76,14 @@ void draw_rows(PlotCanvas& canvas, const ParallelLayout& layout) {
   for (const std::size_t row : rows)
     if (table.failed(row))
       canvas.path(path_of(layout, row), {.stroke = failed_colour(), .dash = Dash::dashed},
-                  table.text_of(row));
+                  {table.text_of(row), table.tag_of(row)});
   canvas.end_group();
   for (std::size_t k = 0; k < ramp_colours().size(); ++k) {  // the highest on top
     canvas.begin_group("", {.opacity = opacity});
     for (const std::size_t row : rows)
       if (!table.failed(row) && class_of(layout, row) == k)
         canvas.path(path_of(layout, row), {.stroke = ramp_colours()[k], .stroke_width = 1.4},
-                    table.text_of(row));
+                    {table.text_of(row), table.tag_of(row)});
     canvas.end_group();
   }
   canvas.end_group();

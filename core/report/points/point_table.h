@@ -18,6 +18,7 @@ struct PointColumn {
 struct PointTable {
   std::vector<PointColumn> columns{};  ///< parameters first
   std::vector<std::string> notes{};    ///< one for each row, for tooltips; empty: "run 1", "run 2", ...
+  std::vector<int> tags{};             ///< one for each row, of its SvgTip; empty: none
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
   /// Whether an output of the row has no value.
@@ -27,6 +28,7 @@ struct PointTable {
   std::vector<std::size_t> columns_that(bool are_outputs) const;
   /// The row in words: its note, then a line for each column.
   std::string text_of(std::size_t row) const;
+  int tag_of(std::size_t row) const { return row < tags.size() ? tags[row] : -1; }
   /// At most so many rows, evenly spread.
   std::vector<std::size_t> some_rows(std::size_t most) const;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "contact/contact_work.h"
 
@@ -76,6 +77,12 @@ bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3F
 
 }  // namespace
 
+/// The length first: it is asked of every particle in contact.
+static bool reflects(const Obstacle& obstacle) {
+  constexpr std::string_view name = "reflect";
+  return obstacle.response.size() == name.size() && obstacle.response == name;
+}
+
 Obstacle grown(Obstacle obstacle, double length) {
   shape_of(obstacle).grow(obstacle, length);
   return obstacle;
@@ -89,7 +96,7 @@ Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& 
                       double normal_load) {
   const double inward = velocity.dot(normal);
   if (!(inward < 0)) return velocity;
-  if (obstacle.response == "reflect") return obstacle.friction * (velocity - 2 * inward * normal);
+  if (reflects(obstacle)) return obstacle.friction * (velocity - 2 * inward * normal);
   const Vec3 tangential = velocity - inward * normal;
   const double rebound = obstacle.restitution * approach, change = rebound - inward;
   const double speed = tangential.norm();

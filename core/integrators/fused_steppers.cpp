@@ -135,14 +135,13 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
   StepSums sums;
   if (constraint_) {
-    before_.position = state.position, before_.velocity = state.velocity;
     constraint_->before_kick(half, times.step, state);
     forces.sweep()->predicted_open(times.step, loads, force_, state);
     constraint_->after_drift(half, state);
     if (constraint_->opening_change()) {
       work += half * power_;
       if (forces.has_damping_loss()) {
-        keep_opening(forces, times.begin);
+        keep_opening(forces, times, state);
         correct_opening(half, work);
       }
       report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
@@ -163,10 +162,21 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
 
 /// -D v at the beginning of the step, with the velocity that it had then instead of the one predicted for it:
 /// no pass keeps the damping apart from other forces, and in the ledger the difference is one of order 2.
-void FusedPredictedVerlet::keep_opening(ForceModel& forces, double time) {
+/// That state is found from the drifted one and what the constraint has changed of it, to rounding, so that
+/// steps in which the constraint moves nothing need not store it.
+void FusedPredictedVerlet::keep_opening(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  const double half = 0.5 * times.step;
+  const Vec3Field& change = *constraint_->opening_change();
+  before_.position = state.position, before_.velocity = state.velocity;
+  add_scaled(-1, change, before_.velocity);
+  if (const Vec3Field* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
+  add_acceleration(forces.system(), -half, force_, before_.velocity);
+  add_scaled(-times.step, change, before_.position);
+  add_scaled(-times.step, before_.velocity, before_.position);
+  add_acceleration(forces.system(), -half, force_, before_.velocity);
   Vec3Field& damping = opening_damping_;
   if (damping.size() != before_.position.size()) damping = Vec3Field(before_.position.size());
-  forces.update(before_.position, time);
+  forces.update(before_.position, times.begin);
   forces.force(before_.position, before_.velocity, damping);
   const auto to = damping.flat();
   const std::span<const double> rest = forces.position_force().flat();

@@ -95,9 +95,9 @@ class FusedPredictedVerlet : public Verlet {
  private:
   void begin_force(ForceModel& forces, double time, ClothState& state);
   Work power_of(const ForceModel& forces, const StepSums& sums) const;
-  void keep_opening(ForceModel& forces, double time);
+  void keep_opening(ForceModel& forces, const StepTimes& times, const ClothState& state);
 
-  ClothState before_;  ///< at the beginning of a step with a constraint
+  ClothState before_;  ///< at the beginning of a step in which a constraint moves particles
 };
 
 class FusedRk4 : public FusedStepper {

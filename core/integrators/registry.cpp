@@ -56,6 +56,11 @@ double verlet_limit(double omega, double) {
   return omega > 0 ? 2 / omega : infinity;
 }
 
+template <class Method>
+Stepper made_fused() {
+  return std::make_unique<Method>();
+}
+
 Stepper made_predicting_verlet(bool fused) {
   if (fused) return std::make_unique<FusedPredictedVerlet>();
   return std::make_unique<Verlet>(EndVelocity::predicted);
@@ -85,7 +90,7 @@ std::vector<Entry> explicit_methods() {
         .bounds_jointly = true},
        made<SemiImplicitEuler>,
        FusedSemiImplicitEuler::suits,
-       []() -> Stepper { return std::make_unique<FusedSemiImplicitEuler>(); }},
+       made_fused<FusedSemiImplicitEuler>},
       {{.name = "verlet",
         .title = "Verlet",
         .order = 2,
@@ -98,7 +103,7 @@ std::vector<Entry> explicit_methods() {
         .may_heat = true},
        made<Verlet>,
        FusedVerlet::suits,
-       []() -> Stepper { return std::make_unique<FusedVerlet>(); },
+       made_fused<FusedVerlet>,
        made_predicting_verlet},
       {{.name = "rk4",
         .title = "Runge-Kutta 4",
@@ -108,7 +113,7 @@ std::vector<Entry> explicit_methods() {
         .oscillator = {.divisors = {1, 2, 3, 4}}},
        made<Rk4>,
        FusedRk4::suits,
-       []() -> Stepper { return std::make_unique<FusedRk4>(); }},
+       made_fused<FusedRk4>},
       {{.name = "dormand-prince",
         .title = "Dormand-Prince 5(4)",
         .order = 5,

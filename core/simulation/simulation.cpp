@@ -14,6 +14,7 @@
 #include "measure/stability_limit.h"
 #include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
+#include "simulation/predicted_damping.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -168,7 +169,7 @@ bool Simulation::predicts_damping() const {
                  mass = *std::min_element(system_.mass.begin(), system_.mass.end());
     load += (h * h * pull_strength_.stiffness + 4 * h * pull_strength_.damping) / (4 * mass);
   }
-  return load <= largest_predicted_load;
+  return load <= allowed_damping_load(scene_);
 }
 
 /// Whenever forces or constraints have become others. What one stepper remembers beside the state is lost

@@ -11,6 +11,7 @@
 #include "limiter/deformation_limiter.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_cloth.h"
+#include "simulation/predicted_damping.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -58,17 +59,17 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
   const auto step = resolved_time_step(scene);
   const ForceModel forces(scene, system);
   if (!facts_of(scene.integrator.method).predicts_damping || !step || !forces.has_damping()) return "";
-  const double load = predicted_damping_load(scene, *step);
+  const double load = predicted_damping_load(scene, *step), most = allowed_damping_load(scene);
   const StepperKind kind =
       stepper_kind(scene.integrator.method, forces, {.constrained = limited, .predicts_damping = true});
   if (!kind.predicts) return ", damping solved for each particle by itself";
-  if (load <= largest_predicted_load)
+  if (load <= most)
     return fmt::format(", damping at the predicted velocity{} (h^2 K + 4 h D is {:.2f} of 4 m, at most {})",
-                       kind.fused ? " in the pass of the forces" : "", load, largest_predicted_load);
+                       kind.fused ? " in the pass of the forces" : "", load, most);
   return fmt::format(
       ", damping solved for by conjugate gradients (h^2 K + 4 h D may reach {:.2f} of 4 m; predicted up to "
       "{})",
-      load, largest_predicted_load);
+      load, most);
 }
 
 }  // namespace

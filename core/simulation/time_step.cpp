@@ -7,8 +7,8 @@
 
 #include "contact/continuous_contact.h"
 #include "measure/stability_limit.h"
-#include "scene/method_facts.h"
 #include "scene/scene_checks.h"
+#include "simulation/predicted_damping.h"
 
 namespace cloth {
 namespace {
@@ -20,24 +20,6 @@ constexpr double whole_number_slack = 1e-9;
 /// number could not hold.
 std::int64_t whole_steps(double steps) {
   return static_cast<std::int64_t>(std::clamp(steps, 1.0, max_steps_of_run));
-}
-
-/// Dampers that couple the particles of a grid, in a scene whose steps cost little beside them.
-bool has_dampers_to_predict(const Scene& scene) {
-  if (scene.cloth.is_mesh() || scene.cloth.is_cut() || has_continuous_contact(scene)) return false;
-  if (scene.material) return scene.material->stretch_damping > 0 || scene.material->bending_damping > 0;
-  return scene.springs && scene.springs->damping > 0;
-}
-
-/// The parts of a record interval, one more where that makes a step short enough for Verlet to predict its
-/// damping, which makes it several times cheaper.
-double parts_of(double interval, double longest, const Scene& scene) {
-  const double parts = std::ceil(interval / longest);
-  if (!facts_of(scene.integrator.method).predicts_damping || !has_dampers_to_predict(scene)) return parts;
-  const auto predicts = [&](double n) {
-    return predicted_damping_load(scene, interval / n) <= largest_predicted_load;
-  };
-  return !predicts(parts) && predicts(parts + 1) ? parts + 1 : parts;
 }
 
 }  // namespace
@@ -56,7 +38,7 @@ std::optional<double> resolved_time_step(const Scene& scene) {
   const double longest = std::min(auto_flat_fraction * *limit, auto_guaranteed_fraction * guaranteed);
   const double interval = scene.record.interval;
   if (longest >= interval) return interval;
-  return interval / parts_of(interval, longest, scene);
+  return interval / parts_to_predict(scene, interval, std::ceil(interval / longest));
 }
 
 double step_dividing(double interval, double time_step) {

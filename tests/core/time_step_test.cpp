@@ -9,6 +9,7 @@
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_checks.h"
+#include "simulation/predicted_damping.h"
 #include "support/scenes.h"
 
 namespace cloth::test::time_step_test {
@@ -33,29 +34,32 @@ TEST(AutomaticTimeStep, DividesTheRecordIntervalAndStaysWithinBothLimits) {
       const double longest =
           std::min(0.8 * *stable_step(method, scene), 0.95 * guaranteed_step(method, scene).value());
       EXPECT_LE(*step, longest * (1 + 1e-12));
-      // and no longer step does both, or the next longer one is too long to predict the damping
-      const double longer = scene.record.interval / (std::round(parts) - 1);
-      if (parts > 1.5 && longer <= longest) {
-        EXPECT_TRUE(facts_of(method).predicts_damping) << builtin.name;
-        EXPECT_GT(predicted_damping_load(scene, longer), largest_predicted_load) << builtin.name;
-        EXPECT_LE(predicted_damping_load(scene, *step), largest_predicted_load) << builtin.name;
-        EXPECT_GT(scene.record.interval / (std::round(parts) - 2), longest) << builtin.name;
-      }
+      // and no longer step does both, or those that do are too long to predict the damping
+      const double fewest = std::ceil(scene.record.interval / longest * (1 - 1e-12));
+      if (parts < fewest + 0.5) continue;
+      EXPECT_TRUE(facts_of(method).predicts_damping) << builtin.name;
+      EXPECT_LE(predicted_damping_load(scene, *step), allowed_damping_load(scene)) << builtin.name;
+      EXPECT_LE(parts, 1.5 * fewest + 1e-6) << builtin.name;
+      for (double fewer = fewest; fewer < parts - 0.5; ++fewer)
+        EXPECT_GT(predicted_damping_load(scene, scene.record.interval / fewer), allowed_damping_load(scene));
     }
   }
 }
 
-TEST(AutomaticTimeStep, OfVerletIsOneStepMoreToARowWhereThatLetsItPredictItsDamping) {
+TEST(AutomaticTimeStep, OfVerletHasMoreStepsToARowWhereThatLetsItPredictItsDamping) {
   const Scene scene = builtin_scene("tablecloth");
   const double step = *resolved_time_step(scene), parts = scene.record.interval / step;
-  EXPECT_LE(predicted_damping_load(scene, step), largest_predicted_load);
-  EXPECT_GT(predicted_damping_load(scene, scene.record.interval / (parts - 1)), largest_predicted_load);
-  Scene stiff = scene;
+  EXPECT_LE(predicted_damping_load(scene, step), allowed_damping_load(scene));
+  EXPECT_GT(predicted_damping_load(scene, scene.record.interval / (parts - 1)), allowed_damping_load(scene));
+  Scene stiff = scene, undamped = scene, bare = scene;
   stiff.springs->damping *= 20;
-  EXPECT_NEAR(scene.record.interval / *resolved_time_step(stiff), parts - 1, 1e-9) << "out of reach";
-  Scene undamped = scene;
   undamped.springs->damping = 0;
-  EXPECT_NEAR(scene.record.interval / *resolved_time_step(undamped), parts - 1, 1e-9) << "nothing to predict";
+  const double fewest = scene.record.interval / *resolved_time_step(undamped);
+  EXPECT_LT(fewest, parts - 0.5) << "nothing to predict";
+  EXPECT_NEAR(scene.record.interval / *resolved_time_step(stiff), fewest, 1e-9) << "out of reach";
+  bare.obstacles.clear();
+  EXPECT_LE(scene.record.interval / *resolved_time_step(bare), fewest + 1 + 1e-9);
+  EXPECT_LT(allowed_damping_load(scene), allowed_damping_load(bare));
 }
 
 TEST(AutomaticTimeStep, IsTheRecordIntervalWhereEveryStepIsStable) {

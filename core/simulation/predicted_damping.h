@@ -1,0 +1,20 @@
+// When Verlet takes its damping at predicted velocities (integrators/verlet.h), and the step at which `auto`
+// lets it.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace cloth {
+
+/// The predicted_damping_load() (measure/stability_limit.h) up to which a scene's damping is predicted. With
+/// contact particle by particle less than for stability alone: contact changes velocities after the closing
+/// kick, whose damping was that of the prediction, so that the ledger's error grows with (omega h)^2 there.
+double allowed_damping_load(const Scene& scene);
+
+/// The number of steps to a record interval of `interval` s where `parts` are enough for stability: `parts`,
+/// or the smallest larger number at which Verlet may predict the damping of a grid's dampers, if that is only
+/// one more; with contact particle by particle at most half as many more. A step without a solve is several
+/// times cheaper.
+double parts_to_predict(const Scene& scene, double interval, double parts);
+
+}  // namespace cloth

@@ -147,15 +147,19 @@ PullStrength Simulation::find_strongest_pull() const {
 void Simulation::limit_pull(const std::optional<PullStrength>& most) {
   if (most == max_pull_) return;
   max_pull_ = most;
-  apply_hand();
+  // Without a pull no force has changed, and what the method remembers stays.
+  run_.pull ? apply_hand() : find_pull_strength();
+}
+
+void Simulation::find_pull_strength() {
+  pull_strength_ = strongest_pull_;
+  if (!max_pull_) return;
+  pull_strength_.stiffness = std::min(pull_strength_.stiffness, max_pull_->stiffness);
+  pull_strength_.damping = std::min(pull_strength_.damping, max_pull_->damping);
 }
 
 void Simulation::apply_hand() {
-  pull_strength_ = strongest_pull_;
-  if (max_pull_) {
-    pull_strength_.stiffness = std::min(pull_strength_.stiffness, max_pull_->stiffness);
-    pull_strength_.damping = std::min(pull_strength_.damping, max_pull_->damping);
-  }
+  find_pull_strength();
   forces_->set_brush(run_.brush);
   forces_->set_pull(run_.pull, pull_strength_.stiffness, pull_strength_.damping);
   choose_stepper();

@@ -181,6 +181,7 @@ class Simulation {
   bool is_surely_slow(double speed_squares) const;
   void count_step(const IntegratorReport& report);
   PullStrength find_strongest_pull() const;
+  void find_pull_strength();
   void apply_hand();
   bool predicts_damping() const;
   void choose_stepper();

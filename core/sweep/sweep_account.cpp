@@ -79,8 +79,18 @@ void add_row(PointTable& table, const std::vector<ParameterColumn>& columns, con
   for (std::size_t c = 0; c < columns.size(); ++c)
     table.columns[c].values.push_back(number_in(columns[c], values[columns[c].path_in_plan]));
   for (std::size_t c = columns.size(); c < table.columns.size(); ++c)
-    table.columns[c].values.push_back(row ? row->outputs[c - columns.size()] : no_value);
+    table.columns[c].values.push_back(
+        row && row->status == PointStatus::finished ? row->outputs[c - columns.size()] : no_value);
+  table.tags.push_back(static_cast<int>(point));
   table.notes.push_back(row ? note_of(*row) : fmt::format("point {}: not there yet", point));
+}
+
+PointTable empty_table(const SweepPlan& plan, const std::vector<ParameterColumn>& columns) {
+  PointTable table;
+  for (const ParameterColumn& column : columns) table.columns.push_back({.axis = axis_of(plan, column)});
+  for (const RunOutput& output : plan.outputs)
+    table.columns.push_back({.axis = {.label = output.name}, .is_output = true});
+  return table;
 }
 
 }  // namespace
@@ -91,26 +101,33 @@ bool has_points(const SweepPlan& plan) {
          (is_sample && plan.axes.size() > 1);
 }
 
+PointTable points_table(const SweepFolder& folder, const SweepResults& results, std::size_t most) {
+  const std::vector<ParameterColumn> columns = columns_of(folder.plan);
+  PointTable table = empty_table(folder.plan, columns);
+  const SweepPoints points(folder.plan);
+  const std::size_t stride = (results.rows.size() + most - 1) / std::max<std::size_t>(most, 1);
+  for (std::size_t r = 0; r < results.rows.size(); r += std::max<std::size_t>(stride, 1))
+    add_row(table, columns, points, results.rows[r].point, &results.rows[r]);
+  return table;
+}
+
 PointsAccount points_account(const SweepFolder& folder, const SweepResults& results) {
   const SweepPlan& plan = folder.plan;
   PointsAccount account{.title = plan.title.empty() ? plan.scene.title : plan.title};
   account.design = sensitivity_design(plan.design);
   account.count = static_cast<std::size_t>(plan.samples);
   account.seed = plan.seed;
+  if (!account.design) {
+    account.table = points_table(folder, results);
+    return account;
+  }
   const std::vector<ParameterColumn> columns = columns_of(plan);
-  for (const ParameterColumn& column : columns)
-    account.table.columns.push_back({.axis = axis_of(plan, column)});
-  for (const RunOutput& output : plan.outputs)
-    account.table.columns.push_back({.axis = {.label = output.name}, .is_output = true});
+  account.table = empty_table(plan, columns);
   const SweepPoints points(plan);
-  if (account.design) {
-    auto next = results.rows.begin();
-    for (std::int64_t point = 0; point < results.points; ++point) {
-      const bool is_there = next != results.rows.end() && next->point == point;
-      add_row(account.table, columns, points, point, is_there ? &*next++ : nullptr);
-    }
-  } else {
-    for (const PointRow& row : results.rows) add_row(account.table, columns, points, row.point, &row);
+  auto next = results.rows.begin();
+  for (std::int64_t point = 0; point < results.points; ++point) {
+    const bool is_there = next != results.rows.end() && next->point == point;
+    add_row(account.table, columns, points, point, is_there ? &*next++ : nullptr);
   }
   return account;
 }

@@ -6,6 +6,7 @@
 #include "scene/probe.h"
 #include "study/run_output.h"
 #include "study/study_axis.h"
+#include "sweep/sweep_account.h"
 #include "sweep/sweep_points.h"
 #include "sweep/sweep_report.h"
 #include "widgets/numbers.h"
@@ -52,44 +53,15 @@ cloth::HeatMap map_of(const SweepView& view, std::size_t output) {
   return map;
 }
 
-cloth::PointColumn parameter_column(const cloth::SweepPlan& plan, const cloth::SweepAxis& axis,
-                                    std::size_t path) {
-  cloth::PointColumn column;
-  column.axis = plot_axis({.path = axis.paths[path], .scale = axis.scale}, plan.scene);
-  return column;
-}
-
 cloth::ParallelCoordinates parallel_of(const SweepView& view, std::size_t output) {
   const cloth::SweepPlan& plan = view.folder.plan;
-  const cloth::SweepPoints points(plan);
   cloth::ParallelCoordinates plot;
   plot.title = output_words(plan.outputs[output]).toStdString();
-  std::vector<std::size_t> of_numbers;  // paths whose values have a place on an axis
-  std::size_t index = 0;
-  for (const cloth::SweepAxis& axis : plan.axes)
-    for (std::size_t k = 0; k < axis.paths.size(); ++k, ++index) {
-      if (axis.is_list() && !cloth::number_of(axis.values.front()[k])) continue;
-      plot.table.columns.push_back(parameter_column(plan, axis, k));
-      of_numbers.push_back(index);
-    }
-  for (const cloth::RunOutput& one : plan.outputs) {
-    cloth::PointColumn& column = plot.table.columns.emplace_back();
-    column.is_output = true;
-    name_output(column.axis, one);
-  }
-  plot.coloured_by = of_numbers.size() + output;
-  const std::vector<cloth::PointRow>& rows = view.results.rows;
-  const std::size_t stride = rows.size() / most_table_rows + 1;
-  for (std::size_t r = 0; r < rows.size(); r += stride) {
-    const cloth::PointRow& row = rows[r];
-    const auto values = points.values(row.point);
-    for (std::size_t c = 0; c < of_numbers.size(); ++c)
-      plot.table.columns[c].values.push_back(cloth::number_of(values[of_numbers[c]]).value_or(NAN));
-    for (std::size_t k = 0; k < plan.outputs.size(); ++k)
-      plot.table.columns[of_numbers.size() + k].values.push_back(is_fine(row, k) ? row.outputs[k] : NAN);
-    plot.table.notes.push_back("point " + std::to_string(row.point));
-    plot.table.tags.push_back(static_cast<int>(row.point));
-  }
+  plot.table = points_table(view.folder, view.results, most_table_rows);
+  const std::vector<std::size_t> outputs = plot.table.columns_that(true);
+  for (std::size_t k = 0; k < outputs.size(); ++k)
+    name_output(plot.table.columns[outputs[k]].axis, plan.outputs[k]);
+  plot.coloured_by = outputs[output];
   return plot;
 }
 

@@ -245,6 +245,7 @@ class PanesTest : public QObject {
     CompareBench bench;
     QTest::keyClick(&bench.window, Qt::Key_T, Qt::ControlModifier);
     QVERIFY(bench.window.studies().isVisible());
+    bench.window.studies().choices().choose(StudyChoices::Kind::work_precision);
     bench.scope(2);
     bench.window.document().setParameter("springs.structural", 77.0);
     QCOMPARE(bench.window.document().scene().springs->structural, 77.0);

@@ -23,9 +23,10 @@ namespace clothlab::test::studies_dock_test {
 namespace {
 
 constexpr QSize small_window{1000, 650};
-constexpr StudyChoices::Kind every_kind[] = {StudyChoices::Kind::work_precision,
-                                             StudyChoices::Kind::stability, StudyChoices::Kind::extremes,
-                                             StudyChoices::Kind::convergence, StudyChoices::Kind::validation};
+constexpr StudyChoices::Kind every_kind[] = {
+    StudyChoices::Kind::sweep,     StudyChoices::Kind::fit,      StudyChoices::Kind::work_precision,
+    StudyChoices::Kind::stability, StudyChoices::Kind::extremes, StudyChoices::Kind::convergence,
+    StudyChoices::Kind::validation};
 
 bool is_placed_by_a_layout(const QWidget& widget) {
   const QWidget* parent = widget.parentWidget();
@@ -282,6 +283,8 @@ class StudiesDockTest : public QObject {
     DockBench bench("pendulum");
     bench.window.resize(small_window);
     QTest::qWait(100);
+    bench.choose(StudyChoices::Kind::work_precision);
+    QTest::qWait(100);
     auto* methods = bench.part<QListWidget>("studyMethods");
     QStyleOptionViewItem option;
     option.initFrom(methods);
@@ -300,6 +303,7 @@ class StudiesDockTest : public QObject {
   void fields_of_the_form_begin_at_one_edge() {
     DockBench bench("pendulum");
     for (const auto kind : every_kind) {
+      if (kind == StudyChoices::Kind::fit) continue;  // its fields are in a form of their own
       bench.choose(kind);
       QTest::qWait(50);
       QSet<int> edges;

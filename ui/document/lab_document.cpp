@@ -140,8 +140,8 @@ bool LabDocument::isModified() const {
 }
 
 void LabDocument::noteModified() {
-  if (std::exchange(announced_modified_, isModified()) != announced_modified_)
-    Q_EMIT modifiedChanged(announced_modified_);
+  const bool modified = isModified();
+  if (std::exchange(announced_modified_, modified) != modified) Q_EMIT modifiedChanged(modified);
 }
 
 void LabDocument::markSaved(const QString& path) {

@@ -47,6 +47,7 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
 
 /// The widgets refer to the document and the link.
 LabWindow::~LabWindow() {
+  document_.undoStack().disconnect(this);
   delete autosave_;
   delete takeCentralWidget();
   qDeleteAll(findChildren<QDockWidget*>());

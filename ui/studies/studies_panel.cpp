@@ -125,8 +125,7 @@ void StudiesPanel::makeDiagram(QWidget* right) {
   stack_->addWidget(plot_area_);
 }
 
-QWidget* StudiesPanel::makeRight() {
-  auto* right = new QWidget(this);
+QLayout* StudiesPanel::makeHead(QWidget* right) {
   title_ = named("studyTitle", new ElidedLabel(right));
   title_->setProperty("heading", true);
   against_ = named("against", new QComboBox(right));
@@ -152,7 +151,12 @@ QWidget* StudiesPanel::makeRight() {
   head->addWidget(against_);
   head->addWidget(open_);
   head->addWidget(save_);
+  return head;
+}
 
+QWidget* StudiesPanel::makeRight() {
+  auto* right = new QWidget(this);
+  QLayout* head = makeHead(right);
   makeDiagram(right);
   values_ = named("fitValues", new QLabel(right));
   values_->setTextFormat(Qt::RichText);

@@ -68,6 +68,7 @@ class StudiesPanel : public QWidget {
   void makeLayout();
   QWidget* makeLeft();
   void makeDiagram(QWidget* right);
+  QLayout* makeHead(QWidget* right);
   QWidget* makeRight();
   void start();
   void startSweep();

@@ -250,7 +250,12 @@ void StudyChoices::follow() {
 /// A label's least height is that of a single line, and its usual one that of a narrow column: rows below it
 /// would be squeezed before the form scrolls, or leave a gap.
 void StudyChoices::keepPurposeWhole() {
-  purpose_->setFixedHeight(purpose_->heightForWidth(width()));
+  purpose_->setMinimumHeight(0);  // a label says that it needs no less than it had
+  const int height = purpose_->heightForWidth(width());
+  QSizePolicy policy = purpose_->sizePolicy();
+  policy.setHeightForWidth(false);  // the form would ask for the height beside its labels
+  purpose_->setSizePolicy(policy);
+  purpose_->setFixedHeight(height);
 }
 
 void StudyChoices::resizeEvent(QResizeEvent* event) {

@@ -17,6 +17,9 @@ namespace {
 /// Parallel coordinates show no more rows than this, and reading a table of more takes longer than a look.
 constexpr std::size_t most_table_rows = 20'000;
 
+/// Of the engine's map: the colours of values, before those of runs that failed or have none.
+constexpr int classes_of_values = 9;
+
 /// Columns and measures without their units, for a person.
 QString source_words(const std::string& of) {
   if (const auto probe = cloth::words_of_probe_column(of)) return QString::fromStdString(probe->label);
@@ -49,7 +52,14 @@ cloth::HeatMap map_of(const SweepView& view, std::size_t output) {
   const cloth::RunOutput& of = view.folder.plan.outputs[output];
   map.title = output_words(of).toStdString();
   if (const std::string unit = output_unit(of); !unit.empty()) map.title += " (" + unit + ")";
-  map.panels.front().title = map.title;
+  cloth::HeatPanel& panel = map.panels.front();
+  panel.title = map.title;
+  // A contour is to be seen, not to be pointed at: it lies over the runs.
+  for (cloth::OverlayCurve& curve : panel.curves) curve.label.clear();
+  // The last classes, of runs without a value, take room in the legend where there are none.
+  int last = classes_of_values - 1;
+  for (const cloth::HeatCell& cell : panel.cells) last = std::max(last, cell.class_index);
+  map.classes.resize(std::min(map.classes.size(), static_cast<std::size_t>(last) + 1));
   return map;
 }
 

@@ -66,6 +66,23 @@ Stepper made_predicting_verlet(bool fused) {
   return std::make_unique<Verlet>(EndVelocity::predicted);
 }
 
+Entry verlet_entry() {
+  return {{.name = "verlet",
+           .title = "Verlet",
+           .order = 2,
+           .evaluations_per_step = 1,
+           .source = "Verlet 1967; report, Eq. (14)",
+           .keeps_force = true,
+           .predicts_damping = true,
+           .oscillator = {.family = Family::verlet},
+           .limit = verlet_limit,
+           .may_heat = true},
+          made<Verlet>,
+          FusedVerlet::suits,
+          made_fused<FusedVerlet>,
+          made_predicting_verlet};
+}
+
 /// One entry holds all that is known of a method.
 std::vector<Entry> explicit_methods() {
   return {
@@ -91,20 +108,7 @@ std::vector<Entry> explicit_methods() {
        made<SemiImplicitEuler>,
        FusedSemiImplicitEuler::suits,
        made_fused<FusedSemiImplicitEuler>},
-      {{.name = "verlet",
-        .title = "Verlet",
-        .order = 2,
-        .evaluations_per_step = 1,
-        .source = "Verlet 1967; report, Eq. (14)",
-        .keeps_force = true,
-        .predicts_damping = true,
-        .oscillator = {.family = Family::verlet},
-        .limit = verlet_limit,
-        .may_heat = true},
-       made<Verlet>,
-       FusedVerlet::suits,
-       made_fused<FusedVerlet>,
-       made_predicting_verlet},
+      verlet_entry(),
       {{.name = "rk4",
         .title = "Runge-Kutta 4",
         .order = 4,

@@ -33,7 +33,7 @@ double allowed_damping_load(const Scene& scene) {
 
 double parts_to_predict(const Scene& scene, double interval, double parts) {
   if (!has_dampers_to_predict(scene)) return parts;
-  const double most = touches_by_particles(scene) ? std::floor(1.5 * parts) : parts + 1;
+  const double most = std::max(parts + 1, std::floor((touches_by_particles(scene) ? 1.5 : 1.25) * parts));
   for (double n = parts; n <= most; ++n)
     if (predicted_damping_load(scene, interval / n) <= allowed_damping_load(scene)) return n;
   return parts;

@@ -48,6 +48,7 @@ LabWindow::LabWindow(QWidget* parent) : QMainWindow(parent) {
 /// The widgets refer to the document and the link.
 LabWindow::~LabWindow() {
   document_.undoStack().disconnect(this);
+  studies_->choices().disconnect(this);  // the charts go before the studies
   delete autosave_;
   delete takeCentralWidget();
   qDeleteAll(findChildren<QDockWidget*>());

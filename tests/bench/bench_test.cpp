@@ -67,7 +67,7 @@ TEST(Bench, MeasuresScenesMemoryAndStart) {
 }
 
 TEST(Bench, RefinesScenesToTheSizesAndSaysWhichItCannot) {
-  const std::string some = "--quick --only scenes --scenes curtain,flag,disc --sizes 9,13,17 ";
+  const std::string some = "--quick --only scenes --scenes free-fall,flag,disc --sizes 9,13,17 ";
   const CommandResult result = bench(some + "--json");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);
@@ -83,7 +83,7 @@ TEST(Bench, RefinesScenesToTheSizesAndSaysWhichItCannot) {
     EXPECT_TRUE(has(scene["remark"], "mesh")) << scene.dump();
   }
   ASSERT_EQ(json["scene_growth"].size(), 2u);
-  EXPECT_EQ(json["scene_growth"][0]["scene"], "curtain");
+  EXPECT_EQ(json["scene_growth"][0]["scene"], "free-fall");
   EXPECT_TRUE(json["scene_growth"][0]["exponent"].is_number());
   const std::string text = bench(some + "--markdown").output;
   for (const char* part :

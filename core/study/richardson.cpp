@@ -98,7 +98,7 @@ GridVerdict verdict_of(const std::vector<GridValue>& grids, const Richardson& fo
   if (std::abs(fine) <= least) return GridVerdict::unchanged;
   if (grids.size() == 2) return GridVerdict::two_grids;
   const double coarse = found.differences[found.differences.size() - 2];
-  if (std::abs(coarse) <= rounding) return GridVerdict::diverging;
+  if (std::abs(coarse) <= least) return GridVerdict::diverging;
   if (coarse * fine < 0)
     return std::abs(fine) < std::abs(coarse) ? GridVerdict::oscillating : GridVerdict::diverging;
   return found.orders.back() > 0 ? GridVerdict::converging : GridVerdict::diverging;

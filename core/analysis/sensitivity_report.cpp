@@ -11,6 +11,8 @@
 namespace cloth {
 namespace {
 
+constexpr double little_spread = 1e-3;  // standard deviation over mean
+
 /// Indices from the largest value down; those without one at the end.
 std::vector<std::size_t> from_the_largest(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
@@ -157,6 +159,11 @@ std::vector<std::string> sentences_of(const SobolIndices& indices, const std::ve
       sentences.push_back(fmt::format("{} can be fixed anywhere in {} range: less than 1 % of the variance.",
                                       fmt::join(nothing, ", "), nothing.size() == 1 ? "its" : "their"));
   }
+  if (const double part = std::sqrt(indices.variance) / std::abs(indices.mean); part < little_spread)
+    sentences.push_back(fmt::format(
+        "{} hardly varies: its standard deviation is {:.2g} of its mean. The indices then say what "
+        "decides a difference that may be one of rounding or of a tolerance.",
+        output, part));
   if (const std::string failures = failure_sentence(indices); !failures.empty())
     sentences.push_back(failures);
   return sentences;

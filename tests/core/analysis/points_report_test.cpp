@@ -55,6 +55,19 @@ std::size_t count_of(const std::vector<const XmlElement*>& elements, const std::
       std::count_if(elements.begin(), elements.end(), [&](const XmlElement* e) { return e->name == name; }));
 }
 
+TEST(Sensitivity, OfAnOutputThatHardlyVariesSaysSo) {
+  const UnitPoints rows = unit_design(Design::saltelli, 64, 2, 1);
+  const auto said = [&](double spread) {
+    std::vector<double> outputs;
+    for (const UnitPoint& row : rows) outputs.push_back(5 + spread * row[0]);
+    for (const std::string& sentence : sentences_of(sobol_indices(outputs, 2), {"a", "b"}, "peak"))
+      if (sentence.find("peak hardly varies") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_TRUE(said(1e-3));
+  EXPECT_FALSE(said(1));
+}
+
 TEST(PointTable, KnowsWhichRowsFailed) {
   PointsAccount account = account_of(Design::sobol, 8);
   account.table.columns[3].values[5] = none;

@@ -215,7 +215,7 @@ TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
   EXPECT_EQ(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("damping at the predicted velocity in the pass"), std::string::npos)
       << integrate_text(scene);
-  scene.springs->damping *= 50;
+  scene.springs->damping *= 100;
   EXPECT_GT(predicted_damping_load(scene, *scene.integrator.time_step), largest_predicted_load);
   EXPECT_GT(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("conjugate gradients"), std::string::npos) << integrate_text(scene);

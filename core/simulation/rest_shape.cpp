@@ -174,7 +174,7 @@ class RestSearch {
 
 RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Field& from,
                     const RestOptions& options) {
-  RestShape rest{.position = from};
+  RestShape rest{.position = from, .failure = {}};
   std::vector<double> history;
   for (int part = 1; part <= options.load_steps; ++part) {
     Scene loaded = scene;

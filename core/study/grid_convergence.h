@@ -32,16 +32,16 @@ struct GridRun {
   double time_step = 0;       ///< s, at the start; 0: refused
   bool step_changed = false;  ///< "auto" has shortened it
   std::int64_t steps = 0;
-  double end_time = 0;         ///< s
-  double wall = 0;             ///< s, of stepping alone
+  double end_time = 0;           ///< s
+  double wall = 0;               ///< s, of stepping alone
   std::vector<double> values{};  ///< one of each output; not a number where there is none
 };
 
 struct GridConvergence {
   Scene scene;  ///< with the studied time as its duration
   std::vector<std::string> outputs;
-  std::vector<int> cells;     ///< of the grids, ascending
-  std::vector<GridRun> runs;  ///< as far as they were made
+  std::vector<int> cells;       ///< of the grids, ascending
+  std::vector<GridRun> runs{};  ///< as far as they were made
   bool is_complete() const { return runs.size() == cells.size(); }
 };
 

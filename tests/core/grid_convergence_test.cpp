@@ -10,8 +10,8 @@
 #include "scene/builtin_scenes.h"
 #include "simulation/recorder.h"
 #include "study/grid_convergence_report.h"
-#include "study/run_output.h"
 #include "study/refined_scene.h"
+#include "study/run_output.h"
 #include "study/study_recorder.h"
 #include "study/study_runs.h"
 #include "support/files.h"
@@ -115,7 +115,7 @@ TEST(GridConvergence, HasTheRowsOfSingleRunsToTheBit) {
       Scene alone = scene;
       alone.cloth.rows = alone.cloth.columns = run.cells + 1;
       const TemporaryFolder folder;
-      const RunResult result = run_scene(alone, {.folder = folder.path()});
+      const RunResult result = run_scene(alone, {.folder = folder.path(), .progress = {}});
       const CsvTable record = parse_csv(content_of(folder / "record.csv"));
       EXPECT_EQ(run.values[1], column_of(record, "elastic_J").back());
       const auto strains = column_of(record, "max_strain");
@@ -152,8 +152,7 @@ TEST(GridConvergence, OfAHangingSheetIsThatOfTheClosedForm) {
   scene.springs = SpringMaterial{.structural = 100};
   scene.damping = 0.05;
   scene.duration = 20;
-  const GridConvergence study =
-      run_grid_convergence(scene, {.cells = {8, 16, 32, 64}, .outputs = {"sag"}});
+  const GridConvergence study = run_grid_convergence(scene, {.cells = {8, 16, 32, 64}, .outputs = {"sag"}});
   const double longest = scene.cloth.mass * gravity_of(scene).norm() / (2 * 100);
   for (const GridRun& run : study.runs)
     EXPECT_NEAR(run.values[0], 1 + longest * run.cells / (run.cells + 1), 1e-9) << run.cells;
@@ -208,7 +207,7 @@ TEST(GridConvergence, FindsEveryProblemOfItsOptions) {
 
 TEST(GridConvergence, WarnsOfWhatIsAnotherThingOnAnotherGrid) {
   Scene scene = hung_by_corners();
-  scene.air = Air{.drag = 0.01};
+  scene.air = Air{.drag = 0.01, .gust = {}};
   GridConvergence study = plan_grid_convergence(scene, few_grids());
   std::string all;
   for (const std::string& caution : cautions_of(study)) all += caution + "\n";

@@ -182,7 +182,9 @@ TEST(GridProjection, IsOfEqualSpringsOfFiniteStiffness) {
   Scene scene = sheet(4, 4, 7, 0);
   scene.springs->structural = std::numeric_limits<double>::infinity();
   const ClothSystem rigid = make_grid(scene.cloth, *scene.springs);
-  if (const auto grid = grid_springs(rigid)) EXPECT_FALSE(GridSweep(rigid, *grid, 1.0).projects());
+  if (const auto grid = grid_springs(rigid)) {
+    EXPECT_FALSE(GridSweep(rigid, *grid, 1.0).projects());
+  }
 }
 
 }  // namespace

@@ -121,7 +121,9 @@ TEST(MeshBending, OfACylinderIsThatOfItsWholeAreaButWhereItEndsStraightOnAnIrreg
         bending_of_surface(system, [&](const Vec3& p) { return amplitude * std::sin(k * p.x()); });
     const double exact = 0.25 * m.bending_weft * amplitude * amplitude * std::pow(k, 4) * width * height;
     const double error = std::abs(energy / exact - 1);
-    if (before > 0) EXPECT_LE(error, 0.75 * before) << cells;
+    if (before > 0) {
+      EXPECT_LE(error, 0.75 * before) << cells;
+    }
     before = error;
   }
   EXPECT_LE(before, 0.02);

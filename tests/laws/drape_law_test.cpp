@@ -98,7 +98,8 @@ Scene specimen_of_triangles(const Material& material, int cells) {
                  .columns = static_cast<int>(surface.vertices.size()),
                  .rows = 1,
                  .origin = Vec3::Zero(),
-                 .down = {0, 0, 1}};
+                 .down = {0, 0, 1},
+                 .pins = {}};
   for (std::size_t i = 0; i < surface.vertices.size(); ++i)
     if (surface.vertices[i].norm() <= drape_disc_radius + 0.4 * a)
       scene.cloth.pins.emplace_back(PinnedParticle{0, static_cast<int>(i)});

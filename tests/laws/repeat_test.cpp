@@ -1,7 +1,6 @@
 // The same run gives the same bits.
 #include <gtest/gtest.h>
 
-
 #include "scene/builtin_scenes.h"
 #include "simulation/recorder.h"
 #include "support/files.h"

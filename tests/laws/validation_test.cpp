@@ -36,8 +36,8 @@ TEST_P(Validation, IsWithinOnePerCentAtTwentyCellsAndOfSecondOrderOrExactWhereTh
 }
 
 INSTANTIATE_TEST_SUITE_P(Protocols, Validation, testing::ValuesIn(exact_protocols()),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& protocol) {
+                           std::string name = protocol.param;
                            std::erase(name, '-');
                            return name;
                          });

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "console.h"
 #include "integrators/implicit/linear_choice.h"
+#include "integrators/projective_matrix.h"
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
@@ -45,6 +46,7 @@ struct Explanation {
   double largest_frequency = 0, guaranteed_frequency = 0, provot_step = 0;
   std::vector<MethodLimit> methods;
   std::vector<LinearSolve> linear_solves;
+  std::string global_solve;  ///< of projective dynamics, if that is the scene's method
 };
 
 std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vector<MethodLimit>& methods) {
@@ -61,8 +63,30 @@ std::vector<LinearSolve> linear_solves(const cloth::Scene& scene, const std::vec
   return solves;
 }
 
+std::string global_solve(const cloth::Scene& scene) {
+  const auto step = cloth::resolved_time_step(scene);
+  if (scene.integrator.method != "projective" || !step) return "";
+  cloth::ProjectiveMatrix::Coefficients numbers;
+  numbers.step = *step;
+  cloth::ProjectiveMatrix matrix;
+  bool usable = false;
+  matrix.prepare(cloth::make_cloth(scene), numbers, &usable);
+  if (matrix.uses_multigrid())
+    return fmt::format("one cycle of multigrid an iteration, which leaves {:.2g} of an error",
+                       *matrix.cycle_factor());
+  if (matrix.cycle_factor())
+    return fmt::format("Cholesky factors: a cycle of multigrid would leave {:.2g} of an error, more than {}",
+                       *matrix.cycle_factor(), cloth::ProjectiveMatrix::largest_factor);
+  return fmt::format("Cholesky factors: multigrid is for grids of {} particles and more",
+                     cloth::ProjectiveMatrix::fewest_particles);
+}
+
 Explanation explain_scene(const cloth::Scene& scene) {
-  Explanation e{.scene = scene, .stages = cloth::explain_stages(scene), .methods = {}, .linear_solves = {}};
+  Explanation e{.scene = scene,
+                .stages = cloth::explain_stages(scene),
+                .methods = {},
+                .linear_solves = {},
+                .global_solve = global_solve(scene)};
   if (cloth::has_stiffness(scene)) {
     e.largest_frequency = cloth::largest_frequency(scene);
     e.guaranteed_frequency = cloth::guaranteed_frequency(scene);
@@ -126,11 +150,15 @@ std::string to_text(const Explanation& e) {
   if (!e.linear_solves.empty())
     text +=
         fmt::format("\nLinear solves of implicit methods (estimated cost of one; the cheaper is taken)\n");
-  for (const LinearSolve& solve : e.linear_solves)
+  for (const LinearSolve& solve : e.linear_solves) {
     text +=
-        fmt::format("  {:<22} {:<20} factors {:.3g} ms, conjugate gradients {:.3g} ms in {:.0f} iterations\n",
+        fmt::format("  {:<22} {:<20} factors {:.3g} ms, conjugate gradients {:.3g} ms in {:.0f} iterations",
                     solve.method, cloth::name_of(solve.choice.method), 1e3 * solve.choice.factors,
                     1e3 * solve.choice.gradients, solve.choice.iterations);
+    text += solve.choice.multigrid ? fmt::format(", multigrid {:.3g} ms\n", 1e3 * *solve.choice.multigrid)
+                                   : ", no multigrid\n";
+  }
+  if (!e.global_solve.empty()) text += fmt::format("\nGlobal solve of projective  {}\n", e.global_solve);
   const auto step = cloth::resolved_time_step(e.scene);
   text += step ? fmt::format("\nRun with {} at {:.6g} s{}\n", e.scene.integrator.method, *step,
                              e.scene.integrator.time_step ? "" : " (auto)")
@@ -170,12 +198,15 @@ std::string to_json(const Explanation& e) {
                                {"stable_step_s", finite(method.stable_step)},
                                {"guaranteed_step_s", finite(method.guaranteed_step)},
                                {"auto_step_s", finite(method.auto_step)}});
+  if (!e.global_solve.empty()) root["global_solve"] = e.global_solve;
   for (const LinearSolve& solve : e.linear_solves)
-    root["linear_solves"].push_back({{"method", solve.method},
-                                     {"solver", cloth::name_of(solve.choice.method)},
-                                     {"factors_s", solve.choice.factors},
-                                     {"conjugate_gradients_s", solve.choice.gradients},
-                                     {"iterations", solve.choice.iterations}});
+    root["linear_solves"].push_back(
+        {{"method", solve.method},
+         {"solver", cloth::name_of(solve.choice.method)},
+         {"factors_s", solve.choice.factors},
+         {"conjugate_gradients_s", solve.choice.gradients},
+         {"iterations", solve.choice.iterations},
+         {"multigrid_s", solve.choice.multigrid ? json(*solve.choice.multigrid) : json(nullptr)}});
   root["method"] = e.scene.integrator.method;
   root["time_step_s"] = finite(cloth::resolved_time_step(e.scene));
   return root.dump(2) + "\n";

@@ -18,47 +18,41 @@
 // So A is never less than the derivative of r by springs and damping, and an iteration lowers the incremental
 // potential wherever it is one. Wind is left out of A: its force changes with the normals, but is bounded
 // whatever the shape, and the rest of the iteration contracts; iterates stay bounded in any wind.
+//
+// On a grid one cycle of multigrid stands for A^-1 where it reduces the error enough
+// (integrators/projective_matrix.h). Iterations may be accelerated (integrators/acceleration.h): a proposal
+// whose residual is larger in the norm of A^-1 than that of the iterate it came from is replaced by the plain
+// iterate, and the acceleration begins anew. The last two iterations of a step are plain ones, so that no
+// proposal goes unexamined.
 #pragma once
 
-#include "integrators/implicit/linear_solver.h"
+#include "integrators/acceleration.h"
 #include "integrators/integrator.h"
+#include "integrators/projective_matrix.h"
 
 namespace cloth {
 
 class Projective : public Integrator {
  public:
-  explicit Projective(int iterations) : iterations_(iterations) {}
+  explicit Projective(int iterations, std::unique_ptr<Acceleration> acceleration = nullptr)
+      : iterations_(iterations), acceleration_(std::move(acceleration)) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
 
  private:
-  /// What A consists of beside springs, masses and pins. Units as in NodeDamping.
-  struct Coefficients {
-    double step = 0;
-    NodeCoefficient node_damping;
-    double spring_damping = 0, stretch_time = 0, bending_time = 0, membrane_time = 0;
-    int held_particle = -1;
-    double held_damping = 0, held_stiffness = 0;
-    bool operator==(const Coefficients&) const = default;
-  };
-
-  bool factorise(const ClothSystem& system, const Coefficients& numbers);
-  double correct(const ClothSystem& system, const Vec3Field& start_velocity, double h, Vec3Field& velocity);
+  void iterate(ForceModel& forces, const StepTimes& times, ClothState& state, IntegratorReport& report);
+  void find_residual(ForceModel& forces, const StepTimes& times, ClothState& state);
+  double advance(bool may_accelerate, double merit, Vec3Field& velocity);
 
   int iterations_;
-  bool factored_ = false;  ///< `factors_` are those of A with these:
-  Coefficients coefficients_;
-  SpringRuns springs_;
-  BendingRuns bending_;
-  Membrane membrane_;
-  BendingSliders sliders_;
-  std::vector<double> mass_;
-  std::vector<std::uint8_t> pinned_;
-  FreeRows rows_;
-  BlockCholesky factors_{1};
+  std::unique_ptr<Acceleration> acceleration_;
+  ProjectiveMatrix matrix_;
   Vec3Field force_, start_position_, start_velocity_;
-  std::vector<double> residual_;  ///< N s, of the free particles: x, y, z one after the other
+  Vec3Field residual_;          ///< r, N s, zero on pins
+  Vec3Field correction_;        ///< A^-1 r, m/s
+  bool accelerated_ = false;    ///< the present velocity is a proposal, and
+  Vec3Field plain_, proposal_;  ///< the plain iterate in its place
 };
 
 }  // namespace cloth

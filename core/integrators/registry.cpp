@@ -170,7 +170,8 @@ std::vector<Entry> implicit_methods() {
         .oscillator = implicit_euler_step,
         .a_stable = true},
        [](const IntegratorChoice& choice) -> Stepper {
-         return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations));
+         return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations),
+                                             make_acceleration(choice.acceleration));
        }},
       {{.name = "xpbd",
         .title = "XPBD",

@@ -68,7 +68,12 @@ Fields<IntegratorChoice> own_integrator_fields(MethodSettings settings) {
                       "Iterations of Newton's method after which a step has failed.")};
     case MethodSettings::projective:
       return {count_field(&I::projective_iterations, "iterations", "Iterations",
-                          "Local and global solves of a step.")};
+                          "Local and global solves of a step."),
+              field(&I::acceleration,
+                    {.key = "acceleration",
+                     .label = "Acceleration",
+                     .doc = "How the iterations of a step are accelerated; the limit is the same.",
+                     .choices = {"none", "chebyshev", "anderson", "l-bfgs"}})};
     case MethodSettings::xpbd:
       return {count_field(&I::substeps, "substeps", "Substeps", "Parts that a time step is taken in."),
               count_field(&I::xpbd_iterations, "iterations", "Iterations",

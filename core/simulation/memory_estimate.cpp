@@ -12,7 +12,7 @@ namespace {
 /// Bytes for a particle, measured as the growth of a run's largest memory from 256 x 256 to 512 x 512
 /// particles of a grid with all spring families, rounded down.
 double bytes_per_particle(MethodSettings settings, bool has_springs_to_solve) {
-  constexpr double explicit_method = 120, error_control = 500, implicit = 900, local_and_global = 1400,
+  constexpr double explicit_method = 120, error_control = 500, implicit = 900, local_and_global = 500,
                    substeps = 300;
   switch (settings) {
     case MethodSettings::none:

@@ -101,5 +101,18 @@ TEST(Explain, SaysHowEveryImplicitMethodWouldSolveItsLinearSystemsAndWhatBothWay
   }
 }
 
+TEST(Explain, SaysHowProjectiveDynamicsSolvesAndWhy) {
+  const std::string projective = " --set integrator.method=projective --set integrator.time_step=0.005";
+  const auto solve = [&](const std::string& scene) {
+    return explained(scene + projective)["global_solve"].get<std::string>();
+  };
+  EXPECT_NE(solve("corners-shear").find("one cycle of multigrid"), std::string::npos);
+  EXPECT_NE(solve("free-fall").find("Cholesky factors: multigrid is for grids of 400"), std::string::npos);
+  EXPECT_NE(solve("corners-shear --set springs.structural=1 --set springs.shear=800 --set springs.flexion=0")
+                .find("Cholesky factors: a cycle of multigrid would leave 0."),
+            std::string::npos);
+  EXPECT_FALSE(explained("corners-shear").contains("global_solve"));
+}
+
 }  // namespace
 }  // namespace cloth::test::explain_test

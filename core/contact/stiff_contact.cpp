@@ -82,7 +82,8 @@ bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces,
   keep_along_surfaces(along_);
   for (double& value : along_.flat()) value *= -weight * weight;
   bool solved = false;
-  if (choose_linear_method(system, weights).method == LinearMethod::cholesky) {
+  const LinearChoice costs = choose_linear_method(system, weights);
+  if (costs.factors <= costs.gradients) {
     solved = factors_.factorise(system, linearisation_);
     if (solved) factors_.solve(along_, direction_);
   } else {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "integrators/implicit_methods.h"
 #include "measure/energy.h"
@@ -62,6 +63,23 @@ TEST(ImplicitEuler, SolvesItsEquationWithEveryForce) {
               1e-11);
     EXPECT_LE(largest_distance(after.position, combination(1, before.position, long_step, after.velocity)),
               1e-15);
+  }
+}
+
+TEST(ImplicitEuler, SolvesItsEquationByMultigridToo) {
+  Scene scene = smooth_scene(64, 61);
+  scene.springs = SpringMaterial{.structural = 3e4, .shear = 2e4, .flexion = 5e3, .damping = 0.02};
+  DirectRun run(scene, tight("implicit-euler"));
+  ASSERT_EQ(
+      choose_linear_method(run.system, {.position = long_step * long_step, .velocity = long_step}).method,
+      LinearMethod::multigrid);
+  Random random;
+  run.state = crumpled_state(run.system, 0.01, 0.5, random);  // so that the matrix is not positive definite
+  for (int n = 0; n < 3; ++n) {
+    const Vec3Field before = run.state.velocity;
+    run.advance(1, long_step);
+    const ClothState after = run.state;
+    EXPECT_LE(equation_residual(run, before, long_step, after.position, after.velocity, after.time), 1e-10);
   }
 }
 
@@ -152,7 +170,7 @@ TEST(NewtonsMethod, ThatMayNotIterateEnoughStopsWithParticleAndCause) {
   EXPECT_GE(stop->particle, 0);
 }
 
-TEST(LinearChoice, TakesFactorsWhereSpringsAreVeryStiffAndGradientsElsewhere) {
+TEST(LinearChoice, TakesTheCheapestAndMultigridOnlyWhereItsPrecisionAllows) {
   const auto chosen = [](int size, double stiffness) {
     Scene scene = builtin_scene("corners-free");
     scene.cloth.rows = scene.cloth.columns = size;
@@ -161,11 +179,17 @@ TEST(LinearChoice, TakesFactorsWhereSpringsAreVeryStiffAndGradientsElsewhere) {
   };
   EXPECT_EQ(chosen(33, 1).method, LinearMethod::conjugate_gradients);
   EXPECT_EQ(chosen(33, 1e9).method, LinearMethod::cholesky);
+  EXPECT_EQ(chosen(129, 1000).method, LinearMethod::multigrid);
+  EXPECT_FALSE(chosen(129, 1e7).multigrid);
   for (const int size : {9, 65}) {
     double before = 0;
     for (double stiffness = 1; stiffness <= 1e9; stiffness *= 10) {
       const LinearChoice choice = chosen(size, stiffness);
-      EXPECT_EQ(choice.method == LinearMethod::conjugate_gradients, choice.gradients < choice.factors);
+      const double multigrid = choice.multigrid.value_or(std::numeric_limits<double>::infinity());
+      const double cheapest = std::min({choice.factors, choice.gradients, multigrid});
+      EXPECT_EQ(cheapest, choice.method == LinearMethod::cholesky              ? choice.factors
+                          : choice.method == LinearMethod::conjugate_gradients ? choice.gradients
+                                                                               : multigrid);
       EXPECT_EQ(choice.factors, chosen(size, 1).factors) << "whatever the stiffness";
       EXPECT_GE(choice.gradients, before);
       before = choice.gradients;

@@ -87,26 +87,55 @@ void ImplicitStage::choose_forcing() {
   residual_norm_ = norm;
 }
 
+bool ImplicitStage::solve_by_factors(const StageEquation& e, const Vec3Field& right_hand_side) {
+  ++e.report.factorisations;
+  if (!factors_.factorise(e.forces.system(), linearisation_)) return false;
+  factors_.solve(right_hand_side, downhill_);
+  return true;
+}
+
+void ImplicitStage::keep_escape(const KrylovReport& krylov) {
+  if (!krylov.indefinite) return;
+  escape_ = gradients_.direction();
+  for (double& value : escape_.flat()) value *= krylov.reach;
+}
+
 /// downhill = -A^-1 residual with the linearisation at hand; false where A is not positive definite, or where
 /// conjugate gradients did not get there.
 bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method) {
   linear_method_ = method;
   const Vec3Field right_hand_side = negative(residual_);
-  if (linear_method_ == LinearMethod::cholesky) {
-    ++e.report.factorisations;
-    if (!factors_.factorise(e.forces.system(), linearisation_)) return false;
-    factors_.solve(right_hand_side, downhill_);
-    return true;
-  }
+  if (linear_method_ == LinearMethod::cholesky) return solve_by_factors(e, right_hand_side);
   jacobi_.prepare(e.forces.system(), linearisation_);
   const KrylovReport krylov =
       gradients_.solve(e.forces.system(), linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
   e.report.linear_iterations += krylov.iterations;
-  if (krylov.indefinite) {
-    escape_ = gradients_.direction();
-    for (double& value : escape_.flat()) value *= krylov.reach;
-  }
+  keep_escape(krylov);
   return krylov.converged;
+}
+
+/// The same by conjugate gradients with a cycle of multigrid of the clamped matrix: with the exact matrix,
+/// and where that is not positive definite with the clamped one.
+bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
+  const double h = e.weight;
+  const ClothSystem& system = e.forces.system();
+  linear_method_ = LinearMethod::multigrid;
+  const bool clamps = linearisation_.has_compressed;
+  if (clamps) e.forces.linearise(e.position, {.position = h * h, .velocity = h, .clamped = true}, clamped_);
+  if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_)) return false;
+  const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
+    multigrid_.precondition(in, out);
+  };
+  const Vec3Field right_hand_side = negative(residual_);
+  const auto solve_with = [&](const Linearisation& matrix) {
+    const KrylovReport krylov =
+        gradients_.solve(system, matrix, preconditioner, right_hand_side, forcing_, downhill_);
+    e.report.linear_iterations += krylov.iterations;
+    keep_escape(krylov);
+    return krylov;
+  };
+  const KrylovReport exact = solve_with(linearisation_);
+  return exact.indefinite && clamps ? solve_with(clamped_).converged : exact.converged;
 }
 
 void ImplicitStage::find_direction(const StageEquation& e) {
@@ -115,10 +144,12 @@ void ImplicitStage::find_direction(const StageEquation& e) {
   e.forces.linearise(e.position, weights, linearisation_);
   const LinearMethod method = choose_linear_method(e.forces.system(), weights).method;
   escape_.fill(0);
-  if (!solve_symmetric(e, method)) {
+  const bool solved = method == LinearMethod::multigrid ? solve_by_multigrid(e) : solve_symmetric(e, method);
+  if (!solved) {
     weights.clamped = true;
     e.forces.linearise(e.position, weights, linearisation_);
-    if (!solve_symmetric(e, method)) solve_symmetric(e, LinearMethod::cholesky);
+    const bool again = method != LinearMethod::multigrid && solve_symmetric(e, method);
+    if (!again) solve_symmetric(e, LinearMethod::cholesky);
   }
   direction_ = downhill_;
   if (e.forces.has_asymmetric_part()) correct_direction(e);
@@ -135,7 +166,9 @@ void ImplicitStage::correct_direction(const StageEquation& e) {
     clear_pinned(e.forces.system(), out);
   };
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
-    linear_method_ == LinearMethod::cholesky ? factors_.solve(in, out) : jacobi_.solve(in, out);
+    if (linear_method_ == LinearMethod::cholesky) return factors_.solve(in, out);
+    if (linear_method_ == LinearMethod::multigrid) return multigrid_.precondition(in, out);
+    jacobi_.solve(in, out);
   };
   e.report.linear_iterations +=
       minimal_residuals(jacobian, preconditioner, negative(residual_), forcing_, direction_).iterations;

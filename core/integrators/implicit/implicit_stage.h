@@ -12,6 +12,7 @@
 
 #include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
+#include "integrators/implicit/multigrid_solver.h"
 #include "integrators/integrator.h"
 
 namespace cloth {
@@ -42,17 +43,21 @@ class ImplicitStage {
   void correct_direction(const StageEquation& e);
   void add_escape();
   bool solve_symmetric(const StageEquation& e, LinearMethod method);
+  bool solve_by_factors(const StageEquation& e, const Vec3Field& right_hand_side);
+  bool solve_by_multigrid(const StageEquation& e);
+  void keep_escape(const KrylovReport& krylov);
   double take_step(const StageEquation& e);
 
   double tolerance_;
   int max_iterations_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;
+  MultigridSolver multigrid_;
   ConjugateGradients gradients_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
   double residual_norm_ = 0;  ///< N s, before the last iteration of this solve; 0: there was none
   double forcing_ = 0;        ///< tolerance of iterative solves, relative to the residual
-  Linearisation linearisation_;
+  Linearisation linearisation_, clamped_;
   Vec3Field force_, residual_, downhill_, direction_, escape_, start_;
 };
 

@@ -85,6 +85,39 @@ KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearis
   return report;
 }
 
+/// With z = B r after the step r' = r - a q: beta = (r' - r) . z / r . z_before = -a q . z / (r . z_before).
+KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearisation& matrix,
+                                       const LinearMap& preconditioner, const Vec3Field& right_hand_side,
+                                       double tolerance, Vec3Field& solution) {
+  KrylovReport report;
+  if (direction_.size() != solution.size()) conditioned_ = direction_ = image_ = Vec3Field(solution.size());
+  residual_ = right_hand_side;
+  solution.fill(0);
+  preconditioner(residual_, conditioned_);
+  direction_ = conditioned_;
+  double slope = dot(residual_, conditioned_);
+  const double goal = tolerance * tolerance * slope;
+  while (slope > goal && report.iterations < max_iterations) {
+    matrix.multiply(system, direction_, image_);
+    const double curvature = dot(direction_, image_);
+    if (!(curvature > 0)) {
+      report.indefinite = true;
+      report.reach = curvature < 0 ? -slope / curvature : 0;
+      break;
+    }
+    const double length = slope / curvature;
+    add_multiple(length, direction_, solution);
+    add_multiple(-length, image_, residual_);
+    preconditioner(residual_, conditioned_);
+    const double turn = -length * dot(image_, conditioned_) / slope;
+    scale_and_add(turn, conditioned_.flat(), direction_.flat());
+    slope = dot(residual_, conditioned_);
+    ++report.iterations;
+  }
+  report.converged = !report.indefinite && slope <= goal && slope >= 0;
+  return report;
+}
+
 namespace {
 
 /// One cycle of minimal residuals: an orthonormal basis of the Krylov space by Arnoldi's process, its

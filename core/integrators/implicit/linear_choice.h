@@ -4,13 +4,17 @@
 // is solved in the same way everywhere; docs/methods/implicit-euler.md has the measurements.
 #pragma once
 
+#include <optional>
+
 #include "forces/linearisation.h"
 
 namespace cloth {
 
-enum class LinearMethod { cholesky, conjugate_gradients };
+/// Conjugate gradients with the inverses of the diagonal's blocks as preconditioner, or on grids with a cycle
+/// of multigrid (multigrid_solver.h).
+enum class LinearMethod { cholesky, conjugate_gradients, multigrid };
 
-/// "factors" or "conjugate gradients"
+/// "factors", "conjugate gradients" or "multigrid"
 const char* name_of(LinearMethod method);
 
 /// Estimates of one solve of A x = b, from the costs of the machine that was measured on.
@@ -19,6 +23,7 @@ struct LinearChoice {
   double factors = 0;                            ///< s
   double gradients = 0;                          ///< s
   double iterations = 0;                         ///< of conjugate gradients
+  std::optional<double> multigrid = {};  ///< s; none: not on this cloth, or too stiff for its precision
 };
 LinearChoice choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights);
 

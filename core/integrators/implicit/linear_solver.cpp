@@ -65,8 +65,8 @@ FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors) {
 }
 
 bool CholeskyFactors::fits(const ClothSystem& system) const {
-  if (pinned_ != system.pinned || bending_ != system.bending || membrane_ != system.membrane || sliders_ != system.sliders ||
-      runs_.size() != system.springs.size())
+  if (pinned_ != system.pinned || bending_ != system.bending || membrane_ != system.membrane ||
+      sliders_ != system.sliders || runs_.size() != system.springs.size())
     return false;
   return std::equal(system.springs.begin(), system.springs.end(), runs_.begin(),
                     [](const SpringRun& a, const SpringRun& b) {

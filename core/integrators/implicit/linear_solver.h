@@ -73,6 +73,11 @@ class ConjugateGradients {
                      const BlockJacobi& preconditioner, const Vec3Field& right_hand_side, double tolerance,
                      Vec3Field& solution);
 
+  /// The same with any symmetric, positive definite preconditioner, which may differ a little from one
+  /// iteration to the next (flexible: Notay 2000, Eq. 2.3).
+  KrylovReport solve(const ClothSystem& system, const Linearisation& matrix, const LinearMap& preconditioner,
+                     const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
+
   /// The last direction: that of negative curvature where the solve ended with one.
   const Vec3Field& direction() const { return direction_; }
 

@@ -1,0 +1,73 @@
+// A preconditioner for symmetric, positive definite matrices of symmetric 3x3 blocks on a grid whose
+// couplings reach two rows and two columns at most: one V-cycle of multigrid in single precision, with a
+// forward sweep of block Gauss-Seidel before and a backward one after the correction of the coarser grid, so
+// that the cycle is symmetric; bilinear interpolation from every second row and column, Galerkin's matrices,
+// whose blocks are symmetric as well, and the inverse of the coarsest (Trottenberg, Oosterlee and Schueller
+// 2001). Rows are in order, the columns of a row in three colours by their remainder modulo 3.
+//
+//     BlockMultigrid multigrid;
+//     multigrid.begin(rows, columns);
+//     multigrid.add_to_diagonal(...); multigrid.add_coupling(...);
+//     if (multigrid.prepare()) multigrid.solve(residual, correction);
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec3_field.h"
+#include "sparse/block_cycle_kernels.h"
+
+namespace cloth {
+
+class BlockMultigrid {
+ public:
+  /// Sets the matrix to zero. Particle r * columns + c.
+  void begin(int rows, int columns);
+
+  /// xx, xy, xz, yy, yz, zz of the blocks of consecutive particles from `first` on are added.
+  void add_to_diagonal(std::size_t first, std::size_t count, const std::array<const double*, 6>& blocks);
+  /// The blocks of `count` couplings between particles first + k and first + k + offset, times `scale`.
+  /// `offset` is positive. False, and nothing added, where they lie too far apart.
+  bool add_couplings(std::size_t first, std::size_t count, int offset, double scale,
+                     const std::array<const double*, 6>& blocks);
+  /// Takes a particle out: its row and column become zero.
+  void fix(std::size_t particle);
+
+  /// Makes the coarser matrices. False where the coarsest is not positive definite, or not finite.
+  bool prepare();
+
+  /// correction = one cycle from zero for A x = residual. Zero on fixed particles.
+  void solve(const Vec3Field& residual, Vec3Field& correction);
+
+  std::size_t memory() const;  ///< bytes held
+
+ private:
+  static constexpr int fewest = 5;  ///< rows or columns that are not halved
+
+  struct Level {
+    BlockLevel loops;
+    NaturalBlocks natural;
+    AlignedFloats natural_numbers, blocks, inverse, vectors;
+    std::vector<int> place;  ///< of each column in a row of one number
+    std::size_t origin = 0;  ///< of x in `vectors`
+  };
+
+  void add_level(int rows, int columns);
+  void set_neighbours(Level& level);
+  void arrange(Level& level);
+  bool invert_coarsest();
+  void cycle(std::size_t number);
+  void solve_coarsest();
+  void restrict_residual(const Level& fine, Level& coarse);
+  void add_correction(Level& fine, const Level& coarse);
+
+  int rows_ = 0, columns_ = 0;
+  const BlockCycleKernels* kernels_ = nullptr;
+  std::vector<Level> levels_;
+  std::vector<std::size_t> fixed_;
+  std::vector<double> coarsest_;  ///< its inverse, row by row
+  AlignedFloats between_, row_;   ///< scratch
+};
+
+}  // namespace cloth

@@ -10,6 +10,7 @@
 #include "integrators/implicit_methods.h"
 #include "integrators/projective.h"
 #include "integrators/rk4.h"
+#include "integrators/vbd.h"
 #include "integrators/verlet.h"
 #include "integrators/xpbd.h"
 #include "scene/scene.h"
@@ -161,7 +162,8 @@ std::vector<Entry> implicit_methods() {
         .a_stable = true,
         .stage_weight = Bdf2::stage_weight},
        made_with_newton<Bdf2>},
-      // On a linear oscillator the converged iterations of the next two (compliance 1/k) are implicit Euler.
+      // On a linear oscillator the converged iterations of the next three (compliance 1/k) are implicit
+      // Euler.
       {{.name = "projective",
         .title = "Projective dynamics",
         .order = 1,
@@ -183,6 +185,17 @@ std::vector<Entry> implicit_methods() {
        [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
                                        static_cast<int>(choice.xpbd_iterations));
+       }},
+      {{.name = "vbd",
+        .title = "VBD",
+        .order = 1,
+        .source = "Chen et al. 2024",
+        .settings = MethodSettings::vbd,
+        .oscillator = implicit_euler_step,
+        .a_stable = true},
+       [](const IntegratorChoice& choice) -> Stepper {
+         return std::make_unique<Vbd>(static_cast<int>(choice.vbd_iterations),
+                                      choice.vbd_acceleration == "chebyshev");
        }},
   };
 }

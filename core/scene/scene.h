@@ -99,6 +99,8 @@ struct IntegratorChoice {
   std::int64_t projective_iterations = 10;  ///< local and global solves in each step
   std::int64_t xpbd_iterations = 1;         ///< passes over all springs in each substep
   std::int64_t substeps = 10;               ///< xpbd
+  std::int64_t vbd_iterations = 20;         ///< visits of every particle in each step
+  std::string vbd_acceleration = "chebyshev";  ///< or "none"
   bool operator==(const IntegratorChoice&) const = default;
 };
 

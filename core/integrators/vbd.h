@@ -1,0 +1,120 @@
+// Implicit Euler by Gauss-Seidel over the particles: vertex block descent (Chen, Liu, Yang and Yuksel 2024).
+//
+// A step is the minimum over x' of
+//
+//     G(x') = sum_i m_i/(2 h^2) |x'_i - y_i|^2 + E(x'),   y = x + h v + h^2 a_external,   v' = (x' - x)/h
+//
+// and a visit of a particle is one iteration of Newton's method for it alone, the others held: of what is
+// left of its step equation, an impulse in N s, and of how that answers to its velocity, a matrix of 3 x 3 in
+// kg,
+//
+//     r = W^-1 (v' - v*) - h f,   A = W^-1 + h D + h^2 K,   v' <- v' - A^-1 r
+//
+// f are the forces between particles at x' = x + h v' (springs with L/l of what they are in that shape, their
+// dampers, a material's bending and membrane with theirs, its sliders), D and K the particle's own blocks of
+// theirs. W^-1 v* = m v + h p has the rest: gravity, wind and the hand, W^-1 = (m + h c) I + h c_a n n^T, the
+// hand adds its h c + h^2 k (as integrators/xpbd.h). Where normals matter all that is taken anew before every
+// iteration, so that what the iterations tend to is the implicit Euler step.
+//
+// K is clamped: of a spring k [n n^T + max(1 - L/l, 0) (I - n n^T)], likewise of a triangle's edges, so that
+// A is positive definite whatever the shape. A spring without length has k I and no force. No visit moves its
+// particle further than where any element, or its inertia, alone would have it: the reach of a clamped matrix
+// is too long where a cloth is crushed. The particles are visited colour by colour (particle_elements.h), on
+// a grid of springs alone and where W^-1 is isotropic many at a time (kernels/grid_visits.h).
+//
+// Chebyshev's semi-iteration (Wang 2015; Chen et al., section 3.8) extrapolates after every iteration but the
+// last: x <- omega (x - x_before) + x_before, with the iterate before the last and
+//
+//     omega_1 = 1,  omega_2 = 2/(2 - rho^2),  omega_k = 4/(4 - rho^2 omega_(k-1)),  rho = 0.95
+//
+// Where the residuals that an iteration meets oppose the last move (their work along it is negative), it has
+// gone too far: no extrapolation then, and omega starts again with omega_1.
+#pragma once
+
+#include "integrators/integrator.h"
+#include "integrators/particle_elements.h"
+#include "kernels/grid_descent.h"
+
+namespace cloth {
+
+/// The weights of Chebyshev's semi-iteration, one after each iteration.
+class ChebyshevWeights {
+ public:
+  static constexpr double spectral_radius = 0.95;
+  void begin() { count_ = 0, weight_ = 1; }
+  double next() {
+    constexpr double square = spectral_radius * spectral_radius;
+    ++count_;
+    return weight_ = count_ == 1 ? 1 : count_ == 2 ? 2 / (2 - square) : 4 / (4 - square * weight_);
+  }
+  /// Whether the last iterate was extrapolated.
+  bool extrapolated() const { return weight_ > 1; }
+
+ private:
+  int count_ = 0;
+  double weight_ = 1;
+};
+
+class Vbd : public Integrator {
+ public:
+  Vbd(int iterations, bool accelerated) : iterations_(iterations), accelerated_(accelerated) {}
+
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  bool drifts_with_end_velocity() const override { return true; }
+
+ private:
+  /// W^-1 = mass I + along n n^T, in kg; mass 0 where pinned.
+  struct Inertia {
+    double mass = 0, along = 0;
+    Vec3 normal{0, 0, 0};
+  };
+  /// Of one visit: A dv = push.
+  struct Local {
+    Vec3 push;               ///< N s, -r
+    Eigen::Matrix3d matrix;  ///< kg
+    double reach = 0;        ///< m, the furthest that an element could ask for
+    void add_along(double across, double along, const Vec3& n) {
+      matrix += across * Eigen::Matrix3d::Identity() + (along - across) * n * n.transpose();
+    }
+  };
+  /// What a step's visits share.
+  struct Visits {
+    const ClothSystem& system;
+    NodeDamping parts;
+    double step = 0;    ///< s
+    ClothState& state;  ///< at the end of the step
+  };
+  struct Sweep {
+    double change = 0;  ///< the largest, squared, of a particle's velocity, (m/s)^2
+    double work = 0;    ///< J, of the residuals along the last iteration's move
+    int failed = -1;    ///< a particle whose equation had no finite solution; it has stayed
+  };
+
+  void prepare(const ClothSystem& system);
+  void predict(const ForceModel& forces, const Vec3Field& reference, Visits& visits);
+  /// The iterations, each sweep(k) and between two of them extrapolate(weight); returns the last sweep.
+  template <class SweepOnce, class Extrapolate>
+  Sweep iterate(const SweepOnce& sweep, const Extrapolate& extrapolate) const;
+  /// The iterations by the kernels, where these know all there is, or one by one.
+  bool is_visited_by_kernels(const Visits& visits) const;
+  Sweep descend_by_kernels(Visits& visits);
+  Sweep descend(ForceModel& forces, double end, Visits& visits, int& evaluations);
+  Sweep sweep(Visits& visits);
+  Vec3 change_of(const Visits& visits, std::size_t i, double& work) const;
+  void add_springs(const Visits& visits, std::size_t i, Local& local) const;
+  void add_bending(const Visits& visits, std::size_t i, Local& local) const;
+  void add_sliders(const Visits& visits, std::size_t i, Local& local) const;
+  void add_triangles(const Visits& visits, std::size_t i, Local& local) const;
+  void extrapolate(double weight, Visits& visits);
+
+  int iterations_;
+  bool accelerated_;
+  ParticleElements elements_;
+  std::optional<GridDescent> grid_;
+  std::vector<double> mass_;  ///< kg, W^-1 for the kernels
+  std::vector<Inertia> inertia_;
+  Vec3Field start_position_, start_velocity_, predicted_;
+  Vec3Field before_, present_;  ///< velocities of the iterate before the last, and of the last
+};
+
+}  // namespace cloth

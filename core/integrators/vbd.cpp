@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/at.h"
 #include "kernels/grid_layout.h"
@@ -25,6 +26,23 @@ double fastest_square(const Vec3Field& velocity) {
 }
 
 }  // namespace
+
+double ChebyshevWeights::next(double squares) {
+  constexpr double noticeable = 1.02, smaller = 0.9;
+  constexpr int settled = 3;  // iterations after which moves fall as they will go on to
+  const double before = std::exchange(move_, std::sqrt(squares));
+  if (++since_ < settled || !(before > 0)) return weight_;
+  const double fall = move_ / before;
+  if (fall > 1 && weight_ > 1) {
+    radius_ *= smaller, since_ = 0;
+    return weight_ = 1;
+  }
+  if (fall > noticeable * std::sqrt(weight_ - 1)) {
+    const double found = (fall + (weight_ - 1) / fall) / weight_;
+    if (found > radius_) radius_ = std::min(found, largest_radius), since_ = 0;
+  }
+  return weight_ = 2 / (1 + std::sqrt(1 - radius_ * radius_));
+}
 
 /// W^-1 and v*, with the external forces at `reference`; the hand's spring is followed from there.
 void Vbd::predict(const ForceModel& forces, const Vec3Field& reference, Visits& visits) {
@@ -135,8 +153,7 @@ void Vbd::add_triangles(const Visits& visits, std::size_t i, Local& local) const
   }
 }
 
-/// The change of the particle's velocity; `work` gets that of -r along the last iteration's move.
-Vec3 Vbd::change_of(const Visits& visits, std::size_t i, double& work) const {
+Vec3 Vbd::change_of(const Visits& visits, std::size_t i) const {
   const Inertia& inertia = inertia_[i];
   const Vec3 n = inertia.normal, beyond = visits.state.velocity[i] - predicted_[i];
   Local local{.push = -inertia.mass * beyond - inertia.along * n.dot(beyond) * n,
@@ -146,7 +163,6 @@ Vec3 Vbd::change_of(const Visits& visits, std::size_t i, double& work) const {
   add_bending(visits, i, local);
   add_sliders(visits, i, local);
   add_triangles(visits, i, local);
-  if (accelerated_) work += local.push.dot(visits.state.velocity[i] - before_[i]);
   const Vec3 change = solved(local.matrix, local.push);
   const double distance = visits.step * change.norm();
   return distance > local.reach ? Vec3(local.reach / distance * change) : change;
@@ -158,7 +174,7 @@ Vbd::Sweep Vbd::sweep(Visits& visits) {
     for (const int particle : colour) {
       const std::size_t i = at(particle);
       if (inertia_[i].mass == 0) continue;
-      const Vec3 change = change_of(visits, i, result.work);
+      const Vec3 change = change_of(visits, i);
       if (!change.allFinite()) {
         if (result.failed < 0) result.failed = particle;
         continue;
@@ -167,6 +183,7 @@ Vbd::Sweep Vbd::sweep(Visits& visits) {
       visits.state.velocity.set(i, velocity);
       visits.state.position.set(i, start_position_[i] + visits.step * velocity);
       result.change = std::max(result.change, change.squaredNorm());
+      result.squares += change.squaredNorm();
     }
   return result;
 }
@@ -188,8 +205,7 @@ Vbd::Sweep Vbd::iterate(const SweepOnce& sweep, const Extrapolate& extrapolate) 
   for (int k = 0; k < iterations_ && last.failed < 0; ++k) {
     last = sweep(k);
     if (!accelerated_ || k + 1 == iterations_) continue;
-    if (weights.extrapolated() && last.work < 0) weights.begin();
-    extrapolate(weights.next());
+    extrapolate(weights.next(last.squares));
   }
   return last;
 }
@@ -213,7 +229,7 @@ Vbd::Sweep Vbd::descend_by_kernels(Visits& visits) {
   grid_->begin(visits.step, mass_, visits.parts.along_springs, start_position_, predicted_, accelerated_);
   const auto sweep_once = [&](int) {
     const GridDescent::Sums sums = grid_->sweep();
-    return Sweep{.change = sums.change, .work = sums.work};
+    return Sweep{.change = sums.change, .squares = sums.squares};
   };
   Sweep last = iterate(sweep_once, [&](double weight) { grid_->extrapolate(weight); });
   visits.state.velocity = predicted_;

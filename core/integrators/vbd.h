@@ -23,12 +23,16 @@
 // a grid of springs alone and where W^-1 is isotropic many at a time (kernels/grid_visits.h).
 //
 // Chebyshev's semi-iteration (Wang 2015; Chen et al., section 3.8) extrapolates after every iteration but the
-// last: x <- omega (x - x_before) + x_before, with the iterate before the last and
+// last: x <- omega (x - x_before) + x_before, x_before the iterate that the last one began from was made of.
+// Its weight, with rho the factor by which the slowest error falls in a plain iteration,
 //
-//     omega_1 = 1,  omega_2 = 2/(2 - rho^2),  omega_k = 4/(4 - rho^2 omega_(k-1)),  rho = 0.95
+//     omega = 2/(1 + sqrt(1 - rho^2))
 //
-// Where the residuals that an iteration meets oppose the last move (their work along it is negative), it has
-// gone too far: no extrapolation then, and omega starts again with omega_1.
+// is taken at its limit, and rho is not given but found: it begins at 0, and where the moves of an iteration
+// fall more slowly, by q, than with this rho they would, it is taken from them (Hageman and Young 1981,
+// chapter 6): rho = (q + (omega - 1)/q)/omega. It is never above 0.95, since the slowest errors of
+// Gauss-Seidel are beyond what the semi-iteration stands (0.99 diverges). Where moves grow there is one
+// iteration without extrapolation and a smaller rho.
 #pragma once
 
 #include "integrators/integrator.h"
@@ -37,22 +41,17 @@
 
 namespace cloth {
 
-/// The weights of Chebyshev's semi-iteration, one after each iteration.
+/// The weights of the semi-iteration, one after each iteration.
 class ChebyshevWeights {
  public:
-  static constexpr double spectral_radius = 0.95;
-  void begin() { count_ = 0, weight_ = 1; }
-  double next() {
-    constexpr double square = spectral_radius * spectral_radius;
-    ++count_;
-    return weight_ = count_ == 1 ? 1 : count_ == 2 ? 2 / (2 - square) : 4 / (4 - square * weight_);
-  }
-  /// Whether the last iterate was extrapolated.
-  bool extrapolated() const { return weight_ > 1; }
+  static constexpr double largest_radius = 0.95;
+  /// `squares`: the sum of the squares of what the iteration has moved, in any unit.
+  double next(double squares);
+  double radius() const { return radius_; }  ///< rho
 
  private:
-  int count_ = 0;
-  double weight_ = 1;
+  int since_ = 0;  ///< iterations with this weight
+  double move_ = 0, radius_ = 0, weight_ = 1;
 };
 
 class Vbd : public Integrator {
@@ -85,9 +84,9 @@ class Vbd : public Integrator {
     ClothState& state;  ///< at the end of the step
   };
   struct Sweep {
-    double change = 0;  ///< the largest, squared, of a particle's velocity, (m/s)^2
-    double work = 0;    ///< J, of the residuals along the last iteration's move
-    int failed = -1;    ///< a particle whose equation had no finite solution; it has stayed
+    double change = 0;   ///< the largest, squared, of a particle's velocity, (m/s)^2
+    double squares = 0;  ///< their sum
+    int failed = -1;     ///< a particle whose equation had no finite solution; it has stayed
   };
 
   void prepare(const ClothSystem& system);
@@ -100,7 +99,7 @@ class Vbd : public Integrator {
   Sweep descend_by_kernels(Visits& visits);
   Sweep descend(ForceModel& forces, double end, Visits& visits, int& evaluations);
   Sweep sweep(Visits& visits);
-  Vec3 change_of(const Visits& visits, std::size_t i, double& work) const;
+  Vec3 change_of(const Visits& visits, std::size_t i) const;
   void add_springs(const Visits& visits, std::size_t i, Local& local) const;
   void add_bending(const Visits& visits, std::size_t i, Local& local) const;
   void add_sliders(const Visits& visits, std::size_t i, Local& local) const;

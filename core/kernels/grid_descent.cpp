@@ -93,7 +93,8 @@ GridDescent::Sums GridDescent::sweep() {
     for (std::size_t axis = 0; axis < 3; ++axis)
       std::copy(shift_[axis].begin(), shift_[axis].end(), present_[axis].begin());
   kernels_->descend(descent_);
-  return {descent_.largest_change / (step_ * step_), descent_.work};
+  const double square = step_ * step_;
+  return {descent_.largest_change / square, descent_.squares / square};
 }
 
 void GridDescent::extrapolate(double weight) {

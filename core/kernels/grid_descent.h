@@ -29,8 +29,8 @@ class GridDescent {
              const Vec3Field& predicted, bool extrapolates);
 
   struct Sums {
-    double change = 0;  ///< the largest, squared, of a particle's velocity by a visit, (m/s)^2
-    double work = 0;    ///< of what is left of the step equations along the last move; its sign is meant
+    double change = 0;   ///< the largest, squared, of a particle's velocity by a visit, (m/s)^2
+    double squares = 0;  ///< their sum
   };
   Sums sweep();
   void extrapolate(double weight);

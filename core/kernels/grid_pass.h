@@ -127,9 +127,8 @@ struct Descent {
   const double *mass = nullptr, *free = nullptr;  ///< N/m, W^-1/h^2; 1 where free to move, else 0
   const double* there = nullptr;                  ///< 1 where a row has a column, 0 in its padding
   double damper = 0;                              ///< N/m, damping of every spring over the step
-  /// Output: the largest squared move of a particle by a visit, m^2, and the work in J of what is left of the
-  /// equations along the last iteration's move.
-  double largest_change = 0, work = 0;
+  /// Output: the largest squared move of a particle by a visit, and the sum of all, m^2.
+  double largest_change = 0, squares = 0;
 
   CLOTHLAB_INLINE long place(int row, int residue, int at) const {
     return first + static_cast<long>(row) * row_stride + residue * residue_stride + at;

@@ -36,11 +36,11 @@ struct VisitSums {
   V reach;  ///< m
 };
 
-template <bool damped, bool accelerated>
+template <bool damped>
 class ParticleVisits {
  public:
   explicit ParticleVisits(const Descent& descent)
-      : descent_(descent), largest_(Lanes::zero()), work_(Lanes::zero()) {}
+      : descent_(descent), largest_(Lanes::zero()), squares_(Lanes::zero()) {}
 
   void all() {
     for (int colour = 0; colour < visit_colours; ++colour)
@@ -53,7 +53,7 @@ class ParticleVisits {
     for (const double lane : lanes) most = lane > most ? lane : most;
     return most;
   }
-  double work() const { return Lanes::sum(work_); }
+  double squares() const { return Lanes::sum(squares_); }
 
  private:
   /// The columns with row + 2 column = colour mod 5 are those with column = 3 (colour - row) mod 5.
@@ -83,15 +83,11 @@ class ParticleVisits {
   CLOTHLAB_INLINE void visit(int row, int residue, int at) {
     const long place = descent_.place(row, residue, at);
     const Vector here = read(descent_.position, place), shift = read(descent_.shift, place);
-    Vector start;
-    if constexpr (damped) start = read(descent_.start, place);
     const V mass = Lanes::load(descent_.mass + place), none = Lanes::zero();
+    Vector start{none, none, none};
+    if constexpr (damped) start = read(descent_.start, place);
     VisitSums sums{minus({none, none, none}, mass, shift), mass, none, none, none, none, none, none, none};
     add_springs<edge, 0>(row, residue, at, here, start, sums);
-    if constexpr (accelerated) {
-      const Vector moved = shift - read(descent_.before, place);
-      work_ = Lanes::add(work_, product(sums.force, moved));
-    }
     Vector change = solved(sums, Lanes::load(descent_.free + place));
     const V reach = Lanes::max(Lanes::mul(sums.reach, sums.reach), squared(shift));
     V distance = squared(change);
@@ -100,6 +96,7 @@ class ParticleVisits {
       distance = squared(change);
     }
     largest_ = Lanes::max(distance, largest_);
+    squares_ = Lanes::add(squares_, distance);
     write(descent_.shift, place, shift + change);
     write(descent_.position, place, here + change);
   }
@@ -172,23 +169,19 @@ class ParticleVisits {
   }
 
   const Descent& descent_;
-  V largest_, work_;
+  V largest_, squares_;
 };
 
-template <bool damped, bool accelerated>
+template <bool damped>
 void descend_with(Descent& descent) {
-  ParticleVisits<damped, accelerated> visits(descent);
+  ParticleVisits<damped> visits(descent);
   visits.all();
   descent.largest_change = visits.largest();
-  descent.work = visits.work();
+  descent.squares = visits.squares();
 }
 
 void descend_all(Descent& descent) {
-  const bool accelerated = descent.before[0] != nullptr;
-  if (descent.damper > 0)
-    accelerated ? descend_with<true, true>(descent) : descend_with<true, false>(descent);
-  else
-    accelerated ? descend_with<false, true>(descent) : descend_with<false, false>(descent);
+  descent.damper > 0 ? descend_with<true>(descent) : descend_with<false>(descent);
 }
 
 /// u' = before + weight (u - before), x' = x + u' - u.

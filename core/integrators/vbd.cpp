@@ -39,7 +39,7 @@ double ChebyshevWeights::next(double squares) {
   }
   if (fall > noticeable * std::sqrt(weight_ - 1)) {
     const double found = (fall + (weight_ - 1) / fall) / weight_;
-    if (found > radius_) radius_ = std::min(found, largest_radius), since_ = 0;
+    if (found > radius_ && radius_ < largest_radius) radius_ = std::min(found, largest_radius), since_ = 0;
   }
   return weight_ = 2 / (1 + std::sqrt(1 - radius_ * radius_));
 }
@@ -76,7 +76,7 @@ void Vbd::add_springs(const Visits& visits, std::size_t i, Local& local) const {
                  damping = visits.parts.along_springs + visits.parts.stretch_time * spring.stiffness;
     const double along = h * (h * spring.stiffness + damping);
     local.reach = std::max(local.reach, length + spring.rest_length);
-    if (!(length > 0)) {
+    if (length == 0) {
       local.matrix += along * Eigen::Matrix3d::Identity();
       continue;
     }

@@ -80,6 +80,21 @@ TEST(Xpbd, ConvergesToTheImplicitEulerStep) {
   EXPECT_LT(error[40], 1e-12);
 }
 
+TEST(Vbd, ConvergesToTheImplicitEulerStep) {
+  const Scene scene = hanging_cloth(0.02, 0.02);
+  for (const char* acceleration : {"none", "chebyshev"}) {
+    std::map<int, double> error;
+    for (const int n : {1, 5, 10, 20, 40}) error[n] = step_error(scene, vbd(n, acceleration), 0.01);
+    std::printf("vbd, %s:", acceleration);
+    for (const auto& [n, of] : error) std::printf(" %d: %.1e", n, of);
+    std::printf("\n");
+    EXPECT_LT(error[5], 0.3 * error[1]);
+    EXPECT_LT(error[10], 0.1 * error[5]);
+    EXPECT_LT(error[20], 0.1 * error[10]);
+    EXPECT_LT(error[40], 1e-8);
+  }
+}
+
 TEST(LocalMethods, ConvergeToTheImplicitEulerStepWithEitherDampingAndWithNone) {
   for (const double viscous : {0.0, 0.05})
     for (const double along : {0.0, 0.05}) {

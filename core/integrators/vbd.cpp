@@ -1,6 +1,5 @@
 #include "integrators/vbd.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,13 +11,6 @@
 namespace cloth {
 namespace {
 
-/// By Cholesky; where rounding has left no positive pivot, a step that is short enough whatever the matrix.
-Vec3 solved(const Eigen::Matrix3d& matrix, const Vec3& right_hand_side) {
-  const Eigen::LLT<Eigen::Matrix3d> factors(matrix);
-  if (factors.info() == Eigen::Success) return factors.solve(right_hand_side);
-  return right_hand_side / matrix.trace();
-}
-
 double fastest_square(const Vec3Field& velocity) {
   double largest = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) largest = std::max(largest, velocity[i].squaredNorm());
@@ -26,6 +18,17 @@ double fastest_square(const Vec3Field& velocity) {
 }
 
 }  // namespace
+
+/// By Cholesky; where rounding has left no positive pivot, a step that is short enough whatever the matrix.
+Vec3 Vbd::Local::solution() const {
+  const double a = block.xx, b = block.xy / a, c = block.xz / a;
+  const double d = block.yy - b * block.xy, e = (block.yz - b * block.xz) / d;
+  const double f = block.zz - c * block.xz - e * e * d;
+  if (a <= 0 || d <= 0 || f <= 0) return push / (block.xx + block.yy + block.zz);
+  const double y = push.y() - b * push.x(), z = push.z() - c * push.x() - e * y;
+  const double vz = z / f, vy = y / d - e * vz;
+  return {push.x() / a - b * vy - c * vz, vy, vz};
+}
 
 double ChebyshevWeights::next(double squares) {
   constexpr double noticeable = 1.02, smaller = 0.9;
@@ -77,14 +80,16 @@ void Vbd::add_springs(const Visits& visits, std::size_t i, Local& local) const {
     const double along = h * (h * spring.stiffness + damping);
     local.reach = std::max(local.reach, length + spring.rest_length);
     if (length == 0) {
-      local.matrix += along * Eigen::Matrix3d::Identity();
+      local.add_isotropic(along);
       continue;
     }
     const Vec3 n = between / length;
     const double tension =
         spring.stiffness * (length - spring.rest_length) + damping * n.dot(v[at(spring.other)] - speed);
     local.push += h * tension * n;
-    local.add_along(std::max(h * h * tension / length, 0.0), along, n);
+    const double across = std::max(h * h * tension / length, 0.0);
+    local.add_isotropic(across);
+    local.add_along(along - across, n);
   }
 }
 
@@ -101,7 +106,7 @@ void Vbd::add_bending(const Visits& visits, std::size_t i, Local& local) const {
       sum += run.coefficient[p] * (visits.state.position[j] + time * visits.state.velocity[j]);
     }
     local.push -= h * run.stiffness * c * sum;
-    local.matrix += h * (h + time) * run.stiffness * c * c * Eigen::Matrix3d::Identity();
+    local.add_isotropic(h * (h + time) * run.stiffness * c * c);
     local.reach = std::max(local.reach, sum.norm() / std::abs(c));
   }
 }
@@ -121,7 +126,7 @@ void Vbd::add_sliders(const Visits& visits, std::size_t i, Local& local) const {
       stretch += s.coefficient[p] * n.dot(visits.state.position[at(s.particle[p])]);
     const double moment = std::clamp(s.stiffness * stretch, -s.yield, s.yield);
     local.push -= h * s.area * moment * c * n;
-    local.matrix += h * h * s.area * s.stiffness * c * c * n * n.transpose();
+    local.add_along(h * h * s.area * s.stiffness * c * c, n);
     local.reach = std::max(local.reach, std::abs(stretch / c));
   }
 }
@@ -142,12 +147,13 @@ void Vbd::add_triangles(const Visits& visits, std::size_t i, Local& local) const
     const std::size_t out = at(point.point), in = (out + 2) % 3;
     const Vec3 by_out = -2 * d[out], by_in = 2 * d[in];
     local.push -= h * (tension[out] * by_out + tension[in] * by_in);
-    const Eigen::Matrix3d mixed = t.k[out][in] * by_out * by_in.transpose();
-    local.matrix += h * (h + time) *
-                    (t.k[out][out] * by_out * by_out.transpose() + t.k[in][in] * by_in * by_in.transpose() +
-                     mixed + mixed.transpose());
-    local.matrix +=
-        2 * h * h * (std::max(tension[out], 0.0) + std::max(tension[in], 0.0)) * Eigen::Matrix3d::Identity();
+    // k a a^T + l b b^T + m (a b^T + b a^T), by its halves (a + b) and (a - b)
+    const double weight = h * (h + time), mixed = 0.5 * weight * t.k[out][in];
+    local.add_along(weight * t.k[out][out], by_out);
+    local.add_along(weight * t.k[in][in], by_in);
+    local.add_along(mixed, by_out + by_in);
+    local.add_along(-mixed, by_out - by_in);
+    local.add_isotropic(2 * h * h * (std::max(tension[out], 0.0) + std::max(tension[in], 0.0)));
     for (const std::size_t e : {out, in})
       local.reach = std::max(local.reach, d[e].norm() + std::sqrt(t.rest_square[e]));
   }
@@ -157,13 +163,13 @@ Vec3 Vbd::change_of(const Visits& visits, std::size_t i) const {
   const Inertia& inertia = inertia_[i];
   const Vec3 n = inertia.normal, beyond = visits.state.velocity[i] - predicted_[i];
   Local local{.push = -inertia.mass * beyond - inertia.along * n.dot(beyond) * n,
-              .matrix = inertia.mass * Eigen::Matrix3d::Identity() + inertia.along * n * n.transpose(),
+              .block = block_along(inertia.mass, inertia.along, n),
               .reach = visits.step * beyond.norm()};
   add_springs(visits, i, local);
   add_bending(visits, i, local);
   add_sliders(visits, i, local);
   add_triangles(visits, i, local);
-  const Vec3 change = solved(local.matrix, local.push);
+  const Vec3 change = local.solution();
   const double distance = visits.step * change.norm();
   return distance > local.reach ? Vec3(local.reach / distance * change) : change;
 }

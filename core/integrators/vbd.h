@@ -69,12 +69,17 @@ class Vbd : public Integrator {
   };
   /// Of one visit: A dv = push.
   struct Local {
-    Vec3 push;               ///< N s, -r
-    Eigen::Matrix3d matrix;  ///< kg
-    double reach = 0;        ///< m, the furthest that an element could ask for
-    void add_along(double across, double along, const Vec3& n) {
-      matrix += across * Eigen::Matrix3d::Identity() + (along - across) * n * n.transpose();
+    Vec3 push;             ///< N s, -r
+    SymmetricBlock block;  ///< A, kg
+    double reach = 0;      ///< m, the furthest that an element could ask for
+
+    void add_isotropic(double value) { block.xx += value, block.yy += value, block.zz += value; }
+    void add_along(double value, const Vec3& n) {
+      const Vec3 m = value * n;
+      block.xx += m.x() * n.x(), block.xy += m.x() * n.y(), block.xz += m.x() * n.z();
+      block.yy += m.y() * n.y(), block.yz += m.y() * n.z(), block.zz += m.z() * n.z();
     }
+    Vec3 solution() const;
   };
   /// What a step's visits share.
   struct Visits {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "measure/energy.h"
+#include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/material_meshes.h"
 #include "support/materials.h"
@@ -190,6 +191,21 @@ TEST(Vbd, GoesTheSameWayByTheKernelsAndOneByOne) {
       EXPECT_NEAR(by_kernels.work.pull, one_by_one.work.pull, 1e-8 * std::abs(one_by_one.work.pull));
       EXPECT_NE(by_kernels.state.velocity, one_by_one.state.velocity) << "one path alone was taken";
     }
+}
+
+TEST(Vbd, GivesTheSameBitsWithAnyNumberOfThreads) {
+  for (const bool has_air : {false, true}) {
+    Scene scene = stiff_sheet(40, 40, 0.005);
+    scene.damping = 0.001;
+    if (has_air) scene.air = Air{.drag = 0.002, .wind = {0, 0, 2}, .gust = std::nullopt};
+    scene.integrator = vbd(5);
+    scene.integrator.time_step = 2e-3;
+    Simulation one(scene), two(scene);
+    two.set_threads(2, ThreadUse::always);
+    ASSERT_FALSE(one.advance(30));
+    ASSERT_FALSE(two.advance(30));
+    EXPECT_TRUE(one.state() == two.state()) << has_air;
+  }
 }
 
 // ---- invariants ----

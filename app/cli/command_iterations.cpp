@@ -21,7 +21,7 @@ struct IterationsArguments {
 };
 
 constexpr const char *csv_name = "iterations.csv", *plot_name = "iterations.svg",
-                     *time_plot_name = "iterations_time.svg", *index_name = "study.json";
+                     *time_plot_name = "iterations_time.svg", *index_name = "iterations.json";
 
 std::string command_of(const IterationsArguments& arguments) {
   const cloth::IterationsOptions& options = arguments.options;
@@ -39,7 +39,7 @@ std::optional<cloth::IoError> write_folder(cloth::ResultFolder& folder, const cl
   if (auto error = folder.write(time_plot_name, to_svg(study_plot(study, cloth::IterationsAgainst::time))))
     return error;
   if (auto error = folder.write("report.html", study_page(study, command, wall))) return error;
-  return folder.finish(index_name, study_json(study));
+  return folder.finish(index_name, study_index(study, command, wall, folder.digests()));
 }
 
 int iterations(const IterationsArguments& arguments) {
@@ -99,9 +99,10 @@ void add_iterations(Program& program) {
       ->check(CLI::NonNegativeNumber);
   command.add_option("--most", arguments.options.most, "Most iterations; 1000 without")
       ->check(CLI::Range(1, 1000000));
-  add_path(command, "--out", arguments.folder,
-           "Folder for iterations.csv, iterations.svg, iterations_time.svg, study.json and report.html; made "
-           "if missing");
+  add_path(
+      command, "--out", arguments.folder,
+      "Folder for iterations.csv, iterations.svg, iterations_time.svg, iterations.json and report.html; made "
+      "if missing");
   add_json(command, arguments.json);
 }
 

@@ -133,6 +133,20 @@ std::vector<Entry> explicit_methods() {
   };
 }
 
+Entry vbd_entry() {
+  return {{.name = "vbd",
+           .title = "VBD",
+           .order = 1,
+           .source = "Chen et al. 2024",
+           .settings = MethodSettings::vbd,
+           .oscillator = implicit_euler_step,
+           .a_stable = true},
+          [](const IntegratorChoice& choice) -> Stepper {
+            return std::make_unique<Vbd>(static_cast<int>(choice.vbd_iterations),
+                                         choice.vbd_acceleration == "chebyshev");
+          }};
+}
+
 std::vector<Entry> implicit_methods() {
   return {
       {{.name = "implicit-euler",
@@ -186,17 +200,7 @@ std::vector<Entry> implicit_methods() {
          return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
                                        static_cast<int>(choice.xpbd_iterations));
        }},
-      {{.name = "vbd",
-        .title = "VBD",
-        .order = 1,
-        .source = "Chen et al. 2024",
-        .settings = MethodSettings::vbd,
-        .oscillator = implicit_euler_step,
-        .a_stable = true},
-       [](const IntegratorChoice& choice) -> Stepper {
-         return std::make_unique<Vbd>(static_cast<int>(choice.vbd_iterations),
-                                      choice.vbd_acceleration == "chebyshev");
-       }},
+      vbd_entry(),
   };
 }
 

@@ -92,6 +92,33 @@ HtmlTable html_table(const IterationsStudy& study) {
   return table;
 }
 
+nlohmann::ordered_json json_of(const IterationsStudy& study) {
+  nlohmann::ordered_json root{{"scene", study.scene.title},
+                              {"scene_hash", scene_hash(study.scene)},
+                              {"left_out", study.left_out},
+                              {"time_s", study.time},
+                              {"time_step_s", study.step},
+                              {"particles", study.particles},
+                              {"failure", study.failure},
+                              {"fall_J", study.fall},
+                              {"residual_N_s", study.residual},
+                              {"is_minimum", study.is_minimum},
+                              {"floor", study.floor},
+                              {"stopped", study.stopped},
+                              {"methods", nlohmann::ordered_json::array()}};
+  for (const MethodIterations& method : study.methods) {
+    nlohmann::ordered_json entry{{"method", method.method}, {"remark", method.remark}};
+    for (const IteratedStep& step : method.steps)
+      entry["steps"].push_back(
+          {{"iterations", step.iterations},
+           {"seconds", step.seconds},
+           {"relative_objective", std::isfinite(step.objective) ? nlohmann::ordered_json(step.objective)
+                                                                : nlohmann::ordered_json(nullptr)}});
+    root["methods"].push_back(std::move(entry));
+  }
+  return root;
+}
+
 }  // namespace
 
 LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against) {
@@ -138,29 +165,15 @@ std::string study_text(const IterationsStudy& study) {
 }
 
 std::string study_json(const IterationsStudy& study) {
-  nlohmann::ordered_json root{{"scene", study.scene.title},
-                              {"scene_hash", scene_hash(study.scene)},
-                              {"left_out", study.left_out},
-                              {"time_s", study.time},
-                              {"time_step_s", study.step},
-                              {"particles", study.particles},
-                              {"failure", study.failure},
-                              {"fall_J", study.fall},
-                              {"residual_N_s", study.residual},
-                              {"is_minimum", study.is_minimum},
-                              {"floor", study.floor},
-                              {"stopped", study.stopped},
-                              {"methods", nlohmann::ordered_json::array()}};
-  for (const MethodIterations& method : study.methods) {
-    nlohmann::ordered_json entry{{"method", method.method}, {"remark", method.remark}};
-    for (const IteratedStep& step : method.steps)
-      entry["steps"].push_back(
-          {{"iterations", step.iterations},
-           {"seconds", step.seconds},
-           {"relative_objective", std::isfinite(step.objective) ? nlohmann::ordered_json(step.objective)
-                                                                : nlohmann::ordered_json(nullptr)}});
-    root["methods"].push_back(std::move(entry));
-  }
+  return json_of(study).dump(2) + "\n";
+}
+
+std::string study_index(const IterationsStudy& study, const std::string& command, double wall,
+                        const std::vector<FileDigest>& files) {
+  nlohmann::ordered_json root{
+      {"program", "clothlab"}, {"kind", "iterations"}, {"command", command}, {"wall_s", wall}};
+  root.update(json_of(study));
+  root["files"] = digests_json(files);
   return root.dump(2) + "\n";
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/csv.h"
+#include "io/file_digest.h"
 #include "report/line_plot.h"
 #include "study/iterations.h"
 
@@ -22,5 +24,9 @@ CsvTable table_of(const IterationsStudy& study);
 /// For a terminal: what each method takes to some objectives, and what is to be said of the measurement.
 std::string study_text(const IterationsStudy& study);
 std::string study_json(const IterationsStudy& study);
+
+/// iterations.json: the same with what made it and the other files of its folder.
+std::string study_index(const IterationsStudy& study, const std::string& command, double wall,
+                        const std::vector<FileDigest>& files);
 
 }  // namespace cloth

@@ -24,14 +24,18 @@ TEST(Iterations, LeavesItsFilesAndPrintsATable) {
   for (const auto& entry : std::filesystem::directory_iterator(folder / "i"))
     files.insert(entry.path().filename().string());
   const std::set<std::string> expected{"iterations.csv", "iterations.svg", "iterations_time.svg",
-                                       "report.html", "study.json"};
+                                       "report.html", "iterations.json"};
   EXPECT_EQ(files, expected);
-  const auto index = nlohmann::json::parse(content_of(folder / "i" / "study.json"));
+  const auto index = nlohmann::json::parse(content_of(folder / "i" / "iterations.json"));
   EXPECT_TRUE(index.at("is_minimum").get<bool>());
   const CsvTable table = parse_csv(content_of(folder / "i" / "iterations.csv"));
   std::size_t steps = 0;
   for (const auto& method : index.at("methods")) steps += method.at("steps").size();
   EXPECT_EQ(table.rows.size(), steps);
+  EXPECT_EQ(index.at("files").size(), 4u);
+  const CommandResult again = cli(few + "--methods vbd --out '" + (folder / "i").string() + "'");
+  EXPECT_EQ(again.exit_code, 0) << again.errors << ": its own folder is made anew";
+  EXPECT_EQ(cli("extremes --cases cloth-2x2 --out '" + (folder / "i").string() + "'").exit_code, 2);
 }
 
 TEST(Iterations, TakesMethodsAndRefusesOthers) {

@@ -17,6 +17,7 @@ void add_stability(Program& program);
 void add_extremes(Program& program);
 void add_convergence(Program& program);
 void add_identify(Program& program);
+void add_iterations(Program& program);
 void add_study(Program& program);
 void add_sweep(Program& program);
 void add_reproduce(Program& program);

@@ -20,9 +20,10 @@ int run_command(int argc, char** argv) {
       program_name)};
   program.app.require_subcommand(1);
   program.app.footer(footer);
-  for (const auto add : {add_run, add_replay, add_scenes, add_materials, add_mesh, add_explain, add_compare,
-                         add_work_precision, add_stability, add_extremes, add_convergence, add_identify,
-                         add_study, add_sweep, add_reproduce, add_validate, add_schema, add_parameters})
+  for (const auto add :
+       {add_run, add_replay, add_scenes, add_materials, add_mesh, add_explain, add_compare,
+        add_work_precision, add_stability, add_extremes, add_convergence, add_iterations, add_identify,
+        add_study, add_sweep, add_reproduce, add_validate, add_schema, add_parameters})
     add(program);
   if (const auto ended = parse(program.app, argc, argv)) return *ended;
   return program.chosen();

@@ -10,6 +10,7 @@
 #include "integrators/implicit_methods.h"
 #include "integrators/projective.h"
 #include "integrators/rk4.h"
+#include "integrators/vbd.h"
 #include "integrators/verlet.h"
 #include "integrators/xpbd.h"
 #include "scene/scene.h"
@@ -132,6 +133,20 @@ std::vector<Entry> explicit_methods() {
   };
 }
 
+Entry vbd_entry() {
+  return {{.name = "vbd",
+           .title = "VBD",
+           .order = 1,
+           .source = "Chen et al. 2024",
+           .settings = MethodSettings::vbd,
+           .oscillator = implicit_euler_step,
+           .a_stable = true},
+          [](const IntegratorChoice& choice) -> Stepper {
+            return std::make_unique<Vbd>(static_cast<int>(choice.vbd_iterations),
+                                         choice.vbd_acceleration == "chebyshev");
+          }};
+}
+
 std::vector<Entry> implicit_methods() {
   return {
       {{.name = "implicit-euler",
@@ -161,7 +176,8 @@ std::vector<Entry> implicit_methods() {
         .a_stable = true,
         .stage_weight = Bdf2::stage_weight},
        made_with_newton<Bdf2>},
-      // On a linear oscillator the converged iterations of the next two (compliance 1/k) are implicit Euler.
+      // On a linear oscillator the converged iterations of the next three (compliance 1/k) are implicit
+      // Euler.
       {{.name = "projective",
         .title = "Projective dynamics",
         .order = 1,
@@ -171,7 +187,7 @@ std::vector<Entry> implicit_methods() {
         .a_stable = true},
        [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<Projective>(static_cast<int>(choice.projective_iterations),
-                                             make_acceleration(choice.acceleration));
+                                             make_acceleration(choice.projective_acceleration));
        }},
       {{.name = "xpbd",
         .title = "XPBD",
@@ -185,6 +201,7 @@ std::vector<Entry> implicit_methods() {
          return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),
                                        static_cast<int>(choice.xpbd_iterations));
        }},
+      vbd_entry(),
   };
 }
 

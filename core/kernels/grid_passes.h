@@ -4,6 +4,7 @@
 
 #include "kernels/grid_projection.h"
 #include "kernels/grid_row_chain.h"
+#include "kernels/grid_visits.h"
 
 namespace cloth::kernels {
 namespace {
@@ -343,6 +344,8 @@ constexpr GridKernels grid_kernels{euler_band,
                                    damp_band,
                                    sum_squares_band,
                                    project_springs,
+                                   descend_all,
+                                   extrapolate_all,
                                    {spring_scales<false>, spring_scales<true>},
                                    {inverse_roots<false>, inverse_roots<true>}};
 

@@ -6,6 +6,8 @@
 // last one of `before`. spring_scale(s, k): k - k L / sqrt(s), and k where s is 0. inverse_root(s): 1 /
 // sqrt(s), and 0 where s is 0. scale_at(inverse_root(s), k): as spring_scale.
 //
+// any_positive(a): some lane is above 0.
+//
 // pairs_one(a, b, first, second): of the columns c, c + 1, ... in a and then b the first and the second ends
 // of springs from c, c + 2, ... to the column beside; the order of lanes is the same in both, and
 // unpair_one() brings them back. pairs_two: of springs from c, c + 1, c + 4, c + 5, ... to the column after
@@ -51,6 +53,7 @@ struct Lanes {
   static V fnma(V a, V b, V c) { return c - a * b; }
   static V div(V a, V b) { return a / b; }
   static V max(V a, V b) { return V{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]}; }
+  static bool any_positive(V a) { return a[0] > 0 || a[1] > 0; }
   static void pairs_one(V a, V b, V& first, V& second) { first = V{a[0], b[0]}, second = V{a[1], b[1]}; }
   static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
   static void pairs_two(V a, V b, V& first, V& second) { first = a, second = b; }

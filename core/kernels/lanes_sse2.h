@@ -36,6 +36,7 @@ struct Lanes {
   static V fnma(V a, V b, V c) { return _mm_sub_pd(c, _mm_mul_pd(a, b)); }
   static V div(V a, V b) { return _mm_div_pd(a, b); }
   static V max(V a, V b) { return _mm_max_pd(a, b); }
+  static bool any_positive(V a) { return _mm_movemask_pd(_mm_cmpgt_pd(a, zero())) != 0; }
   static void pairs_one(V a, V b, V& first, V& second) {
     first = _mm_unpacklo_pd(a, b), second = _mm_unpackhi_pd(a, b);
   }

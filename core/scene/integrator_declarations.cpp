@@ -69,7 +69,7 @@ Fields<IntegratorChoice> own_integrator_fields(MethodSettings settings) {
     case MethodSettings::projective:
       return {count_field(&I::projective_iterations, "iterations", "Iterations",
                           "Local and global solves of a step."),
-              field(&I::acceleration,
+              field(&I::projective_acceleration,
                     {.key = "acceleration",
                      .label = "Acceleration",
                      .doc = "How the iterations of a step are accelerated; the limit is the same.",
@@ -78,6 +78,13 @@ Fields<IntegratorChoice> own_integrator_fields(MethodSettings settings) {
       return {count_field(&I::substeps, "substeps", "Substeps", "Parts that a time step is taken in."),
               count_field(&I::xpbd_iterations, "iterations", "Iterations",
                           "Passes over all springs in a substep.")};
+    case MethodSettings::vbd:
+      return {
+          count_field(&I::vbd_iterations, "iterations", "Iterations", "Visits of every particle in a step."),
+          field(&I::vbd_acceleration, {.key = "acceleration",
+                                       .label = "Acceleration",
+                                       .doc = "What extrapolates between the iterations.",
+                                       .choices = {"none", "chebyshev"}})};
   }
   return {};
 }

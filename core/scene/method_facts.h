@@ -9,7 +9,7 @@
 namespace cloth {
 
 /// Which settings of IntegratorChoice a method has in addition to its time step.
-enum class MethodSettings { none, error_control, newton, projective, xpbd };
+enum class MethodSettings { none, error_control, newton, projective, xpbd, vbd };
 
 /// The step of a method on the oscillator x'' = -omega^2 x - c x', used by measure/amplification.h. For the
 /// Runge-Kutta family the stability function is R(z) = (1 + z/a (1 + z/b (1 + ...))) / (1 - implicit z),

@@ -13,7 +13,7 @@ namespace {
 /// particles of a grid with all spring families, rounded down.
 double bytes_per_particle(MethodSettings settings, bool has_springs_to_solve) {
   constexpr double explicit_method = 120, error_control = 500, implicit = 900, local_and_global = 500,
-                   substeps = 300;
+                   substeps = 300, particles_alone = 900;
   switch (settings) {
     case MethodSettings::none:
       return explicit_method;
@@ -25,6 +25,8 @@ double bytes_per_particle(MethodSettings settings, bool has_springs_to_solve) {
       return has_springs_to_solve ? local_and_global : explicit_method;
     case MethodSettings::xpbd:
       return substeps;
+    case MethodSettings::vbd:
+      return particles_alone;
   }
   return explicit_method;
 }

@@ -246,8 +246,8 @@ void add_protocol(const WorkPrecision& study, HtmlPage& page) {
                     "fit are refused and listed",
                     study.budget, study.estimated)},
        {"Solvers",
-        "Newton's method to a relative change of 1e-8; projective and XPBD with the scene's number "
-        "of iterations"}});
+        "Newton's method to a relative change of 1e-8; projective, XPBD and VBD with the scene's "
+        "number of iterations"}});
   page.machine_facts();
   page.folded("The scene", write_scene(study.scene));
 }

@@ -19,7 +19,7 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(Help, IsGivenOnStandardOutputForTheProgramAndEveryCommand) {
   for (const char* command : {"", "run", "scenes", "explain", "work-precision", "stability", "extremes",
-                              "convergence", "replay", "reproduce", "schema", "parameters"}) {
+                              "convergence", "iterations", "replay", "reproduce", "schema", "parameters"}) {
     const CommandResult result = cli(std::string(command) + " --help");
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_TRUE(has(result.output, command)) << result.output;

@@ -111,7 +111,7 @@ TEST(AmplificationMatrix, SolvesTheEquationsOfTheImplicitMethods) {
     z << 0, 1, -w * w, -2 * zeta * w;
     const Eigen::Vector2d old(random.uniform(-1, 1), random.uniform(-1, 1));
     const double tolerance = 1e-13 * (1 + z.norm());
-    for (const char* method : {"implicit-euler", "projective", "xpbd"}) {
+    for (const char* method : {"implicit-euler", "projective", "xpbd", "vbd"}) {
       const Eigen::Vector2d now = amplification_matrix(method, w, zeta) * old;
       EXPECT_NEAR((now - old - z * now).norm(), 0, tolerance) << method;
     }
@@ -132,7 +132,7 @@ TEST(Amplification, OfTheImplicitMethodsIsTheTables) {
     EXPECT_NEAR(amplification(method, 10, 0), at_10, at_10 == 0.301 ? 0.51e-3 : 0.51e-4) << method;
     EXPECT_NEAR(amplification(method, 100, 0), at_100, 0.51e-4) << method;
   };
-  for (const char* method : {"implicit-euler", "projective", "xpbd"}) expect(method, 0.0995, 0.0100);
+  for (const char* method : {"implicit-euler", "projective", "xpbd", "vbd"}) expect(method, 0.0995, 0.0100);
   expect("bdf2", 0.301, 0.0781);
   expect("implicit-midpoint", 1, 1);
 }
@@ -151,7 +151,7 @@ TEST(Amplification, OfDormandPrinceGrowsSlowlyBeyondItsLimit) {
 
 TEST(Amplification, OfTheImplicitMethodsNeverExceedsOne) {
   Random random;
-  for (const char* method : {"implicit-euler", "implicit-midpoint", "bdf2", "projective", "xpbd"})
+  for (const char* method : {"implicit-euler", "implicit-midpoint", "bdf2", "projective", "xpbd", "vbd"})
     for (int trial = 0; trial < 1000; ++trial) {
       const double w = std::pow(10, random.uniform(-3, 6));
       const double zeta = random.coin() ? 0 : std::pow(10, random.uniform(-4, 2));
@@ -172,7 +172,8 @@ const std::map<std::string, Leading> table{{"explicit-euler", {-1.0 / 3, 2, -1.0
                                            {"implicit-midpoint", {-1.0 / 12, 2, 0, 1}},
                                            {"bdf2", {-1.0 / 3, 2, 1.0 / 4, 3}},
                                            {"projective", {-1.0 / 3, 2, 1.0 / 2, 1}},
-                                           {"xpbd", {-1.0 / 3, 2, 1.0 / 2, 1}}};
+                                           {"xpbd", {-1.0 / 3, 2, 1.0 / 2, 1}},
+                                           {"vbd", {-1.0 / 3, 2, 1.0 / 2, 1}}};
 
 TEST(OscillatorError, LeadsWithTheTablesCoefficients) {
   ASSERT_EQ(table.size(), integrator_names().size());

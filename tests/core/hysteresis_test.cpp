@@ -38,7 +38,8 @@ Vec3Field rolled(const ClothSystem& system, double curvature) {
   return position;
 }
 
-/// The moment for each metre of width that the sliders of a sheet exert at a curvature, by the slope of their energy.
+/// The moment for each metre of width that the sliders of a sheet exert at a curvature, by the slope of their
+/// energy.
 double slider_moment(const ClothSystem& system, const SliderState& state, double curvature) {
   constexpr double shift = 1e-5;
   const double ahead = slider_energy(system.sliders, state, rolled(system, curvature + shift)),
@@ -140,8 +141,9 @@ TEST(Hysteresis, ForceIsMinusTheSlopeOfItsEnergyAndItsJacobianTheForces) {
     add_slider_force(system.sliders, state, position, force);
     add_slider_force(system.sliders, state, ahead, of_ahead);
     add_slider_force(system.sliders, state, behind, of_behind);
-    const double slope = (slider_energy(system.sliders, state, ahead) -
-                          slider_energy(system.sliders, state, behind)) / (2 * shift);
+    const double slope =
+        (slider_energy(system.sliders, state, ahead) - slider_energy(system.sliders, state, behind)) /
+        (2 * shift);
     EXPECT_NEAR(slope, -dot(force.flat(), u.flat()), 1e-5 * std::abs(slope) + 1e-9);
     Linearisation linear;
     linear.nodes.assign(u.size(), {});
@@ -181,8 +183,8 @@ TEST(Hysteresis, DoesNotResistMovingAndTurning) {
 
 /// A strip that swings down from level, held at its left edge.
 Scene falling_strip(const Material& m, bool mesh, Random& random) {
-  Scene scene = mesh ? material_mesh_sheet(13, 4, 0.3, 0.075, 0.15, m, random)
-                     : material_sheet(4, 13, 0.025, 0.025, m);
+  Scene scene =
+      mesh ? material_mesh_sheet(13, 4, 0.3, 0.075, 0.15, m, random) : material_sheet(4, 13, 0.025, 0.025, m);
   scene.cloth.pins.clear();
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 2; ++column)
@@ -231,8 +233,8 @@ TEST(Hysteresis, GivesOneMotionByEveryMethodAsStepsShrink) {
     return run.state().position;
   };
   const Vec3Field exact = end_by("rk4", 1e-5);
-  for (const char* method :
-       {"semi-implicit-euler", "verlet", "implicit-euler", "implicit-midpoint", "projective", "xpbd"}) {
+  for (const char* method : {"semi-implicit-euler", "verlet", "implicit-euler", "implicit-midpoint",
+                             "projective", "xpbd", "vbd"}) {
     const double coarse = rms_distance(end_by(method, 1e-4), exact),
                  fine = rms_distance(end_by(method, 5e-5), exact);
     EXPECT_LE(fine, 0.7 * coarse) << method;
@@ -243,7 +245,7 @@ TEST(Hysteresis, GivesOneMotionByEveryMethodAsStepsShrink) {
 TEST(Hysteresis, GoesOnFromACheckpointToTheBit) {
   Random random;
   for (const char* method : {"semi-implicit-euler", "verlet", "rk4", "dormand-prince", "implicit-euler",
-                             "implicit-midpoint", "bdf2", "projective", "xpbd"}) {
+                             "implicit-midpoint", "bdf2", "projective", "xpbd", "vbd"}) {
     Scene scene = falling_strip(with_friction(), false, random);
     scene.integrator = {method, 2e-5};
     Simulation run(scene), again(scene);
@@ -275,7 +277,8 @@ TEST(Hysteresis, HoldsAStripHigherThanItsBendingAlone) {
   Material m = with_friction();
   m.hysteresis_warp = m.hysteresis_weft = 0.04;
   for (const bool mesh : {false, true}) {
-    const Scene elastic = falling_strip(any_material(), mesh, random), lagging = falling_strip(m, mesh, random);
+    const Scene elastic = falling_strip(any_material(), mesh, random),
+                lagging = falling_strip(m, mesh, random);
     const auto lowest = [](const RestShape& rest) {
       double z = 0;
       for (std::size_t i = 0; i < rest.position.size(); ++i) z = std::min(z, rest.position[i].z());

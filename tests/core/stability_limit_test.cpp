@@ -30,8 +30,8 @@ const std::map<std::string, std::array<double, 7>> table{
     {"rk4", {2.8284, 2.8486, 2.9509, 2.6225, 2.7853, 0.7463, 0.2814}},
     {"dormand-prince", {0.9972, 1.8721, 2.6814, 3.3990, 3.3066, 0.8860, 0.3340}}};
 
-const std::array<std::string, 5> implicit_methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
-                                                  "xpbd"};
+const std::array<std::string, 6> implicit_methods{"implicit-euler", "implicit-midpoint", "bdf2", "projective",
+                                                  "xpbd", "vbd"};
 
 TEST(OscillatorLimit, IsTheTablesForEveryMethodAndDampingRatio) {
   for (const auto& [method, limits] : table)

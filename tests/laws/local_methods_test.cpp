@@ -1,7 +1,6 @@
-// The two methods that solve the implicit Euler step by local solves: projective dynamics and XPBD.
+// The methods that solve the implicit Euler step by local solves: projective dynamics, XPBD and VBD.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
@@ -10,8 +9,8 @@
 #include "measure/amplification.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
+#include "support/implicit_euler_step.h"
 #include "support/random.h"
-#include "support/reference.h"
 #include "support/scenes.h"
 #include "support/states.h"
 
@@ -33,6 +32,13 @@ IntegratorChoice xpbd(int substeps, int iterations) {
   return choice;
 }
 
+IntegratorChoice vbd(int iterations, const char* acceleration = "chebyshev") {
+  IntegratorChoice choice{"vbd"};
+  choice.vbd_iterations = iterations;
+  choice.vbd_acceleration = acceleration;
+  return choice;
+}
+
 // ---- the implicit Euler step ----
 
 Scene hanging_cloth(double viscous, double spring_damping) {
@@ -43,76 +49,6 @@ Scene hanging_cloth(double viscous, double spring_damping) {
   scene.gravity = Vec3(0, -g, 0);
   return scene;
 }
-
-/// The step equations M (v' - v) = h f(x + h v', v') of springs, their damping, viscous damping and gravity,
-/// written pair by pair and solved by Newton's method with a Jacobian of differences: shares no code with the
-/// engine.
-class ImplicitEulerStep {
- public:
-  ImplicitEulerStep(const Scene& scene, const ClothSystem& system, const ClothState& state, double h)
-      : scene_(scene),
-        system_(system),
-        pairs_(springs_of(system)),
-        x_(state.position),
-        v_(state.velocity),
-        h_(h) {
-    for (int i = 0; i < system.size(); ++i)
-      if (!system.pinned[static_cast<std::size_t>(i)]) free_.push_back(static_cast<std::size_t>(i));
-  }
-
-  Vec3Field velocity() const {
-    Eigen::VectorXd unknowns = packed(v_);
-    for (int n = 0; n < 30; ++n) {
-      const Eigen::VectorXd r = residual(unknowns);
-      Eigen::MatrixXd jacobian(r.size(), r.size());
-      for (Eigen::Index k = 0; k < r.size(); ++k) {
-        Eigen::VectorXd more = unknowns, less = unknowns;
-        more[k] += 1e-5, less[k] -= 1e-5;
-        jacobian.col(k) = (residual(more) - residual(less)) / 2e-5;
-      }
-      unknowns -= jacobian.partialPivLu().solve(r);
-    }
-    EXPECT_LE(residual(unknowns).norm(), 1e-13);
-    return unpacked(unknowns);
-  }
-
- private:
-  Eigen::VectorXd packed(const Vec3Field& field) const {
-    Eigen::VectorXd result(3 * static_cast<Eigen::Index>(free_.size()));
-    for (std::size_t k = 0; k < free_.size(); ++k)
-      result.segment<3>(3 * static_cast<Eigen::Index>(k)) = field[free_[k]];
-    return result;
-  }
-  Vec3Field unpacked(const Eigen::VectorXd& unknowns) const {
-    Vec3Field result(x_.size());
-    for (std::size_t k = 0; k < free_.size(); ++k)
-      result.set(free_[k], unknowns.segment<3>(3 * static_cast<Eigen::Index>(k)));
-    return result;
-  }
-  Eigen::VectorXd residual(const Eigen::VectorXd& unknowns) const {
-    const Vec3Field v = unpacked(unknowns);
-    Vec3Field r(v.size());
-    for (std::size_t i = 0; i < v.size(); ++i)
-      r.set(i, system_.mass[i] * (v[i] - v_[i] - h_ * scene_.gravity.value_or(Vec3::Zero())) +
-                   h_ * scene_.damping.value_or(0) * v[i]);
-    for (const SpringPair& spring : pairs_) {
-      const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
-      const Vec3 between = x_[j] + h_ * v[j] - x_[i] - h_ * v[i];
-      const Vec3 d = between.normalized();
-      const double force = spring.stiffness * (between.norm() - spring.rest_length) +
-                           scene_.springs->damping * d.dot(v[j] - v[i]);
-      r.add(i, -h_ * force * d), r.add(j, h_ * force * d);
-    }
-    return packed(r);
-  }
-
-  const Scene& scene_;
-  const ClothSystem& system_;
-  std::vector<SpringPair> pairs_;
-  std::vector<std::size_t> free_;
-  Vec3Field x_, v_;
-  double h_;
-};
 
 /// The largest distance of one step's velocities from those of implicit Euler, relative to the largest speed.
 double step_error(const Scene& scene, const IntegratorChoice& choice, double h) {
@@ -145,12 +81,29 @@ TEST(Xpbd, ConvergesToTheImplicitEulerStep) {
   EXPECT_LT(error[40], 1e-12);
 }
 
-TEST(BothLocalMethods, ConvergeToTheImplicitEulerStepWithEitherDampingAndWithNone) {
+TEST(Vbd, ConvergesToTheImplicitEulerStep) {
+  const Scene scene = hanging_cloth(0.02, 0.02);
+  for (const char* acceleration : {"none", "chebyshev"}) {
+    std::map<int, double> error;
+    for (const int n : {1, 5, 10, 20, 40}) error[n] = step_error(scene, vbd(n, acceleration), 0.01);
+    std::printf("vbd, %s:", acceleration);
+    for (const auto& [n, of] : error) std::printf(" %d: %.1e", n, of);
+    std::printf("\n");
+    EXPECT_LT(error[5], 0.3 * error[1]);
+    EXPECT_LT(error[10], 0.1 * error[5]);
+    EXPECT_LT(error[20], 0.1 * error[10]);
+    EXPECT_LT(error[40], 1e-8);
+  }
+}
+
+TEST(LocalMethods, ConvergeToTheImplicitEulerStepWithEitherDampingAndWithNone) {
   for (const double viscous : {0.0, 0.05})
     for (const double along : {0.0, 0.05}) {
       const Scene scene = hanging_cloth(viscous, along);
       EXPECT_LT(step_error(scene, projective(400), 0.005), 1e-12) << viscous << " " << along;
       EXPECT_LT(step_error(scene, xpbd(1, 200), 0.005), 1e-12) << viscous << " " << along;
+      EXPECT_LT(step_error(scene, vbd(100, "none"), 0.005), 1e-12) << viscous << " " << along;
+      EXPECT_LT(step_error(scene, vbd(100), 0.005), 1e-12) << viscous << " " << along;
     }
 }
 
@@ -174,9 +127,10 @@ void lay_hands_on(ForceModel& forces) {
   forces.set_pull(Pull{.particle = 20, .target = {0.5, -0.8, 0.3}}, 3, 0.02);
 }
 
-TEST(Projective, SolvesTheStepEquationsWithEveryForceAndTheHand) {
+/// What is left of the step equations after a step of a crumpled cloth of 6 x 6 particles, N s.
+void expect_the_step_equations_to_hold(const Scene& scene, const IntegratorChoice& choice) {
   Random random;
-  DirectRun run(with_spring_damping(), projective(300));
+  DirectRun run(scene, choice);
   run.state = crumpled_state(run.system, 0.02, 0.5, random);
   lay_hands_on(run.forces);
   const ClothState start = run.state;
@@ -188,15 +142,25 @@ TEST(Projective, SolvesTheStepEquationsWithEveryForceAndTheHand) {
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (run.system.pinned[i]) continue;
     const Vec3 gained = run.state.velocity[i] - start.velocity[i];
-    EXPECT_LE((run.system.mass[i] * gained - h * force[i]).norm(), 1e-14) << i;
+    EXPECT_LE((run.system.mass[i] * gained - h * force[i]).norm(), 1e-14) << choice.method << " " << i;
+  }
+}
+
+TEST(LocalMethods, SolveTheStepEquationsWithEveryForceAndTheHand) {
+  expect_the_step_equations_to_hold(with_spring_damping(), projective(300));
+  Scene rubbed = with_spring_damping();
+  for (const double friction : {0.0, 2 * rubbed.air->drag}) {
+    rubbed.air->skin_friction = friction;
+    expect_the_step_equations_to_hold(rubbed, vbd(200, "none"));
+    expect_the_step_equations_to_hold(rubbed, vbd(100));
   }
 }
 
 // Exactly: a pendulum of two particles below two pins, as in oscillator_test.
-TEST(BothLocalMethods, MultiplyTheDampedOscillatorAsImplicitEulerDoes) {
+TEST(LocalMethods, MultiplyTheDampedOscillatorAsImplicitEulerDoes) {
   constexpr double stiffness = 40, mass = 0.1, amplitude = 0.01;
   const double omega = std::sqrt(stiffness / mass);
-  for (const IntegratorChoice& choice : {projective(400), xpbd(1, 50)})
+  for (const IntegratorChoice& choice : {projective(400), xpbd(1, 50), vbd(50, "none"), vbd(60)})
     for (const double ratio : {0.0, 0.1, 1.0})
       for (const double w : {0.1, 1.0}) {
         Scene scene = bare_sheet(2, 2, 0.5, mass);
@@ -254,6 +218,11 @@ TEST(Projective, IsOfOrderOneWithEveryForceTheHandAndTheirWork) {
   expect_order_one(projective(10), 800);
 }
 
+TEST(Vbd, IsOfOrderOneWithEveryForceTheHandAndTheirWork) {
+  expect_order_one(vbd(5, "none"), 800);
+  expect_order_one(vbd(10), 800);
+}
+
 TEST(Xpbd, IsOfOrderOneWithEveryForceTheHandAndTheirWork) {
   expect_order_one(xpbd(4, 1), 200);
   expect_order_one(xpbd(1, 5), 800);
@@ -261,8 +230,8 @@ TEST(Xpbd, IsOfOrderOneWithEveryForceTheHandAndTheirWork) {
 
 // ---- laws ----
 
-TEST(BothLocalMethods, FallAsImplicitEulerDoesWhateverTheSpringDamping) {
-  for (const IntegratorChoice& choice : {projective(10), xpbd(4, 2)})
+TEST(LocalMethods, FallAsImplicitEulerDoesWhateverTheSpringDamping) {
+  for (const IntegratorChoice& choice : {projective(10), xpbd(4, 2), vbd(1), vbd(10)})
     for (const double damping : {0.0, 0.01, 1.0, 100.0}) {
       Scene scene = lying_sheet(6, 5, 0.1, 0.01);
       scene.springs = SpringMaterial{.structural = 100, .shear = 50, .flexion = 10, .damping = damping};
@@ -279,7 +248,7 @@ TEST(BothLocalMethods, FallAsImplicitEulerDoesWhateverTheSpringDamping) {
     }
 }
 
-TEST(BothLocalMethods, KeepTheMomentumOfAFreeClothHoweverFarFromConverged) {
+TEST(ProjectiveAndXpbd, KeepTheMomentumOfAFreeClothHoweverFarFromConverged) {
   for (const IntegratorChoice& choice : {projective(1), projective(10), xpbd(1, 1), xpbd(4, 3)}) {
     Scene scene = bare_sheet(6, 6, 0.2, 0.01);
     scene.springs = SpringMaterial{.structural = 2000, .shear = 1000, .flexion = 500, .damping = 0.01};
@@ -291,15 +260,16 @@ TEST(BothLocalMethods, KeepTheMomentumOfAFreeClothHoweverFarFromConverged) {
   }
 }
 
-TEST(BothLocalMethods, GiveTheSameBitsTwice) {
-  for (const IntegratorChoice& choice : {projective(10), xpbd(4, 2)}) {
+TEST(LocalMethods, GiveTheSameBitsTwice) {
+  for (const IntegratorChoice& choice : {projective(10), xpbd(4, 2), vbd(5)}) {
     DirectRun one(with_spring_damping(), choice), other(with_spring_damping(), choice);
     one.advance(50, 0.01), other.advance(50, 0.01);
     EXPECT_EQ(one.state, other.state) << choice.method;
   }
 }
 
-const std::vector<IntegratorChoice> few_iterations{projective(1), projective(10), xpbd(10, 1), xpbd(1, 20)};
+const std::vector<IntegratorChoice> few_iterations{projective(1), projective(10),  xpbd(10, 1), xpbd(1, 20),
+                                                   vbd(1),        vbd(10, "none"), vbd(20)};
 
 /// Nothing faster than a cloth of a metre can be in its place: bounded through 2 s of steps of 1/60 s.
 void expect_bounded(DirectRun& run, double speed, double reach, const std::string& what) {
@@ -320,7 +290,7 @@ Scene stiff_cloth(double stiffness) {
   return scene;
 }
 
-TEST(BothLocalMethods, StayBoundedFromDegenerateStartsAtAnyStiffness) {
+TEST(LocalMethods, StayBoundedFromDegenerateStartsAtAnyStiffness) {
   for (const IntegratorChoice& choice : few_iterations)
     for (const double stiffness : {1e1, 1e4, 1e9}) {
       const std::string what = choice.method + " " + std::to_string(stiffness);
@@ -341,7 +311,7 @@ TEST(BothLocalMethods, StayBoundedFromDegenerateStartsAtAnyStiffness) {
     }
 }
 
-TEST(BothLocalMethods, StayBoundedInAnyWind) {
+TEST(LocalMethods, StayBoundedInAnyWind) {
   for (const IntegratorChoice& choice : few_iterations)
     for (const double wind : {10.0, 100.0, 1000.0}) {
       Scene scene = stiff_cloth(200);
@@ -352,8 +322,8 @@ TEST(BothLocalMethods, StayBoundedInAnyWind) {
     }
 }
 
-TEST(BothLocalMethods, FollowTheHandOfALoopWithStepsBeyondAnyExplicitLimit) {
-  for (const IntegratorChoice& choice : {projective(10), xpbd(10, 1)}) {
+TEST(LocalMethods, FollowTheHandOfALoopWithStepsBeyondAnyExplicitLimit) {
+  for (const IntegratorChoice& choice : {projective(10), xpbd(10, 1), vbd(30)}) {
     Scene scene = stiff_cloth(1e4);
     scene.integrator = choice;
     scene.integrator.time_step = 0.01;
@@ -416,7 +386,7 @@ double distance_from_implicit_euler(const Scene& scene, const IntegratorChoice& 
 
 IntegratorChoice accelerated(int iterations, const std::string& acceleration) {
   IntegratorChoice choice = projective(iterations);
-  choice.acceleration = acceleration;
+  choice.projective_acceleration = acceleration;
   return choice;
 }
 

@@ -12,7 +12,7 @@ namespace cloth::test {
 IntegratorChoice exactly(const std::string& method, std::optional<double> time_step) {
   IntegratorChoice choice{method, time_step};
   choice.tolerance = facts_of(method).settings == MethodSettings::error_control ? 0 : 1e-12;
-  choice.projective_iterations = choice.xpbd_iterations = 30;
+  choice.projective_iterations = choice.xpbd_iterations = choice.vbd_iterations = 30;
   choice.substeps = 1;
   return choice;
 }

@@ -85,7 +85,8 @@ void expect_the_same_by_every_method(const Scene& scene) {
                                             {"implicit-midpoint", 2e-4, 2},
                                             {"bdf2", 2e-4, 2},
                                             {"projective", 1e-4, 1},
-                                            {"xpbd", 1e-4, 1}}) {
+                                            {"xpbd", 1e-4, 1},
+                                            {"vbd", 1e-4, 1}}) {
     const double coarse = rms_distance(end_by(method, step), exact),
                  fine = rms_distance(end_by(method, step / 2), exact);
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.25) << method;

@@ -38,6 +38,7 @@ std::vector<Page> pages() {
           {"studies/stability.md", HelpWindow::tr("Study: stability")},
           {"studies/extremes.md", HelpWindow::tr("Study: extreme cases")},
           {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
+          {"studies/iterations.md", HelpWindow::tr("Study: iterations")},
           {"studies/sweep.md", HelpWindow::tr("Study: sweeps")},
           {"studies/cluster.md", HelpWindow::tr("Sweeps on a cluster")},
           {"studies/sensitivity.md", HelpWindow::tr("Sensitivity")},

@@ -73,7 +73,8 @@ const std::map<std::string, Invariants> invariants{{"semi-implicit-euler", {Kept
                                                    {"implicit-midpoint", {Kept::exactly, 0, 2, false}},
                                                    {"bdf2", {Kept::to_order, 2, 3, true}},
                                                    {"projective", {Kept::to_order, 1, 1, true}},
-                                                   {"xpbd", {Kept::to_order, 1, 1, true}}};
+                                                   {"xpbd", {Kept::to_order, 1, 1, true}},
+                                                   {"vbd", {Kept::to_order, 1, 1, true}}};
 
 std::vector<std::string> methods_where(const std::function<bool(const Invariants&)>& chosen) {
   std::vector<std::string> methods;

@@ -40,7 +40,8 @@ Ladder ladder_of(const std::string& method) {
       {"implicit-midpoint", {.first = 100, .halvings = 4, .time = 0.1}},
       {"bdf2", {.first = 100, .halvings = 4, .time = 0.1}},
       {"projective", damped},
-      {"xpbd", damped}};
+      {"xpbd", damped},
+      {"vbd", damped}};
   return ladders.at(method);
 }
 

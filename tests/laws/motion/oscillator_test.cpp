@@ -64,7 +64,8 @@ Coefficients predicted(const std::string& method, double w) {
                                                   {"implicit-midpoint", {-w2 / 12, 0}},
                                                   {"bdf2", {-w2 / 3, w * w2 / 4}},
                                                   {"projective", {-w2 / 3, w / 2}},
-                                                  {"xpbd", {-w2 / 3, w / 2}}};
+                                                  {"xpbd", {-w2 / 3, w / 2}},
+                                                  {"vbd", {-w2 / 3, w / 2}}};
   return table.at(method);
 }
 
@@ -73,7 +74,7 @@ const std::map<std::string, double> error_at_a_tenth{
     {"explicit-euler", 22}, {"semi-implicit-euler", 2.62e-2}, {"verlet", 2.62e-2},
     {"rk4", 5.25e-5},       {"dormand-prince", 1.76e-7},      {"implicit-euler", 0.957},
     {"bdf2", 2.05e-1},      {"implicit-midpoint", 5.23e-2},   {"projective", 0.957},
-    {"xpbd", 0.957}};
+    {"xpbd", 0.957},         {"vbd", 0.957}};
 
 class PhaseError : public ::testing::TestWithParam<std::string> {};
 

@@ -66,7 +66,8 @@ class ContinuousContact : public ContactStage {
     std::int64_t substep = 0;  ///< in which its impulse was last above 0
 
     bool acts() const { return contact.normal_impulse > 0 && contact.mobility > 0; }
-    ContactConstraint on_velocities() const;  ///< the same contact, without accumulated impulses
+    /// The same contact; its impulses are estimates, those that led to the positions in `step` seconds.
+    ContactConstraint on_velocities(double step) const;
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
@@ -100,6 +101,7 @@ class ContinuousContact : public ContactStage {
   /// m: a remaining displacement below this counts as none.
   double arrived_length() const { return 1e-3 * thickness_; }
 
+  void apply_all_impulses(const ClothSystem& system, Vec3Field& velocity) const;
   void solve_constraints(const ClothSystem& system, Vec3Field& velocity);
   bool find_motion(const ContactStep& step);
   void take_touches(const ContactStep& step);
@@ -158,6 +160,7 @@ class ContinuousContact : public ContactStage {
   std::vector<PairState> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
+  ContactSolver solver_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round

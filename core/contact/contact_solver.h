@@ -80,21 +80,22 @@ class ContactSolver {
             const SolveLimits& limits, Vec3Field& value);
 
  private:
-  void gather(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass,
-              const Vec3Field& value);
+  void count_contacts(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
+  void pack(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+            const Vec3Field& value);
   int slot_of(int particle, const Vec3Field& value);
   void order_moved();
   int sweep(const SolveLimits& limits);
-  void scatter(std::span<ContactConstraint> contacts, Vec3Field& value) const;
+  void unpack(std::span<ContactConstraint> contacts, Vec3Field& value);
 
-  std::vector<int> slot_;         ///< of each particle, -1: no contact moves it
+  std::vector<int> slot_;         ///< of each particle, -1: no packed contact has it
+  std::vector<int> contacts_of_;  ///< of each particle, number of contacts that move it
   std::vector<int> particle_;     ///< of each slot; of slot 0, which stands for none, -1
-  std::vector<int> contacts_of_;  ///< of each slot, their number
   std::vector<ContactValue> values_, before_;
-  std::vector<unsigned char> moved_;  ///< of each slot, in the last sweep
-  std::vector<ContactRow> rows_;
-  std::vector<std::size_t> contact_of_;        ///< of each row
-  std::vector<int> alone_, coupled_, active_;  ///< rows
+  std::vector<unsigned char> moved_;     ///< of each slot, in the last sweep
+  std::vector<ContactRow> rows_;         ///< contacts that share particles with others
+  std::vector<std::size_t> contact_of_;  ///< of each row
+  std::vector<int> all_, active_;        ///< rows
 };
 
 }  // namespace cloth

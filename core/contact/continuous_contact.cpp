@@ -163,12 +163,15 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   contact.friction = self_friction_;
   contact.rest = contact.point(from);
   if (pair.obstacle != FeaturePair::cloth_itself) {
-    const PoseInterpolation& path = paths_[at(pair.obstacle)];
-    const Plane at_end = moved_plane(pair.obstacle, {s.far_point, s.normal}, end_poses_);
-    const Vec3 local = poses_[at(pair.obstacle)].inverse(s.far_point);
-    contact.normal = at_end.normal;
-    contact.bound += contact.normal.dot(at_end.point);
-    contact.rest += path.to().at(local) - path.from().at(local);
+    Vec3 point = s.far_point;
+    if (!is_still_[at(pair.obstacle)]) {
+      const PoseInterpolation& path = paths_[at(pair.obstacle)];
+      const Plane at_end = moved_plane(pair.obstacle, {s.far_point, s.normal}, end_poses_);
+      const Vec3 local = poses_[at(pair.obstacle)].inverse(s.far_point);
+      contact.normal = at_end.normal, point = at_end.point;
+      contact.rest += path.to().at(local) - path.from().at(local);
+    }
+    contact.bound += contact.normal.dot(point);
     const ObstacleBody& body = bodies_[at(pair.obstacle)];
     contact.friction = body.reflects ? 0 : body.friction;
   }
@@ -238,7 +241,7 @@ void ContinuousContact::keep_touches(double step) {
     touch.substep = substep_;
     touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
     touch.velocity.setZero();
-    if (touch.obstacle == FeaturePair::cloth_itself) continue;
+    if (touch.obstacle == FeaturePair::cloth_itself || is_still_[at(touch.obstacle)]) continue;
     const Vec3 local = poses_[at(touch.obstacle)].inverse(separations_[constraint_pair_[c]].far_point);
     const PoseInterpolation& path = paths_[at(touch.obstacle)];
     touch.velocity = (path.to().at(local) - path.from().at(local)) / step;

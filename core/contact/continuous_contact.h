@@ -73,6 +73,7 @@ class ContinuousContact : public ContactStage {
 
   bool is_near(const ContactStep& step, const ClothState& state);
   void begin(const StepTimes& times);
+  bool note_still();
   void set_thickness(double time);
   bool find_pairs();
   bool may_come_near() const;
@@ -146,6 +147,7 @@ class ContinuousContact : public ContactStage {
   Vec3Field substep_from_;
   // of the substep in progress
   std::vector<PoseInterpolation> paths_;
+  std::vector<std::uint8_t> is_still_;  ///< of each obstacle, on its path
   std::vector<Pose> poses_, next_poses_, end_poses_;
   double part_ = 0;                ///< of the obstacles' paths that they have completed
   Vec3Field free_position_;        ///< m, target without contact in this round

@@ -24,12 +24,6 @@ bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
          (body.kind == BodyKind::ball && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
 }
 
-double largest(const std::vector<double>& of, const PairParticles& pair, int begin, int end) {
-  double most = 0;
-  for (int j = begin; j < end; ++j) most = std::max(most, of[at(pair.particle[at(j)])]);
-  return most;
-}
-
 }  // namespace
 
 void ClosePairs::set_team(WorkerTeam* team) {
@@ -80,10 +74,12 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
     around.particles[i] = {here, here, cached_range_[i]};
   }
   search_.find(around, now.paths, cached_);
-  cached_distance_.resize(cached_.size());
+  cached_distance_.resize(cached_.size()), cached_ends_.resize(cached_.size());
   in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t k = begin; k < end; ++k) {
       cached_distance_[k] = separate(cached_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
+      cached_ends_[k] = ends_of(cached_[k]);
+    }
   });
   cached_position_ = now.position;
   cached_poses_ = now.poses;
@@ -94,14 +90,34 @@ double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) c
   return pair.obstacle == FeaturePair::cloth_itself ? swept.own_reach : swept.reach;
 }
 
+ClosePairs::Ends ClosePairs::ends_of(const FeaturePair& pair) const {
+  const PairParticles all = particles_of(pair, cloth_);
+  const int none = static_cast<int>(range_.size());
+  Ends ends{{none, none, none}, {none, none, none}};
+  for (int j = 0; j < all.count; ++j)
+    (j < all.near_count ? ends.near[at(j)] : ends.far[at(j - all.near_count)]) = all.particle[at(j)];
+  return ends;
+}
+
+void ClosePairs::add_spent(const PairQuery& now) {
+  spent_.assign(range_.size() + 1, 0);
+  most_spent_ = 0;
+  for (std::size_t i = 0; i < range_.size(); ++i) {
+    spent_[i] = moved_[i] + range_[i];
+    most_spent_ = std::max(most_spent_, spent_[i]);
+  }
+  most_spent_ = 2 * most_spent_ + furthest_reach(now.swept);
+}
+
 /// Whether is_far() holds for a candidate, from its cached distance.
 bool ClosePairs::is_known_far(std::size_t k, const SweptBounds& swept) const {
-  const PairParticles pair = particles_of(cached_[k], cloth_);
-  const int near = pair.near_count;
-  const double moved = largest(moved_, pair, 0, near) + largest(moved_, pair, near, pair.count);
-  const double range = largest(range_, pair, 0, near) + largest(range_, pair, near, pair.count);
   constexpr double rounding = 1e-9;
-  return (1 - rounding) * cached_distance_[k] > reach_of(cached_[k], swept) + range + moved;
+  const double distance = (1 - rounding) * cached_distance_[k];
+  if (distance > most_spent_) return true;
+  const auto most = [&](const std::array<int, 3>& of) {
+    return std::max({spent_[at(of[0])], spent_[at(of[1])], spent_[at(of[2])]});
+  };
+  return distance > reach_of(cached_[k], swept) + most(cached_ends_[k].near) + most(cached_ends_[k].far);
 }
 
 /// Whether the pair cannot come within its reach: the displacements are too short, or lead along or away.
@@ -162,6 +178,7 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
     for (std::size_t i = 0; i < moved_.size(); ++i)
       moved_[i] = (now.position[i] - cached_position_[i]).norm();
   if (!holds(now)) collect_candidates(now);
+  add_spent(now);
   separate_all(
       now, cached_, [&](std::size_t k) { return is_known_far(k, now.swept); }, pairs, separations);
 }

@@ -41,6 +41,10 @@ class ClosePairs {
   const PairSearch& search() const { return search_; }
 
  private:
+  /// The particles of a cached candidate; where a side has fewer than three, the last ones stand for none.
+  struct Ends {
+    std::array<int, 3> near, far;
+  };
   struct Part {  ///< the result of one thread
     std::vector<FeaturePair> pairs;
     std::vector<Separation> separations;
@@ -51,6 +55,8 @@ class ClosePairs {
   bool holds(const PairQuery& now) const;
   void collect_candidates(const PairQuery& now);
   double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
+  Ends ends_of(const FeaturePair& pair) const;
+  void add_spent(const PairQuery& now);
   bool is_known_far(std::size_t kept, const SweptBounds& swept) const;
   bool is_far(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
   template <class Skip>
@@ -70,7 +76,11 @@ class ClosePairs {
   std::vector<FeaturePair> found_;      ///< candidates that are not cached
 
   std::vector<FeaturePair> cached_;      ///< candidates
+  std::vector<Ends> cached_ends_;        ///< of each
   std::vector<double> cached_distance_;  ///< m, of each, at cached_position_
+  /// m, of each particle, how far it may be at the end of this round from where it was then; and of none, 0.
+  std::vector<double> spent_;
+  double most_spent_ = 0;  ///< m, two particles that went furthest, and the reach
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

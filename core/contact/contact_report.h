@@ -28,7 +28,8 @@ struct ContactReport {
   double work = 0;        ///< J, given to the cloth by contact's impulses
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only of continuous contact
   int rounds = 0;         ///< of continuous contact
-  std::size_t pairs = 0;  ///< pairs of near features in the last round
+  int velocity_iterations = 0;  ///< of VelocitySolver
+  std::size_t pairs = 0;        ///< pairs of near features in the last round
   std::optional<Pinch> pinch;
   bool exhausted =
       false;  ///< the limit of pairs and particles over a step's rounds was reached; treated like a pinch

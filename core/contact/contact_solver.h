@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/relax_kernels.h"
 #include "geometry/at.h"
 #include "geometry/vec3_field.h"
 
@@ -60,9 +61,41 @@ double mobility_of(const ContactConstraint& contact, const std::vector<double>& 
 void apply_impulses(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
                     Vec3Field& value);
 
-/// At most `sweeps` sweeps over the contacts in their order; ends when no point moved by more than
-/// `tolerance`. Contacts without a free particle are skipped. Returns the sweeps.
-int solve_contacts(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass, int sweeps,
-                   double tolerance, Vec3Field& value);
+/// When a solve ends.
+struct SolveLimits {
+  int sweeps = 100;      ///< at most so many
+  double tolerance = 0;  ///< m or m/s: of no particle did a sweep change the value by more
+};
+
+/// Sweeps over the contacts in their order. Contacts of the same particles hand an impulse to and fro for
+/// ever while nothing moves, so that a solve ends by what a whole sweep has changed at the particles and not
+/// by what single contacts have. A contact whose particles have no other is solved by one relaxation. Of the
+/// others, those whose particles did not move in the last sweep are left out of the next, except in every
+/// fourth sweep and in the one that ends the solve.
+class ContactSolver {
+ public:
+  /// In and out: `value` contains the effect of the contacts' impulses. Contacts without a free particle are
+  /// skipped. Returns the sweeps.
+  int solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
+            const SolveLimits& limits, Vec3Field& value);
+
+ private:
+  void count_contacts(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
+  void pack(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+            const Vec3Field& value);
+  int slot_of(int particle, const Vec3Field& value);
+  void order_moved();
+  int sweep(const SolveLimits& limits);
+  void unpack(std::span<ContactConstraint> contacts, Vec3Field& value);
+
+  std::vector<int> slot_;         ///< of each particle, -1: no packed contact has it
+  std::vector<int> contacts_of_;  ///< of each particle, number of contacts that move it
+  std::vector<int> particle_;     ///< of each slot; of slot 0, which stands for none, -1
+  std::vector<ContactValue> values_, before_;
+  std::vector<unsigned char> moved_;     ///< of each slot, in the last sweep
+  std::vector<ContactRow> rows_;         ///< contacts that share particles with others
+  std::vector<std::size_t> contact_of_;  ///< of each row
+  std::vector<int> all_, active_;        ///< rows
+};
 
 }  // namespace cloth

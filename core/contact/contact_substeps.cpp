@@ -32,23 +32,28 @@ void ContinuousContact::begin(const StepTimes& times) {
   set_thickness(times.end);
   starts_before_ = starts_;
   paths_.clear();
-  bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     poses_[k] = starts_[k];
     end_poses_[k] = pose_in_transition(obstacles_, transitions_, k, times.end);
     const Obstacle& obstacle = obstacles_[k];
     const Vec3 spun = obstacle.keyframes.empty() ? Vec3(times.step * obstacle.spin) : Vec3(Vec3::Zero());
     paths_.emplace_back(bodies_[k].pivot, poses_[k], end_poses_[k], spun);
-    all_rest = all_rest && paths_[k].is_still();
   }
   starts_ = end_poses_;
-  part_ = all_rest ? 1 : 0;
+  part_ = note_still() ? 1 : 0;
   free_contains_contacts_ = false;
   radius_scale_.assign(position_.size(), 1.0);
   touches_.clear();
   substep_ = 0, operation_count_ = 0, has_moved_ = false;
   substeps_ = substeps_for(bodies_, paths_, mean_edge_);
   if (substeps_ > 1) whole_paths_ = paths_;
+}
+
+/// Which obstacles do not move on the present paths; whether none does.
+bool ContinuousContact::note_still() {
+  is_still_.clear();
+  for (const PoseInterpolation& path : paths_) is_still_.push_back(path.is_still());
+  return std::find(is_still_.begin(), is_still_.end(), 0) == is_still_.end();
 }
 
 /// Whether anything can come near in a step of several substeps, by bounding boxes.
@@ -74,14 +79,12 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
   free_contains_contacts_ = free_contains_contacts_ || substep > 0;
   substep_from_ = position_;
   radius_scale_.assign(position_.size(), 1.0);
-  bool all_rest = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     end_poses_[k] =
         whole_paths_[k].at(substep + 1 == substeps_ ? 1 : share * static_cast<double>(substep + 1));
     paths_[k] = PoseInterpolation(bodies_[k].pivot, poses_[k], end_poses_[k]);
-    all_rest = all_rest && paths_[k].is_still();
   }
-  part_ = all_rest ? 1 : 0;
+  part_ = note_still() ? 1 : 0;
   find_pairs();
 }
 

@@ -66,12 +66,14 @@ class ContinuousContact : public ContactStage {
     std::int64_t substep = 0;  ///< in which its impulse was last above 0
 
     bool acts() const { return contact.normal_impulse > 0 && contact.mobility > 0; }
-    ContactConstraint on_velocities() const;  ///< the same contact, without accumulated impulses
+    /// The same contact; its impulses are estimates, those that led to the positions in `step` seconds.
+    ContactConstraint on_velocities(double step) const;
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
   bool is_near(const ContactStep& step, const ClothState& state);
   void begin(const StepTimes& times);
+  bool note_still();
   void set_thickness(double time);
   bool find_pairs();
   bool may_come_near() const;
@@ -100,6 +102,7 @@ class ContinuousContact : public ContactStage {
   /// m: a remaining displacement below this counts as none.
   double arrived_length() const { return 1e-3 * thickness_; }
 
+  void apply_all_impulses(const ClothSystem& system, Vec3Field& velocity) const;
   void solve_constraints(const ClothSystem& system, Vec3Field& velocity);
   bool find_motion(const ContactStep& step);
   void take_touches(const ContactStep& step);
@@ -144,6 +147,7 @@ class ContinuousContact : public ContactStage {
   Vec3Field substep_from_;
   // of the substep in progress
   std::vector<PoseInterpolation> paths_;
+  std::vector<std::uint8_t> is_still_;  ///< of each obstacle, on its path
   std::vector<Pose> poses_, next_poses_, end_poses_;
   double part_ = 0;                ///< of the obstacles' paths that they have completed
   Vec3Field free_position_;        ///< m, target without contact in this round
@@ -158,6 +162,7 @@ class ContinuousContact : public ContactStage {
   std::vector<PairState> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;
+  ContactSolver solver_;
   std::vector<std::size_t> constraint_pair_;
   std::vector<Touch> touches_;
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round

@@ -33,6 +33,8 @@ bool meets_solid(const FeaturePair& pair) {
 /// in the capsule, about the same axis.
 double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
   const double room = capsule.radius / std::sqrt(2.0);
+  const double square = room * room;  // balls around the ends of the axis are inside
+  if ((start - capsule.from).squaredNorm() <= square && (end - capsule.to).squaredNorm() <= square) return 1;
   const Vec3 line = capsule.to - capsule.from;
   const double length = line.norm();
   const Vec3 axis = length > 0 ? Vec3(line / length) : Vec3::UnitX();

@@ -11,9 +11,8 @@
 namespace cloth {
 namespace {
 
-/// Two faces of the cloth that rest on one corner are nearly the same contact, and converge slowly.
 constexpr int velocity_sweeps = 100;
-constexpr double velocity_tolerance = 1e-7;  ///< m/s
+constexpr double velocity_tolerance = 1e-5;  ///< m/s
 
 /// Groups of particles that are connected by contacts, directly or through other particles (union-find).
 class Islands {
@@ -47,16 +46,21 @@ double kinetic_change(double mass, const Vec3& now, const Vec3& then) {
 
 }  // namespace
 
-ContactConstraint ContinuousContact::Touch::on_velocities() const {
+ContactConstraint ContinuousContact::Touch::on_velocities(double step) const {
   ContactConstraint same = contact;
   same.bound = contact.normal.dot(velocity);
   same.rest = velocity;
-  same.normal_impulse = 0, same.friction_impulse.setZero();
+  same.normal_impulse /= step, same.friction_impulse /= step;
   return same;
 }
 
+void ContinuousContact::apply_all_impulses(const ClothSystem& system, Vec3Field& velocity) const {
+  for (const ContactConstraint& contact : constraints_)
+    apply_impulses(contact, system.inverse_mass, velocity);
+}
+
 void ContinuousContact::solve_constraints(const ClothSystem& system, Vec3Field& velocity) {
-  solve_contacts(constraints_, system.inverse_mass, velocity_sweeps, velocity_tolerance, velocity);
+  solver_.solve(constraints_, system.inverse_mass, {velocity_sweeps, velocity_tolerance}, velocity);
 }
 
 /// The mean velocity of the step. A pair that began it nearer than its thickness was separated, which must
@@ -71,7 +75,7 @@ bool ContinuousContact::find_motion(const ContactStep& step) {
   for (const Touch& touch : touches_) {
     if (!touch.acts()) continue;
     gaps.push_back(touch.contact.normal.dot(touch.contact.rest) - touch.contact.bound);
-    constraints_.push_back(touch.on_velocities());
+    constraints_.push_back(touch.on_velocities(step.times.step));
     constraints_.back().bound -= std::max(gaps.back(), 0.0) / step.times.step;
   }
   const auto is_missing = [&](double gap) { return gap < -arrived_length(); };
@@ -79,6 +83,7 @@ bool ContinuousContact::find_motion(const ContactStep& step) {
   Vec3Field solved(position_.size());
   for (std::size_t i = 0; i < position_.size(); ++i)
     solved.set(i, (integrated_position_[i] - step.position_before[i]) / step.times.step);
+  apply_all_impulses(step.system, solved);
   solve_constraints(step.system, solved);
   Islands islands(constraints_, step.system.inverse_mass);
   std::vector<std::uint8_t> recovers(position_.size(), 0);
@@ -133,7 +138,7 @@ void ContinuousContact::take_touches(const ContactStep& step) {
       const ObstacleBody& body = bodies_[at(touch.obstacle)];
       restitution = body.reflects ? body.friction : body.restitution;
     }
-    constraints_.push_back(touch.on_velocities());
+    constraints_.push_back(touch.on_velocities(step.times.step));
     const double approach = restitution > 0 ? approach_of(touch, step) : 0;
     bounce_bound_.push_back(constraints_.back().bound - restitution * approach);
   }
@@ -144,15 +149,17 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   const bool follows = step.integrator.velocity_follows_positions();
   step.memory.resize(position_.size());
   if (find_motion(step)) report.work += recovering_work(step);
-  if (follows) step.integrator.update_velocity_for_positions(step.forces, step.times, motion_, state);
+  if (follows)
+    report.velocity_iterations =
+        step.integrator.update_velocity_for_positions(step.forces, step.times, motion_, state);
   take_touches(step);
   free_velocity_ = state.velocity;
+  apply_all_impulses(system, state.velocity);
   solve_constraints(system, state.velocity);
   if (follows && step.forces.has_damping()) {
     step.integrator.update_velocity_for_damping(step.forces, step.times, motion_, state);
     free_velocity_ = state.velocity;
-    for (const ContactConstraint& contact : constraints_)
-      apply_impulses(contact, system.inverse_mass, state.velocity);
+    apply_all_impulses(system, state.velocity);
     solve_constraints(system, state.velocity);
   }
   work_.assign(position_.size(), 0.0);

@@ -10,9 +10,6 @@
 namespace cloth {
 namespace {
 
-/// Relative to the right-hand side; far below any method's error, so that the order of the step is not
-/// touched.
-constexpr double tolerance = 1e-13;
 constexpr int max_iterations = 1000;
 
 /// m v + weight p
@@ -55,10 +52,11 @@ void advance(double length, const Strip<const double>& d, const Strip<double>& v
 
 }  // namespace
 
-int VelocitySolver::solve(const ForceModel& forces, double weight, const Vec3Field& position,
-                          Vec3Field& velocity, Vec3Field& force) {
+int VelocitySolver::solve(const ForceModel& forces, double weight, double tolerance,
+                          const Vec3Field& position, Vec3Field& velocity, Vec3Field& force) {
   const NodeDamping local = forces.damping_parts();
-  if (forces.couples_particles()) return solve_coupled(forces, weight, local, position, velocity, force);
+  if (forces.couples_particles())
+    return solve_coupled(forces, weight, tolerance, local, position, velocity, force);
   solve_by_particle(forces.system(), forces.position_force(), weight, local, velocity);
   return 0;
 }
@@ -86,8 +84,9 @@ void VelocitySolver::solve_by_particle(const ClothSystem& system, const Vec3Fiel
 }
 
 /// `product` holds a force for the guess.
-int VelocitySolver::solve_coupled(const ForceModel& forces, double weight, const NodeDamping& local,
-                                  const Vec3Field& position, Vec3Field& velocity, Vec3Field& product) {
+int VelocitySolver::solve_coupled(const ForceModel& forces, double weight, double tolerance,
+                                  const NodeDamping& local, const Vec3Field& position, Vec3Field& velocity,
+                                  Vec3Field& product) {
   const ClothSystem& system = forces.system();
   const std::size_t size = velocity.size();
   if (residual_.size() != size) residual_ = direction_ = Vec3Field(size);

@@ -11,19 +11,24 @@
 
 namespace cloth {
 
+/// Far below any method's error, so that the order of the step is not touched.
+inline constexpr double solved_tolerance = 1e-13;
+
 class VelocitySolver {
  public:
-  /// p and D are those of the last update of `forces`, which was at `position`; `weight` in s. In: `velocity`
+  /// p and D are those of the last update of `forces`, which was at `position`; `weight` in s. The residual
+  /// falls below `tolerance` times the right-hand side, both in the norm of the inverse of the matrix' part
+  /// that couples no particles. In: `velocity`
   /// holds `known`, `force` an estimate of p - D v in N, from which the iteration starts. Out: `velocity` is
   /// v; pinned particles keep 0; `force` is overwritten. Returns the number of iterations; 0 where the
   /// solution is closed.
-  int solve(const ForceModel& forces, double weight, const Vec3Field& position, Vec3Field& velocity,
-            Vec3Field& force);
+  int solve(const ForceModel& forces, double weight, double tolerance, const Vec3Field& position,
+            Vec3Field& velocity, Vec3Field& force);
 
  private:
   void solve_by_particle(const ClothSystem& system, const Vec3Field& position_force, double weight,
                          const NodeDamping& damping, Vec3Field& velocity);
-  int solve_coupled(const ForceModel& forces, double weight, const NodeDamping& local,
+  int solve_coupled(const ForceModel& forces, double weight, double tolerance, const NodeDamping& local,
                     const Vec3Field& position, Vec3Field& velocity, Vec3Field& product);
 
   std::vector<double> inverse_diagonal_;  ///< 1/kg, scratch

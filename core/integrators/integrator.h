@@ -82,6 +82,14 @@ class Integrator {
   virtual IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                 Work& work) = 0;
 
+  /// Whether a step can wait for contact with its velocities: open_step() advances the positions,
+  /// close_step() the velocities; one after the other they are step(). Where contact moves the positions in
+  /// between, update_velocity_for_positions() takes the place of close_step().
+  virtual bool waits_for_contact(const ForceModel&) const { return false; }
+  virtual IntegratorReport open_step(ForceModel&, const StepTimes&, ClothState&, Work&) { return {}; }
+  /// Adds to `report`, which is that of open_step().
+  virtual void close_step(ForceModel&, const StepTimes&, ClothState&, Work&, IntegratorReport& /*report*/) {}
+
   /// Whether several steps in one call cost less than single steps, where the states in between are not
   /// needed.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }
@@ -109,9 +117,12 @@ class Integrator {
   virtual bool velocity_follows_positions() const { return false; }
 
   /// Recomputes the velocity at the end of the last step for the positions in `state`. `half_velocity` in m/s
-  /// is the displacement of the step divided by its length. Precondition: velocity_follows_positions().
-  virtual void update_velocity_for_positions(ForceModel&, const StepTimes&,
-                                             const Vec3Field& /*half_velocity*/, ClothState&) {}
+  /// is the displacement of the step divided by its length. Returns the iterations of VelocitySolver.
+  /// Precondition: velocity_follows_positions().
+  virtual int update_velocity_for_positions(ForceModel&, const StepTimes&, const Vec3Field& /*half_velocity*/,
+                                            ClothState&) {
+    return 0;
+  }
 
   /// Recomputes that velocity with the damping forces at the velocities in `state`, which contact has
   /// changed. Precondition: update_velocity_for_positions() was the last call.
@@ -119,7 +130,8 @@ class Integrator {
                                            ClothState&) {}
 
   /// Called after contact has changed the state at the end of the last step. step() computed its work with
-  /// the velocities before contact; this returns the difference to be added.
+  /// the velocities before contact; this returns the difference to be added. After open_step() alone, whose
+  /// closing is not in the work yet, it returns that.
   virtual Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
     forget(Change::state);
     if (end_weight_ == 0 || !forces.has_power()) return {};

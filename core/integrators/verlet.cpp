@@ -3,10 +3,29 @@
 #include "cloth/sums.h"
 
 namespace cloth {
+namespace {
+
+/// Of the velocities from which those after contact follow by one more evaluation of the damping
+/// (update_velocity_for_damping()): what contact changes there is larger by orders.
+constexpr double tolerance_before_contact = 1e-8;
+
+}  // namespace
 
 IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   if (end_ == EndVelocity::predicted && forces.has_damping())
     return predicted_step(forces, times, state, work);
+  IntegratorReport report = open_step(forces, times, state, work);
+  close_step(forces, times, state, work, report);
+  return report;
+}
+
+/// A constraint ties the closing kick to the drift.
+bool Verlet::waits_for_contact(const ForceModel& forces) const {
+  return !constraint_ && !(end_ == EndVelocity::predicted && forces.has_damping());
+}
+
+IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                   Work& work) {
   IntegratorReport report;
   const double h = times.step;
   if (!holds_position_force_) {
@@ -22,14 +41,22 @@ IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothS
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
   if (corrects) correct_opening(0.5 * h, work);
+  ++report.force_evaluations;  // of the closing
+  holds_position_force_ = led_by_contact_ = false;
+  is_open_ = true;
+  return report;
+}
+
+void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+                        IntegratorReport& report) {
+  const double h = times.step;
   forces.update(state.position, times.end);
-  ++report.force_evaluations;
-  report.velocity_iterations = finish_velocity(forces, 0.5 * h, state);
+  report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
   evaluate(forces, state);
   work += 0.5 * h * power_;
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
   holds_position_force_ = true;
-  return report;
+  is_open_ = false;
 }
 
 IntegratorReport Verlet::predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state,
@@ -105,7 +132,7 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
 }
 
 /// From the velocity at half the step; `force_` is the guess. Returns the iterations.
-int Verlet::finish_velocity(ForceModel& forces, double half_step, ClothState& state) {
+int Verlet::finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state) {
   holds_force_ = false;
   if (forces.has_damping() && end_ == EndVelocity::predicted) {
     Vec3Field& predicted = opening_force_;
@@ -115,20 +142,22 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, ClothState& st
     add_acceleration(forces.system(), half_step, force_, state.velocity);
     return 0;
   }
-  if (forces.has_damping()) return solver_.solve(forces, half_step, state.position, state.velocity, force_);
+  if (forces.has_damping())
+    return solver_.solve(forces, half_step, tolerance, state.position, state.velocity, force_);
   add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
   return 0;
 }
 
 /// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
 /// keep a speed of some omega^2 h^3 g that no position follows.
-void Verlet::update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
-                                           const Vec3Field& half_velocity, ClothState& state) {
+int Verlet::update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
+                                          const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
   forces.update(state.position, times.end);
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
-  finish_velocity(forces, 0.5 * times.step, state);
+  led_by_contact_ = true;
+  return finish_velocity(forces, 0.5 * times.step, tolerance_before_contact, state);
 }
 
 /// Without it the cloth beside a contact would be damped by the speed that it would have had without contact,
@@ -161,11 +190,13 @@ void Verlet::recall(const IntegratorMemory& memory) {
 
 /// The next step would begin with this evaluation.
 Work Verlet::correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  const bool was_open = is_open_, is_updated = led_by_contact_;
   forget(Change::state);
+  if (!is_updated && forces.has_power()) forces.update(state.position, times.end);
+  holds_position_force_ = is_updated || forces.has_power();
   if (!forces.has_power()) return {};
-  Work correction = -0.5 * times.step * power_;
-  forces.update(state.position, times.end);
-  holds_position_force_ = true;
+  Work correction;
+  if (!was_open) correction = -0.5 * times.step * power_;
   evaluate(forces, state);
   correction += 0.5 * times.step * power_;
   correction.damping_loss -= closing_correction_;

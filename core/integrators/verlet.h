@@ -44,6 +44,11 @@ class Verlet : public Integrator {
   explicit Verlet(EndVelocity end = EndVelocity::solved) : end_(end) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  bool waits_for_contact(const ForceModel& forces) const override;
+  IntegratorReport open_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                             Work& work) override;
+  void close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+                  IntegratorReport& report) override;
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
     return true;
@@ -51,10 +56,10 @@ class Verlet : public Integrator {
   bool velocity_follows_positions() const override { return true; }
   void update_velocity_for_damping(ForceModel& forces, const StepTimes& times, const Vec3Field& half_velocity,
                                    ClothState& state) override;
-  void update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
-                                     const Vec3Field& half_velocity, ClothState& state) override;
+  int update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
+                                    const Vec3Field& half_velocity, ClothState& state) override;
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
-  void forget(Change) override { holds_position_force_ = holds_force_ = false; }
+  void forget(Change) override { holds_position_force_ = holds_force_ = is_open_ = led_by_contact_ = false; }
   /// A predicted velocity is not part of the state: what was computed with it is remembered.
   IntegratorMemory remember() const override;
   void recall(const IntegratorMemory& memory) override;
@@ -77,13 +82,15 @@ class Verlet : public Integrator {
   Vec3Field opening_damping_;          ///< -D v in the opening kick, N; used only with a constraint
   double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
-  bool holds_force_ = false;           ///< `force_` and `power_` are those with which the next step begins
+  bool is_open_ = false;               ///< open_step() was the last call
+  bool led_by_contact_ = false;  ///< the force model was last updated where contact has led the positions
+  bool holds_force_ = false;     ///< `force_` and `power_` are those with which the next step begins
 
  private:
   IntegratorReport predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
   double closing_correction(const ForceModel& forces, double step);
   const Vec3Field& force(const ForceModel& forces) const;
-  int finish_velocity(ForceModel& forces, double half_step, ClothState& state);
+  int finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state);
 
   EndVelocity end_;
   Vec3Field closing_damping_;  ///< -D v in the closing kick, N; used only with a constraint

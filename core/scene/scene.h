@@ -95,9 +95,10 @@ struct IntegratorChoice {
   std::string method = "verlet";
   std::optional<double> time_step = {};  ///< s; absent: "auto", 80 % of the method's stability limit
   double tolerance = 1e-6;  ///< dormand-prince: of a step's error; Newton's method: of its last change
-  std::int64_t newton_iterations = 500;        ///< largest number in a step
-  std::int64_t projective_iterations = 10;     ///< local and global solves in each step
-  std::string acceleration = "none";           ///< projective: of the iterations (integrators/acceleration.h)
+  std::int64_t newton_iterations = 500;     ///< largest number in a step
+  std::int64_t projective_iterations = 10;  ///< local and global solves in each step
+  std::string projective_acceleration =
+      "none";                                  ///< projective: of the iterations (integrators/acceleration.h)
   std::int64_t xpbd_iterations = 1;            ///< passes over all springs in each substep
   std::int64_t substeps = 10;                  ///< xpbd
   std::int64_t vbd_iterations = 20;            ///< visits of every particle in each step

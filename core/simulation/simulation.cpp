@@ -203,9 +203,15 @@ std::optional<Divergence> Simulation::step() {
     ledger_before_ = run_.ledger;
     if (limiter_) tension_before_ = limiter_->tension();
   }
-  const IntegratorReport report = integrator_->step(*forces_, times, run_.state, run_.ledger.forces);
+  Work& work = run_.ledger.forces;
+  const bool waits = has_continuous_contact() && !limiter_ && integrator_->waits_for_contact(*forces_);
+  IntegratorReport report = waits ? integrator_->open_step(*forces_, times, run_.state, work)
+                                  : integrator_->step(*forces_, times, run_.state, work);
   if (limiter_ && !report.failure) limit_deformation();
   if (contact_ && !report.failure) resolve_contact(times);
+  report.velocity_iterations += run_.last_contact.velocity_iterations;
+  if (waits && !run_.last_contact.acted && !run_.last_contact.interrupted)
+    integrator_->close_step(*forces_, times, run_.state, work, report);
   if (run_.last_contact.interrupted && !report.failure) {
     take_back_step();
     return std::nullopt;

@@ -192,7 +192,8 @@ TEST(CentredVelocity, SolvesItsEquationForEveryCombinationWithPins) {
       crumple(run, pulled, random);
       Vec3Field velocity = run.state.velocity, guess(velocity.size());
       const double weight = 0.02;
-      const int iterations = VelocitySolver().solve(run.forces, weight, run.state.position, velocity, guess);
+      const int iterations =
+          VelocitySolver().solve(run.forces, weight, solved_tolerance, run.state.position, velocity, guess);
       const double scale = run.system.mass.front() * largest_norm(run.state.velocity);
       EXPECT_LE(residual_of(run, weight, run.state.velocity, velocity), 1e-11 * scale);
       EXPECT_EQ(iterations > 0, scene.springs->damping > 0);
@@ -215,7 +216,7 @@ TEST(CentredVelocity, SolvesItsEquationOverManyStripsAndWithStiffDampers) {
       crumple(run, pulled, random);
       Vec3Field velocity = run.state.velocity, guess(velocity.size());
       const double weight = 0.02;
-      VelocitySolver().solve(run.forces, weight, run.state.position, velocity, guess);
+      VelocitySolver().solve(run.forces, weight, solved_tolerance, run.state.position, velocity, guess);
       const double right_hand_side = run.system.mass.front() * largest_norm(run.state.velocity) +
                                      weight * largest_norm(run.forces.position_force());
       EXPECT_LE(residual_of(run, weight, run.state.velocity, velocity), 1e-11 * right_hand_side);

@@ -14,7 +14,7 @@
 
 namespace cloth {
 
-inline constexpr std::size_t strip_length = 256;
+inline constexpr std::size_t particles_of_strip = 256;
 
 /// Some consecutive particles of a field.
 template <class Number>
@@ -38,8 +38,8 @@ inline Strip<const double> read_strip(const Vec3Field& field, std::size_t first,
 /// visit(first, count) for one strip after the other
 template <class Visit>
 void for_each_strip(std::size_t size, Visit visit) {
-  for (std::size_t first = 0; first < size; first += strip_length)
-    visit(first, std::min(strip_length, size - first));
+  for (std::size_t first = 0; first < size; first += particles_of_strip)
+    visit(first, std::min(particles_of_strip, size - first));
 }
 
 inline double dot(const Strip<const double>& a, const Strip<double>& b) {
@@ -133,7 +133,7 @@ class OwnStrip {
   }
 
  private:
-  std::array<std::array<double, strip_length>, 3> values_;
+  std::array<std::array<double, particles_of_strip>, 3> values_;
 };
 
 }  // namespace cloth

@@ -28,13 +28,14 @@
 
 namespace cloth::kernels {
 
-/// Doubles in a register of the instruction set that this file is compiled for.
+/// Doubles in a register of the instruction set that this file is compiled for: of internal linkage, since it
+/// differs from one file to another.
 #if defined(__AVX512F__)
-inline constexpr int register_width = 8;
+constexpr int register_width = 8;
 #elif defined(__AVX2__)
-inline constexpr int register_width = 4;
+constexpr int register_width = 4;
 #else
-inline constexpr int register_width = 2;
+constexpr int register_width = 2;
 #endif
 
 }  // namespace cloth::kernels

@@ -156,7 +156,7 @@ void draw_failures(PlotCanvas& svg, const LineLayout& layout) {
            {.fill = page_colours().band});
   svg.text({frame.left - 9, (layout.lane_top + frame.top) / 2 + 4},
            {.text = "failed", .size = tick_size, .anchor = Anchor::end, .colour = page_colours().muted});
-  for (const Failure& failure : layout.failures) {
+  for (const FailureMark& failure : layout.failures) {
     const SeriesStyle look = layout.style_of(failure.series);
     const std::string& name = layout.plot.series[failure.series].name;
     std::string tooltip = name.empty() ? "failed" : name + ": failed";

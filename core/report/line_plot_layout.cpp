@@ -134,7 +134,7 @@ void LineLayout::lay_out() {
   x.set_places(frame.left, frame.right);
   place_failures();
   int rows = 0;
-  for (const Failure& failure : failures) rows = std::max(rows, failure.row + 1);
+  for (const FailureMark& failure : failures) rows = std::max(rows, failure.row + 1);
   lane_top = top;
   frame.top = top + (rows > 0 ? rows * failure_row + 6 : 0);
   frame.bottom = frame.top + plot.plot_height;

@@ -13,7 +13,7 @@ constexpr double failure_row = 13;                           // height of a row 
 constexpr double legend_swatch_width = 42, legend_gap = 22;  // [px]
 
 /// A failed run and its place.
-struct Failure {
+struct FailureMark {
   std::size_t series = 0;
   const FailedPoint* point = nullptr;
   double x = 0;  // [px]
@@ -37,7 +37,7 @@ struct LineLayout {
   double lane_top = 0;  // of the failed runs; the frame's top where none failed
   double legend_left = 0, height = 0;
   std::vector<LegendEntry> legend;
-  std::vector<Failure> failures;
+  std::vector<FailureMark> failures;
   std::vector<std::string> caption;  // the plot's, and how many points are left out
 
   bool shows(const PlotPoint& point) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <string>
 #include <vector>
@@ -82,6 +83,29 @@ TEST(Functions, HaveFewerThanSixtyLines) {
       }
     }
   EXPECT_GT(seen, 3000u);
+}
+
+// The linker keeps one of two inline things of one name, which may be the wrong one for half of the program.
+TEST(Headers, NeverDefineTwoThingsOfOneName) {
+  static const std::regex space(R"(^namespace ([a-z_:]*) ?\{)");
+  static const std::regex type(R"(^(struct|class|enum class|enum) ([A-Za-z]+)( : .*)? \{)");
+  static const std::regex variable(R"(^inline (constexpr|const) .*?([A-Za-z_]+)(\[.*\])?( = |\{).*)");
+  std::map<std::string, fs::path> defined;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(CLOTHLAB_SOURCE_DIR) / "core")) {
+    if (entry.path().extension() != ".h") continue;
+    std::ifstream file(entry.path());
+    std::string scope;
+    for (std::string line; std::getline(file, line);) {
+      std::smatch found;
+      if (std::regex_search(line, found, space)) scope += found[1].str() + "/";
+      if (scope.find("//") != std::string::npos || scope.starts_with("/")) break;  // internal to each source
+      const bool is_type = std::regex_search(line, found, type);
+      if (!is_type && !std::regex_search(line, found, variable)) continue;
+      const auto [place, is_new] = defined.emplace(scope + found[2].str(), entry.path());
+      EXPECT_TRUE(is_new) << found[2] << " in " << entry.path() << " and in " << place->second;
+    }
+  }
+  EXPECT_GT(defined.size(), 400u);
 }
 
 TEST(Documentation, NamesSourcesThatThereAre) {

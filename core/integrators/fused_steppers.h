@@ -70,6 +70,11 @@ class FusedVerlet : public Verlet {
  public:
   static bool suits(const ForceModel& forces, bool constrained);
 
+  /// With damping the pass keeps no force with which the general step could be opened.
+  bool waits_for_contact(const ForceModel& forces) const override {
+    return !forces.has_damping() && Verlet::waits_for_contact(forces);
+  }
+
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool gains_from_batches(const ForceModel&) const override { return holds_position_force_; }
   IntegratorReport step_many(ForceModel& forces, double step, std::span<double> speed_squares,

@@ -1,9 +1,12 @@
 // A step whose velocities wait for contact.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "integrators/verlet.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
+#include "support/scenes.h"
 
 namespace cloth::test::open_step_test {
 namespace {
@@ -66,6 +69,25 @@ TEST(AVerletStep, LeftOpenBooksTheSameWorkAfterContactAsAClosedOne) {
   EXPECT_TRUE(closed.state.velocity == open.state.velocity);
   EXPECT_GT(closed.work.damping_loss, 0);
   EXPECT_NEAR(open.work.damping_loss, closed.work.damping_loss, 1e-12 * std::abs(closed.work.damping_loss));
+}
+
+/// The pass of a grid keeps no force for an open step where something damps: it must take whole steps.
+TEST(AVerletStep, OfAGridWithViscousDampingAndSelfContactFallsByItsRecurrence) {
+  constexpr double h = 0.001, c = 0.02, mass = 0.01, g = 9.81;
+  Scene scene = lying_sheet(8, 8, 0.1, mass);
+  scene.springs = SpringMaterial{.structural = 20, .shear = 10, .flexion = 5};
+  scene.damping = c;
+  scene.gravity = Vec3(0, -g, 0);
+  scene.self_contact = SelfContact{};
+  scene.integrator = {"verlet", h};
+  Simulation simulation(scene);
+  double v = 0;
+  for (int n = 0; n < 50; ++n) {
+    ASSERT_FALSE(simulation.step());
+    v = ((1 - 0.5 * h * c / mass) * v - h * g) / (1 + 0.5 * h * c / mass);
+    for (std::size_t i = 0; i < 64; ++i)
+      ASSERT_NEAR(simulation.state().velocity[i].y(), v, 1e-12 * std::abs(v)) << n << " " << i;
+  }
 }
 
 }  // namespace

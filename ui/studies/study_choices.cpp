@@ -29,7 +29,7 @@
 namespace clothlab {
 namespace {
 
-constexpr int method_rows = 5, protocol_rows = 6, method_height = 22, method_width = 164;  // px
+constexpr int method_rows = 6, protocol_rows = 6, method_height = 22, method_width = 164;  // px
 const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {

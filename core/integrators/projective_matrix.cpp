@@ -65,7 +65,9 @@ bool ProjectiveMatrix::prepare_cycles() {
     add(i, weight), add(j, weight);
     if (!pinned_[i] && !pinned_[j]) fits = fits && stencils.add_coupling(i, j, -weight);
   });
-  return fits && multigrid_.prepare(std::move(stencils)) && multigrid_.convergence_factor() <= largest_factor;
+  if (!fits || !multigrid_.prepare(std::move(stencils))) return false;
+  factor_ = multigrid_.convergence_factor();
+  return *factor_ <= largest_factor;
 }
 
 bool ProjectiveMatrix::factorise(bool same_pattern, const ClothSystem& system) {

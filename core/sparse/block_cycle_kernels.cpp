@@ -1,17 +1,9 @@
 #include "sparse/block_cycle_kernels.h"
 
+#include "sparse/float_registers.h"
+
 namespace cloth {
 namespace {
-
-constexpr int width = 2 * kernels::register_width;  // floats
-typedef float Floats __attribute__((vector_size(4 * width), aligned(4), may_alias));
-
-CLOTHLAB_INLINE Floats read(const float* p) {
-  return *reinterpret_cast<const Floats*>(p);
-}
-CLOTHLAB_INLINE void write(float* p, Floats value) {
-  *reinterpret_cast<Floats*>(p) = value;
-}
 
 struct ThreeFloats {
   Floats x, y, z;

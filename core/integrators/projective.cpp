@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/largest_square.h"
 #include "kernels/instruction_set.h"
 #include "kernels/vector_kernels.h"
 
@@ -23,12 +24,6 @@ ProjectiveMatrix::Coefficients coefficients_of(const NodeDamping& parts, double 
           .held_particle = parts.held_particle,
           .held_damping = parts.held_isotropic,
           .held_stiffness = parts.held_stiffness};
-}
-
-double largest_square(const Vec3Field& field) {
-  double largest = 0;
-  for (std::size_t i = 0; i < field.size(); ++i) largest = std::max(largest, field[i].squaredNorm());
-  return largest;
 }
 
 }  // namespace

@@ -6,19 +6,10 @@
 #include <utility>
 
 #include "geometry/at.h"
+#include "integrators/largest_square.h"
 #include "kernels/grid_layout.h"
 
 namespace cloth {
-namespace {
-
-double fastest_square(const Vec3Field& velocity) {
-  double largest = 0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) largest = std::max(largest, velocity[i].squaredNorm());
-  return largest;
-}
-
-}  // namespace
-
 /// By Cholesky; where rounding has left no positive pivot, a step that is short enough whatever the matrix.
 Vec3 Vbd::Local::solution() const {
   const double a = block.xx, b = block.xy / a, c = block.xz / a;
@@ -290,7 +281,7 @@ IntegratorReport Vbd::step(ForceModel& forces, const StepTimes& times, ClothStat
                          : descend(forces, times.end, visits, report.force_evaluations);
   if (last.failed >= 0)
     report.failure = SolverFailure{last.failed, "the equation of a single particle has no finite solution"};
-  const double fastest = fastest_square(state.velocity);
+  const double fastest = largest_square(state.velocity);
   report.residual = fastest > 0 ? std::sqrt(last.change / fastest) : 0;
   if (forces.has_power()) {
     forces.update(state.position, times.end);

@@ -5,17 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/largest_square.h"
+
 namespace cloth {
-namespace {
-
-double largest_squared_speed(const Vec3Field& velocity) {
-  double largest = 0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) largest = std::max(largest, velocity[i].squaredNorm());
-  return largest;
-}
-
-}  // namespace
-
 bool Xpbd::is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const {
   const ClothSystem& system = forces.system();
   return iterations_ == 1 && forces.sweep() && forces.sweep()->projects() && parts.stretch_time == 0 &&
@@ -270,7 +262,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
                                : substep(forces, forces.damping_parts(), h, state.position, state.velocity);
     report.iterations += iterations_;
     if (n + 1 == substeps_) {
-      const double fastest = largest_squared_speed(state.velocity);
+      const double fastest = largest_square(state.velocity);
       report.residual = fastest > 0 ? std::sqrt(changed / fastest) : 0;
     }
 

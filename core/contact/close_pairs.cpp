@@ -77,7 +77,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
   cached_distance_.resize(cached_.size()), cached_ends_.resize(cached_.size());
   in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      cached_distance_[k] = separate(cached_[k], cloth_, now.position, bodies_, now.poses, 0).distance;
+      cached_distance_[k] = distance_of(cached_[k], cloth_, now.position, bodies_, now.poses);
       cached_ends_[k] = ends_of(cached_[k]);
     }
   });

@@ -11,19 +11,30 @@
 
 namespace cloth {
 
-/// Regions of particles, and of the vertices of an obstacle's mesh or of the cloth, all in the obstacle's
+/// A surface whose vertices may be anywhere in a region each; slabs of its triangles and boxes of its edges
+/// bound these.
+template <class Region>
+struct FacesInRegions {
+  const Surface& surface;
+  std::span<const Region> vertices;
+  std::span<const Slab> faces;
+  std::span<const Bounds> edges;
+};
+
+/// Regions of particles, and the surface of an obstacle's mesh or of the cloth, all in the obstacle's
 /// coordinates. Each feature is taken from its representative triangle, so that no pair is found twice.
 template <class NearRegion, class FarRegion>
 class FacePairFinder {
  public:
   FacePairFinder(int obstacle, const Surface& near, std::span<const NearRegion> near_vertices,
-                 const Surface& far, std::span<const FarRegion> far_vertices, std::span<const Slab> far_faces)
+                 const FacesInRegions<FarRegion>& far)
       : obstacle_(obstacle),
         near_(near),
-        far_(far),
+        far_(far.surface),
         near_vertices_(near_vertices),
-        far_vertices_(far_vertices),
-        far_faces_(far_faces) {}
+        far_vertices_(far.vertices),
+        far_faces_(far.faces),
+        far_edges_(far.edges) {}
 
   /// Appends the pairs of `face` and `far_face`; fastest where consecutive calls have the same `face`.
   void find(int face, int far_face, std::vector<FeaturePair>& pairs) {
@@ -75,10 +86,9 @@ class FacePairFinder {
       for (std::size_t j = 0; j < 3; ++j) {
         if (edge_beyond(far_sides_, j) || !far_.represents_edge(far_face_, static_cast<int>(j))) continue;
         if (is_own() && edges_share(k, j)) continue;
-        const Bounds box = bounds_of(box_of(other_vertex(j)), box_of(other_vertex((j + 1) % 3)));
-        if (overlap(edge_boxes_[k], box))
-          pairs.push_back({obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k],
-                           far_.edges_of[at(far_face_)][j]});
+        const int far_edge = far_.edges_of[at(far_face_)][j];
+        if (overlap(edge_boxes_[k], far_edges_[at(far_edge)]))
+          pairs.push_back({obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k], far_edge});
       }
     }
   }
@@ -93,6 +103,7 @@ class FacePairFinder {
   std::span<const NearRegion> near_vertices_;
   std::span<const FarRegion> far_vertices_;
   std::span<const Slab> far_faces_;
+  std::span<const Bounds> far_edges_;
 
   int face_ = -1, far_face_ = -1;
   Triangle own_{}, other_{};

@@ -240,6 +240,18 @@ Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const Ob
   return s;
 }
 
+/// m, between a vertex or an edge of the cloth and a face or an edge of a surface.
+template <class Far>
+double distance_to_surface(const FeaturePair& pair, const ClothSide& cloth, const Far& far) {
+  if (pair.kind == PairKind::vertex_face) {
+    const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
+    return std::sqrt(closest_on_triangle(cloth(pair.feature), far(a), far(b), far(c)).squared_distance);
+  }
+  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
+  const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
+  return std::sqrt(closest_of_segments(cloth(a), cloth(b), far(c), far(d)).squared_distance);
+}
+
 }  // namespace
 
 PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
@@ -292,6 +304,16 @@ Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3F
       return face_vertex(pair, cloth, far(pair.far_feature), within);
   }
   return {};
+}
+
+double distance_of(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
+                   const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses) {
+  if (pair.kind != PairKind::vertex_face && pair.kind != PairKind::edge_edge)
+    return separate(pair, surface, position, bodies, poses, 0).distance;
+  const ClothSide cloth{surface, position};
+  if (is_own(pair)) return distance_to_surface(pair, cloth, cloth);
+  const ObstacleBody& body = bodies[at(pair.obstacle)];
+  return distance_to_surface(pair, cloth, BodySide{body.surface, body.vertices, poses[at(pair.obstacle)]});
 }
 
 }  // namespace cloth

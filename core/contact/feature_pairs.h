@@ -62,4 +62,8 @@ struct Separation : PairParticles {
 Separation separate(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
                     const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within);
 
+/// m; that of separate(), to the bit.
+double distance_of(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
+                   const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses);
+
 }  // namespace cloth

@@ -57,6 +57,14 @@ void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, con
   }
 }
 
+template <class Region>
+Region region_in(const Capsule& capsule) {
+  if constexpr (std::is_same_v<Region, Ball>)
+    return {capsule.from, capsule.radius};
+  else
+    return capsule;
+}
+
 bool holds(const Bounds& outer, const Bounds& inner) {
   return (outer.lower.array() <= inner.lower.array()).all() &&
          (inner.upper.array() <= outer.upper.array()).all();
@@ -87,6 +95,7 @@ class PairSearch::Step {
         reach_(swept.reach),
         pairs_(pairs) {
     for (const Bounds& box : particles_) whole_.add(box);
+    for (const Capsule& capsule : swept.particles) are_balls_ = are_balls_ && capsule.from == capsule.to;
   }
 
   void find(int obstacle, const PoseInterpolation& path) {
@@ -105,27 +114,63 @@ class PairSearch::Step {
   }
 
   void find_own() {
-    std::vector<Capsule>& near = search_.seen_capsules_;
+    if (are_balls_)
+      find_own_of(search_.balls_);
+    else
+      find_own_of(search_.capsules_);
+  }
+
+ private:
+  template <class Region>
+  void find_own_of(std::vector<Region>& near) {
     near.clear();
-    for (const Capsule& capsule : swept_.particles) near.push_back(capsule.grown(0.5 * swept_.own_reach));
+    for (const Capsule& capsule : swept_.particles)
+      near.push_back(region_in<Region>(capsule).grown(0.5 * swept_.own_reach));
     std::vector<Slab>& faces = search_.own_faces_;
     faces.resize(cloth_.triangles.size());
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const auto& [a, b, c] = cloth_.triangles[f];
       faces[f] = slab_of(near[at(a)], near[at(b)], near[at(c)]);
     }
-    find_faces<Capsule, Capsule>(search_.own_overlaps_,
-                                 {FeaturePair::cloth_itself, cloth_, near, cloth_, near, faces});
+    std::vector<Bounds>& edges = search_.own_edges_;
+    edges.clear();
+    for (const auto& [a, b] : cloth_.edges)
+      edges.push_back(bounds_of(box_of(near[at(a)]), box_of(near[at(b)])));
+    find_faces<Region, Region>(search_.own_overlaps_,
+                               {FeaturePair::cloth_itself, cloth_, near, {cloth_, near, faces, edges}});
   }
 
- private:
-  Bounds box_of_edge(int edge) const {
-    const auto& [a, b] = cloth_.edges[at(edge)];
-    return bounds_of(particles_[at(a)], particles_[at(b)]);
+  /// The regions of the particles in the coordinates of an obstacle at rest, grown by the reach.
+  template <class Region>
+  const std::vector<Region>& seen(const PoseInterpolation& path, std::vector<Region>& regions) const {
+    regions.clear();
+    const Pose& pose = path.from();
+    for (const Capsule& capsule : swept_.particles)
+      regions.push_back(region_in<Region>({pose.inverse(capsule.from), pose.inverse(capsule.to),
+                                           (capsule.radius + reach_) / path.least_stretch()}));
+    return regions;
   }
-  Bounds box_of_face(int face) const {
-    const auto& [a, b, c] = cloth_.triangles[at(face)];
-    return bounds_of(particles_[at(a)], particles_[at(b)], particles_[at(c)]);
+  /// Boxes around them, for the whole path of an obstacle.
+  const std::vector<Bounds>& seen_boxes(const ObstacleBody& body, const PoseInterpolation& path) {
+    std::vector<Bounds>& boxes = search_.seen_;
+    if (path.is_still()) {
+      boxes.clear();
+      for (const Capsule& capsule : seen(path, search_.capsules_)) boxes.push_back(box_of(capsule));
+    } else {
+      seen_from_body(body, path, particles_, reach_, boxes);
+    }
+    return boxes;
+  }
+  void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
+    outcodes_.resize(particles.size());
+    for (std::size_t i = 0; i < particles.size(); ++i) outcodes_[i] = outcode(particles[i], box);
+  }
+  /// Whether the box of these particles lies beyond a side of the box of the outcodes.
+  template <class Particles>
+  bool are_outside(const Particles& particles) const {
+    unsigned common = ~0U;
+    for (const int i : particles) common &= outcodes_[at(i)];
+    return common != 0;
   }
   void add(PairKind kind, int feature, int far_feature) {
     pairs_.push_back({obstacle_, kind, feature, far_feature});
@@ -150,51 +195,51 @@ class PairSearch::Step {
     const double radius = path.largest_stretch() * body.radius;
     const Bounds box_of_path = swept_box(path, body.pivot, body.center, reach_ + radius);
     if (!overlap(whole_, box_of_path)) return;
+    find_outcodes(particles_, box_of_path);
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f)
-      if (overlap(box_of_face(f), box_of_path)) add(PairKind::face_sphere, f, 0);
+      if (!are_outside(cloth_.triangles[at(f)])) add(PairKind::face_sphere, f, 0);
   }
 
+  /// In the coordinates of the box, along whose axes its edges lie.
   void find_box(const ObstacleBody& body, const PoseInterpolation& path) {
-    Bounds box_of_path;
-    std::array<Bounds, 8> corner;
-    for (std::size_t k = 0; k < 8; ++k) {
-      corner[k] = swept_box(path, body.pivot, body.vertices[k], reach_);
-      box_of_path.add(corner[k]);
-    }
-    if (!overlap(whole_, box_of_path)) return;
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-      if (overlap(particles_[i], box_of_path)) add(PairKind::vertex_box, static_cast<int>(i), 0);
+    if (!comes_near(body, path, whole_, reach_)) return;
+    const std::vector<Bounds>& near = seen_boxes(body, path);
+    const std::vector<Vec3>& corners = body.vertices;
+    find_outcodes(near, {body.box.center - body.box.half, body.box.center + body.box.half});
+    std::array<Bounds, 12> edges;
+    for (std::size_t k = 0; k < edges.size(); ++k)
+      edges[k] = bounds_of(corners[at(box_edges[k][0])], corners[at(box_edges[k][1])]);
+    for (std::size_t i = 0; i < near.size(); ++i)
+      if (outcodes_[i] == 0) add(PairKind::vertex_box, static_cast<int>(i), 0);
     for (int e = 0; e < static_cast<int>(cloth_.edges.size()); ++e) {
-      const Bounds box = box_of_edge(e);
-      if (!overlap(box, box_of_path)) continue;
-      for (std::size_t k = 0; k < 12; ++k)
-        if (overlap(box, bounds_of(corner[at(box_edges[k][0])], corner[at(box_edges[k][1])])))
-          add(PairKind::edge_edge, e, static_cast<int>(k));
+      const auto& [a, b] = cloth_.edges[at(e)];
+      if (are_outside(cloth_.edges[at(e)])) continue;
+      const Bounds box = bounds_of(near[at(a)], near[at(b)]);
+      for (std::size_t k = 0; k < edges.size(); ++k)
+        if (overlap(box, edges[k])) add(PairKind::edge_edge, e, static_cast<int>(k));
     }
     for (int f = 0; f < static_cast<int>(cloth_.triangles.size()); ++f) {
-      const Bounds box = box_of_face(f);
-      if (!overlap(box, box_of_path)) continue;
-      for (std::size_t k = 0; k < 8; ++k)
-        if (overlap(box, corner[k])) add(PairKind::face_vertex, f, static_cast<int>(k));
+      const auto& [a, b, c] = cloth_.triangles[at(f)];
+      if (are_outside(cloth_.triangles[at(f)])) continue;
+      const Bounds box = bounds_of(near[at(a)], near[at(b)], near[at(c)]);
+      for (std::size_t k = 0; k < corners.size(); ++k)
+        if (overlap(box, bounds_of(corners[k]))) add(PairKind::face_vertex, f, static_cast<int>(k));
     }
   }
 
   void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
     const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
-    const std::vector<Slab>& faces = search_.mesh_faces_[at(obstacle_)];
-    if (path.is_still()) {
-      std::vector<Capsule>& near = search_.seen_capsules_;
-      near.clear();
-      const Pose& pose = path.from();
-      for (const Capsule& capsule : swept_.particles)
-        near.push_back({pose.inverse(capsule.from), pose.inverse(capsule.to),
-                        (capsule.radius + reach_) / path.least_stretch()});
-      find_faces<Capsule, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
-    } else {
-      std::vector<Bounds>& near = search_.seen_;
-      seen_from_body(body, path, particles_, reach_, near);
-      find_faces<Bounds, Vec3>(overlaps, {obstacle_, cloth_, near, body.surface, body.vertices, faces});
-    }
+    const FacesInRegions<Vec3> far{body.surface, body.vertices, search_.mesh_faces_[at(obstacle_)],
+                                   search_.mesh_edges_[at(obstacle_)]};
+    const auto find_near = [&]<class Region>(const std::vector<Region>& near) {
+      find_faces<Region, Vec3>(overlaps, {obstacle_, cloth_, near, far});
+    };
+    if (!path.is_still())
+      find_near(seen_boxes(body, path));
+    else if (are_balls_)
+      find_near(seen(path, search_.balls_));
+    else
+      find_near(seen(path, search_.capsules_));
   }
 
   template <class NearRegion, class FarRegion>
@@ -214,6 +259,8 @@ class PairSearch::Step {
   double reach_;
   std::vector<FeaturePair>& pairs_;
   Bounds whole_;
+  bool are_balls_ = true;           ///< the particles' regions
+  std::vector<unsigned> outcodes_;  ///< of the particles' boxes
   int obstacle_ = FeaturePair::cloth_itself;
 };
 
@@ -224,6 +271,7 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       with_itself_(with_itself),
       skin_(skin),
       mesh_faces_(bodies.size()),
+      mesh_edges_(bodies.size()),
       mesh_trees_(bodies.size()),
       mesh_overlaps_(bodies.size()) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -235,6 +283,8 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       mesh_faces_[k].push_back(slab_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
       boxes.push_back(mesh_faces_[k].back().box);
     }
+    for (const auto& [a, b] : bodies[k].surface.edges)
+      mesh_edges_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)]));
     mesh_trees_[k] = BoxTree(boxes);
   }
   needs_trees_ = needs_trees_ || with_itself_;

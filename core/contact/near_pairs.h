@@ -59,12 +59,15 @@ class PairSearch {
   bool with_itself_, needs_trees_ = false;
   double skin_;
   WorkerTeam* team_ = nullptr;
-  std::vector<std::vector<Slab>> mesh_faces_;  ///< of each body's triangles
-  std::vector<BoxTree> mesh_trees_;            ///< of each body; empty unless it is a mesh
+  std::vector<std::vector<Slab>> mesh_faces_;    ///< of each body's triangles
+  std::vector<std::vector<Bounds>> mesh_edges_;  ///< of each body
+  std::vector<BoxTree> mesh_trees_;              ///< of each body; empty unless it is a mesh
   BoxTree cloth_tree_;
   std::vector<Bounds> particles_, faces_, seen_;
-  std::vector<Capsule> seen_capsules_;
+  std::vector<Capsule> capsules_;
+  std::vector<Ball> balls_;
   std::vector<Slab> own_faces_;
+  std::vector<Bounds> own_edges_;
   std::vector<std::vector<FeaturePair>> pair_parts_{1};  ///< of each thread
   std::vector<std::vector<BoxPair>> overlap_parts_{1};
 

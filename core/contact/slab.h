@@ -18,6 +18,14 @@ struct Capsule {
   Capsule grown(double margin) const { return {from, to, radius + margin}; }
 };
 
+/// Bounds a particle that moves less than `radius` in any direction.
+struct Ball {
+  Vec3 center{0, 0, 0};  ///< m
+  double radius = 0;     ///< m
+
+  Ball grown(double margin) const { return {center, radius + margin}; }
+};
+
 struct Interval {
   double low = Bounds::infinity, high = -Bounds::infinity;  ///< empty by default
 
@@ -27,12 +35,15 @@ struct Interval {
   }
 };
 
-// Regions of a vertex: a box, a capsule, a point.
+// Regions of a vertex: a box, a capsule, a ball, a point.
 inline const Bounds& box_of(const Bounds& box) {
   return box;
 }
 inline Bounds box_of(const Capsule& capsule) {
   return bounds_of(capsule.from, capsule.to).grown(capsule.radius);
+}
+inline Bounds box_of(const Ball& ball) {
+  return bounds_of(ball.center).grown(ball.radius);
 }
 inline Bounds box_of(const Vec3& point) {
   return {point, point};
@@ -43,6 +54,9 @@ inline Vec3 middle_of(const Bounds& box) {
 }
 inline Vec3 middle_of(const Capsule& capsule) {
   return 0.5 * (capsule.from + capsule.to);
+}
+inline const Vec3& middle_of(const Ball& ball) {
+  return ball.center;
 }
 inline const Vec3& middle_of(const Vec3& point) {
   return point;
@@ -57,6 +71,10 @@ inline Interval along(const Vec3& axis, const Bounds& box) {
 inline Interval along(const Vec3& axis, const Capsule& capsule) {
   const double from = axis.dot(capsule.from), to = axis.dot(capsule.to);
   return {std::min(from, to) - capsule.radius, std::max(from, to) + capsule.radius};
+}
+inline Interval along(const Vec3& axis, const Ball& ball) {
+  const double level = axis.dot(ball.center);
+  return {level - ball.radius, level + ball.radius};
 }
 inline Interval along(const Vec3& axis, const Vec3& point) {
   const double level = axis.dot(point);

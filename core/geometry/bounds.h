@@ -13,11 +13,12 @@ struct Bounds {
   Vec3 lower{infinity, infinity, infinity};     ///< m
   Vec3 upper{-infinity, -infinity, -infinity};  ///< m
 
-  void add(const Vec3& point) {
+  // Inlined always: search for contact spends its time here, and compilers count Eigen's expressions as long.
+  [[gnu::always_inline]] void add(const Vec3& point) {
     lower = lower.cwiseMin(point);
     upper = upper.cwiseMax(point);
   }
-  void add(const Bounds& other) {
+  [[gnu::always_inline]] void add(const Bounds& other) {
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
   }
@@ -40,6 +41,17 @@ inline bool overlap(const Bounds& a, const Bounds& b) {
   for (int axis = 0; axis < 3; ++axis)  // without branches: the separating axis is unpredictable
     all = all & (a.lower[axis] <= b.upper[axis]) & (b.lower[axis] <= a.upper[axis]);
   return all;
+}
+
+/// The sides of `box` beyond which `part` lies wholly (Cohen and Sutherland's codes, Newman and Sproull
+/// 1979): bit 2 k below along axis k, bit 2 k + 1 above. The common box of several parts overlaps or touches
+/// `box` where no bit is set in the codes of all of them.
+inline unsigned outcode(const Bounds& part, const Bounds& box) {
+  unsigned code = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    code |= (part.upper[axis] < box.lower[axis] ? 1U : 0U) << (2 * axis) |
+            (part.lower[axis] > box.upper[axis] ? 2U : 0U) << (2 * axis);
+  return code;
 }
 
 }  // namespace cloth

@@ -7,7 +7,7 @@ namespace {
 
 /// Of the velocities from which those after contact follow by one more evaluation of the damping
 /// (update_velocity_for_damping()): what contact changes there is larger by orders.
-constexpr double tolerance_before_contact = 1e-8;
+constexpr double tolerance_before_contact = 1e-5;
 
 }  // namespace
 

@@ -71,6 +71,28 @@ TEST(Bounds, ThatTouchOverlapAndThatMissByOneUlpDoNot) {
             (std::vector<BoxPair>{{0, 0}}));
 }
 
+TEST(Bounds, OfSeveralPartsOverlapWhereNoSideIsInAllTheirOutcodes) {
+  Random random;
+  int inside = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    const auto any_box = [&] {
+      Bounds box;
+      for (int axis = 0; axis < 3; ++axis) {  // of few different numbers, so that some touch
+        const int low = random.integer(-3, 3);
+        box.lower[axis] = low, box.upper[axis] = low + random.integer(0, 3);
+      }
+      return box;
+    };
+    const Bounds box = any_box(), a = any_box(), b = any_box(), c = any_box();
+    const bool expected = overlap(bounds_of(a, b, c), box);
+    EXPECT_EQ((outcode(a, box) & outcode(b, box) & outcode(c, box)) == 0, expected);
+    EXPECT_EQ(outcode(a, box) == 0, overlap(a, box));
+    inside += expected ? 1 : 0;
+  }
+  EXPECT_GT(inside, 2000);
+  EXPECT_LT(inside, 18'000);
+}
+
 TEST(BoxTree, FindsWhatTheLoopOverAllBoxesFinds) {
   Random random;
   for (const int count : {0, 1, 2, 7, 8, 9, 10, 63, 64, 65, 100, 511, 512, 513, 1500}) {

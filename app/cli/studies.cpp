@@ -17,9 +17,11 @@ std::optional<int> begin_study(cloth::StudyRecorder& recorder, const cloth::Stud
     return differs;
   }
   if (const cloth::StudyTable* earlier = recorder.earlier())
-    say(fmt::format("going on with the unfinished study in the folder{}: {} runs are there",
-                    recorder.parts() > 0 ? fmt::format(" and {} parts of it", recorder.parts()) : "",
-                    cloth::finished_runs(*earlier)));
+    say(recorder.parts() > 0
+            ? fmt::format("going on with what {} parts of the study have: {} runs are there",
+                          recorder.parts(), cloth::finished_runs(*earlier))
+            : fmt::format("going on with the unfinished study in the folder: {} runs are there",
+                          cloth::finished_runs(*earlier)));
   return std::nullopt;
 }
 

@@ -162,7 +162,9 @@ std::optional<IoError> StudyRecorder::take_parts(const std::filesystem::path& fo
                                                  const StudyStart& start) {
   StudyParts all(plan, start.shard);
   if (earlier_) all.add(earlier_->table, folder_.path().string());
-  for (const std::filesystem::path& place : part_folders(folder)) {
+  std::vector<std::filesystem::path> places = part_folders(folder);
+  if (shard_) places.push_back(folder);  // what a whole study had made when it was stopped
+  for (const std::filesystem::path& place : places) {
     if (place == folder_.path()) continue;
     Unfinished part;
     if (auto error = read_unfinished(place, plan, part)) return error;

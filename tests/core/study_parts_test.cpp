@@ -237,6 +237,31 @@ TEST(StudyParts, OfAnotherNumberTakeWhatIsThere) {
   EXPECT_EQ(rows_in(folder.path(), whole), rows_of(whole));
 }
 
+TEST(StudyParts, TakeWhatAWholeStudyHadMadeWhenItWasKilled) {
+  const auto kind = few_extremes();
+  const TemporaryFolder folder;
+  int runs = make(kind, folder.path(), {}, 4).runs;
+  for (const std::int64_t index : {1, 2}) runs += make(kind, folder.path(), Shard{index, 2}).runs;
+  const StudyTable whole = kind.whole();
+  EXPECT_EQ(runs, finished_runs(whole)) << "none twice";
+  EXPECT_EQ(make(kind, folder.path(), {}).runs, 0);
+  EXPECT_EQ(rows_in(folder.path(), whole), rows_of(whole));
+}
+
+TEST(StudyParts, OfAFinishedStudyWithOtherOptionsLeaveNothingOfIt) {
+  const auto kind = few_extremes();
+  auto other = kind;
+  other.options.methods = {"verlet"};
+  const TemporaryFolder folder;
+  ASSERT_TRUE(make(other, folder.path(), {}).table);
+  make(kind, folder.path(), Shard{1, 2});
+  ASSERT_TRUE(make(kind, folder.path(), {}, 1).table);
+  EXPECT_FALSE(std::filesystem::exists(folder / "report.html")) << "of the finished one";
+  const StudyTable whole = kind.whole();
+  EXPECT_TRUE(make(kind, folder.path(), {}).table);
+  EXPECT_EQ(rows_in(folder.path(), whole), rows_of(whole));
+}
+
 TEST(StudyParts, OfOtherInputsAreRefusedByNameAndLeftAlone) {
   const auto kind = map_kind(small_map(small_cloth()));
   const TemporaryFolder folder;

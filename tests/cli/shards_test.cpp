@@ -88,16 +88,16 @@ TEST(Shards, OfAValidationMergedAreTheSingleRun) {
 
 TEST(Shards, KilledGoOnAndToldToEndExitWith130) {
   const Place place;
-  const CommandResult result = place.sh(
-      "study() { \"$CLI\" extremes --methods verlet,rk4,implicit-euler --out \"$@\"; }\n"
-      "rows() { grep -c , parts/shards/1-of-2/extremes.csv 2> /dev/null; }\n"
-      "more() { until [ \"$(rows || echo 0)\" -gt $1 ]; do :; done; }\n"
-      "study parts --shard 1/2 & more 2; kill -9 $!; wait $!; [ $? -eq 137 ] || exit 7\n"
-      "study parts --shard 1/2 & more $(rows); kill -TERM $!; wait $!; [ $? -eq 130 ] || exit 6\n"
-      "study parts --shard 1/2 || exit 5\n"
-      "study parts --shard 1/2 > again.txt || exit 4\n"
-      "SLURM_ARRAY_TASK_ID=2 study parts --shard auto/2 || exit 3\n"
-      "study parts && study whole");
+  const CommandResult result = place.sh(R"sh(
+    study="extremes --methods verlet,rk4,implicit-euler --out"
+    rows() { grep -c , parts/shards/1-of-2/extremes.csv 2> /dev/null || echo 0; }
+    more() { until [ "$(rows)" -gt $1 ]; do :; done; }
+    "$CLI" $study parts --shard 1/2 & more 2; kill -9 $!; wait $!; [ $? -eq 137 ] || exit 7
+    before=$(rows)
+    "$CLI" $study parts --shard 1/2 & more $before; kill -TERM $!; wait $!; [ $? -eq 130 ] || exit 6
+    "$CLI" $study parts --shard 1/2 || exit 5
+    SLURM_ARRAY_TASK_ID=2 "$CLI" $study parts --shard auto/2 || exit 4
+    "$CLI" $study parts && "$CLI" $study whole)sh");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(has(result.errors, "the same command goes on")) << result.errors;
   EXPECT_EQ(place.table("parts/extremes.csv"), place.table("whole/extremes.csv"));

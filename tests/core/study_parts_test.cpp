@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
@@ -390,6 +392,27 @@ TEST(StudyParts, WithTwoReferencesAreRefused) {
   ASSERT_EQ(refused.disagreements.size(), 1u) << refused.error;
   EXPECT_TRUE(has(refused.disagreements.front(), "the reference: was made twice, and evaluations is "))
       << refused.disagreements.front();
+}
+
+/// The folder's study.json as a process of another machine would have written it.
+void change_processor(const std::filesystem::path& part) {
+  auto index = nlohmann::ordered_json::parse(content_of(part / "study.json"));
+  index["made_by"]["processor"] = "another one";
+  ASSERT_FALSE(write_text_file(part / "study.json", index.dump()));
+}
+
+TEST(StudyParts, OfAnotherProcessorAreRefusedWhereTimesCountAndTakenWhereTheyDoNot) {
+  const TemporaryFolder timed, folder;
+  const auto precision = precision_of(builtin_scene("pendulum"), 200);
+  make(precision, timed.path(), Shard{1, 4});
+  change_processor(part_folder(timed.path(), {1, 4}));
+  const Made refused = make(precision, timed.path(), {});
+  EXPECT_FALSE(refused.table);
+  EXPECT_TRUE(has(refused.error, "not the same: processor")) << refused.error;
+  const auto extremes = few_extremes();
+  const int runs = make(extremes, folder.path(), Shard{1, 2}).runs;
+  change_processor(part_folder(folder.path(), {1, 2}));
+  EXPECT_EQ(make(extremes, folder.path(), {}).runs, finished_runs(StudyTable(extremes.whole())) - runs);
 }
 
 TEST(StudyParts, KeepTheTimesOfTheRunThatWasTimedMoreOften) {

@@ -16,12 +16,13 @@ std::optional<int> begin_study(cloth::StudyRecorder& recorder, const cloth::Stud
     say(fmt::format("{}: nothing is made: see the results above", place.folder));
     return differs;
   }
-  if (const cloth::StudyTable* earlier = recorder.earlier())
-    say(recorder.parts() > 0
-            ? fmt::format("going on with what {} parts of the study have: {} runs are there",
-                          recorder.parts(), cloth::finished_runs(*earlier))
-            : fmt::format("going on with the unfinished study in the folder: {} runs are there",
-                          cloth::finished_runs(*earlier)));
+  if (const cloth::StudyTable* earlier = recorder.earlier()) {
+    const int parts = recorder.parts();
+    const std::string what = parts == 0   ? "the unfinished study in the folder"
+                             : parts == 1 ? "what 1 part of the study has"
+                                          : fmt::format("what {} parts of the study have", parts);
+    say(fmt::format("going on with {}: {} runs are there", what, cloth::finished_runs(*earlier)));
+  }
   return std::nullopt;
 }
 

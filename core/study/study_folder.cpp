@@ -34,7 +34,9 @@ json contents(const WorkPrecision& study) {
   for (const MethodStudy& method : study.methods) options["methods"].push_back(method.ladder.facts.name);
   visit_options(JsonFields(options), study);
   visit_reference(JsonFields(reference), study.reference);
-  return {{"options", options}, {"estimated_s", study.estimated}, {"reference", reference}};
+  json root{{"options", options}, {"estimated_s", study.estimated}, {"reference", reference}};
+  if (study.parts > 0) root["parts"] = study.parts;
+  return root;
 }
 
 json contents(const StabilityMap& map) {

@@ -28,6 +28,7 @@ struct Study {
   StudyTable table;
   std::string command;  ///< what made it
   double wall = 0;      ///< s
+  std::string shard{};  ///< "2/3": it is this part alone; empty: the whole
 };
 
 /// "work-precision", "stability", "extremes", "convergence", "validation".

@@ -66,6 +66,7 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const Jso
     throw options.at("horizon_s").bad(*rule);
   study.estimated = root.at("estimated_s").number();
   study.stopped = !root.at("complete").flag();
+  if (root.has("parts")) study.parts = root.at("parts").whole<int>(0, 1e9);
   visit_reference(JsonFields(root.at("reference")), study.reference);
   Ladders ladders = make_ladders(study.scene, methods, study.horizon);
   study.horizon = ladders.horizon;
@@ -336,6 +337,7 @@ StudyReading read_study(const std::filesystem::path& folder) {
       throw root.at("format").bad(fmt::format("must be \"{}\"", study_format));
     disagreements = find_disagreements(folder, root);
     Study study{read_table(folder, root), root.at("command").text(), root.at("wall_s").number()};
+    if (root.has("shard")) study.shard = root.at("shard").text();
     if (disagreements.empty()) return {std::move(study), {}};
   } catch (const BadFolder& bad) {
     if (!disagreements.empty()) disagreements += "; ";

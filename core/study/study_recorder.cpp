@@ -135,7 +135,8 @@ std::optional<IoError> StudyRecorder::read_unfinished(const std::filesystem::pat
                    true};
   };
   StudyReading reading = read_study(place);
-  if (!reading.study) reading = read_study(place);  // its process may just have begun its tables anew
+  if (!reading.study) reading = read_study(place);  // its process may just have begun its tables anew,
+  if (!std::filesystem::exists(place / "study.json", ignored)) return std::nullopt;  // or the whole folder
   if (!reading.study) return refused("that cannot be read (" + reading.problem + ")");
   if (!has_beginning(reading.study->table)) return std::nullopt;
   const Json now = Json::parse(study_index(place, plan, command_, 0, {}));
@@ -179,6 +180,7 @@ std::optional<IoError> StudyRecorder::take_parts(const std::filesystem::path& fo
     return IoError{folder, "parts of the study do not agree: " + disagreements_.front(), true};
   if (parts_ == 0 || !has_beginning(all.table())) return std::nullopt;
   earlier_ = Study{all.table(), command_, earlier_ ? earlier_->wall : 0};
+  if (auto* study = std::get_if<WorkPrecision>(&earlier_->table); study && !shard_) study->parts = parts_;
   return std::nullopt;
 }
 

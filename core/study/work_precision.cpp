@@ -376,6 +376,7 @@ void keep_earlier(WorkPrecision& study, const WorkPrecision& earlier) {
 
 WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study = plan_work_precision(scene, options);
+  if (options.earlier) study.parts = options.earlier->parts;
   if (options.earlier && options.earlier->reference.is_known())
     study.reference = options.earlier->reference;
   else

@@ -88,6 +88,7 @@ struct WorkPrecision {
   double budget = 0, estimated = 0;  ///< s
   ReferenceSolution reference;
   std::vector<MethodStudy> methods;
+  int parts = 0;  ///< that processes of their own made and timed, see study_parts.h
   bool stopped = false;
   bool is_complete() const { return !stopped; }
 };

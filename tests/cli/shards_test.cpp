@@ -61,6 +61,8 @@ void expect_parts_to_be_the_whole(const std::string& study, const std::string& c
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(has(result.output, "runs of shard 2/3; in parts/shards/2-of-3")) << result.output;
   EXPECT_TRUE(has(result.errors, "going on with what 3 parts of the study have")) << result.errors;
+  const std::string part = place.sh("exec \"$CLI\" study parts/shards/2-of-3").output;
+  EXPECT_TRUE(has(part.substr(0, part.find('\n')), " (shard 2/3)")) << part;
   EXPECT_EQ(place.table("parts/" + csv), place.table("whole/" + csv)) << study;
   for (const char* name : {"study.json", "report.html"})
     EXPECT_TRUE(std::filesystem::exists(place / (std::string("parts/") + name))) << name;

@@ -343,6 +343,10 @@ TEST(StudyParts, OfWorkAndPrecisionAreTheWholeStudyWithOneReference) {
       return sample_table(std::get<WorkPrecision>(table)).rows.size();
     };
     EXPECT_EQ(timed(*merged.table), timed(whole));
+    const char* said = "3 parts of this study were made and timed by processes of their own";
+    EXPECT_TRUE(has(content_of(folder / "report.html"), said));
+    EXPECT_EQ(std::get<WorkPrecision>(read_study(folder.path()).study->table).parts, 3);
+    EXPECT_FALSE(has(study_page(std::get<WorkPrecision>(whole), "a test"), "parts of this study"));
   }
 }
 

@@ -17,6 +17,7 @@ struct ConvergenceArguments {
   cloth::GridConvergenceOptions options;  ///< cells, outputs, time
   int threads = 0;                        ///< 0: as many as the machine has
   std::string folder;
+  std::string shard;       ///< that is made alone; empty: all
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -47,7 +48,7 @@ int convergence(const ConvergenceArguments& arguments) {
 
   const auto made = make_study(
       cloth::plan_grid_convergence(scene, options), options,
-      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite},
+      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite, arguments.shard},
       [&](const cloth::GridConvergenceOptions& all) { return cloth::run_grid_convergence(scene, all); });
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const cloth::GridConvergence& study = std::get<0>(made).table;
@@ -88,9 +89,11 @@ void add_convergence(Program& program) {
       .add_option("--threads", arguments.threads,
                   "Threads that a step may use; without it all cores. The results are the same to the bit")
       ->check(CLI::Range(1, 1024));
-  add_path(command, "--out", arguments.folder,
-           "Folder for convergence.csv, convergence.svg, convergence_error.svg, study.json and report.html; "
-           "made if missing");
+  CLI::Option* out = add_path(
+      command, "--out", arguments.folder,
+      "Folder for convergence.csv, convergence.svg, convergence_error.svg, study.json and report.html; "
+      "made if missing");
+  add_shard(command, arguments.shard, out);
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

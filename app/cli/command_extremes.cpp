@@ -16,6 +16,7 @@ struct ExtremesArguments {
   std::vector<std::string> settings;
   cloth::ExtremesOptions options;  ///< methods and cases
   std::string folder;
+  std::string shard;       ///< that is made alone; empty: all
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false, markdown = false;
 };
@@ -57,7 +58,8 @@ int extremes(const ExtremesArguments& arguments) {
     if (const int refused = refused_for_memory(*options.scene, plan.methods); refused != done) return refused;
 
   const auto made = make_study(
-      plan, options, {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite},
+      plan, options,
+      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite, arguments.shard},
       [](const cloth::ExtremesOptions& all) { return cloth::run_extremes(all); });
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const cloth::ExtremesTable& table = std::get<0>(made).table;
@@ -82,8 +84,10 @@ void add_extremes(Program& program) {
   command.add_option("--cases", arguments.options.cases, "Cases, between commas; all without")
       ->delimiter(',')
       ->allow_extra_args(false);
-  add_path(command, "--out", arguments.folder,
-           "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
+  CLI::Option* out =
+      add_path(command, "--out", arguments.folder,
+               "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
+  add_shard(command, arguments.shard, out);
   add_overwrite(command, arguments.overwrite);
   CLI::Option* json = add_json(command, arguments.json);
   command.add_flag("--markdown", arguments.markdown, "Print the table as Markdown")

@@ -17,6 +17,7 @@ struct StabilityArguments {
   std::string x, y;                 ///< PATH=LOW:HIGH:COUNT[:log]; empty: time step over stiffness
   cloth::StabilityOptions options;  ///< without axes; no methods: those with a limit
   std::string folder;
+  std::string shard;       ///< that is made alone; empty: all
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -69,10 +70,10 @@ int stability(const StabilityArguments& arguments) {
       return refused;
 
   const cloth::Scene& scene = *loaded.scene;
-  const auto made =
-      make_study(cloth::plan_stability_map(scene, options), options,
-                 {arguments.folder, command_text(arguments), arguments.scene, arguments.overwrite},
-                 [&](const cloth::StabilityOptions& all) { return cloth::run_stability_map(scene, all); });
+  const auto made = make_study(
+      cloth::plan_stability_map(scene, options), options,
+      {arguments.folder, command_text(arguments), arguments.scene, arguments.overwrite, arguments.shard},
+      [&](const cloth::StabilityOptions& all) { return cloth::run_stability_map(scene, all); });
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const auto& [map, wall] = std::get<0>(made);
   const int printed = print(arguments.json ? cloth::study_json(map)
@@ -110,9 +111,10 @@ void add_stability(Program& program) {
       ->capture_default_str();
   command.add_flag("--full-size", arguments.options.full_size,
                    "Run the whole grid; without it larger ones are run with 16 x 16 of the same particles");
-  add_path(command, "--out", arguments.folder,
-           "Folder for stability.csv, stability.svg, study.json and report.html; made if missing")
-      ->required();
+  CLI::Option* out =
+      add_path(command, "--out", arguments.folder,
+               "Folder for stability.csv, stability.svg, study.json and report.html; made if missing");
+  add_shard(command, arguments.shard, out->required());
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

@@ -21,9 +21,12 @@ int study(const StudyArguments& arguments) {
   const cloth::StudyTable& table = reading.study->table;
   if (arguments.json) return print(cloth::study_json(table));
   if (arguments.csv) return print(cloth::study_csv(table));
-  const std::string head =
-      fmt::format("{}: {}{}\n{}\n\n", cloth::kind_of(table), cloth::title_of(table),
-                  cloth::is_complete(table) ? "" : " (stopped before its end)", reading.study->command);
+  const std::string& shard = reading.study->shard;
+  const std::string part = !shard.empty()              ? fmt::format(" (shard {})", shard)
+                           : cloth::is_complete(table) ? ""
+                                                       : " (stopped before its end)";
+  const std::string head = fmt::format("{}: {}{}\n{}\n\n", cloth::kind_of(table), cloth::title_of(table),
+                                       part, reading.study->command);
   return print(head + cloth::study_text(table));
 }
 

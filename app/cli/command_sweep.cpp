@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <thread>
 
 #include "commands.h"
@@ -8,7 +7,6 @@
 #include "progress.h"
 #include "simulation/step_batches.h"
 #include "sweep/run_sweep.h"
-#include "sweep/shard_choice.h"
 #include "sweep_commands.h"
 
 namespace clothlab::cli {
@@ -62,16 +60,9 @@ int run_shard(const cloth::SweepFolder& folder, const SweepArguments& arguments,
 }
 
 int sweep(const SweepArguments& arguments) {
-  cloth::Shard shard;
-  if (!arguments.shard.empty()) {
-    const auto chosen = cloth::shard_from(arguments.shard, [](const char* name) {
-      const char* value = std::getenv(name);
-      return std::string(value ? value : "");
-    });
-    if (const auto* problem = std::get_if<cloth::Problem>(&chosen))
-      return report(std::vector<cloth::Problem>{*problem});
-    shard = std::get<cloth::Shard>(chosen);
-  }
+  const auto chosen = chosen_shard(arguments.shard);
+  if (const int* failed = std::get_if<int>(&chosen)) return *failed;
+  const cloth::Shard shard = std::get<0>(chosen).value_or(cloth::Shard{});
   const TakenFolder taken = take_folder(arguments.plan, arguments.folder);
   if (!taken.folder) return taken.exit_code;
   const int ended = run_shard(*taken.folder, arguments, shard);

@@ -18,6 +18,7 @@ struct ValidateArguments {
   std::vector<std::string> only;
   std::string folder, strips, scored;
   SceneChecks of_scenes;   ///< all but folder and json
+  std::string shard;       ///< that is made alone; empty: all
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -64,7 +65,8 @@ int validate(const ValidateArguments& arguments) {
   if (!arguments.only.empty()) command += fmt::format(" --only {}", fmt::join(arguments.only, ","));
   const auto made =
       make_study(cloth::plan_validation(options), options,
-                 {arguments.folder, command + " --out DIR", "", arguments.overwrite}, cloth::run_validation);
+                 {arguments.folder, command + " --out DIR", "", arguments.overwrite, arguments.shard},
+                 cloth::run_validation);
   if (const int* failed = std::get_if<int>(&made)) return *failed;
   const cloth::ValidationStudy& study = std::get<0>(made).table;
   const int printed = print(arguments.json ? cloth::study_json(study) : cloth::study_text(study));
@@ -110,11 +112,12 @@ void add_validate(Program& program) {
       "Strips of a material against exact solutions, and how fabrics drape, on four grids, or scenes against "
       "measured points",
       validate);
-  CLI::Option* only = add_names(command, "--only", arguments.only,
-                                fmt::format("Only these protocols, separated by commas: {}; without this option all "
-                                            "but drape, which takes much longer",
-                                            fmt::join(cloth::validation_protocols(), ", ")),
-                                cloth::validation_protocols());
+  CLI::Option* only =
+      add_names(command, "--only", arguments.only,
+                fmt::format("Only these protocols, separated by commas: {}; without this option all "
+                            "but drape, which takes much longer",
+                            fmt::join(cloth::validation_protocols(), ", ")),
+                cloth::validation_protocols());
   CLI::Option* out =
       add_path(command, "--out", arguments.folder,
                "Folder for validation.csv, validation.json and report.html, of --scene measured.csv and "
@@ -128,8 +131,9 @@ void add_validate(Program& program) {
                                  "NAME.obj, are from the exact curves");
   for (CLI::Option* one : {strips, scored}) one->excludes(only)->excludes(out);
   strips->excludes(scored);
+  CLI::Option* shard = add_shard(command, arguments.shard, out);
   CLI::Option* scene = add_scene_checks(command, arguments.of_scenes);
-  for (CLI::Option* one : {only, strips, scored}) scene->excludes(one);
+  for (CLI::Option* one : {only, strips, scored, shard}) scene->excludes(one);
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

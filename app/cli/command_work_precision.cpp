@@ -14,6 +14,7 @@ struct WorkPrecisionArguments {
   std::vector<std::string> settings;
   cloth::WorkPrecisionOptions options;
   std::string folder;
+  std::string shard;       ///< that is made alone; empty: all
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -40,19 +41,24 @@ int work_precision(const WorkPrecisionArguments& arguments) {
   if (const int refused = refused_for_memory(scene, methods); refused != done) return refused;
 
   const cloth::WorkPrecisionOptions& options = arguments.options;
+  std::string no_reference;
   const auto made = make_study(
       cloth::plan_work_precision(scene, options), options,
-      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite},
-      [&](const cloth::WorkPrecisionOptions& all) { return cloth::study_work_precision(scene, all); });
-  if (const int* failed = std::get_if<int>(&made)) return *failed;
+      {arguments.folder, command_of(arguments), arguments.scene, arguments.overwrite, arguments.shard},
+      [&](const cloth::WorkPrecisionOptions& all) {
+        cloth::WorkPrecision study = cloth::study_work_precision(scene, all);
+        if (!study.stopped) no_reference = study.reference.failure;
+        return study;
+      });
+  if (!no_reference.empty()) say("there is no reference: " + no_reference);
+  if (const int* ended = std::get_if<int>(&made))
+    return *ended == done && !no_reference.empty() ? static_cast<int>(diverged) : *ended;
   const cloth::WorkPrecision& study = std::get<0>(made).table;
-  const bool has_reference = study.reference.failure.empty();
-  if (!has_reference && !study.stopped) say("there is no reference: " + study.reference.failure);
   std::string text = arguments.json ? cloth::study_json(study) : cloth::study_text(study);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
   if (const int printed = print(text); printed != done) return printed;
   if (study.stopped) return interrupted;
-  return has_reference ? done : diverged;
+  return no_reference.empty() ? done : diverged;
 }
 
 }  // namespace
@@ -71,9 +77,11 @@ void add_work_precision(Program& program) {
   command.add_option("--repeats", arguments.options.repeats, "Timed repeats of each run")
       ->check(CLI::Range(5, 1000))
       ->capture_default_str();
-  add_path(command, "--out", arguments.folder,
-           "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg, study.json and "
-           "report.html; made if missing");
+  CLI::Option* out = add_path(
+      command, "--out", arguments.folder,
+      "Folder for work_precision.csv, work_precision_samples.csv, work_precision.svg, study.json and "
+      "report.html; made if missing");
+  add_shard(command, arguments.shard, out);
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

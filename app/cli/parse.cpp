@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include "console.h"
@@ -59,6 +60,25 @@ void add_overwrite(CLI::App& command, bool& overwrite) {
   command.add_flag("--overwrite", overwrite,
                    "Begin anew where the folder holds an unfinished study; without it that goes on if it has "
                    "the same inputs, and is left alone if not");
+}
+
+CLI::Option* add_shard(CLI::App& command, std::string& shard, CLI::Option* out) {
+  return add_path(
+             command, "--shard", shard,
+             "I/N: make part I of N alone, into DIR/shards/I-of-N; auto/N and auto as for sweep. The command "
+             "without this option then takes what the parts have and makes the rest")
+      ->needs(out);
+}
+
+std::variant<std::optional<cloth::Shard>, int> chosen_shard(const std::string& text) {
+  if (text.empty()) return std::optional<cloth::Shard>();
+  const auto chosen = cloth::shard_from(text, [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value ? value : "");
+  });
+  if (const auto* problem = std::get_if<cloth::Problem>(&chosen))
+    return report(std::vector<cloth::Problem>{*problem});
+  return std::optional(std::get<cloth::Shard>(chosen));
 }
 
 CLI::Option* add_path(CLI::App& command, const char* option, std::string& path, const std::string& help) {

@@ -6,7 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "io/shard.h"
 
 namespace clothlab::cli {
 
@@ -40,6 +43,12 @@ CLI::Option* add_scene(CLI::App& command, std::string& scene);                  
 CLI::Option* add_settings(CLI::App& command, std::vector<std::string>& settings);  ///< --set
 CLI::Option* add_json(CLI::App& command, bool& json);
 void add_overwrite(CLI::App& command, bool& overwrite);  ///< of an unfinished study
+
+/// --shard of a study, which needs the folder of `out`.
+CLI::Option* add_shard(CLI::App& command, std::string& shard, CLI::Option* out);
+
+/// The part that was asked for, none for an empty text; or the exit code after a message.
+std::variant<std::optional<cloth::Shard>, int> chosen_shard(const std::string& text);
 
 /// An option that names a file or a folder. An empty name, as of a variable that is not set, is bad usage.
 CLI::Option* add_path(CLI::App& command, const char* option, std::string& path, const std::string& help);

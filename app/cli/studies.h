@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "console.h"
+#include "parse.h"
 #include "progress.h"
 #include "study/study_recorder.h"
 
@@ -17,6 +18,7 @@ struct StudyPlace {
   std::string command;     ///< that makes the study
   std::string scene;       ///< that it reads; empty: none
   bool overwrite = false;  ///< an unfinished study of other inputs
+  std::string shard = {};  ///< that is made alone; empty: the whole study
 };
 
 template <class Table>
@@ -26,21 +28,29 @@ struct MadeStudy {
 };
 
 /// Takes the folder for the study that `plan` is without its results, and says on standard error if an
-/// unfinished one there goes on.
-std::optional<cloth::IoError> begin_study(cloth::StudyRecorder& recorder, const cloth::StudyTable& plan,
-                                          const StudyPlace& place);
+/// unfinished one there goes on. The exit code, after a message, where that is refused.
+std::optional<int> begin_study(cloth::StudyRecorder& recorder, const cloth::StudyTable& plan,
+                               const StudyPlace& place, const std::optional<cloth::Shard>& shard);
+
+/// Says how far a part is, with its exit code.
+int end_shard(const cloth::StudyTable& table, const cloth::Shard& shard, const std::filesystem::path& place);
 
 /// Runs a study, `run(options)`, and writes its folder: what is finished is on disk before the next run
-/// begins. The exit code instead, after a message, where a file could not be written.
+/// begins. The exit code instead where only a part was to be made, and, after a message, where a file could
+/// not be written.
 template <class Table, class Options, class Run>
 std::variant<MadeStudy<Table>, int> make_study(const Table& plan, Options options, const StudyPlace& place,
                                                Run run) {
+  const auto chosen = chosen_shard(place.shard);
+  if (const int* failed = std::get_if<int>(&chosen)) return *failed;
+  const std::optional<cloth::Shard> shard = std::get<0>(chosen);
+  if (shard) options.shard = *shard;
   listen_for_stop();
   options.stop = stop_is_requested;
   cloth::StudyRecorder recorder;
   std::optional<cloth::IoError> failure;
   if (!place.folder.empty()) {
-    if (const auto error = begin_study(recorder, plan, place)) return report(*error);
+    if (const auto refused = begin_study(recorder, plan, place, shard)) return *refused;
     if (recorder.earlier()) options.earlier = &std::get<Table>(*recorder.earlier());
     options.partial = [&](const Table& so_far) {
       if (!failure) failure = recorder.keep(so_far);
@@ -59,6 +69,7 @@ std::variant<MadeStudy<Table>, int> make_study(const Table& plan, Options option
   made.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!failure && recorder.is_open()) failure = recorder.end(made.table, made.wall);
   if (failure) return report(*failure);
+  if (shard) return end_shard(made.table, *shard, recorder.path());
   return made;
 }
 

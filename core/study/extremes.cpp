@@ -154,9 +154,18 @@ ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, c
   return cell;
 }
 
+std::int64_t ExtremesTable::number_of(const ExtremeCell& cell) const {
+  const auto extreme = std::find_if(cases.begin(), cases.end(),
+                                    [&](const ExtremeCase& one) { return one.name == cell.case_name; });
+  const auto method = std::find(methods.begin(), methods.end(), cell.method);
+  return (extreme - cases.begin()) * std::ssize(methods) + (method - methods.begin());
+}
+
 const ExtremeCell* ExtremesTable::cell(std::size_t extreme, std::size_t method) const {
-  const std::size_t index = extreme * methods.size() + method;
-  return index < cells.size() ? &cells[index] : nullptr;
+  const auto number = static_cast<std::int64_t>(extreme * methods.size() + method);
+  const auto at =
+      std::ranges::lower_bound(cells, number, {}, [&](const ExtremeCell& cell) { return number_of(cell); });
+  return at != cells.end() && number_of(*at) == number ? &*at : nullptr;
 }
 
 ExtremesTable empty_table(const ExtremesOptions& options) {
@@ -174,21 +183,21 @@ ExtremesTable empty_table(const ExtremesOptions& options) {
 
 ExtremesTable run_extremes(const ExtremesOptions& options) {
   ExtremesTable table = empty_table(options);
-  const double all = static_cast<double>(table.cases.size() * table.methods.size());
-  for (const ExtremeCase& extreme : table.cases)
-    for (const std::string& method : table.methods) {
-      if (options.earlier && table.cells.size() < options.earlier->cells.size()) {
-        table.cells.push_back(options.earlier->cells[table.cells.size()]);
-        continue;
-      }
-      const StudyProgress progress{static_cast<double>(table.cells.size()) / all,
-                                   extreme.name + ", " + method};
-      if (options.progress && !options.progress(progress)) return table;
-      ExtremeCell cell = run_extreme(extreme, method, options.stop);
-      if (is_to_stop(options.stop)) return table;  // half a cell is none
-      table.cells.push_back(std::move(cell));
-      if (options.partial) options.partial(table);
-    }
+  if (options.earlier) table.cells = options.earlier->cells;
+  const std::size_t methods = table.methods.size(), all = table.cases.size() * methods;
+  for (std::size_t number = 0; number < all; ++number) {
+    const std::size_t c = number / methods, m = number % methods;
+    if (!options.shard.has(static_cast<std::int64_t>(number)) || table.cell(c, m)) continue;
+    const StudyProgress progress{static_cast<double>(number) / static_cast<double>(all),
+                                 table.cases[c].name + ", " + table.methods[m]};
+    if (options.progress && !options.progress(progress)) return table;
+    ExtremeCell cell = run_extreme(table.cases[c], table.methods[m], options.stop);
+    if (is_to_stop(options.stop)) return table;  // half a cell is none
+    const auto place = std::ranges::lower_bound(table.cells, table.number_of(cell), {},
+                                                [&](const ExtremeCell& of) { return table.number_of(of); });
+    table.cells.insert(place, std::move(cell));
+    if (options.partial) options.partial(table);
+  }
   return table;
 }
 

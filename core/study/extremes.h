@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
 #include "simulation/simulation.h"
 #include "study/study_progress.h"
 
@@ -79,12 +80,15 @@ struct ExtremeCell {
 /// `stop` is asked after every step, and within one that takes long; true ends the run.
 ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop = {});
 
-/// Case after case, each with every method; an interrupted run has fewer cells.
+/// Case after case, each with every method; an interrupted run, or a part of one, has fewer cells.
 struct ExtremesTable {
   std::optional<Scene> scene;  ///< that the cases are made of; none: the fixed list
   std::vector<ExtremeCase> cases;
   std::vector<std::string> methods;
   std::vector<ExtremeCell> cells;
+
+  /// Of a cell among all that there are to be.
+  std::int64_t number_of(const ExtremeCell& cell) const;
 
   /// Null where it was not run.
   const ExtremeCell* cell(std::size_t extreme, std::size_t method) const;
@@ -99,8 +103,9 @@ struct ExtremesOptions {
   /// The table so far, after every cell; the last is what is returned.
   std::function<void(const ExtremesTable&)> partial{};
   StopTest stop{};  ///< asked after every step; half a cell is none
-  /// The same table, stopped before its end: its cells are not run again.
+  /// The same table, not whole: its cells are not run again.
   const ExtremesTable* earlier = nullptr;
+  Shard shard{};  ///< whose cells are run alone, by their numbers
 };
 
 /// The cases and methods that are asked for, in the list's order; no cells yet.

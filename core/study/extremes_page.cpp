@@ -68,6 +68,12 @@ HtmlTable case_html(const ExtremesTable& table, std::size_t extreme) {
   return rows;
 }
 
+bool has_cells(const ExtremesTable& table, std::size_t extreme) {
+  for (std::size_t m = 0; m < table.methods.size(); ++m)
+    if (table.cell(extreme, m)) return true;
+  return false;
+}
+
 void add_cases(HtmlPage& page, const ExtremesTable& table) {
   page.heading("The cases one by one");
   page.paragraph(
@@ -76,7 +82,7 @@ void add_cases(HtmlPage& page, const ExtremesTable& table) {
       "kinetic and elastic energy at the end over the energy scale.");
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     const ExtremeCase& extreme = table.cases[c];
-    if (!table.cell(c, 0)) continue;
+    if (!has_cells(table, c)) continue;
     const std::size_t red = not_stable(table, c).size();
     page.begin_details(HtmlText(extreme.name) +
                        (red == 0

@@ -51,9 +51,10 @@ void conclude(GridRun& run, const RunSummary& summary) {
   }
 }
 
-/// One run; nullopt where it was stopped.
-std::optional<GridRun> run_grid(const GridConvergence& study, int cells,
+/// The run of that place in the study; nullopt where it was stopped.
+std::optional<GridRun> run_grid(const GridConvergence& study, std::size_t place,
                                 const GridConvergenceOptions& options) {
+  const int cells = study.cells[place];
   GridRun run = run_to_make(study, cells);
   const Scene scene = refined_scene(study.scene, cells);
   run.detail = refusal_to_run(scene);
@@ -71,7 +72,7 @@ std::optional<GridRun> run_grid(const GridConvergence& study, int cells,
   of_run.progress = [&](double time) {
     if (is_to_stop(options.stop)) return false;
     return !options.progress ||
-           options.progress({fraction_of(study, study.runs.size(), time / scene.duration),
+           options.progress({fraction_of(study, place, time / scene.duration),
                              fmt::format("{} x {} particles, t = {:.3g} s", run.rows, run.columns, time)});
   };
   const RunSummary summary = run_scene(scene, of_run).summary;
@@ -138,6 +139,11 @@ GridConvergence plan_grid_convergence(const Scene& scene, const GridConvergenceO
   return study;
 }
 
+const GridRun* run_with(const GridConvergence& study, int cells) {
+  const auto found = std::ranges::find(study.runs, cells, &GridRun::cells);
+  return found == study.runs.end() ? nullptr : &*found;
+}
+
 GridRun run_to_make(const GridConvergence& study, int cells) {
   const Scene refined = refined_scene(study.scene, cells);
   GridRun run{.cells = cells, .rows = refined.cloth.rows, .columns = refined.cloth.columns};
@@ -149,15 +155,16 @@ GridRun run_to_make(const GridConvergence& study, int cells) {
 GridConvergence run_grid_convergence(const Scene& scene, const GridConvergenceOptions& options) {
   GridConvergence study = plan_grid_convergence(scene, options);
   if (options.earlier) study.runs = options.earlier->runs;
-  while (!study.is_complete()) {
-    const int cells = study.cells[study.runs.size()];
+  for (std::size_t place = 0; place < study.cells.size(); ++place) {
+    const int cells = study.cells[place];
+    if (!options.shard.has(static_cast<std::int64_t>(place)) || run_with(study, cells)) continue;
     if (is_to_stop(options.stop)) return study;
     if (options.progress &&
-        !options.progress({fraction_of(study, study.runs.size(), 0), fmt::format("{} cells across", cells)}))
+        !options.progress({fraction_of(study, place, 0), fmt::format("{} cells across", cells)}))
       return study;
-    auto run = run_grid(study, cells, options);
+    auto run = run_grid(study, place, options);
     if (!run) return study;
-    study.runs.push_back(std::move(*run));
+    study.runs.insert(std::ranges::lower_bound(study.runs, cells, {}, &GridRun::cells), std::move(*run));
     if (options.partial) options.partial(study);
   }
   return study;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
 #include "scene/scene.h"
 #include "study/richardson.h"
 #include "study/study_progress.h"
@@ -41,7 +42,7 @@ struct GridConvergence {
   Scene scene;  ///< with the studied time as its duration
   std::vector<std::string> outputs;
   std::vector<int> cells;       ///< of the grids, ascending
-  std::vector<GridRun> runs{};  ///< as far as they were made
+  std::vector<GridRun> runs{};  ///< those that were made, in this order
   bool is_complete() const { return runs.size() == cells.size(); }
 };
 
@@ -54,8 +55,9 @@ struct GridConvergenceOptions {
   /// The study so far, after every run; the last is what is returned.
   std::function<void(const GridConvergence&)> partial{};
   StopTest stop{};  ///< asked between batches of steps; half a run is none
-  /// The same study, stopped before its end: its runs are not made again.
+  /// The same study, not whole: its runs are not made again.
   const GridConvergence* earlier = nullptr;
+  Shard shard{};  ///< whose runs are made alone, by their place in `cells`
 };
 
 /// lowest_point, elastic_J
@@ -71,6 +73,9 @@ GridConvergence run_grid_convergence(const Scene& scene, const GridConvergenceOp
 
 /// A run on a grid of the study, not made yet.
 GridRun run_to_make(const GridConvergence& study, int cells);
+
+/// The run on that grid; null where it was not made.
+const GridRun* run_with(const GridConvergence& study, int cells);
 
 /// The scene of one run, as it was run.
 Scene scene_of(const GridConvergence& study, const GridRun& run);

@@ -31,12 +31,16 @@ class MapRunner {
   StabilityMap run();
 
  private:
+  MethodMap begun(const std::string& method) const;
   bool lay_out(MethodMap& map);
   bool run_cells(MethodMap& map);
   bool measure_limits(MethodMap& map);
   bool narrow(const std::string& method, MeasuredLimit& limit);
-  const MethodMap* earlier(const MethodMap& map) const;
-  PredictedLimits limits_beside(const MethodMap& map, std::size_t k) const;
+  bool is_mine(const MethodMap& map, std::size_t cell) const {
+    const auto method = static_cast<std::size_t>(&map - map_.methods.data());
+    return options_.shard.has(line_of(map_, method, cell));
+  }
+  PredictedLimits limits_beside(const MethodMap& map, double other) const;
   StabilityCell run_at(const std::string& method, double x, double y);
   bool is_stopped() {
     return is_to_stop(options_.stop) || (++batches_ % batches_between_reports == 0 && !report());
@@ -48,6 +52,7 @@ class MapRunner {
 
   bool x_is_step() const { return options_.x.path == time_step_path; }
   bool y_is_step() const { return options_.y.path == time_step_path; }
+  const std::vector<double>& other_values() const { return x_is_step() ? y_values_ : x_values_; }
 
   const Scene& scene_;
   const StabilityOptions& options_;
@@ -67,44 +72,44 @@ StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
   return cell;
 }
 
+/// A method's cells, those run that the map which goes on has, with its measured limits.
+MethodMap MapRunner::begun(const std::string& name) const {
+  MethodMap map{name, {}, {}};
+  if (options_.earlier)
+    for (const MethodMap& method : options_.earlier->methods)
+      if (method.method == name) map = method;
+  for (std::size_t k = map.cells.size(); k < x_values_.size() * y_values_.size(); ++k)
+    map.cells.push_back({.x = x_values_[k % x_values_.size()], .y = y_values_[k / x_values_.size()]});
+  return map;
+}
+
 /// Fills in what is known without running: the limits, and how long each cell will take.
 bool MapRunner::lay_out(MethodMap& map) {
-  for (const double y : y_values_) {
+  for (std::size_t k = 0; k < map.cells.size(); ++k) {
+    if (!is_mine(map, k)) continue;
     if (is_to_stop(options_.stop)) return false;
-    PredictedLimits row_limits;  // a time step does not change them
-    for (std::size_t ix = 0; ix < x_values_.size(); ++ix) {
-      const Scene scene = cell_scene(scene_, options_, map.method, x_values_[ix], y);
-      StabilityCell cell{.x = x_values_[ix], .y = y};
-      if (ix == 0 || !x_is_step()) row_limits = predict_limits(scene);
-      cell.limits = row_limits;
-      cell.time_step = resolved_time_step(scene).value_or(0);
-      cell.wanted_steps = cell.time_step > 0 ? wanted_steps(scene, cell.time_step, options_.criterion) : 0;
-      work_ += expected_work(cell, options_.criterion);
-      map.cells.push_back(std::move(cell));
-      ++cells_;
-    }
+    StabilityCell& cell = map.cells[k];
+    const Scene scene = cell_scene(scene_, options_, map.method, cell.x, cell.y);
+    // A time step does not change them.
+    cell.limits = k % x_values_.size() == 0 || !x_is_step() ? predict_limits(scene) : map.cells[k - 1].limits;
+    if (cell.status != CellStatus::not_run) continue;
+    cell.time_step = resolved_time_step(scene).value_or(0);
+    cell.wanted_steps = cell.time_step > 0 ? wanted_steps(scene, cell.time_step, options_.criterion) : 0;
+    work_ += expected_work(cell, options_.criterion);
+    ++cells_;
   }
+  for (MeasuredLimit& limit : map.measured) limit.limits = limits_beside(map, limit.other);
   return true;
 }
 
-/// The same method of the map that goes on, if there is one.
-const MethodMap* MapRunner::earlier(const MethodMap& map) const {
-  if (!options_.earlier) return nullptr;
-  for (const MethodMap& method : options_.earlier->methods)
-    if (method.method == map.method) return &method;
-  return nullptr;
-}
-
 bool MapRunner::run_cells(MethodMap& map) {
-  const MethodMap* before = earlier(map);
   for (std::size_t k = 0; k < map.cells.size(); ++k) {
     StabilityCell& cell = map.cells[k];
+    if (!is_mine(map, k) || cell.status != CellStatus::not_run) continue;
     const PredictedLimits limits = cell.limits;
     const double work = expected_work(cell, options_.criterion);
-    const bool is_known =
-        before && k < before->cells.size() && before->cells[k].status != CellStatus::not_run;
     text_ = fmt::format("cell {} of {}", ++cell_, cells_);
-    StabilityCell result = is_known ? before->cells[k] : run_at(map.method, cell.x, cell.y);
+    StabilityCell result = run_at(map.method, cell.x, cell.y);
     if (result.status == CellStatus::not_run) return false;
     result.limits = limits;
     cell = std::move(result);
@@ -127,25 +132,25 @@ bool MapRunner::narrow(const std::string& method, MeasuredLimit& limit) {
   return true;
 }
 
-/// Those of the last step that was run with the other axis' value `k`.
-PredictedLimits MapRunner::limits_beside(const MethodMap& map, std::size_t k) const {
+/// Those of the last step that was run with a value of the other axis.
+PredictedLimits MapRunner::limits_beside(const MethodMap& map, double other) const {
+  const std::vector<double>& others = other_values();
+  const auto k =
+      static_cast<std::size_t>(std::lower_bound(others.begin(), others.end(), other) - others.begin());
   const std::size_t columns = x_values_.size(), rows = y_values_.size();
   return map.cells[x_is_step() ? k * columns + columns - 1 : (rows - 1) * columns + k].limits;
 }
 
 bool MapRunner::measure_limits(MethodMap& map) {
   const std::size_t columns = x_values_.size();
-  const std::vector<double>& others = x_is_step() ? y_values_ : x_values_;
+  const std::vector<double>& others = other_values();
   const std::vector<double>& steps = x_is_step() ? x_values_ : y_values_;
-  const MethodMap* before = earlier(map);
   for (std::size_t k = 0; k < others.size(); ++k) {
-    if (before && k < before->measured.size()) {
-      map.measured.push_back(before->measured[k]);
-      map.measured.back().limits = limits_beside(map, k);
-      continue;
-    }
+    if (!is_mine(map, x_is_step() ? k * columns : k)) continue;
+    const auto at = std::ranges::lower_bound(map.measured, others[k], {}, &MeasuredLimit::other);
+    if (at != map.measured.end() && at->other == others[k]) continue;
     MeasuredLimit limit{.other = others[k]};
-    limit.limits = limits_beside(map, k);
+    limit.limits = limits_beside(map, limit.other);
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const StabilityCell& cell = map.cells[x_is_step() ? k * columns + s : s * columns + k];
       if (cell.status != CellStatus::run) continue;
@@ -157,7 +162,7 @@ bool MapRunner::measure_limits(MethodMap& map) {
         limit.stable_beyond = true;
     }
     if (!narrow(map.method, limit)) return false;
-    map.measured.push_back(limit);
+    map.measured.insert(at, limit);
     tell();
   }
   return true;
@@ -167,10 +172,8 @@ StabilityMap MapRunner::run() {
   map_ = plan_stability_map(scene_, options_);
   x_values_ = map_.x_values;
   y_values_ = map_.y_values;
-  for (const std::string& method : options_.methods) {
-    map_.methods.push_back({method, {}, {}});
-    map_.complete = map_.complete && lay_out(map_.methods.back());
-  }
+  for (const std::string& method : options_.methods) map_.methods.push_back(begun(method));
+  for (MethodMap& method : map_.methods) map_.complete = map_.complete && lay_out(method);
   const bool has_limits = x_is_step() || y_is_step();
   if (has_limits) work_ *= 1.2;  // for the limits' own runs
   work_ = std::max(work_, 1.0);
@@ -249,6 +252,21 @@ std::vector<Problem> find_problems(const Scene& scene, const StabilityOptions& o
         }
       }
   return problems;
+}
+
+std::int64_t line_of(const StabilityMap& map, std::size_t method, std::size_t cell) {
+  const std::size_t columns = map.x_values.size(), rows = map.y_values.size();
+  const bool y_is_step = map.options.y.path == time_step_path;
+  return static_cast<std::int64_t>(y_is_step ? method * columns + cell % columns
+                                             : method * rows + cell / columns);
+}
+
+std::int64_t line_of(const StabilityMap& map, std::size_t method, const MeasuredLimit& limit) {
+  const bool y_is_step = map.options.y.path == time_step_path;
+  const std::vector<double>& others = y_is_step ? map.x_values : map.y_values;
+  const auto place =
+      static_cast<std::size_t>(std::lower_bound(others.begin(), others.end(), limit.other) - others.begin());
+  return line_of(map, method, y_is_step ? place : place * map.x_values.size());
 }
 
 StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options) {

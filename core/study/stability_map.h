@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
 #include "simulation/simulation.h"
 #include "study/energy_verdict.h"
 #include "study/study_axis.h"
@@ -27,8 +28,9 @@ struct StabilityOptions {
   /// The map so far, after every finished cell and measured limit; the last is what is returned.
   std::function<void(const StabilityMap&)> partial{};
   StopTest stop{};  ///< asked between batches of steps; stops like `progress`
-  /// The same map, stopped before its end: its cells and measured limits are not run again.
+  /// The same map, not whole: its cells and measured limits are not run again.
   const StabilityMap* earlier = nullptr;
+  Shard shard{};  ///< whose lines are run alone, see line_of
 };
 
 /// The step that is predicted to be the longest stable one, in s; 0: none is stable; infinity: any.
@@ -73,7 +75,7 @@ struct MeasuredLimit {
 struct MethodMap {
   std::string method;
   std::vector<StabilityCell> cells;     ///< iy * x count + ix
-  std::vector<MeasuredLimit> measured;  ///< empty where no axis is the time step
+  std::vector<MeasuredLimit> measured;  ///< ascending; empty where no axis is the time step
 };
 
 struct StabilityMap {
@@ -110,6 +112,11 @@ std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCr
 
 /// One run, judged. `stop` is asked between batches of steps; after true the cell's status is not_run.
 StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion, const StopTest& stop = {});
+
+/// A line of the map: the cells of one method and one value of the other axis, along the time step where that
+/// is an axis, else along x. Its number, method after method, of a cell or a measured limit.
+std::int64_t line_of(const StabilityMap& map, std::size_t method, std::size_t cell);
+std::int64_t line_of(const StabilityMap& map, std::size_t method, const MeasuredLimit& limit);
 
 /// What will be run: axes and methods, no cells yet.
 StabilityMap plan_stability_map(const Scene& scene, const StabilityOptions& options);

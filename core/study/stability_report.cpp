@@ -130,10 +130,12 @@ std::string limits_outside(const StabilityMap& map, const MethodMap& method) {
   const std::vector<double>& steps = x_is_step ? map.x_values : map.y_values;
   double shortest = infinity, longest = 0;
   for (const StabilityCell& cell : method.cells) {
+    if (cell.status == CellStatus::not_run && cell.time_step == 0) continue;  // not laid out
     shortest = std::min(shortest, cell.limits.predicted);
     longest = std::max(longest, cell.limits.predicted);
   }
   const std::string& title = facts_of(method.method).title;
+  if (shortest > longest) return {};
   if (std::isinf(shortest)) return title + ": for small motions every step is predicted to be stable.";
   if (longest <= 0) return title + ": no step is predicted to be stable.";
   if (longest >= steps.front() && shortest <= steps.back()) return {};

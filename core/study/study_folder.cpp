@@ -34,7 +34,9 @@ json contents(const WorkPrecision& study) {
   for (const MethodStudy& method : study.methods) options["methods"].push_back(method.ladder.facts.name);
   visit_options(JsonFields(options), study);
   visit_reference(JsonFields(reference), study.reference);
-  return {{"options", options}, {"estimated_s", study.estimated}, {"reference", reference}};
+  json root{{"options", options}, {"estimated_s", study.estimated}, {"reference", reference}};
+  if (study.parts > 0) root["parts"] = study.parts;
+  return root;
 }
 
 json contents(const StabilityMap& map) {
@@ -118,7 +120,7 @@ std::string study_json(const StudyTable& table) {
 
 std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
                         const std::string& command, double wall, const std::vector<FileDigest>& files,
-                        const std::optional<FileDigest>& states) {
+                        const std::optional<FileDigest>& states, const std::optional<Shard>& shard) {
   json root{{"format", study_format}, {"kind", kind_of(table)}, {"title", title_of(table)},
             {"command", command},     {"wall_s", wall},         {"complete", is_complete(table)}};
   root["made_by"] = maker();
@@ -129,7 +131,8 @@ std::string study_index(const std::filesystem::path& folder, const StudyTable& t
   }
   if (states) root["reference"]["states"] = digests_json({*states});
   if (!files.empty()) root["files"] = digests_json(files);
-  if (files.empty()) root["complete"] = false;
+  if (files.empty() || shard) root["complete"] = false;
+  if (shard) root["shard"] = fmt::format("{}/{}", shard->index, shard->count);
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

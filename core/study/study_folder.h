@@ -28,6 +28,7 @@ struct Study {
   StudyTable table;
   std::string command;  ///< what made it
   double wall = 0;      ///< s
+  std::string shard{};  ///< "2/3": it is this part alone; empty: the whole
 };
 
 /// "work-precision", "stability", "extremes", "convergence", "validation".
@@ -43,10 +44,10 @@ std::string title_of(const StudyTable& table);
 bool is_complete(const StudyTable& table);
 
 /// study.json for a folder. Without `files`: of a study that is being made, whose tables still grow.
-/// `states`: the file with the states of its reference, while it is kept.
+/// `states`: the file with the states of its reference, while it is kept. `shard`: it is that part alone.
 std::string study_index(const std::filesystem::path& folder, const StudyTable& table,
                         const std::string& command, double wall, const std::vector<FileDigest>& files,
-                        const std::optional<FileDigest>& states = {});
+                        const std::optional<FileDigest>& states = {}, const std::optional<Shard>& shard = {});
 
 /// The names of all files of such a study, study.json too.
 std::vector<std::string> study_files(const StudyTable& table);

@@ -66,6 +66,7 @@ WorkPrecision read_work_precision(const std::filesystem::path& folder, const Jso
     throw options.at("horizon_s").bad(*rule);
   study.estimated = root.at("estimated_s").number();
   study.stopped = !root.at("complete").flag();
+  if (root.has("parts")) study.parts = root.at("parts").whole<int>(0, 1e9);
   visit_reference(JsonFields(root.at("reference")), study.reference);
   Ladders ladders = make_ladders(study.scene, methods, study.horizon);
   study.horizon = ladders.horizon;
@@ -101,6 +102,45 @@ void check_axis(const StudyAxis& axis) {
   if (const auto* problem = std::get_if<Problem>(&checked)) throw BadFolder{problem->text()};
 }
 
+/// The place of a value on an axis, which another version may have rounded elsewhere; nullopt: it has none.
+std::optional<std::size_t> place_on(const std::vector<double>& values, double value) {
+  auto at = std::lower_bound(values.begin(), values.end(), value);
+  if (at == values.end() || (at != values.begin() && value - at[-1] < *at - value)) --at;
+  if (!(std::abs(*at - value) <= 1e-9 * std::abs(value))) return std::nullopt;
+  return static_cast<std::size_t>(at - values.begin());
+}
+
+/// Cells that are missing before the one of the row are there, not run.
+void read_cell(const Rows& rows, std::size_t row, const StabilityMap& map, MethodMap& method) {
+  StabilityCell cell;
+  read_row(rows, row, cell, method.method);
+  const auto ix = place_on(map.x_values, cell.x), iy = place_on(map.y_values, cell.y);
+  if (!ix || !iy) throw rows.bad(row, ix ? "y" : "x", csv_number(ix ? cell.y : cell.x), "is not on its axis");
+  const std::size_t columns = map.x_values.size(), place = *iy * columns + *ix;
+  for (std::size_t k = method.cells.size(); k <= place; ++k)
+    method.cells.push_back({.x = map.x_values[k % columns], .y = map.y_values[k / columns]});
+  if (method.cells[place].status != CellStatus::not_run)
+    throw rows.bad(row, "x", csv_number(cell.x), "and this y are there already");
+  method.cells[place] = std::move(cell);
+}
+
+MeasuredLimit read_limit(const JsonEntry& value, const StabilityMap& map, const MethodMap& method) {
+  const bool x_is_step = map.options.x.path == time_step_path;
+  const std::size_t columns = map.x_values.size(), rows = map.y_values.size();
+  MeasuredLimit limit{.other = value.at("at").number(),
+                      .longest_stable = value.at("longest_stable_s").number(),
+                      .shortest_unstable = number_or(value.at("shortest_unstable_s"), infinity),
+                      .stable_beyond = value.at("stable_beyond").flag()};
+  const std::vector<double>& others = x_is_step ? map.y_values : map.x_values;
+  const auto place = place_on(others, limit.other);
+  if (!place) throw value.at("at").bad("is not on its axis");
+  limit.other = others[*place];
+  const std::size_t cell = x_is_step ? *place * columns + columns - 1 : (rows - 1) * columns + *place;
+  if (cell >= method.cells.size()) throw value.bad("is a limit without cells");
+  limit.limits = method.cells[cell].limits;
+  return limit;
+}
+
 StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry& root) {
   StabilityMap map;
   map.scene = read_scene_of(root, folder);
@@ -118,32 +158,25 @@ StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry
   map.complete = root.at("complete").flag();
   for (const std::string& method : map.options.methods) map.methods.push_back({method, {}, {}});
   const Rows rows(folder, "stability.csv", root);
-  const std::size_t most = map.x_values.size() * map.y_values.size();
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::string name = rows.text(row, "method");
     const auto at = std::find_if(map.methods.begin(), map.methods.end(),
                                  [&](const MethodMap& known) { return known.method == name; });
-    if (at == map.methods.end() || at->cells.size() == most)
-      throw rows.bad(row, "method", name, "is not in study.json, or has more cells than its axes");
-    read_row(rows, row, at->cells.emplace_back(), name);
+    if (at == map.methods.end()) throw rows.bad(row, "method", name, "is not in study.json");
+    read_cell(rows, row, map, *at);
   }
-  const bool x_is_step = map.options.x.path == time_step_path;
   for (const std::string& name : root.at("limits").keys())
     for (MethodMap& method : map.methods)
       if (method.method == name)
-        for (const JsonEntry& value : root.at("limits").at(name).entries()) {
-          const std::size_t k = method.measured.size();
-          const std::size_t cell = x_is_step ? k * map.x_values.size() + map.x_values.size() - 1
-                                             : (map.y_values.size() - 1) * map.x_values.size() + k;
-          if (cell >= method.cells.size()) throw value.bad("is more than there are cells");
-          method.measured.push_back(
-              {.other = value.at("at").number(),
-               .longest_stable = value.at("longest_stable_s").number(),
-               .shortest_unstable = number_or(value.at("shortest_unstable_s"), infinity),
-               .stable_beyond = value.at("stable_beyond").flag(),
-               .limits = method.cells[cell].limits});
-        }
+        for (const JsonEntry& value : root.at("limits").at(name).entries())
+          method.measured.push_back(read_limit(value, map, method));
   return map;
+}
+
+bool is_planned(const ExtremesTable& table, const ExtremeCell& cell) {
+  const auto is_named = [&](const ExtremeCase& extreme) { return extreme.name == cell.case_name; };
+  return std::any_of(table.cases.begin(), table.cases.end(), is_named) &&
+         std::find(table.methods.begin(), table.methods.end(), cell.method) != table.methods.end();
 }
 
 ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry& root) {
@@ -155,14 +188,15 @@ ExtremesTable read_extremes(const std::filesystem::path& folder, const JsonEntry
   if (table.cases.size() != options.cases.size() || table.methods.size() != options.methods.size())
     throw root.at("options").bad("has a case or method that this version does not have");
   const Rows rows(folder, "extremes.csv", root);
+  std::map<std::int64_t, ExtremeCell> cells;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const std::size_t extreme = row / table.methods.size();
-    const std::string name = rows.text(row, "case");
-    if (extreme >= table.cases.size() || name != table.cases[extreme].name ||
-        rows.text(row, "method") != table.methods[row % table.methods.size()])
-      throw rows.bad(row, "case", name, "is not the case and method that study.json has here");
-    read_row(rows, row, table.cells.emplace_back());
+    ExtremeCell cell;
+    read_row(rows, row, cell);
+    if (!is_planned(table, cell) || !cells.try_emplace(table.number_of(cell), cell).second)
+      throw rows.bad(row, "case", cell.case_name,
+                     "is no case and method of study.json that is not there yet");
   }
+  for (auto& [number, cell] : cells) table.cells.push_back(std::move(cell));
   return table;
 }
 
@@ -178,14 +212,16 @@ GridConvergence read_convergence(const std::filesystem::path& folder, const Json
   if (!problems.empty()) throw from.bad(problems.front().text());
   GridConvergence study = plan_grid_convergence(scene, options);
   const Rows rows(folder, csv_name(study), root);
+  std::map<int, GridRun> runs;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const std::string cells = rows.text(row, "cells");
-    if (study.is_complete() || cells != std::to_string(study.cells[row]))
-      throw rows.bad(row, "cells", cells, "is not the grid that study.json has here");
-    GridRun run = run_to_make(study, study.cells[row]);
+    const auto cells = static_cast<int>(rows.whole(row, "cells", 0, 1e6));
+    if (std::find(study.cells.begin(), study.cells.end(), cells) == study.cells.end() || runs.contains(cells))
+      throw rows.bad(row, "cells", std::to_string(cells), "is no grid of study.json that is not there yet");
+    GridRun run = run_to_make(study, cells);
     read_row(rows, row, run, study);
-    study.runs.push_back(std::move(run));
+    runs.emplace(cells, std::move(run));
   }
+  for (auto& [cells, run] : runs) study.runs.push_back(std::move(run));
   return study;
 }
 
@@ -239,18 +275,23 @@ ValidationStudy read_validation(const std::filesystem::path& folder, const JsonE
   ValidationStudy study = plan_validation(options);
   const Rows rows(folder, csv_name(study), root), points(folder, validation_points_name, root);
   std::size_t row = 0, point = 0;
-  for (ValidationRow read : study.expected) {
-    const std::size_t first = row;
-    if (!read_validation_row(rows, row, read)) {
-      row = first;
-      break;
+  std::vector<std::optional<ValidationRow>> found(study.expected.size());
+  while (row < rows.size()) {
+    const auto expected = std::find_if(study.expected.begin(), study.expected.end(),
+                                       [&](const ValidationRow& one) { return is_of(rows, row, one); });
+    const std::size_t first = row, place = static_cast<std::size_t>(expected - study.expected.begin());
+    ValidationRow read = place < found.size() && !found[place] ? *expected : ValidationRow{};
+    if (read.protocol.empty() || !read_validation_row(rows, row, read)) {
+      if (!root.at("complete").flag()) break;  // its last row was not written to its end
+      throw rows.bad(first, "protocol", rows.text(first, "protocol"),
+                     "is no whole row of study.json that is not there yet");
     }
     for (; is_of(points, point, read); ++point)
       read.shown.emplace_back(points.number(point, "x"), points.number(point, "y"));
-    study.rows.push_back(std::move(read));
+    found[place] = std::move(read);
   }
-  if (row < rows.size() && root.at("complete").flag())
-    throw rows.bad(row, "protocol", rows.text(row, "protocol"), "is not the row that study.json has here");
+  for (std::optional<ValidationRow>& read : found)
+    if (read) study.rows.push_back(std::move(*read));
   return study;
 }
 
@@ -296,6 +337,7 @@ StudyReading read_study(const std::filesystem::path& folder) {
       throw root.at("format").bad(fmt::format("must be \"{}\"", study_format));
     disagreements = find_disagreements(folder, root);
     Study study{read_table(folder, root), root.at("command").text(), root.at("wall_s").number()};
+    if (root.has("shard")) study.shard = root.at("shard").text();
     if (disagreements.empty()) return {std::move(study), {}};
   } catch (const BadFolder& bad) {
     if (!disagreements.empty()) disagreements += "; ";

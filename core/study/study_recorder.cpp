@@ -55,6 +55,29 @@ bool has_beginning(const StudyTable& table) {
   return finished_runs(table) > 0 || (study && study->reference.is_known());
 }
 
+/// The states of the reference from their file, to the bit. Where it is not the one that `index`, the
+/// folder's study.json, describes, they stay away, and whoever needs them solves the reference again.
+std::optional<FileDigest> restore_reference(const std::filesystem::path& place, const std::string& index,
+                                            StudyTable& table) {
+  auto* study = std::get_if<WorkPrecision>(&table);
+  if (!study || !study->reference.is_known()) return std::nullopt;
+  const Json reference = Json::parse(index).at("reference");
+  std::string bytes;
+  if (!reference.contains("states") ||
+      read_text_file(place / reference_states_name, bytes, largest_mesh_text))
+    return std::nullopt;
+  const FileDigest found = digest_of(reference_states_name, bytes, false);
+  if (reference.at("states") != digests_json({found})) return std::nullopt;
+  study->reference.states = states_from(bytes, study->particles, study->samples, study->horizon);
+  if (study->reference.states.empty()) return std::nullopt;
+  return found;
+}
+
+bool lacks_states(const StudyTable& table) {
+  const auto* study = std::get_if<WorkPrecision>(&table);
+  return study && study->reference.states.empty();
+}
+
 /// What is decided anew by what is left of the budget.
 void forget_refused(StudyTable& table) {
   if (auto* study = std::get_if<WorkPrecision>(&table))
@@ -65,68 +88,106 @@ void forget_refused(StudyTable& table) {
 
 }  // namespace
 
+/// An unfinished study as its folder has it.
+struct StudyRecorder::Unfinished {
+  std::optional<Study> study;  ///< none: there is nothing to go on with
+  std::string index;           ///< its study.json
+  std::string maker;           ///< its folder and machine
+};
+
 std::optional<IoError> StudyRecorder::begin(const std::filesystem::path& folder, const StudyTable& plan,
                                             const StudyStart& start) {
   command_ = start.command;
+  shard_ = start.shard;
   earlier_.reset();
   states_.reset();
+  parts_ = 0;
+  wall_of_parts_ = 0;
+  disagreements_.clear();
   FolderUse use{.kind = kind_of(plan), .files = study_files(plan), .inputs = start.inputs};
   if (const Scene* scene = scene_of(plan))
     for (const std::string& mesh : mesh_files(*scene)) use.inputs.emplace_back(mesh);
-  if (auto error = folder_.lock(folder, use)) return error;
-  if (auto error = look_at_earlier(plan, start)) {
+  if (auto error = folder_.lock(shard_ ? part_folder(folder, *shard_) : folder, use)) return error;
+  auto refused = start.overwrite ? std::nullopt : look_at_earlier(plan);
+  const bool goes_on = earlier_.has_value();  // in this folder, not in those of parts alone
+  if (!start.overwrite && !refused) refused = take_parts(folder, plan, start);
+  if (refused) {
     folder_.release();
-    return error;
+    return refused;
   }
-  if (auto error = earlier_ ? folder_.go_on() : folder_.begin_anew()) return error;
+  if (auto error = goes_on ? folder_.go_on() : folder_.begin_anew()) return error;
   // Before the tables change, so that no study.json ever has the digests of other tables.
   if (auto error = write_index(earlier_ ? earlier_->table : plan)) return error;
   return begin_tables(earlier_ ? earlier_->table : plan);
 }
 
-std::optional<IoError> StudyRecorder::look_at_earlier(const StudyTable& plan, const StudyStart& start) {
-  std::string text;
+/// What of the study's beginning lies in a folder; refuses what is the beginning of another one.
+std::optional<IoError> StudyRecorder::read_unfinished(const std::filesystem::path& place,
+                                                      const StudyTable& plan, Unfinished& found) const {
   std::error_code ignored;
-  if (start.overwrite || !std::filesystem::exists(folder_ / "study.json", ignored)) return std::nullopt;
-  if (auto error = read_text_file(folder_ / "study.json", text)) return error;
-  const Json before = Json::parse(text, nullptr, false);
+  if (!std::filesystem::exists(place / "study.json", ignored)) return std::nullopt;
+  if (auto error = read_text_file(place / "study.json", found.index)) return error;
+  const Json before = Json::parse(found.index, nullptr, false);
   if (!before.is_object() || before.value("complete", Json()) != Json(false)) return std::nullopt;
   const auto refused = [&](const std::string& why) {
-    return IoError{folder_.path(),
-                   "holds an unfinished study " + why + ": give another folder, or --overwrite to begin anew",
+    const char* advice = place == folder_.path() ? "or --overwrite to begin anew" : "or remove this one";
+    return IoError{place, fmt::format("holds an unfinished study {}: give another folder, {}", why, advice),
                    true};
   };
-  StudyReading reading = read_study(folder_.path());
+  StudyReading reading = read_study(place);
+  if (!reading.study) reading = read_study(place);  // its process may just have begun its tables anew,
+  if (!std::filesystem::exists(place / "study.json", ignored)) return std::nullopt;  // or the whole folder
   if (!reading.study) return refused("that cannot be read (" + reading.problem + ")");
   if (!has_beginning(reading.study->table)) return std::nullopt;
-  const Json now = Json::parse(study_index(folder_.path(), plan, command_, 0, {}));
-  if (const auto found = differences(before, now); !found.empty())
-    return refused(fmt::format("of other inputs (not the same: {})", fmt::join(found, ", ")));
-  earlier_ = std::move(reading.study);
-  forget_refused(earlier_->table);
-  restore_reference(text);
+  const Json now = Json::parse(study_index(place, plan, command_, 0, {}));
+  if (before.value("kind", Json()) != now.at("kind")) return refused("of another kind");
+  if (const auto others = differences(before, now); !others.empty())
+    return refused(fmt::format("of other inputs (not the same: {})", fmt::join(others, ", ")));
+  const Json maker = before.value("made_by", Json::object());
+  found.maker = fmt::format("{} ({}, {})", place.string(), maker.value("processor", ""),
+                            maker.value("instruction_set", ""));
+  forget_refused(reading.study->table);
+  found.study = std::move(reading.study);
   return std::nullopt;
 }
 
-/// The states of the reference from their file, to the bit. Where it is not the one that study.json
-/// describes, they stay away, and whoever needs them solves the reference again.
-void StudyRecorder::restore_reference(const std::string& index) {
-  auto* study = std::get_if<WorkPrecision>(&earlier_->table);
-  if (!study || !study->reference.is_known()) return;
-  const Json reference = Json::parse(index).at("reference");
-  std::string bytes;
-  if (!reference.contains("states") ||
-      read_text_file(folder_ / reference_states_name, bytes, largest_mesh_text))
-    return;
-  const FileDigest found = digest_of(reference_states_name, bytes, false);
-  if (reference.at("states") != digests_json({found})) return;
-  study->reference.states = states_from(bytes, study->particles, study->samples, study->horizon);
-  if (!study->reference.states.empty()) states_ = found;
+std::optional<IoError> StudyRecorder::look_at_earlier(const StudyTable& plan) {
+  Unfinished found;
+  if (auto error = read_unfinished(folder_.path(), plan, found)) return error;
+  earlier_ = std::move(found.study);
+  if (earlier_) states_ = restore_reference(folder_.path(), found.index, earlier_->table);
+  return std::nullopt;
+}
+
+std::optional<IoError> StudyRecorder::take_parts(const std::filesystem::path& folder, const StudyTable& plan,
+                                                 const StudyStart& start) {
+  StudyParts all(plan, start.shard);
+  if (earlier_) all.add(earlier_->table, folder_.path().string());
+  std::vector<std::filesystem::path> places = part_folders(folder);
+  if (shard_) places.push_back(folder);  // what a whole study had made when it was stopped
+  for (const std::filesystem::path& place : places) {
+    if (place == folder_.path()) continue;
+    Unfinished part;
+    if (auto error = read_unfinished(place, plan, part)) return error;
+    if (!part.study) continue;
+    if (lacks_states(all.table())) restore_reference(place, part.index, part.study->table);
+    all.add(part.study->table, part.maker);
+    ++parts_;
+    wall_of_parts_ += part.study->wall;
+  }
+  disagreements_ = all.disagreements();
+  if (!disagreements_.empty())
+    return IoError{folder, "parts of the study do not agree: " + disagreements_.front(), true};
+  if (parts_ == 0 || !has_beginning(all.table())) return std::nullopt;
+  earlier_ = Study{all.table(), command_, earlier_ ? earlier_->wall : 0};
+  if (auto* study = std::get_if<WorkPrecision>(&earlier_->table); study && !shard_) study->parts = parts_;
+  return std::nullopt;
 }
 
 std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   rows_kept_.clear();
   samples_kept_.clear();
+  cells_kept_.clear();
   limits_kept_ = 0;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
     for (const MethodStudy& method : study->methods) {
@@ -141,26 +202,23 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   if (const auto* map = std::get_if<StabilityMap>(&table)) {
     kept.header = table_of(StabilityMap{}).header;
     rows_kept_.assign(map->options.methods.size(), 0);
-    for (std::size_t m = 0; m < map->methods.size(); ++m) {
-      for (const StabilityCell& cell : map->methods[m].cells) {
-        if (!is_finished(cell)) break;
-        kept.rows.push_back(written(cell, map->methods[m].method).texts);
-        ++rows_kept_[m];
-      }
-      limits_kept_ += map->methods[m].measured.size();
+    for (const MethodMap& method : map->methods) {
+      for (const StabilityCell& cell : method.cells)
+        if (is_finished(cell)) kept.rows.push_back(written(cell, method.method).texts);
+      limits_kept_ += method.measured.size();
     }
   } else if (const auto* grids = std::get_if<GridConvergence>(&table)) {
     kept = table_of(*grids);
-    rows_kept_ = {grids->runs.size()};
+    for (const GridRun& run : grids->runs) cells_kept_.insert(run.cells);
   } else if (const auto* validation = std::get_if<ValidationStudy>(&table)) {
-    rows_kept_ = {validation->rows.size()};
+    for (const ValidationRow& row : validation->rows) cells_kept_.insert(validation->number_of(row));
     if (auto error = begin_table(folder_, validation_points_name, points_table(*validation), samples_))
       return error;
     kept = table_of(*validation);
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
     kept = table_of(extremes);
-    rows_kept_ = {extremes.cells.size()};
+    for (const ExtremeCell& cell : extremes.cells) cells_kept_.insert(extremes.number_of(cell));
   }
   return begin_table(folder_, csv_name(table), kept, rows_);
 }
@@ -169,7 +227,7 @@ std::optional<IoError> StudyRecorder::write_index(const StudyTable& so_far) {
   if (auto error = folder_.add("study.json")) return error;
   const double wall = earlier_ ? earlier_->wall : 0;
   return write_text_file(folder_ / "study.json",
-                         study_index(folder_.path(), so_far, command_, wall, {}, states_));
+                         study_index(folder_.path(), so_far, command_, wall, {}, states_, shard_));
 }
 
 std::optional<IoError> StudyRecorder::keep(const StudyTable& so_far) {
@@ -199,11 +257,20 @@ std::optional<IoError> StudyRecorder::keep(const WorkPrecision& so_far) {
 }
 
 std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
+  const auto* before = earlier_ ? &std::get<StabilityMap>(earlier_->table) : nullptr;
+  const auto was_there = [&](std::size_t m, std::size_t k) {
+    return before && k < before->methods[m].cells.size() && is_finished(before->methods[m].cells[k]);
+  };
   std::size_t limits = 0;
   for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
     const MethodMap& method = so_far.methods[m];
-    for (std::size_t& k = rows_kept_[m]; k < method.cells.size() && is_finished(method.cells[k]); ++k)
-      if (auto error = rows_.add(written(method.cells[k], method.method).texts)) return error;
+    for (std::size_t& k = rows_kept_[m]; k < method.cells.size(); ++k) {
+      if (!is_finished(method.cells[k])) {
+        if (!shard_ || shard_->has(line_of(so_far, m, k))) break;  // it is the next
+      } else if (!was_there(m, k)) {
+        if (auto error = rows_.add(written(method.cells[k], method.method).texts)) return error;
+      }
+    }
     limits += method.measured.size();
   }
   if (auto error = rows_.flush()) return error;
@@ -213,32 +280,50 @@ std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
 }
 
 std::optional<IoError> StudyRecorder::keep(const ExtremesTable& so_far) {
-  for (std::size_t& k = rows_kept_.front(); k < so_far.cells.size(); ++k)
-    if (auto error = rows_.add(written(so_far.cells[k]).texts)) return error;
+  for (const ExtremeCell& cell : so_far.cells)
+    if (cells_kept_.insert(so_far.number_of(cell)).second)
+      if (auto error = rows_.add(written(cell).texts)) return error;
   return rows_.flush();
 }
 
 std::optional<IoError> StudyRecorder::keep(const GridConvergence& so_far) {
-  for (std::size_t& k = rows_kept_.front(); k < so_far.runs.size(); ++k)
-    if (auto error = rows_.add(written(so_far.runs[k], so_far).texts)) return error;
+  for (const GridRun& run : so_far.runs)
+    if (cells_kept_.insert(run.cells).second)
+      if (auto error = rows_.add(written(run, so_far).texts)) return error;
   return rows_.flush();
 }
 
 std::optional<IoError> StudyRecorder::keep(const ValidationStudy& so_far) {
-  for (std::size_t& k = rows_kept_.front(); k < so_far.rows.size(); ++k) {
-    for (const auto& line : point_lines(so_far.rows[k]))
+  for (const ValidationRow& row : so_far.rows) {
+    if (!cells_kept_.insert(so_far.number_of(row)).second) continue;
+    for (const auto& line : point_lines(row))
       if (auto error = samples_.add(line)) return error;
-    for (const auto& line : lines_of(so_far.rows[k]))
+    for (const auto& line : lines_of(row))
       if (auto error = rows_.add(line)) return error;
   }
   if (auto error = samples_.flush()) return error;  // first: a row that is there has its points
   return rows_.flush();
 }
 
+/// The tables stay as they grew, and the states too: whoever makes the whole study may need them.
+std::optional<IoError> StudyRecorder::end_part(const StudyTable& table, double wall) {
+  std::string text;
+  for (const std::string& name : study_files(table)) {
+    if (!name.ends_with(".csv")) continue;
+    if (auto error = read_text_file(folder_ / name, text)) return error;
+    folder_.note(digest_of(name, text, true));
+  }
+  if (states_) folder_.note(*states_);
+  return folder_.finish(
+      "study.json", study_index(folder_.path(), table, command_, wall, folder_.digests(), states_, shard_));
+}
+
 std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) {
   if (earlier_) wall += earlier_->wall;
   if (auto error = rows_.close()) return error;
   if (auto error = samples_.close()) return error;
+  if (shard_) return end_part(table, wall);
+  if (is_complete(table)) wall += wall_of_parts_;  // who goes on with it adds them up again
   if (auto error = folder_.write(csv_name(table), study_csv(table), true)) return error;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
     const std::string samples = csv_text(sample_table(*study), "\n");

@@ -48,9 +48,11 @@ std::optional<StudyRun> run_at(const StabilityMap& map, std::size_t number) {
 }
 
 std::optional<StudyRun> run_at(const ExtremesTable& table, std::size_t number) {
-  if (number >= table.cells.size()) return std::nullopt;
-  const ExtremeCell& cell = table.cells[number];
+  if (number >= table.cases.size() * table.methods.size()) return std::nullopt;
   const ExtremeCase& extreme = table.cases[number / table.methods.size()];
+  const ExtremeCell* made = table.cell(number / table.methods.size(), number % table.methods.size());
+  if (!made) return std::nullopt;
+  const ExtremeCell& cell = *made;
   if (cell.status == ExtremeStatus::refused) return std::nullopt;
   StudyRun found{.name = fmt::format("{}, {}", extreme.name, facts_of(cell.method).title),
                  .status = name_of(cell.status),

@@ -55,7 +55,15 @@ bool CsvFields::add(const char* name, const std::string& value) {
   if (rows_) return true;
   names.emplace_back(name);
   texts.push_back(value);
+  is_derived_.push_back(false);
   return false;
+}
+
+std::vector<std::pair<std::string, std::string>> CsvFields::results() const {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (!is_derived_[k] && names[k] != "wall_s") found.emplace_back(names[k], texts[k]);
+  return found;
 }
 
 void CsvFields::text(const char* name, std::string& value) {

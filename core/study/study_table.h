@@ -64,11 +64,17 @@ class CsvFields {
       value = static_cast<Integer>(rows_->whole(row_, name, least, most));
   }
   /// What follows from other fields is not read.
-  void derived(const char* name, const std::string& value) { add(name, value); }
+  void derived(const char* name, const std::string& value) {
+    if (!add(name, value)) is_derived_.back() = true;
+  }
 
   bool has(const char* name) const { return !rows_ || rows_->has(name); }
 
   std::vector<std::string> names, texts;  ///< as written
+
+  /// Names and texts of what another process must come to as well: neither derived from what may be missing
+  /// there, nor measured on the clock.
+  std::vector<std::pair<std::string, std::string>> results() const;
 
  private:
   /// Whether the field is to be read; otherwise it has been written.
@@ -76,6 +82,7 @@ class CsvFields {
 
   const Rows* rows_ = nullptr;
   std::size_t row_ = 0;
+  std::vector<bool> is_derived_;  ///< of what was written
 };
 
 template <class Record, class... Context>

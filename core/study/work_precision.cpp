@@ -8,11 +8,11 @@
 
 #include "cloth/cut_grid.h"
 #include "cloth/mesh_cloth.h"
+#include "design/quantile.h"
 #include "geometry/split_mix.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_parameters.h"
 #include "simulation/step_batches.h"
-#include "design/quantile.h"
 
 namespace cloth {
 namespace {
@@ -128,7 +128,10 @@ ReferenceSolution make_reference(const WorkPrecision& study, const WorkPrecision
 class Measuring {
  public:
   Measuring(WorkPrecision& study, const WorkPrecisionOptions& options)
-      : study_(study), options_(options), active_(study.methods.size(), true) {}
+      : study_(study), options_(options), active_(study.methods.size(), true) {
+    for (std::size_t m = 0; m < active_.size(); ++m)
+      active_[m] = !options.shard || options.shard->has(static_cast<std::int64_t>(m));
+  }
 
   /// False if it was stopped.
   bool all() {
@@ -146,9 +149,11 @@ class Measuring {
       active_[m] = false;
       return true;
     }
-    const double left = study_.budget - study_.estimated;
+    const double left =
+        study_.budget - (options_.shard ? reference_cost_ + cost_of(method) : study_.estimated);
     const double cost = predicted(method, rung, study_.repeats);
-    const auto sharing = static_cast<double>(std::count(active_.begin(), active_.end(), true));
+    const auto sharing =
+        options_.shard ? 1.0 : static_cast<double>(std::count(active_.begin(), active_.end(), true));
     if (cost > left / (reached(method) < promised_rungs ? std::min(2.0, sharing) : sharing)) {
       method.runs.push_back(refused_run(method, rung, study_.horizon, cost, left));
       tell(study_, options_);
@@ -188,8 +193,15 @@ class Measuring {
            method.runs.back().error.rms_position < 10 * study_.reference.floor.rms_position;
   }
 
+  double cost_of(const MethodStudy& method) const {
+    double sum = 0;
+    for (const WorkPrecisionRun& run : method.runs) sum += whole_cost(run, study_.repeats);
+    return sum;
+  }
+
   WorkPrecision& study_;
   const WorkPrecisionOptions& options_;
+  const double reference_cost_ = study_.estimated;
   std::vector<bool> active_;
 };
 
@@ -348,8 +360,23 @@ WorkPrecision plan_work_precision(const Scene& scene, const WorkPrecisionOptions
   return study;
 }
 
+namespace {
+
+/// What was made earlier and not come to before a stop.
+void keep_earlier(WorkPrecision& study, const WorkPrecision& earlier) {
+  for (std::size_t m = 0; m < study.methods.size(); ++m) {
+    std::vector<WorkPrecisionRun>& runs = study.methods[m].runs;
+    for (const WorkPrecisionRun& run : earlier.methods[m].runs)
+      if (run.status != RunStatus::refused && (runs.empty() || run.rung > runs.back().rung))
+        runs.push_back(run);
+  }
+}
+
+}  // namespace
+
 WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOptions& options) {
   WorkPrecision study = plan_work_precision(scene, options);
+  if (options.earlier) study.parts = options.earlier->parts;
   if (options.earlier && options.earlier->reference.is_known())
     study.reference = options.earlier->reference;
   else
@@ -361,6 +388,7 @@ WorkPrecision study_work_precision(const Scene& scene, const WorkPrecisionOption
   study.estimated = estimated_seconds(study.particles, {.force_evaluations = study.reference.evaluations}, 0);
   tell(study, options);
   study.stopped = !Measuring(study, options).all() || !time_all(study, options);
+  if (study.stopped && options.earlier) keep_earlier(study, *options.earlier);
   tell(study, options);
   conclude(study);
   return study;

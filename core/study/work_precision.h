@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
 #include "simulation/simulation.h"
 #include "study/order_estimate.h"
 #include "study/reference_solution.h"
@@ -27,9 +28,13 @@ struct WorkPrecisionOptions {
   /// what is returned.
   std::function<void(const WorkPrecision&)> partial{};
   StopTest stop{};  ///< asked between batches of steps, the timed ones too; stops like `progress`
-  /// The same study, stopped before its end: its reference, runs and timings are not made again. Only where
-  /// the states of the reference are lost and a run is left to measure is it solved once more.
+  /// The same study, not whole: its reference, runs and timings are not made again. Only where the states of
+  /// the reference are lost and a run is left to measure is it solved once more.
   const WorkPrecision* earlier = nullptr;
+  /// Whose methods are measured alone, by their place. Each may then use up the budget: what the other
+  /// methods leave of it is known when all are together, so that a part may have runs that the whole study
+  /// refuses.
+  std::optional<Shard> shard{};
 };
 
 enum class RunStatus { stable, energy_growth, diverged, solver_failed, refused };
@@ -83,6 +88,7 @@ struct WorkPrecision {
   double budget = 0, estimated = 0;  ///< s
   ReferenceSolution reference;
   std::vector<MethodStudy> methods;
+  int parts = 0;  ///< that processes of their own made and timed, see study_parts.h
   bool stopped = false;
   bool is_complete() const { return !stopped; }
 };

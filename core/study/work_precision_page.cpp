@@ -25,6 +25,13 @@ void add_notices(const WorkPrecision& study, HtmlPage& page) {
   if (!study.reference.failure.empty() && !study.stopped)
     page.notice("There is no reference, so that there are no errors: " + study.reference.failure,
                 Verdict::bad);
+  if (study.parts > 0)
+    page.notice(
+        fmt::format("{} parts of this study were made and timed by processes of their own, on processors of "
+                    "one name. Errors and counts do not depend on that; times of two methods can be compared "
+                    "as far as nothing else slowed one of their processes.",
+                    study.parts),
+        Verdict::warn);
   if (!study.reference.smooth)
     page.notice(
         "The scene limits stretching or has obstacles. Projections at the end of a step are not smooth in "

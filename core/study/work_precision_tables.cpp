@@ -163,6 +163,7 @@ std::string study_json(const WorkPrecision& study) {
             {"cheapest", cheapest_json(study)},
             {"methods", json::array()},
             {"machine", machine_json()}};
+  if (study.parts > 0) root["parts"] = study.parts;
   if (!reference.failure.empty()) root["failure"] = reference.failure;
   for (const MethodStudy& method : study.methods) root["methods"].push_back(method_json(method));
   return root.dump(2) + "\n";

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
+
 namespace cloth {
 
 /// `refused`: the scene of the point breaks a rule, or has no stable step. `unsolvable`: the equations of a
@@ -37,13 +39,6 @@ struct PointRow {
 
 /// Equal in every bit but the wall time, or of the machine.
 bool agree(const PointRow& a, const PointRow& b);
-
-/// Part I of N, I from 1: the points p with p mod N = I - 1.
-struct Shard {
-  std::int64_t index = 1, count = 1;
-  bool has(std::int64_t point) const { return point % count == index - 1; }
-  bool operator==(const Shard&) const = default;
-};
 
 /// Whether a point can be of both.
 bool may_share_points(const Shard& a, const Shard& b);

@@ -40,7 +40,7 @@ std::vector<Page> pages() {
           {"studies/convergence.md", HelpWindow::tr("Study: grid convergence")},
           {"studies/iterations.md", HelpWindow::tr("Study: iterations")},
           {"studies/sweep.md", HelpWindow::tr("Study: sweeps")},
-          {"studies/cluster.md", HelpWindow::tr("Sweeps on a cluster")},
+          {"studies/cluster.md", HelpWindow::tr("Sweeps and studies on a cluster")},
           {"studies/sensitivity.md", HelpWindow::tr("Sensitivity")},
           {"studies/identify.md", HelpWindow::tr("Parameters from measurements")},
           {"parameters.md", HelpWindow::tr("Parameters")},

@@ -122,24 +122,18 @@ ValidationStudy plan_validation(const ValidationOptions& options) {
 ValidationStudy run_validation(const ValidationOptions& options) {
   ValidationStudy study = plan_validation(options);
   if (options.earlier) study.rows = options.earlier->rows;
-  bool goes_on = true;
-  const auto tell = [&] {
-    if (study.is_complete() || !options.progress) return;
-    const double done = static_cast<double>(study.rows.size()),
-                 all = static_cast<double>(study.expected.size());
-    goes_on = options.progress({done / all, name_of(study.expected[study.rows.size()])});
-  };
-  const std::vector<ValidationRow> left(
-      study.expected.begin() + static_cast<std::ptrdiff_t>(study.rows.size()), study.expected.end());
-  tell();
-  validate(
-      left,
-      [&](ValidationRow row) {
-        study.rows.push_back(std::move(row));
-        if (options.partial) options.partial(study);
-        tell();
-      },
-      [&] { return !goes_on || is_to_stop(options.stop); });
+  const auto number_of = [&](const ValidationRow& row) { return study.number_of(row); };
+  const double all = static_cast<double>(study.expected.size());
+  for (std::size_t place = 0; place < study.expected.size(); ++place) {
+    const ValidationRow& expected = study.expected[place];
+    const auto number = static_cast<std::int64_t>(place);
+    const auto at = std::ranges::lower_bound(study.rows, number, {}, number_of);
+    if (!options.shard.has(number) || (at != study.rows.end() && number_of(*at) == number)) continue;
+    if (options.progress && !options.progress({static_cast<double>(place) / all, name_of(expected)})) break;
+    const auto keep = [&](ValidationRow row) { study.rows.insert(at, std::move(row)); };
+    if (!validate({expected}, keep, options.stop)) break;
+    if (options.partial) options.partial(study);
+  }
   return study;
 }
 
@@ -152,6 +146,11 @@ std::optional<Scene> scene_of(const ValidationRow& row) {
   scene.title = name_of(row);
   scene.integrator = {.method = "implicit-euler", .time_step = 0.005};
   return scene;
+}
+
+std::int64_t ValidationStudy::number_of(const ValidationRow& row) const {
+  const auto is_it = [&](const ValidationRow& one) { return name_of(one) == name_of(row); };
+  return std::find_if(expected.begin(), expected.end(), is_it) - expected.begin();
 }
 
 std::string name_of(const ValidationRow& row) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "io/shard.h"
 #include "study/study_progress.h"
 #include "study/validation/strip.h"
 
@@ -103,8 +104,11 @@ bool validate(std::vector<ValidationRow> rows, const std::function<void(Validati
 struct ValidationStudy {
   std::vector<std::string> protocols;
   std::vector<ValidationRow> expected;  ///< all rows, not measured
-  std::vector<ValidationRow> rows;      ///< as far as they were measured
+  std::vector<ValidationRow> rows;      ///< those that were measured, in this order
   bool is_complete() const { return rows.size() == expected.size(); }
+
+  /// In `expected`; its size where it is not there.
+  std::int64_t number_of(const ValidationRow& row) const;
 };
 
 struct ValidationOptions {
@@ -112,8 +116,9 @@ struct ValidationOptions {
   std::function<bool(const StudyProgress&)> progress{};   ///< false stops the study
   std::function<void(const ValidationStudy&)> partial{};  ///< the study so far, after every row
   StopTest stop{};                                        ///< asked between grids
-  /// The same study, stopped before its end: its rows are not measured again.
+  /// The same study, not whole: its rows are not measured again.
   const ValidationStudy* earlier = nullptr;
+  Shard shard{};  ///< whose rows are measured alone, by their place in `expected`
 };
 
 /// The study without its rows' values, and with them. Precondition: all protocols are known.
@@ -124,7 +129,7 @@ ValidationStudy run_validation(const ValidationOptions& options);
 /// it is another thing, or would have to start bent, between two clamps.
 std::optional<Scene> scene_of(const ValidationRow& row);
 
-/// "heart-loop-50": of its files.
+/// "heart-loop-50": of its files, and of no other row of a study.
 std::string name_of(const ValidationRow& row);
 
 }  // namespace cloth

@@ -1,4 +1,6 @@
 // Which points a shard has, what schedulers say of it, and what a shard file is when something went wrong.
+#include "io/shard.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "support/random.h"
 #include "sweep/emit_sweep.h"
-#include "sweep/shard_choice.h"
 #include "sweep/sweep_rows.h"
 
 namespace cloth::test::shard_test {

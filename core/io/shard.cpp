@@ -1,4 +1,4 @@
-#include "sweep/shard_choice.h"
+#include "io/shard.h"
 
 #include <fmt/format.h>
 

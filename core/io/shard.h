@@ -1,14 +1,21 @@
-// Which part of a sweep this process is: said on the command line, or by the scheduler that started it.
+// Which part of a whole this process makes, said on the command line or by the scheduler that started it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <variant>
 
 #include "params/problem.h"
-#include "sweep/sweep_rows.h"
 
 namespace cloth {
+
+/// Part I of N, I from 1: what has a number p with p mod N = I - 1.
+struct Shard {
+  std::int64_t index = 1, count = 1;
+  bool has(std::int64_t number) const { return number % count == index - 1; }
+  bool operator==(const Shard&) const = default;
+};
 
 /// The value of an environment variable; empty where it is not set.
 using Environment = std::function<std::string(const char* name)>;

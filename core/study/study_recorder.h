@@ -41,6 +41,7 @@ class StudyRecorder {
   std::optional<IoError> keep(const ExtremesTable& so_far);
   std::optional<IoError> keep(const GridConvergence& so_far);
   std::optional<IoError> keep(const ValidationStudy& so_far);
+  std::optional<IoError> keep(const IterationsStudy& so_far);
 
   /// Tables, picture and page, and study.json after them. `wall`: s of this part of the study.
   std::optional<IoError> end(const StudyTable& table, double wall);
@@ -65,6 +66,7 @@ class StudyRecorder {
   std::vector<std::size_t> rows_kept_;                  ///< of each method; the others: of all
   std::vector<std::vector<std::size_t>> samples_kept_;  ///< of each run of each method
   std::size_t limits_kept_ = 0;
+  bool step_kept_ = false;            ///< of iterations: study.json says what step is studied
   std::optional<FileDigest> states_;  ///< of the reference, once they are in their file
 };
 

@@ -6,13 +6,10 @@
 #include "analysis/fit_report.h"
 #include "commands.h"
 #include "console.h"
-#include "io/result_folder.h"
-#include "io/text_file.h"
 #include "progress.h"
-#include "scene/scene_json.h"
 #include "simulation/step_batches.h"
 #include "studies.h"
-#include "study/identify/identify.h"
+#include "study/identify/fit_folder.h"
 
 namespace clothlab::cli {
 namespace {
@@ -78,45 +75,6 @@ std::vector<cloth::Problem> fill(const IdentifyArguments& arguments, cloth::Iden
   return problems;
 }
 
-/// The files of a fit with their texts, but for the index.
-std::vector<std::pair<std::string, std::string>> files_of(const cloth::IdentifyPlan& plan,
-                                                          const cloth::FitAccount& account) {
-  std::vector<std::pair<std::string, std::string>> files{{"parameters.csv", cloth::parameters_csv(account)},
-                                                         {"targets.csv", cloth::targets_csv(account)}};
-  if (!account.result.simulated.empty()) {
-    std::vector<double> values;
-    for (const cloth::FittedParameter& parameter : account.result.parameters)
-      values.push_back(parameter.value);
-    files.emplace_back("fitted.scene.json", cloth::write_scene(cloth::scene_with(plan, values)));
-    for (const cloth::FitCurve& curve : account.curves)
-      files.emplace_back("fit-" + curve.name + ".svg", cloth::to_svg(cloth::curve_plot(account, curve)));
-  }
-  files.emplace_back("report.html", cloth::fit_page(account));
-  return files;
-}
-
-constexpr const char* runs_name = "runs.jsonl";
-
-/// Takes the runs of an earlier fit of the same model, and begins anew with them.
-std::optional<cloth::IoError> begin_runs(cloth::ResultFolder& folder, cloth::FitRuns& runs) {
-  const bool goes_on = runs.read(folder / runs_name);
-  if (auto error = goes_on ? folder.go_on() : folder.begin_anew()) return error;
-  if (auto error = folder.remove("identified.json")) return error;
-  if (auto error = folder.add(runs_name)) return error;
-  if (runs.read_count() > 0) say(fmt::format("{} runs were made before", runs.read_count()));
-  return runs.open(folder / runs_name);
-}
-
-std::optional<cloth::IoError> write_folder(cloth::ResultFolder& folder, const cloth::IdentifyPlan& plan,
-                                           const cloth::FitAccount& account) {
-  std::string runs;
-  if (auto error = cloth::read_text_file(folder / runs_name, runs)) return error;
-  folder.note(cloth::digest_of(runs_name, runs, false));
-  for (const auto& [name, text] : files_of(plan, account))
-    if (auto error = folder.write(name, text, name.ends_with(".csv"))) return error;
-  return folder.finish("identified.json", cloth::fit_index(account, folder.digests()));
-}
-
 int exit_code_of_fit(const cloth::FitResult& result) {
   if (result.status == cloth::FitStatus::stopped) return interrupted;
   if (result.status != cloth::FitStatus::converged) return diverged;
@@ -149,25 +107,18 @@ int identify(const IdentifyArguments& arguments) {
   if (const auto problems = fill(arguments, plan); !problems.empty()) return report(problems);
   if (const int refused = refused_for_memory(plan.scene); refused != done) return refused;
 
-  cloth::ResultFolder folder;
+  cloth::FitFolder folder;
   if (!arguments.folder.empty()) {
-    cloth::FolderUse use{.kind = "identify",
-                         .files = {"identified.json", "parameters.csv", "targets.csv", "fitted.scene.json",
-                                   "report.html", runs_name}};
-    for (const cloth::FittedCurve& curve : plan.curves) use.files.push_back("fit-" + curve.column + ".svg");
-    use.inputs = {arguments.measured.begin(), arguments.measured.end()};
-    use.inputs.emplace_back(arguments.scene);
-    if (const auto error = folder.lock(arguments.folder, use)) return report(*error);
-  }
-  cloth::FitRuns runs(cloth::model_hash(plan));
-  if (folder.is_open()) {
-    if (const auto error = begin_runs(folder, runs)) return report(*error);
-    plan.runs = &runs;
+    std::vector<std::filesystem::path> inputs{arguments.measured.begin(), arguments.measured.end()};
+    inputs.emplace_back(arguments.scene);
+    if (const auto error = folder.begin(arguments.folder, plan, inputs)) return report(*error);
+    plan.runs = folder.runs();
+    if (const std::size_t before = plan.runs->read_count(); before > 0)
+      say(fmt::format("{} runs were made before", before));
   }
   const cloth::FitAccount account = carry_out(plan);
-  if (const auto error = runs.error()) return report(*error);
   if (folder.is_open())
-    if (const auto error = write_folder(folder, plan, account)) return report(*error);
+    if (const auto error = folder.end(plan, account)) return report(*error);
   std::string text = arguments.json ? cloth::fit_json(account) : cloth::fit_text(account);
   if (!arguments.json && !arguments.folder.empty()) text += "results in " + arguments.folder + "\n";
   if (const int printed = print(text); printed != done) return printed;

@@ -1,6 +1,8 @@
 // A fit for readers: a terminal, JSON, CSV, plots and a page.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,8 @@ struct FitAccount {
   double wall = 0;  ///< s
 };
 
+inline constexpr const char *fit_index_name = "identified.json", *fit_format = "clothlab/fit/1";
+
 /// Measured points with two sigmas to each side, and the simulated line.
 LinePlot curve_plot(const FitAccount& account, const FitCurve& curve);
 /// (simulated - measured)/sigma of the targets of a curve, or of all that are in none, against their x or
@@ -40,6 +44,14 @@ std::string fit_text(const FitAccount& account);
 std::string fit_json(const FitAccount& account);
 /// The same as identified.json, the index of a folder with these files.
 std::string fit_index(const FitAccount& account, const std::vector<FileDigest>& files);
+/// The fit that a folder's identified.json describes, without its options' numbers, correlations, directions
+/// and descents; or the file, the place in it and the rule that it breaks. Exactly one of the two is there.
+struct FitReading {
+  std::optional<FitAccount> account;
+  std::string problem;
+};
+FitReading read_fit(const std::filesystem::path& folder);
+
 /// parameter,unit,value,low,high,standard_error,verdict
 std::string parameters_csv(const FitAccount& account);
 /// target,unit,at,measured,sigma,simulated,simulated_error,residual,held_out

@@ -130,7 +130,7 @@ Json whole_json(const FitAccount& account) {
                         {"end", descent.end},
                         {"chi_squared", number_or_null(descent.chi_squared)},
                         {"runs", descent.evaluations}});
-  return {{"format", "clothlab/fit/1"},
+  return {{"format", fit_format},
           {"title", account.title},
           {"command", account.command},
           {"method", name_of(account.options.method)},
@@ -138,6 +138,7 @@ Json whole_json(const FitAccount& account) {
           {"identified", result.all_identified()},
           {"parameters", parameters_json(account)},
           {"targets", targets_json(account)},
+          {"sigmas_known", account.problem.sigmas_known},
           {"chi_squared", number_or_null(result.chi_squared)},
           {"degrees_of_freedom", result.degrees},
           {"error_scale", result.error_scale},

@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 const char* const list_name = ".clothlab";
 const char* const list_format = "clothlab folder 1";
-constexpr std::array index_names{"study.json",    "summary.json", "reproduce.json",  "bench.json",
-                                 "measured.json", "strips.json",  "identified.json", "iterations.json"};
+constexpr std::array index_names{"study.json",    "summary.json", "reproduce.json", "bench.json",
+                                 "measured.json", "strips.json",  "identified.json"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();

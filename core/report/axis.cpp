@@ -74,6 +74,15 @@ double AxisMap::place(double value) const {
   return from_ + (logarithm(scale_, value) - a) / (b - a) * (to_ - from_);
 }
 
+double AxisMap::value_at(double place) const {
+  const double part = (place - from_) / (to_ - from_);
+  if (!(part > 0)) return low_;
+  if (part >= 1) return high_;
+  const double a = logarithm(scale_, low_), b = logarithm(scale_, high_);
+  const double at = a + part * (b - a);
+  return scale_ == AxisScale::logarithmic ? std::pow(10, at) : at;
+}
+
 double AxisMap::density() const {
   return std::abs(to_ - from_) / (logarithm(scale_, high_) - logarithm(scale_, low_));
 }

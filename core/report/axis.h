@@ -40,6 +40,8 @@ class AxisMap {
 
   /// Place of a value that can_show; a value outside the range lies outside the plot.
   double place(double value) const;
+  /// The value at a place between the two ends, which a place beyond them counts as.
+  double value_at(double place) const;
   bool holds(double value) const { return can_show(scale_, value) && value >= low_ && value <= high_; }
 
   /// Pixels per unit, or per decade where logarithmic.

@@ -12,6 +12,7 @@
 #include "scene/scene_cloth.h"
 #include "scene/scene_json.h"
 #include "simulation/simulation.h"
+#include "study/iterations_report.h"
 #include "study/step_objective.h"
 
 namespace cloth {
@@ -178,6 +179,23 @@ std::vector<Problem> find_problems(const Scene& scene, const IterationsOptions& 
   return problems;
 }
 
+bool is_finished(const MethodIterations& method, int most) {
+  if (!method.remark.empty()) return true;
+  return !method.steps.empty() && next_rung(method.steps.back().iterations) > most;
+}
+
+bool IterationsStudy::is_complete() const {
+  if (stopped) return false;
+  return !failure.empty() || (methods.size() == asked.size() && is_finished(methods.back(), most));
+}
+
+Scene scene_of(const IterationsStudy& study, const MethodIterations& method, const IteratedStep& step) {
+  Scene scene = study.scene;
+  scene.integrator = choice_of(method.method, step.iterations);
+  scene.integrator.time_step = study.step;
+  return scene;
+}
+
 const IteratedStep* first_below(const MethodIterations& method, double objective) {
   for (const IteratedStep& step : method.steps)
     if (step.objective <= objective) return &step;
@@ -187,13 +205,8 @@ const IteratedStep* first_below(const MethodIterations& method, double objective
 namespace {
 
 /// The scene's motion up to the step that is studied; a failure is said in `study`.
-StudiedStep step_in_motion(const Scene& scene, const IterationsOptions& options, IterationsStudy& study) {
-  constexpr double step_of_auto = 0.01;
-  Scene moving = scene_of_iterations(scene, study.left_out);
-  study.step = options.step.value_or(scene.integrator.time_step.value_or(step_of_auto));
-  moving.integrator = {"implicit-euler", study.step};
-  study.scene = moving;
-  Simulation simulation(moving);
+StudiedStep step_in_motion(const IterationsOptions& options, IterationsStudy& study) {
+  Simulation simulation(study.scene);
   const auto steps = static_cast<int>(std::lround(options.time / study.step));
   for (int n = 0; n < steps && study.failure.empty(); ++n) {
     if (is_to_stop(options.stop)) study.stopped = true;
@@ -201,21 +214,21 @@ StudiedStep step_in_motion(const Scene& scene, const IterationsOptions& options,
     if (const auto divergence = simulation.step()) study.failure = describe(*divergence);
   }
   study.time = simulation.time(), study.particles = simulation.system().size();
-  return {moving, make_cloth(moving), simulation.state(), study.step};
+  return {study.scene, make_cloth(study.scene), simulation.state(), study.step};
 }
 
-MethodIterations iterate(const StudiedStep& studied, const std::string& method,
-                         const IterationsOptions& options, const StepObjective& objective,
-                         const Vec3Field& solution, IterationsStudy& study) {
-  MethodIterations found{.method = method};
+/// Adds the method to the study, rung by rung.
+void iterate(const StudiedStep& studied, const std::string& method, const IterationsOptions& options,
+             const StepObjective& objective, const Vec3Field& solution, IterationsStudy& study) {
+  const auto before = static_cast<double>(study.methods.size());
+  MethodIterations& found = study.methods.emplace_back(MethodIterations{.method = method});
   double spent = 0;
   for (int iterations = 1; iterations <= options.most; iterations = next_rung(iterations)) {
-    const double done =
-        static_cast<double>(study.methods.size()) + std::log(iterations) / std::log(options.most + 1.0);
-    const std::size_t methods = options.methods.empty() ? iterated_methods().size() : options.methods.size();
+    const double done = before + std::log(iterations) / std::log(options.most + 1.0);
     if (is_to_stop(options.stop) ||
-        (options.progress && !options.progress({done / static_cast<double>(methods),
-                                                fmt::format("{}, {} iterations", method, iterations)}))) {
+        (options.progress &&
+         !options.progress({done / static_cast<double>(study.asked.size()),
+                            fmt::format("{}, {} iterations", title_of_iterated(method), iterations)}))) {
       study.stopped = true;
       break;
     }
@@ -234,16 +247,37 @@ MethodIterations iterate(const StudiedStep& studied, const std::string& method,
     } else if (spent > options.budget) {
       found.remark = fmt::format("more would take longer than {:.3g} s", options.budget);
     }
+    if (options.partial) options.partial(study);
     if (!found.remark.empty()) break;
   }
-  return found;
+  if (found.steps.empty()) study.methods.pop_back();
+}
+
+/// Null where it is not known.
+const MethodIterations* finished_before(const IterationsStudy* earlier, const std::string& method, int most) {
+  if (!earlier) return nullptr;
+  for (const MethodIterations& known : earlier->methods)
+    if (known.method == method && is_finished(known, most)) return &known;
+  return nullptr;
 }
 
 }  // namespace
 
-IterationsStudy run_iterations_study(const Scene& scene, const IterationsOptions& options) {
+IterationsStudy plan_iterations_study(const Scene& scene, const IterationsOptions& options) {
+  constexpr double step_of_auto = 0.01;
   IterationsStudy study;
-  const StudiedStep studied = step_in_motion(scene, options, study);
+  study.scene = scene_of_iterations(scene, study.left_out);
+  study.step = options.step.value_or(scene.integrator.time_step.value_or(step_of_auto));
+  study.scene.integrator = {"implicit-euler", study.step};
+  study.asked = options.methods.empty() ? iterated_methods() : options.methods;
+  study.asked_time = options.time;
+  study.most = options.most;
+  return study;
+}
+
+IterationsStudy run_iterations_study(const Scene& scene, const IterationsOptions& options) {
+  IterationsStudy study = plan_iterations_study(scene, options);
+  const StudiedStep studied = step_in_motion(options, study);
   if (!study.failure.empty() || study.stopped) return study;
 
   const Solution found = solution_from(studied, studied.start.velocity);
@@ -261,9 +295,12 @@ IterationsStudy run_iterations_study(const Scene& scene, const IterationsOptions
   }
   study.floor =
       std::max(std::abs(objective.difference(again.velocity, found.velocity)), by_rounding) / study.fall;
-  for (const std::string& method : options.methods.empty() ? iterated_methods() : options.methods) {
+  for (const std::string& method : study.asked) {
     if (study.stopped) break;
-    study.methods.push_back(iterate(studied, method, options, objective, found.velocity, study));
+    if (const MethodIterations* known = finished_before(options.earlier, method, study.most))
+      study.methods.push_back(*known);
+    else
+      iterate(studied, method, options, objective, found.velocity, study);
   }
   return study;
 }

@@ -21,6 +21,8 @@
 
 namespace cloth {
 
+struct IterationsStudy;
+
 struct IterationsOptions {
   std::vector<std::string> methods{};  ///< of iterated_methods(); empty: all
   std::optional<double> step{};        ///< s; none: the scene's, or 1/100 where that is auto
@@ -29,7 +31,11 @@ struct IterationsOptions {
   int repeats = 5;                     ///< timed solves of each number of iterations; the least counts
   double budget = 60;                  ///< s of each method; it takes no longer rung beyond
   std::function<bool(const StudyProgress&)> progress{};  ///< false stops the study
+  /// The study so far, after every step.
+  std::function<void(const IterationsStudy&)> partial{};
   StopTest stop{};
+  /// The same study, stopped before its end: its finished methods are not measured again.
+  const IterationsStudy* earlier = nullptr;
 };
 
 /// A step solved with so many iterations.
@@ -48,6 +54,9 @@ struct MethodIterations {
 struct IterationsStudy {
   Scene scene;                          ///< as studied
   std::vector<std::string> left_out{};  ///< of the scene as it was, a clause each
+  std::vector<std::string> asked{};     ///< methods, in their order
+  double asked_time = 0;                ///< s, of motion before the step; it is reached in whole steps
+  int most = 0;                         ///< iterations
   double time = 0, step = 0;            ///< s
   int particles = 0;
   std::string failure{};    ///< why there is nothing to measure against; empty: there is
@@ -59,10 +68,14 @@ struct IterationsStudy {
   double floor = 0;
   std::vector<MethodIterations> methods{};
   bool stopped = false;
+  bool is_complete() const;
 };
 
 /// implicit-euler (Newton's method), projective, xpbd, vbd.
 const std::vector<std::string>& iterated_methods();
+
+/// Whether nothing more is to be measured of a method, of at most so many iterations.
+bool is_finished(const MethodIterations& method, int most);
 
 /// Precondition of what follows: find_problems(scene) is empty.
 std::vector<Problem> find_problems(const Scene& scene, const IterationsOptions& options);
@@ -70,7 +83,12 @@ std::vector<Problem> find_problems(const Scene& scene, const IterationsOptions& 
 /// The scene as it is studied, and what was left out of it.
 Scene scene_of_iterations(const Scene& scene, std::vector<std::string>& left_out);
 
+/// The study without what is measured. Precondition of both: find_problems is empty.
+IterationsStudy plan_iterations_study(const Scene& scene, const IterationsOptions& options);
 IterationsStudy run_iterations_study(const Scene& scene, const IterationsOptions& options);
+
+/// The scene with every step solved as this one.
+Scene scene_of(const IterationsStudy& study, const MethodIterations& method, const IteratedStep& step);
 
 /// The first step of a method whose objective is at most this; null: none.
 const IteratedStep* first_below(const MethodIterations& method, double objective);

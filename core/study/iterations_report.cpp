@@ -18,10 +18,6 @@ namespace {
 constexpr double milliseconds = 1e3;
 constexpr double told_objectives[] = {1e-2, 1e-4, 1e-8};
 
-std::string title_of(const std::string& method) {
-  return method == "implicit-euler" ? "Newton's method" : facts_of(method).title;
-}
-
 std::vector<std::string> words_of(const IterationsStudy& study) {
   std::vector<std::string> words;
   words.push_back(fmt::format("One step of {:.4g} s after {:.4g} s of {}, {} particles.", study.step,
@@ -46,8 +42,8 @@ std::vector<std::string> words_of(const IterationsStudy& study) {
   for (const MethodIterations& method : study.methods)
     for (const IteratedStep& step : method.steps)
       if (step.objective < -study.floor) {
-        words.push_back(
-            fmt::format("{} goes below the solution: to another, lower minimum.", title_of(method.method)));
+        words.push_back(fmt::format("{} goes below the solution: to another, lower minimum.",
+                                    title_of_iterated(method.method)));
         break;
       }
   return words;
@@ -63,7 +59,7 @@ TextTable terminal_table(const IterationsStudy& study) {
   table.columns.push_back({"Iterations", true});
   table.columns.push_back({"Remark"});
   for (const MethodIterations& method : study.methods) {
-    std::vector<std::string> row{title_of(method.method)};
+    std::vector<std::string> row{title_of_iterated(method.method)};
     for (const double objective : told_objectives) {
       const IteratedStep* step = first_below(method, objective);
       row.push_back(step ? std::to_string(step->iterations) : "");
@@ -121,6 +117,10 @@ nlohmann::ordered_json json_of(const IterationsStudy& study) {
 
 }  // namespace
 
+std::string title_of_iterated(const std::string& method) {
+  return method == "implicit-euler" ? "Newton's method" : facts_of(method).title;
+}
+
 LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against) {
   const bool by_time = against == IterationsAgainst::time;
   LinePlot plot{.title = by_time ? "Objective against time" : "Objective against iterations",
@@ -130,17 +130,19 @@ LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against) {
             .scale = AxisScale::logarithmic};
   plot.y = {.label = "objective above the minimum, relative to its fall", .scale = AxisScale::logarithmic};
   const std::vector<std::string>& names = integrator_names();
+  int tag = 0;
   for (const MethodIterations& method : study.methods) {
-    PlotSeries series{.name = title_of(method.method), .detail = method.remark};
+    PlotSeries series{.name = title_of_iterated(method.method), .detail = method.remark};
     series.style = static_cast<int>(std::find(names.begin(), names.end(), method.method) - names.begin());
     for (const IteratedStep& step : method.steps) {
       const double x = by_time ? milliseconds * step.seconds : step.iterations;
       const std::string note =
           fmt::format("{} iterations, {:.4g} ms", step.iterations, milliseconds * step.seconds);
       if (std::isfinite(step.objective))
-        series.points.push_back({.x = x, .y = step.objective, .note = note});
+        series.points.push_back({.x = x, .y = step.objective, .note = note, .tag = tag});
       else
-        series.failed.push_back({x, method.remark});
+        series.failed.push_back({x, method.remark, tag});
+      ++tag;
     }
     plot.series.push_back(std::move(series));
   }
@@ -149,12 +151,17 @@ LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against) {
   return plot;
 }
 
+std::vector<std::string> line_of(const MethodIterations& method, std::size_t step) {
+  const IteratedStep& of = method.steps[step];
+  return {method.method, std::to_string(of.iterations), csv_number(of.seconds),
+          std::isfinite(of.objective) ? csv_number(of.objective) : "",
+          step + 1 == method.steps.size() ? method.remark : ""};
+}
+
 CsvTable table_of(const IterationsStudy& study) {
-  CsvTable table{{"method", "iterations", "seconds", "relative_objective"}, {}};
+  CsvTable table{{"method", "iterations", "seconds", "relative_objective", "remark"}, {}};
   for (const MethodIterations& method : study.methods)
-    for (const IteratedStep& step : method.steps)
-      table.rows.push_back({method.method, std::to_string(step.iterations), csv_number(step.seconds),
-                            std::isfinite(step.objective) ? csv_number(step.objective) : ""});
+    for (std::size_t k = 0; k < method.steps.size(); ++k) table.rows.push_back(line_of(method, k));
   return table;
 }
 
@@ -166,15 +173,6 @@ std::string study_text(const IterationsStudy& study) {
 
 std::string study_json(const IterationsStudy& study) {
   return json_of(study).dump(2) + "\n";
-}
-
-std::string study_index(const IterationsStudy& study, const std::string& command, double wall,
-                        const std::vector<FileDigest>& files) {
-  nlohmann::ordered_json root{
-      {"program", "clothlab"}, {"kind", "iterations"}, {"command", command}, {"wall_s", wall}};
-  root.update(json_of(study));
-  root["files"] = digests_json(files);
-  return root.dump(2) + "\n";
 }
 
 std::string study_page(const IterationsStudy& study, const std::string& command, double wall) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "io/csv.h"
-#include "io/file_digest.h"
 #include "report/line_plot.h"
 #include "study/iterations.h"
 
@@ -13,20 +12,22 @@ namespace cloth {
 
 /// The relative objective, on logarithmic axes.
 enum class IterationsAgainst { iterations, time };
-LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against);
+inline constexpr const char* iterations_time_name = "iterations_time.svg";
+LinePlot study_plot(const IterationsStudy& study, IterationsAgainst against = IterationsAgainst::iterations);
 
 /// report.html. `command` is what made it in `wall` s.
 std::string study_page(const IterationsStudy& study, const std::string& command, double wall = 0);
 
-/// iterations.csv: a row for each method and number of iterations.
+/// "Newton's method", "XPBD"
+std::string title_of_iterated(const std::string& method);
+
+/// iterations.csv: a row for each method and number of iterations, the last of a method with what ended it.
 CsvTable table_of(const IterationsStudy& study);
+/// The row of one step of a method.
+std::vector<std::string> line_of(const MethodIterations& method, std::size_t step);
 
 /// For a terminal: what each method takes to some objectives, and what is to be said of the measurement.
 std::string study_text(const IterationsStudy& study);
 std::string study_json(const IterationsStudy& study);
-
-/// iterations.json: the same with what made it and the other files of its folder.
-std::string study_index(const IterationsStudy& study, const std::string& command, double wall,
-                        const std::vector<FileDigest>& files);
 
 }  // namespace cloth

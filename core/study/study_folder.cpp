@@ -12,6 +12,7 @@
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
 #include "study/grid_convergence_report.h"
+#include "study/iterations_report.h"
 #include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_index.h"
@@ -66,6 +67,22 @@ json contents(const ValidationStudy& study) {
   return {{"options", {{"protocols", study.protocols}}}};
 }
 
+json contents(const IterationsStudy& study) {
+  return {{"options",
+           {{"methods", study.asked},
+            {"step_s", study.step},
+            {"time_s", study.asked_time},
+            {"most", study.most}}},
+          {"left_out", study.left_out},
+          {"time_s", study.time},
+          {"particles", study.particles},
+          {"failure", study.failure},
+          {"fall_J", study.fall},
+          {"residual_N_s", study.residual},
+          {"is_minimum", study.is_minimum},
+          {"floor", study.floor}};
+}
+
 /// What its numbers depend on beside scene and options.
 json maker() {
   return {{"version", version()},
@@ -79,12 +96,14 @@ const Scene* scene_of(const StudyTable& table) {
   if (const auto* study = std::get_if<WorkPrecision>(&table)) return &study->scene;
   if (const auto* map = std::get_if<StabilityMap>(&table)) return &map->scene;
   if (const auto* study = std::get_if<GridConvergence>(&table)) return &study->scene;
+  if (const auto* study = std::get_if<IterationsStudy>(&table)) return &study->scene;
   const auto* extremes = std::get_if<ExtremesTable>(&table);
   return extremes && extremes->scene ? &*extremes->scene : nullptr;
 }
 
 const char* kind_of(const StudyTable& table) {
-  constexpr const char* names[] = {"work-precision", "stability", "extremes", "convergence", "validation"};
+  constexpr const char* names[] = {"work-precision", "stability",  "extremes",
+                                   "convergence",    "validation", "iterations"};
   return names[table.index()];
 }
 
@@ -101,8 +120,8 @@ bool is_complete(const StudyTable& table) {
 }
 
 const char* csv_name(const StudyTable& table) {
-  constexpr const char* names[] = {"work_precision.csv", "stability.csv", "extremes.csv", "convergence.csv",
-                                   "validation.csv"};
+  constexpr const char* names[] = {"work_precision.csv", "stability.csv",  "extremes.csv",
+                                   "convergence.csv",    "validation.csv", "iterations.csv"};
   return names[table.index()];
 }
 
@@ -142,6 +161,7 @@ std::vector<std::string> study_files(const StudyTable& table) {
     names.insert(names.end(), {samples_name, reference_states_name});
   if (std::holds_alternative<GridConvergence>(table)) names.emplace_back(grid_errors_name);
   if (std::holds_alternative<ValidationStudy>(table)) names.emplace_back(validation_points_name);
+  if (std::holds_alternative<IterationsStudy>(table)) names.emplace_back(iterations_time_name);
   names.push_back(std::filesystem::path(csv_name(table)).replace_extension("svg").string());
   return names;
 }

@@ -14,6 +14,7 @@
 #include "io/text_file.h"
 #include "study/extremes.h"
 #include "study/grid_convergence.h"
+#include "study/iterations.h"
 #include "study/stability_map.h"
 #include "study/validation/validation.h"
 #include "study/work_precision.h"
@@ -22,7 +23,8 @@ namespace cloth {
 
 inline constexpr const char* study_format = "clothlab/study/1";
 
-using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable, GridConvergence, ValidationStudy>;
+using StudyTable = std::variant<WorkPrecision, StabilityMap, ExtremesTable, GridConvergence, ValidationStudy,
+                                IterationsStudy>;
 
 struct Study {
   StudyTable table;
@@ -31,7 +33,8 @@ struct Study {
   std::string shard{};  ///< "2/3": it is this part alone; empty: the whole
 };
 
-/// "work-precision", "stability", "extremes", "convergence", "validation".
+/// "work-precision", "stability", "extremes", "convergence", "validation",
+/// "iterations".
 const char* kind_of(const StudyTable& table);
 
 /// The scene that is studied; null for the fixed list of cases and for exact solutions.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -295,6 +296,49 @@ ValidationStudy read_validation(const std::filesystem::path& folder, const JsonE
   return study;
 }
 
+IterationsStudy read_iterations(const std::filesystem::path& folder, const JsonEntry& root) {
+  constexpr double most_particles = 1e9, most_iterations = 1e6;
+  const JsonEntry options = root.at("options");
+  IterationsOptions asked{.methods = options.at("methods").texts(),
+                          .step = options.at("step_s").number(),
+                          .time = options.at("time_s").number(),
+                          .most = options.at("most").whole<int>(1, most_iterations)};
+  for (const JsonEntry& method : options.at("methods").entries())
+    if (std::count(iterated_methods().begin(), iterated_methods().end(), method.text()) == 0)
+      throw method.bad("is not a method that iterates");
+  if (asked.methods.empty()) throw options.at("methods").bad("must not be empty");
+  const Scene scene = read_scene_of(root, folder);
+  if (const auto problems = find_problems(scene, asked); !problems.empty())
+    throw BadFolder{"study.json: " + problems.front().text()};
+  IterationsStudy study = plan_iterations_study(scene, asked);
+  study.left_out = root.at("left_out").texts();
+  study.time = root.at("time_s").number();
+  study.particles = root.at("particles").whole<int>(0, most_particles);
+  study.failure = root.at("failure").text();
+  study.fall = root.at("fall_J").number();
+  study.residual = root.at("residual_N_s").number();
+  study.floor = root.at("floor").number();
+  study.is_minimum = root.at("is_minimum").flag();
+  study.stopped = !root.at("complete").flag();
+  const Rows rows(folder, csv_name(study), root);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::string method = rows.text(row, "method");
+    if (study.methods.empty() || study.methods.back().method != method) {
+      const std::size_t next = study.methods.size();
+      if (next >= study.asked.size() || study.asked[next] != method)
+        throw rows.bad(row, "method", method, "is not the method that study.json has here");
+      study.methods.push_back({.method = method});
+    }
+    MethodIterations& of = study.methods.back();
+    const int fewest = of.steps.empty() ? 1 : of.steps.back().iterations + 1;
+    of.steps.push_back({.iterations = static_cast<int>(rows.whole(row, "iterations", fewest, study.most)),
+                        .seconds = rows.number(row, "seconds"),
+                        .objective = rows.number(row, "relative_objective", NAN)});
+    of.remark = rows.text(row, "remark");
+  }
+  return study;
+}
+
 /// The tables that are not those that study.json describes, a clause each. One that is not there at all is
 /// said by who reads it.
 std::string find_disagreements(const std::filesystem::path& folder, const JsonEntry& root) {
@@ -317,7 +361,9 @@ StudyTable read_table(const std::filesystem::path& folder, const JsonEntry& root
   if (kind == "extremes") return read_extremes(folder, root);
   if (kind == "convergence") return read_convergence(folder, root);
   if (kind == "validation") return read_validation(folder, root);
-  throw root.at("kind").bad("must be work-precision, stability, extremes, convergence or validation");
+  if (kind == "iterations") return read_iterations(folder, root);
+  throw root.at("kind").bad(
+      "must be work-precision, stability, extremes, convergence, validation or iterations");
 }
 
 }  // namespace

@@ -177,6 +177,11 @@ void StudyParts::join_limits(StabilityMap& into, const StabilityMap& from, std::
   }
 }
 
+/// One process makes all of it: its times are only worth something beside each other.
+void StudyParts::join(IterationsStudy& into, const IterationsStudy& from) {
+  if (into.methods.empty()) into = from;
+}
+
 void StudyParts::join_reference(ReferenceSolution& into, const ReferenceSolution& from) {
   constexpr std::int64_t number = -1;
   if (!from.is_known()) return;

@@ -54,6 +54,7 @@ class StudyParts {
   void join(StabilityMap& into, const StabilityMap& from);
   void join_limits(StabilityMap& into, const StabilityMap& from, std::size_t method);
   void join(WorkPrecision& into, const WorkPrecision& from);
+  void join(IterationsStudy& into, const IterationsStudy& from);
   void join_reference(ReferenceSolution& into, const ReferenceSolution& from);
 
   StudyTable table_;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "io/text_file.h"
 #include "scene/scene_mesh.h"
 #include "study/extremes_report.h"
 #include "study/grid_convergence_report.h"
+#include "study/iterations_report.h"
 #include "study/reference_solution.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
@@ -31,7 +34,8 @@ std::vector<std::string> differences(const Json& before, const Json& now) {
   for (const auto& [key, wanted] : now.at("options").items())
     if (value(before, "options", key) != wanted) found.push_back(key);
   for (const char* key : {"version", "instruction_set", "processor"}) {
-    if (key == std::string("processor") && now.at("kind") != "work-precision") continue;  // no times to mix
+    const bool has_times = now.at("kind") == "work-precision" || now.at("kind") == "iterations";
+    if (key == std::string("processor") && !has_times) continue;  // none to mix
     if (value(before, "made_by", key) != value(now, "made_by", key)) found.emplace_back(key);
   }
   return found;
@@ -78,12 +82,15 @@ bool lacks_states(const StudyTable& table) {
   return study && study->reference.states.empty();
 }
 
-/// What is decided anew by what is left of the budget.
+/// What is decided anew by what is left of the budget, and methods that were under way.
 void forget_refused(StudyTable& table) {
   if (auto* study = std::get_if<WorkPrecision>(&table))
     for (MethodStudy& method : study->methods)
       std::erase_if(method.runs,
                     [](const WorkPrecisionRun& run) { return run.status == RunStatus::refused; });
+  if (auto* study = std::get_if<IterationsStudy>(&table))
+    std::erase_if(study->methods,
+                  [study](const MethodIterations& method) { return !is_finished(method, study->most); });
 }
 
 }  // namespace
@@ -189,6 +196,7 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   samples_kept_.clear();
   cells_kept_.clear();
   limits_kept_ = 0;
+  step_kept_ = false;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
     for (const MethodStudy& method : study->methods) {
       rows_kept_.push_back(method.runs.size());
@@ -215,6 +223,9 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
     if (auto error = begin_table(folder_, validation_points_name, points_table(*validation), samples_))
       return error;
     kept = table_of(*validation);
+  } else if (const auto* iterations = std::get_if<IterationsStudy>(&table)) {
+    kept = table_of(*iterations);
+    for (const MethodIterations& method : iterations->methods) rows_kept_.push_back(method.steps.size());
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
     kept = table_of(extremes);
@@ -318,6 +329,16 @@ std::optional<IoError> StudyRecorder::end_part(const StudyTable& table, double w
       "study.json", study_index(folder_.path(), table, command_, wall, folder_.digests(), states_, shard_));
 }
 
+std::optional<IoError> StudyRecorder::keep(const IterationsStudy& so_far) {
+  rows_kept_.resize(std::max(rows_kept_.size(), so_far.methods.size()));
+  for (std::size_t m = 0; m < so_far.methods.size(); ++m)
+    for (std::size_t& k = rows_kept_[m]; k < so_far.methods[m].steps.size(); ++k)
+      if (auto error = rows_.add(line_of(so_far.methods[m], k))) return error;
+  if (auto error = rows_.flush()) return error;
+  if (std::exchange(step_kept_, true)) return std::nullopt;
+  return write_index(so_far);
+}
+
 std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) {
   if (earlier_) wall += earlier_->wall;
   if (auto error = rows_.close()) return error;
@@ -344,6 +365,10 @@ std::optional<IoError> StudyRecorder::end(const StudyTable& table, double wall) 
   if (auto error = folder_.write(svg_name, svg)) return error;
   if (const auto* grids = std::get_if<GridConvergence>(&table))
     if (auto error = folder_.write(grid_errors_name, to_svg(study_plot(*grids, GridPlot::errors))))
+      return error;
+  if (const auto* iterations = std::get_if<IterationsStudy>(&table))
+    if (auto error =
+            folder_.write(iterations_time_name, to_svg(study_plot(*iterations, IterationsAgainst::time))))
       return error;
   if (auto error = folder_.write("report.html", page)) return error;
   return folder_.finish("study.json",

@@ -55,6 +55,7 @@ class StudyRecorder {
   std::optional<IoError> keep(const ExtremesTable& so_far);
   std::optional<IoError> keep(const GridConvergence& so_far);
   std::optional<IoError> keep(const ValidationStudy& so_far);
+  std::optional<IoError> keep(const IterationsStudy& so_far);
 
   /// Tables, picture and page, and study.json after them; of a part tables and study.json. `wall`: s since
   /// begin().
@@ -91,6 +92,7 @@ class StudyRecorder {
   std::vector<std::size_t> rows_kept_;                  ///< of each method
   std::vector<std::vector<std::size_t>> samples_kept_;  ///< of each run of each method
   std::size_t limits_kept_ = 0;
+  bool step_kept_ = false;            ///< of iterations: study.json says what step is studied
   std::optional<FileDigest> states_;  ///< of the reference, once they are in their file
 };
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "integrators/registry.h"
+#include "study/iterations_report.h"
 #include "study/stability_report.h"
 
 namespace cloth {
@@ -90,6 +93,24 @@ std::optional<StudyRun> run_at(const ValidationStudy& study, std::size_t number)
           "it starts straight and swings, by implicit Euler, until that has come to rest."};
 }
 
+std::optional<StudyRun> run_at(const IterationsStudy& study, std::size_t number) {
+  for (const MethodIterations& method : study.methods) {
+    if (number >= method.steps.size()) {
+      number -= method.steps.size();
+      continue;
+    }
+    const IteratedStep& step = method.steps[number];
+    return StudyRun{
+        .name = fmt::format("{}, {} iterations", title_of_iterated(method.method), step.iterations),
+        .status = std::isfinite(step.objective) ? "finished" : "failed",
+        .scene = scene_of(study, method, step),
+        .note = fmt::format("In the study one step was solved so, from the state that implicit Euler had "
+                            "reached after {:.4g} s; here every step is.",
+                            study.time)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<StudyRun> run_of(const StudyTable& table, int number) {
@@ -113,6 +134,8 @@ int finished_runs(const StudyTable& table) {
     count = grids->runs.size();
   else if (const auto* validation = std::get_if<ValidationStudy>(&table))
     count = validation->rows.size();
+  else if (const auto* iterations = std::get_if<IterationsStudy>(&table))
+    for (const MethodIterations& method : iterations->methods) count += method.steps.size();
   else
     count = std::get<ExtremesTable>(table).cells.size();
   return static_cast<int>(count);

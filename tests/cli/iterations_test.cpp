@@ -24,13 +24,16 @@ TEST(Iterations, LeavesItsFilesAndPrintsATable) {
   for (const auto& entry : std::filesystem::directory_iterator(folder / "i"))
     files.insert(entry.path().filename().string());
   const std::set<std::string> expected{"iterations.csv", "iterations.svg", "iterations_time.svg",
-                                       "report.html", "iterations.json"};
+                                       "report.html", "study.json"};
   EXPECT_EQ(files, expected);
-  const auto index = nlohmann::json::parse(content_of(folder / "i" / "iterations.json"));
+  const auto index = nlohmann::json::parse(content_of(folder / "i" / "study.json"));
   EXPECT_TRUE(index.at("is_minimum").get<bool>());
   const CsvTable table = parse_csv(content_of(folder / "i" / "iterations.csv"));
+  const CommandResult printed = cli("study '" + (folder / "i").string() + "' --json");
+  ASSERT_EQ(printed.exit_code, 0) << printed.errors;
   std::size_t steps = 0;
-  for (const auto& method : index.at("methods")) steps += method.at("steps").size();
+  for (const auto& method : nlohmann::json::parse(printed.output).at("methods"))
+    steps += method.at("steps").size();
   EXPECT_EQ(table.rows.size(), steps);
   EXPECT_EQ(index.at("files").size(), 4u);
   const CommandResult again = cli(few + "--methods vbd --out '" + (folder / "i").string() + "'");

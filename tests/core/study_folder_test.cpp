@@ -6,6 +6,7 @@
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
+#include "study/iterations_report.h"
 #include "study/stability_report.h"
 #include "study/study_recorder.h"
 #include "study/study_runs.h"
@@ -76,6 +77,68 @@ TEST(StudyFolder, ExtremesComeBackAsTheyWereWritten) {
   EXPECT_EQ(study_csv(back), study_csv(table));
   EXPECT_EQ(study_text(back), study_text(table));
   EXPECT_EQ(to_svg(study_plot(back)), to_svg(study_plot(table)));
+}
+
+IterationsOptions few_iterations() {
+  IterationsOptions options;
+  options.methods = {"implicit-euler", "projective", "vbd"};
+  options.step = 0.005, options.time = 0.05, options.repeats = 1, options.most = 8;
+  return options;
+}
+
+TEST(StudyFolder, IterationsComeBackAsTheyWereWritten) {
+  const IterationsStudy study = run_iterations_study(small_cloth(), few_iterations());
+  ASSERT_TRUE(study.is_complete());
+  const TemporaryFolder folder;
+  const auto back = std::get<IterationsStudy>(read_back(folder, study).table);
+  EXPECT_TRUE(back.is_complete());
+  EXPECT_EQ(study_csv(back), study_csv(study));
+  EXPECT_EQ(study_json(back), study_json(study));
+  for (const IterationsAgainst against : {IterationsAgainst::iterations, IterationsAgainst::time})
+    EXPECT_EQ(to_svg(study_plot(back, against)), to_svg(study_plot(study, against)));
+  std::string text = content_of(folder / "iterations.csv");
+  text.replace(text.find("projective"), 10, "verlet");
+  write_file(folder / "iterations.csv", text);
+  const StudyReading reading = read_study(folder.path());
+  EXPECT_NE(reading.problem.find("iterations.csv"), std::string::npos) << reading.problem;
+}
+
+TEST(StudyFolder, IterationsThatWereStoppedGoOnWithTheMethodsThatAreFinished) {
+  const Scene scene = small_cloth();
+  IterationsOptions options = few_iterations();
+  const TemporaryFolder folder;
+  IterationsStudy stopped;
+  {
+    StudyRecorder recorder;
+    ASSERT_FALSE(recorder.begin(folder.path(), plan_iterations_study(scene, options), {}));
+    IterationsOptions cut = options;
+    bool is_over = false;
+    cut.stop = [&is_over] { return is_over; };
+    cut.partial = [&](const IterationsStudy& so_far) {
+      EXPECT_FALSE(recorder.keep(so_far));
+      is_over = so_far.methods.size() == 2 && so_far.methods[1].steps.size() == 2;
+    };
+    stopped = run_iterations_study(scene, cut);  // and is killed: there is no end()
+  }
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_EQ(finished_runs(stopped), static_cast<int>(stopped.methods[0].steps.size()) + 2);
+  const StudyReading killed = read_study(folder.path());
+  ASSERT_TRUE(killed.study) << killed.problem;
+  EXPECT_FALSE(is_complete(killed.study->table));
+  EXPECT_EQ(study_csv(killed.study->table), study_csv(stopped));
+  StudyRecorder recorder;
+  ASSERT_FALSE(recorder.begin(folder.path(), plan_iterations_study(scene, options), {}));
+  ASSERT_TRUE(recorder.earlier());
+  options.earlier = &std::get<IterationsStudy>(*recorder.earlier());
+  ASSERT_EQ(options.earlier->methods.size(), 1u);  // the second was under way
+  options.partial = [&](const IterationsStudy& so_far) { EXPECT_FALSE(recorder.keep(so_far)); };
+  const IterationsStudy whole = run_iterations_study(scene, options);
+  EXPECT_TRUE(whole.is_complete());
+  ASSERT_EQ(whole.methods.size(), 3u);
+  for (std::size_t k = 0; k < whole.methods[0].steps.size(); ++k)
+    EXPECT_EQ(whole.methods[0].steps[k].seconds, stopped.methods[0].steps[k].seconds);
+  ASSERT_FALSE(recorder.end(whole, 0));
+  EXPECT_EQ(study_csv(read_study(folder.path()).study->table), study_csv(whole));
 }
 
 TEST(StudyFolder, SaysWhatIsWrongWithIt) {

@@ -30,9 +30,9 @@ const fs::path& scratch_folder() {
 
 /// False where the input is not worth reading.
 bool lay_out(std::string text) {
-  const char* const tables[] = {"work_precision.csv", "work_precision_samples.csv", "stability.csv",
-                                "extremes.csv", "convergence.csv", "validation.csv",
-                                "validation_points.csv"};
+  const char* const tables[] = {
+      "work_precision.csv", "work_precision_samples.csv", "stability.csv", "extremes.csv", "convergence.csv",
+      "validation.csv",     "validation_points.csv",      "iterations.csv"};
   std::error_code ignored;
   for (const char* name : tables) fs::remove(scratch_folder() / name, ignored);
   std::string file = "study.json";

@@ -1,9 +1,14 @@
 // Fits in the window: a table of measured values dropped on a chart, its columns, the parameters to find, the
 // values with their standard errors; and what is said of tables that are none.
 #include <QComboBox>
+#include <QDesktopServices>
+#include <QDir>
 #include <QDropEvent>
 #include <QLabel>
+#include <QMenu>
 #include <QMimeData>
+#include <QProcess>
+#include <QUrl>
 #include <fstream>
 
 #include "charts/chart_panel.h"
@@ -12,6 +17,7 @@
 #include "listed_test.h"
 #include "simulation/recorder.h"
 #include "studies/fit_choices.h"
+#include "studies/study_library.h"
 #include "studies_bench.h"
 
 namespace clothlab::test::fit_window_test {
@@ -46,6 +52,15 @@ void write_measured(const cloth::Scene& scene, const QString& file) {
 
 }  // namespace
 
+/// In place of the desktop's browser and file manager.
+class Opened : public QObject {
+  Q_OBJECT
+ public:
+  QStringList paths;
+ public Q_SLOTS:
+  void open(const QUrl& url) { paths << url.toLocalFile(); }
+};
+
 class FitWindowTest : public QObject {
   Q_OBJECT
 
@@ -78,9 +93,11 @@ class FitWindowTest : public QObject {
     bench.window.document().varied().add("springs.structural");
     QTest::qWait(100);
     QCOMPARE(bench.panel().choices().kind(), StudyChoices::Kind::fit);
+    const auto* count = bench.panel().choices().fit().findChild<QSpinBox*>("rangeCount");
+    QVERIFY(count && !count->isVisible());  // a range is bounds here
     bench.push("startStudy");
     QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning() && bench.panel().fitted(), 120000);
-    const cloth::FitResult& result = bench.panel().fitted()->account.result;
+    const cloth::FitResult& result = bench.panel().fitted()->result;
     QCOMPARE(result.parameters.size(), 1u);
     QCOMPARE(result.parameters[0].verdict, cloth::FitVerdict::identified);
     QVERIFY2(std::abs(result.parameters[0].value - 80) < 3 * result.parameters[0].standard_error,
@@ -94,6 +111,103 @@ class FitWindowTest : public QObject {
     QCOMPARE(bench.window.document().scene().springs->structural, result.parameters[0].value);
     bench.window.document().undoStack().undo();
     QCOMPARE(bench.window.document().scene().springs->structural, 50.0);
+  }
+
+  void a_fit_leaves_the_folder_that_the_command_line_makes() {
+    const QString here = folder_.filePath("fitted"), there = folder_.filePath("fitted-by-command");
+    fitInto(here);
+    QVERIFY(recent_studies.list().contains(here));
+    QProcess cli;
+    cli.start(
+        CLOTHLAB_CLI,
+        {"identify", scene_, "--set", "springs.structural=50", "--vary",
+         QStringLiteral("springs.structural:%1:%2").arg(range_.from, 0, 'g', 17).arg(range_.to, 0, 'g', 17),
+         "--measured", folder_.filePath("swing.csv"), "--out", there});
+    QVERIFY(cli.waitForFinished(120000));
+    QVERIFY2(cli.exitCode() == 0, cli.readAllStandardError());
+    const QStringList files{"fit-kinetic_J.svg", "fitted.scene.json", "identified.json", "parameters.csv",
+                            "report.html",       "runs.jsonl",        "targets.csv"};
+    for (const QString& folder : {here, there})
+      QCOMPARE(QDir(folder).entryList(QDir::Files, QDir::Name), files);
+    for (const char* file : {"parameters.csv", "targets.csv", "fit-kinetic_J.svg", "fitted.scene.json"})
+      QVERIFY2(content(here, file) == content(there, file), file);
+  }
+
+  void a_folder_of_a_fit_opens_with_its_values_its_diagram_and_its_report() {
+    StudiesBench bench(scene_);
+    bench.panel().openFolder(folder_.filePath("fitted-by-command"));
+    const cloth::FitAccount* fitted = bench.panel().fitted();
+    QVERIFY(fitted);
+    QVERIFY(bench.part<QLabel>("fitValues")->text().contains("identified"));
+    const auto* curve = std::get_if<cloth::LinePlot>(&bench.plot().diagram());
+    QVERIFY(curve && curve->series.size() == 2 && curve->series[1].points.size() > 10);
+    bench.push("useFit");
+    QCOMPARE(bench.window.document().scene().springs->structural, fitted->result.parameters[0].value);
+    Opened opened;
+    QDesktopServices::setUrlHandler("file", &opened, "open");
+    choose_shown(bench, "openReport");
+    choose_shown(bench, "showFolder");
+    QDesktopServices::unsetUrlHandler("file");
+    QCOMPARE(opened.paths, (QStringList{folder_.filePath("fitted-by-command/report.html"),
+                                        folder_.filePath("fitted-by-command")}));
+  }
+
+  void a_fit_of_the_same_model_takes_the_runs_that_its_folder_has() {
+    const QString folder = folder_.filePath("fitted");
+    const auto runs = [&] {
+      QList<QByteArray> lines = content(folder, "runs.jsonl").split('\n');
+      std::sort(lines.begin(), lines.end());
+      return lines;
+    };
+    const QList<QByteArray> before = runs();
+    QVERIFY(before.size() > 5);
+    fitInto(folder);
+    QCOMPARE(runs(), before);
+  }
+
+  void a_folder_that_cannot_be_had_is_said_before_anything_is_run() {
+    const QString folder = folder_.filePath("taken");
+    QVERIFY(QDir().mkpath(folder));
+    std::ofstream(QDir(folder).filePath("report.html").toStdString()) << "somebody's";
+    StudiesBench bench(scene_);
+    QVERIFY(drop(bench.window.charts(), folder_.filePath("swing.csv")));
+    bench.window.document().varied().add("springs.structural");
+    QTest::qWait(100);
+    bench.type("studyFolder", folder);
+    bench.push("startStudy");
+    QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning(), patience);
+    QTRY_VERIFY_WITH_TIMEOUT(bench.part<QLabel>("studyLine")->toolTip().contains("report.html"), patience);
+    QVERIFY(!bench.panel().fitted());
+    QCOMPARE(content(folder, "report.html"), QByteArray("somebody's"));
+    QCOMPARE(QDir(folder).entryList(QDir::Files | QDir::Hidden).size(), 1);
+  }
+
+  void a_broken_index_of_a_fit_is_answered_with_place_and_rule_data() {
+    QTest::addColumn<QByteArray>("from");
+    QTest::addColumn<QByteArray>("to");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("a verdict") << QByteArray("\"verdict\": \"identified\"")
+                               << QByteArray("\"verdict\": \"sure\"") << "parameters.0.verdict";
+    QTest::newRow("no targets") << QByteArray("\"targets\"") << QByteArray("\"others\"") << "targets";
+    QTest::newRow("a format") << QByteArray("clothlab/fit/1") << QByteArray("clothlab/fit/7") << "format";
+    QTest::newRow("cut off") << QByteArray("\"targets\": [") << QByteArray("\"targets\": [,")
+                             << "is not JSON";
+  }
+  void a_broken_index_of_a_fit_is_answered_with_place_and_rule() {
+    QFETCH(const QByteArray, from);
+    QFETCH(const QByteArray, to);
+    QFETCH(const QString, says);
+    const QString folder = folder_.filePath("broken");
+    QVERIFY(QDir().mkpath(folder));
+    QByteArray text = content(folder_.filePath("fitted"), "identified.json");
+    QVERIFY(text.contains(from));
+    text.replace(text.indexOf(from), from.size(), to);
+    std::ofstream(QDir(folder).filePath("identified.json").toStdString()) << text.toStdString();
+    StudiesBench bench(scene_);
+    bench.panel().openFolder(folder);
+    QVERIFY(!bench.panel().fitted());
+    const QString line = bench.part<QLabel>("studyLine")->toolTip();
+    QVERIFY2(line.contains("identified.json") && line.contains(says), qPrintable(line));
   }
 
   void measured_points_lie_over_the_curve_of_their_quantity() {
@@ -131,7 +245,7 @@ class FitWindowTest : public QObject {
     QTest::qWait(100);
     bench.push("startStudy");
     QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning() && bench.panel().fitted(), 120000);
-    QVERIFY(!bench.panel().fitted()->account.result.all_identified());
+    QVERIFY(!bench.panel().fitted()->result.all_identified());
     QTRY_VERIFY_WITH_TIMEOUT(bench.part<QLabel>("fitValues")->text().contains("not seen"), patience);
   }
 
@@ -176,10 +290,43 @@ class FitWindowTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(bench.window.studies().isVisible(), patience);
     QCOMPARE(bench.window.studies().choices().kind(), StudyChoices::Kind::fit);
     QVERIFY(bench.window.studies().findChild<QPushButton*>("fitChoose")->hasFocus());
+    QVERIFY(!bench.window.studies().findChild<QComboBox*>("fitTime")->isEnabled());  // of what table?
   }
 
  private:
+  static QByteArray content(const QString& folder, const char* file) {
+    QFile read(QDir(folder).filePath(file));
+    return read.open(QIODevice::ReadOnly) ? read.readAll() : QByteArray("no ") + file;
+  }
+  /// The stiffness, from 50 N/m, to swing.csv.
+  void fitInto(const QString& folder) {
+    StudiesBench bench(scene_);
+    bench.window.document().setParameter("springs.structural", 50.0);
+    QVERIFY(drop(bench.window.charts(), folder_.filePath("swing.csv")));
+    bench.window.document().varied().add("springs.structural");
+    QTest::qWait(100);
+    range_ = *bench.window.document().varied().find("springs.structural");
+    bench.type("studyFolder", folder);
+    bench.push("startStudy");
+    QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning() && bench.panel().fitted(), 120000);
+    QTRY_VERIFY_WITH_TIMEOUT(bench.part<QLabel>("studyLine")->toolTip().contains(shown_path(folder)),
+                             patience);
+  }
+  /// In the menu of the button with the folder.
+  static void choose_shown(StudiesBench& bench, const char* entry) {
+    QTimer::singleShot(200, [entry] {
+      auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+      QVERIFY(menu);
+      auto* action = menu->findChild<QAction*>(QLatin1String(entry));
+      QVERIFY2(action && action->isEnabled(), entry);
+      QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(action).center());
+    });
+    QTest::mouseClick(bench.part<QToolButton>("openStudy"), Qt::LeftButton);
+    QTest::qWait(50);
+  }
+
   QTemporaryDir folder_;
+  VariedRange range_;
   QString scene_;
 };
 

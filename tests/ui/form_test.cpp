@@ -1,4 +1,7 @@
 // The parameter panel's editors, driven by real keys and mouse events.
+#include <QAbstractItemView>
+#include <QScrollBar>
+
 #include "form_fixture.h"
 #include "listed_test.h"
 
@@ -167,6 +170,17 @@ class FormTest : public FormFixture {
     QCOMPARE(doc().scene().cloth.down, Vec3(0, 0, 1));
     QVERIFY(!part<QLabel>("cloth.down", "rule")->isVisible());
     QCOMPARE(undo().count(), 1);
+  }
+
+  void the_list_of_methods_shows_every_one_of_them() {
+    auto* combo = part<QComboBox>("integrator.method", "combo");
+    combo->showPopup();
+    QTest::qWait(100);
+    QVERIFY(combo->view()->isVisible());
+    QVERIFY(!combo->view()->verticalScrollBar()->isVisible());
+    const QModelIndex last = combo->model()->index(combo->count() - 1, 0);
+    QVERIFY(combo->view()->viewport()->rect().contains(combo->view()->visualRect(last)));
+    combo->hidePopup();
   }
 
   void a_choice_is_shown_in_words_and_set_by_key() {

@@ -218,6 +218,40 @@ class ProbeTest : public QObject {
     QVERIFY(picture.save(CLOTHLAB_SOURCE_DIR "/docs/pictures/probes.png"));
   }
 
+  void labels_at_particles_keep_clear_of_the_list_wherever_the_scene_has_it() {
+    WindowBench bench;
+    bench.window.resize(1000, 650);
+    LabDocument& document = bench.window.document();
+    const auto frame = bench.window.view().frame();
+    // Its label would lie upon the list, which stands at the left edge.
+    const Probe corner{
+        .name = "corner", .measure = ProbeMeasure::particle, .particles = {{frame->rows - 1, 0}}};
+    for (const char* name : {"one", "two", "three", "four", "five"}) {
+      const Probe low{.name = name, .measure = ProbeMeasure::lowest_point};
+      if (name == std::string("one")) QCOMPARE(document.addProbe(corner), QString());
+      QCOMPARE(document.addProbe(low), QString());
+    }
+    bench.settle();
+    ClothView& view = bench.window.view();
+    const QPoint beside_the_list(24, 130), from(view.width() / 2, view.height() / 2);
+    const auto missing = [&] { return beside_the_list - bench.pixel_of((frame->rows - 1) * frame->columns); };
+    for (int k = 0; k < 10 && missing().manhattanLength() > 4; ++k) {  // it is not as deep as what is panned
+      const QPoint to = from + missing();
+      QTest::mousePress(&view, Qt::MiddleButton, Qt::ShiftModifier, from);
+      QMouseEvent move(QEvent::MouseMove, to, view.mapToGlobal(to), Qt::NoButton, Qt::MiddleButton,
+                       Qt::ShiftModifier);
+      QApplication::sendEvent(&view, &move);
+      QTest::mouseRelease(&view, Qt::MiddleButton, Qt::ShiftModifier, to);
+      QTest::qWait(20);
+    }
+    QVERIFY(missing().manhattanLength() <= 4);
+    view.grabPicture();
+    const auto& labels = view.probeLabels();
+    QCOMPARE(labels.size(), std::size_t{7});  // the name of the mode, too
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) QVERIFY(!labels[i].intersects(labels[k]));
+  }
+
   void values_are_said_in_percent_degrees_and_with_prefixes() {
     const auto text = [](ProbeMeasure measure, std::size_t k, double number) {
       return probe_value_text(cloth::facts_of(measure).values[k], number);

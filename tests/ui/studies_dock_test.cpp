@@ -24,9 +24,9 @@ namespace {
 
 constexpr QSize small_window{1000, 650};
 constexpr StudyChoices::Kind every_kind[] = {
-    StudyChoices::Kind::sweep,     StudyChoices::Kind::fit,      StudyChoices::Kind::work_precision,
-    StudyChoices::Kind::stability, StudyChoices::Kind::extremes, StudyChoices::Kind::convergence,
-    StudyChoices::Kind::validation};
+    StudyChoices::Kind::sweep,       StudyChoices::Kind::fit,       StudyChoices::Kind::work_precision,
+    StudyChoices::Kind::iterations,  StudyChoices::Kind::stability, StudyChoices::Kind::extremes,
+    StudyChoices::Kind::convergence, StudyChoices::Kind::validation};
 
 bool is_placed_by_a_layout(const QWidget& widget) {
   const QWidget* parent = widget.parentWidget();

@@ -226,9 +226,64 @@ class StudiesTest : public QObject {
     QVERIFY(says("studyTime", "soon", "Time: \"soon\" must be a time in s"));
   }
 
+  void iterations_of_a_step_are_drawn_against_their_number_and_their_time() {
+    StudiesBench bench("corners-free");
+    bench.window.document().setParameter("cloth.columns", std::int64_t{7});
+    bench.window.document().setParameter("cloth.rows", std::int64_t{7});
+    bench.choose(StudyChoices::Kind::iterations);
+    auto* methods = bench.part<QListWidget>("studyMethods");
+    QStringList offered;
+    for (int row = 0; row < methods->count(); ++row)
+      if (!methods->item(row)->isHidden()) offered << methods->item(row)->data(Qt::UserRole).toString();
+    offered.sort();
+    QCOMPARE(offered, (QStringList{"implicit-euler", "projective", "vbd", "xpbd"}));
+    bench.only({"implicit-euler", "vbd"});
+    bench.type("iteratedStep", "5 ms");
+    bench.type("iteratedTime", "0.05");
+    bench.part<QSpinBox>("mostIterations")->setValue(8);
+    const QString folder = folder_.filePath("iterations");
+    bench.type("studyFolder", folder);
+    bench.push("startStudy");
+    bench.wait_for_end();
+    const auto& study = std::get<cloth::IterationsStudy>(*bench.panel().table());
+    QVERIFY(study.is_complete());
+    QCOMPARE(study.asked, (std::vector<std::string>{"implicit-euler", "vbd"}));
+    QCOMPARE(study.step, 0.005);
+    QVERIFY(!bench.part<QLabel>("studyEarlier")->isVisible());
+    QVERIFY(cloth::read_study(folder.toStdString()).study);
+    for (const char* file : {"iterations.csv", "iterations.svg", "iterations_time.svg", "report.html"})
+      QVERIFY2(QFileInfo::exists(QDir(folder).filePath(file)), file);
+    auto* which = bench.part<QComboBox>("against");
+    const auto label = [&] { return std::get<cloth::LinePlot>(bench.plot().diagram()).x.label; };
+    QCOMPARE(label(), std::string("iterations"));
+    QTest::keyClick(which, Qt::Key_Down);
+    QCOMPARE(label(), std::string("time of the step"));
+    QTest::qWait(50);
+    const int run = static_cast<int>(study.methods[0].steps.size()) + 2;  // of VBD, the third
+    QTest::mouseDClick(&bench.plot(), Qt::LeftButton, {}, bench.plot().placeOf(run).center().toPoint());
+    bench.settle();
+    const cloth::IntegratorChoice& opened = bench.window.document().scene().integrator;
+    QCOMPARE(opened.method, std::string("vbd"));
+    QCOMPARE(opened.vbd_iterations, study.methods[1].steps[2].iterations);
+    QCOMPARE(opened.time_step, 0.005);
+  }
+
+  void iterations_that_cannot_be_studied_say_why() {
+    StudiesBench bench("corners-free");
+    bench.choose(StudyChoices::Kind::iterations);
+    auto* line = bench.part<QLabel>("studyLine");
+    bench.type("iteratedStep", "soon");
+    bench.push("startStudy");
+    QVERIFY(!bench.panel().isRunning() && line->toolTip().contains("Step: \"soon\" must be a time in s"));
+    bench.part<QLineEdit>("iteratedStep")->clear();
+    bench.only({});
+    bench.push("startStudy");
+    QVERIFY(!bench.panel().isRunning() && line->toolTip().contains("at least one method"));
+  }
+
   void every_format_is_saved() {
     StudiesBench bench("pendulum");
-    for (const QString name : {"map", "precision", "extremes", "convergence"}) {
+    for (const QString name : {"map", "precision", "extremes", "convergence", "iterations"}) {
       bench.panel().openFolder(folder_.filePath(name));
       const QString base = folder_.filePath("saved-" + name);
       for (const QString ending : {".svg", ".png", ".pdf", ".csv"})

@@ -32,12 +32,14 @@ struct PaneSample {
   double max_strain = no_value;  ///< a fraction
   double step_ms = no_value;     ///< mean of the steps since the common time before
   double rms_m = no_value;       ///< rms distance from the reference
+  std::vector<double> probes{};  ///< one for each of CompareSample::probe_columns; empty: none
 };
 
 struct CompareSample {
   double time_s = 0;
-  bool is_start = false;  ///< the first sample of a new run
-  bool is_cut = false;    ///< a marker, as in ChartSample
+  bool is_start = false;                                            ///< the first sample of a new run
+  bool is_cut = false;                                              ///< a marker, as in ChartSample
+  std::shared_ptr<const std::vector<std::string>> probe_columns{};  ///< of all panes; null: none
   std::array<PaneSample, cloth::max_panes>
       panes{};  ///< indexed by style_of(pane): A, B, C, D, independent of the panes' order
 };

@@ -21,7 +21,7 @@ FitRunner::~FitRunner() {
   wait();
 }
 
-void FitRunner::start(cloth::IdentifyPlan plan) {
+void FitRunner::start(FitOrder order) {
   assert(!is_running());
   wait();
   {
@@ -31,7 +31,7 @@ void FitRunner::start(cloth::IdentifyPlan plan) {
     result_.reset();
   }
   thread_ = std::jthread(
-      [this, plan = std::move(plan)](const std::stop_token& stop) mutable { run(std::move(plan), stop); });
+      [this, order = std::move(order)](const std::stop_token& stop) mutable { run(std::move(order), stop); });
 }
 
 void FitRunner::cancel() {
@@ -51,37 +51,47 @@ FitRunStatus FitRunner::status() const {
   return status_;
 }
 
-std::shared_ptr<const FitOutcome> FitRunner::take() {
+std::shared_ptr<const cloth::FitAccount> FitRunner::take() {
   const std::lock_guard lock(mutex_);
   return std::move(result_);
 }
 
-void FitRunner::run(cloth::IdentifyPlan plan, const std::stop_token& stop) {
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), fit_priority);  // its threads inherit it
+/// What went wrong; empty: nothing.
+std::string FitRunner::carry_out(FitOrder& order, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
+  cloth::FitFolder folder;
+  if (const auto error = folder.begin(order.folder, order.plan, {order.measured})) return error->text();
+  order.plan.runs = folder.runs();
+  order.plan.stop = [&stop] { return stop.stop_requested(); };
+  order.plan.options.progress = [&](const cloth::FitProgress& progress) {
+    const std::lock_guard lock(mutex_);
+    status_.runs = progress.evaluations;
+    status_.chi_squared = progress.chi_squared;
+    status_.values = progress.values;
+    status_.elapsed = seconds(std::chrono::steady_clock::now() - start);
+    return true;
+  };
+  const auto account = std::make_shared<const cloth::FitAccount>(cloth::identify(order.plan));
+  {
+    const std::lock_guard lock(mutex_);
+    result_ = account;
+    status_.writing = true;
+  }
+  const auto error = folder.end(order.plan, *account);
+  return error ? error->text() : std::string();
+}
+
+void FitRunner::run(FitOrder order, const std::stop_token& stop) {
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), fit_priority);  // its threads inherit it
   std::string problem;
-  std::shared_ptr<FitOutcome> outcome;
   try {
-    plan.stop = [&stop] { return stop.stop_requested(); };
-    plan.options.progress = [&](const cloth::FitProgress& progress) {
-      const std::lock_guard lock(mutex_);
-      status_.runs = progress.evaluations;
-      status_.chi_squared = progress.chi_squared;
-      status_.elapsed = seconds(std::chrono::steady_clock::now() - start);
-      return true;
-    };
-    cloth::FitAccount account = cloth::identify(plan);
-    plan.stop = {};
-    plan.options.progress = {};
-    outcome = std::make_shared<FitOutcome>(FitOutcome{std::move(plan), std::move(account)});
+    problem = carry_out(order, stop);
   } catch (...) {
     problem = cloth::failure_in_hand().text;
   }
   const std::lock_guard lock(mutex_);
-  result_ = std::move(outcome);
   status_.problem = std::move(problem);
-  status_.running = status_.stopping = false;
-  status_.elapsed = seconds(std::chrono::steady_clock::now() - start);
+  status_.running = status_.stopping = status_.writing = false;
 }
 
 }  // namespace clothlab

@@ -114,6 +114,14 @@ void PanesRun::arrive() {
   if (!status().playing || Clock::now() - last_frame_ >= frame_interval) publish_frames();
 }
 
+/// Shared by all samples while they stay the same.
+std::shared_ptr<const std::vector<std::string>> PanesRun::columns_of(const cloth::Lane& lane) {
+  const std::vector<std::string>& columns = lane.simulation->probes().columns();
+  if (!probe_columns_ || *probe_columns_ != columns)
+    probe_columns_ = std::make_shared<const std::vector<std::string>>(columns);
+  return probe_columns_;
+}
+
 void PanesRun::take_sample(bool is_start) {
   CompareSample sample{.time_s = time(), .is_start = is_start};
   for (std::size_t i = 0; i < lockstep_->pane_count(); ++i) {
@@ -123,6 +131,8 @@ void PanesRun::take_sample(bool is_start) {
     PaneSample& pane = sample.panes[static_cast<std::size_t>(style)];
     pane.total_J = lane.measurement.energy.total();
     pane.max_strain = lane.measurement.strain.maximum();
+    pane.probes = lane.measurement.probes;
+    if (!pane.probes.empty()) sample.probe_columns = columns_of(lane);
     if (is_start && time() == 0) continue;  // no step was taken, and all panes are alike
     pane.step_ms = 1e3 * lane.step_time;
     if (const cloth::Difference* difference = lockstep_->difference(i)) pane.rms_m = difference->rms;

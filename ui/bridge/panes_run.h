@@ -53,11 +53,13 @@ class PanesRun final : public LiveRun {
   void arrive();
   void add_row();
   void take_sample(bool is_start);
+  std::shared_ptr<const std::vector<std::string>> columns_of(const cloth::Lane& lane);
 
   std::unique_ptr<cloth::LockStep> lockstep_;
   int threads_;
   std::optional<std::int64_t> under_way_;  ///< index of the common time that the panes are computing
-  std::int64_t last_sampled_ = -1;         ///< index of the last common time of which a sample was sent
+  std::shared_ptr<const std::vector<std::string>> probe_columns_;  ///< of the samples sent
+  std::int64_t last_sampled_ = -1;  ///< index of the last common time of which a sample was sent
   std::optional<cloth::ComparisonRecorder> recorder_;
   std::array<HistoryMarks, cloth::max_panes> marks_;
   Clock::time_point last_flush_{};

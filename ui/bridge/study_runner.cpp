@@ -51,6 +51,10 @@ cloth::GridConvergence copy_of(const cloth::GridConvergence& study) {
   return study;
 }
 
+cloth::IterationsStudy copy_of(const cloth::IterationsStudy& study) {
+  return study;
+}
+
 /// A table that is not the last one is that of a study which is not complete.
 void mark(cloth::WorkPrecision& study) {
   study.stopped = true;
@@ -61,6 +65,9 @@ void mark(cloth::StabilityMap& map) {
 void mark(cloth::ExtremesTable&) {}
 void mark(cloth::GridConvergence&) {}
 void mark(cloth::ValidationStudy&) {}
+void mark(cloth::IterationsStudy& study) {
+  study.stopped = true;
+}
 
 }  // namespace
 
@@ -219,6 +226,11 @@ void StudyRunner::carry_out(Job& job, const std::stop_token& stop) {
         [&](const auto& o) { return cloth::run_grid_convergence(order.scene, o); });
   } else if (const auto* validation = std::get_if<cloth::ValidationOptions>(&order.options)) {
     study(*validation, cloth::plan_validation, cloth::run_validation);
+  } else if (const auto* iterations = std::get_if<cloth::IterationsOptions>(&order.options)) {
+    note(job, {0, "moving the scene up to the step that is studied"});
+    study(
+        *iterations, [&](const auto& o) { return cloth::plan_iterations_study(order.scene, o); },
+        [&](const auto& o) { return cloth::run_iterations_study(order.scene, o); });
   } else {
     study(std::get<cloth::ExtremesOptions>(order.options), cloth::empty_table, cloth::run_extremes);
   }

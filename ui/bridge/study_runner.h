@@ -19,7 +19,7 @@ namespace clothlab {
 
 using StudyOptions =
     std::variant<cloth::WorkPrecisionOptions, cloth::StabilityOptions, cloth::ExtremesOptions,
-                 cloth::GridConvergenceOptions, cloth::ValidationOptions>;
+                 cloth::GridConvergenceOptions, cloth::ValidationOptions, cloth::IterationsOptions>;
 
 struct StudyOrder {
   cloth::Scene scene;  ///< not used by extremes (ExtremesOptions::scene) and exact solutions

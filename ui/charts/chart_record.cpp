@@ -106,14 +106,6 @@ const std::vector<ChartSpec>& chart_specs() {
   return specs;
 }
 
-namespace {
-
-/// Unit and factor of a chart for values of a unit, and a word for its key.
-struct ProbeAxis {
-  QString unit, title, key;
-  double scale = 1;
-};
-
 ProbeAxis probe_axis(const std::string& column, const std::string& unit) {
   if (column.ends_with(".strain")) return {"%", QObject::tr("Probes: strain (%)"), "probes_strain", 100};
   if (unit == "rad") return {"°", QObject::tr("Probes: angle (°)"), "probes_angle", 180 / std::numbers::pi};
@@ -123,6 +115,8 @@ ProbeAxis probe_axis(const std::string& column, const std::string& unit) {
   key.replace(QRegularExpression("[^a-z0-9]+"), "_");
   return {QString::fromStdString(unit), QObject::tr("Probes (%1)").arg(shown), key, 1};
 }
+
+namespace {
 
 CurveStyle probe_style(std::size_t curve) {
   static constexpr QColor Theme::*colours[] = {&Theme::kinetic, &Theme::elastic,   &Theme::gravity,

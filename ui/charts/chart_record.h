@@ -72,6 +72,14 @@ struct ChartSpec {
 
 /// Energy, strain and frame time, from top to bottom.
 const std::vector<ChartSpec>& chart_specs();
+/// Unit of a chart for a probe's values and the factor to it, with the words for its title and its key.
+struct ProbeAxis {
+  QString unit, title, key;
+  double scale = 1;
+};
+/// `unit` is that of the column; strain is shown in percent, angles in degrees.
+ProbeAxis probe_axis(const std::string& column, const std::string& unit);
+
 /// A chart for each unit of these probes' columns; strain and angles in percent and degrees.
 std::vector<ChartSpec> probe_chart_specs(const std::vector<std::string>& probes);
 /// The deformation rate's line, and its factor to the chart's percent.

@@ -5,6 +5,7 @@
 #include <QFileInfo>
 #include <QObject>
 
+#include "analysis/fit_report.h"
 #include "cloth/cloth_obj.h"
 #include "cloth/mesh_cloth.h"
 #include "compare/builtin_comparisons.h"
@@ -87,13 +88,15 @@ FileType type_by_text(const QString& name) {
   std::string text;
   cloth::read_text_file(name.toStdString(), text);  // whoever opens it says what is wrong
   if (says(text, cloth::comparison_format)) return FileType::comparison;
-  return says(text, cloth::study_format) ? FileType::study : FileType::scene;
+  const bool is_study = says(text, cloth::study_format) || says(text, cloth::fit_format);
+  return is_study ? FileType::study : FileType::scene;
 }
 
 }  // namespace
 
 FileType type_of(const QString& name) {
-  if (QDir(name).exists("study.json") || QDir(name).exists("sweep.json")) return FileType::study;
+  for (const char* index : {"study.json", "sweep.json", cloth::fit_index_name})
+    if (QDir(name).exists(index)) return FileType::study;
   const QString suffix = suffix_of(name);
   if (suffix == ".obj") return FileType::mesh;
   if (comparison_kind().suffixes.front() == suffix) return FileType::comparison;
@@ -137,7 +140,9 @@ OpenedScene open_scene(const QString& name) {
   if (const cloth::BuiltinScene* builtin = cloth::find_builtin_scene(name.toStdString()))
     return read_text(builtin->text, builtin->name, {});
   const QString why = QFileInfo(name).isDir()
-                          ? QObject::tr("%1: is a folder without a study: there is no study.json in it")
+                          ? QObject::tr(
+                                "%1: is a folder without a study: there is no study.json, sweep.json or "
+                                "identified.json in it")
                           : QObject::tr("%1: there is neither a file nor a built-in scene of this name");
   return {{}, {}, name, why.arg(name)};
 }

@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QDockWidget>
 #include <QScreen>
+#include <QScrollArea>
 #include <QToolBar>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -265,7 +266,7 @@ void LabWindow::showKind() {
   const int studies_height = studies_dock_->height();
   shows_comparison_ = document_.isComparison();
   charts_->setVisible(!shows_comparison_);
-  pane_charts_->setVisible(shows_comparison_);
+  pane_charts_area_->setVisible(shows_comparison_);
   placeCorners(!studies_dock_->isHidden());
   setWidths();
   ranking_dock_->setVisible(shows_comparison_);

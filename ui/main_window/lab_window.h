@@ -18,6 +18,8 @@
 #include "timeline/timeline.h"
 #include "widgets/notice_bar.h"
 
+class QScrollArea;
+
 namespace clothlab {
 
 class Autosave;
@@ -199,6 +201,7 @@ class LabWindow : public QMainWindow {
   TransportBar* transport_ = nullptr;
   ChartPanel* charts_ = nullptr;
   CompareCharts* pane_charts_ = nullptr;
+  QScrollArea* pane_charts_area_ = nullptr;
   RankingPanel* ranking_ = nullptr;
   StudiesPanel* studies_ = nullptr;
   QDockWidget *parameters_dock_ = nullptr, *charts_dock_ = nullptr, *ranking_dock_ = nullptr,

@@ -2,6 +2,7 @@
 #include <QApplication>
 #include <QDockWidget>
 #include <QResizeEvent>
+#include <QScrollArea>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <array>
@@ -37,7 +38,13 @@ void LabWindow::makeDocks() {
   charts_dock_->setWidget(charts);
   auto* one_of_two = spaced(new QVBoxLayout(charts), 0);
   one_of_two->addWidget(charts_ = new ChartPanel(charts));
-  one_of_two->addWidget(pane_charts_ = new CompareCharts(charts));
+  pane_charts_area_ = new QScrollArea(charts);  // probes may give more charts than there is height for
+  pane_charts_area_->setWidget(pane_charts_ = new CompareCharts(pane_charts_area_));
+  pane_charts_area_->setWidgetResizable(true);
+  pane_charts_area_->setFrameShape(QFrame::NoFrame);
+  pane_charts_area_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  pane_charts_area_->setMinimumSize(CompareCharts::least_size());
+  one_of_two->addWidget(pane_charts_area_);
 
   parameters_dock_->installEventFilter(this);
   charts_dock_->installEventFilter(this);

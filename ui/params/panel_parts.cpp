@@ -38,6 +38,8 @@ void ElidedLabel::paintEvent(QPaintEvent*) {
 }
 
 QuietCombo::QuietCombo(QWidget* parent) : QComboBox(parent) {
+  constexpr int most_without_scrolling = 16;  // every method
+  setMaxVisibleItems(most_without_scrolling);
   setFocusPolicy(Qt::StrongFocus);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);

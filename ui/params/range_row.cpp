@@ -35,6 +35,7 @@ RangeRow::RangeRow(LabDocument& document, const cloth::Parameter& parameter, Pla
   auto* column = spaced(new QVBoxLayout(this), spacing / 4);
   if (place == Place::form) makeSlider();
   makeFields(*column);
+  if (place == Place::fit) count_->hide(), logarithmic_->hide();
   refresh();
 }
 

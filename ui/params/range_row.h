@@ -23,7 +23,7 @@ class RangeRow : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Place { form, dock };
+  enum class Place { form, dock, fit };  ///< of a fit a range is bounds alone: no values between them
 
   /// Precondition: the scene has the parameter, a number. It shows nothing until it is varied.
   RangeRow(LabDocument& document, const cloth::Parameter& parameter, Place place, QWidget* parent = nullptr);

@@ -52,18 +52,19 @@ FitChoices::FitChoices(LabDocument& document, QWidget* parent) : QWidget(parent)
   grid->addWidget(choose, 0, 0);
   grid->addWidget(file_, 0, 1);
   grid->setColumnStretch(1, 1);
+  problem_ = named("fitProblem", new QLabel(this));  // below the button that it is about
+  problem_->setWordWrap(true);
+  problem_->setProperty("state", "error");
+  problem_->hide();
+  grid->addWidget(problem_, grid->rowCount(), 0, 1, 2);
   time_ =
       makeChoice("fitTime", tr("Time (s)"), tr("The column with the times, in s from the start of the run"));
   value_ = makeChoice("fitValue", tr("Measured"), tr("The column with what was measured"));
   quantity_ = makeChoice("fitQuantity", tr("Is"), tr("What it is in the simulation, in its unit"));
   sigma_ =
       makeChoice("fitSigma", tr("Deviation"), tr("The column with standard deviations of the measurement"));
-  problem_ = named("fitProblem", new QLabel(this));
-  problem_->setWordWrap(true);
-  problem_->setProperty("state", "error");
-  problem_->hide();
-  grid->addWidget(problem_, grid->rowCount(), 0, 1, 2);
-  varied_ = new VariedList(document, this);
+  for (QComboBox* box : {time_, value_, quantity_, sigma_}) box->setEnabled(false);  // there is no table
+  varied_ = new VariedList(document, RangeRow::Place::fit, this);
   grid->addWidget(varied_, grid->rowCount(), 0, 1, 2);
   connect(varied_, &VariedList::changed, this, &FitChoices::changed);
   refresh();
@@ -98,6 +99,8 @@ QString FitChoices::openTable(const QString& file, const std::string& column) {
   problem_->setVisible(problem);
   if (problem) return *problem;
   table_ = std::get<MeasuredTable>(std::move(read));
+  table_file_ = file;
+  for (QComboBox* box : {time_, value_, quantity_, sigma_}) box->setEnabled(true);
   file_->setText(QFileInfo(file).fileName());
   file_->setToolTip(file);
   offerColumns();

@@ -28,6 +28,7 @@ class FitChoices : public QWidget {
   /// Empty, or what is wrong with it.
   QString openTable(const QString& file, const std::string& column = {});
   bool hasTable() const { return table_.has_value(); }
+  const QString& tableFile() const { return table_file_; }
 
   /// The measured curve as chosen, or a sentence that says what is missing.
   std::variant<cloth::FittedCurve, QString> curve() const;
@@ -45,6 +46,7 @@ class FitChoices : public QWidget {
 
   LabDocument& document_;
   std::optional<MeasuredTable> table_;
+  QString table_file_;
   QLabel *file_ = nullptr, *problem_ = nullptr;
   QComboBox *time_ = nullptr, *value_ = nullptr, *quantity_ = nullptr, *sigma_ = nullptr;
   VariedList* varied_ = nullptr;

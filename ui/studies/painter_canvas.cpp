@@ -88,9 +88,12 @@ QColor PainterCanvas::colour(const cloth::PageColour& colour) const {
 
 void PainterCanvas::draw(const QPainterPath& shape, const cloth::SvgStyle& own, const cloth::SvgTip& tip) {
   cloth::SvgStyle style = own;
-  if (!style.fill && !style.stroke && !groups_.empty()) style = groups_.back().style;
+  if (!style.fill && !style.stroke && !groups_.empty()) {
+    style = groups_.back().style;
+    style.opacity = own.opacity;
+  }
   painter_.save();
-  painter_.setOpacity(style.opacity);
+  painter_.setOpacity(painter_.opacity() * style.opacity);
   painter_.setBrush(style.fill ? QBrush(colour(*style.fill)) : QBrush(Qt::NoBrush));
   painter_.setPen(Qt::NoPen);
   if (style.stroke) {
@@ -146,6 +149,7 @@ void PainterCanvas::text(cloth::SvgPoint baseline, const cloth::SvgText& text) {
   if (text.halo) {
     QPainterPath outline;
     outline.addText(left, 0, font, words);
+    if (!raised.isEmpty()) outline.addText(left + width, -0.4 * text.size, small, raised);
     painter_.strokePath(outline, QPen(colour(cloth::page_colours().surface), 3.5, Qt::SolidLine, Qt::RoundCap,
                                       Qt::RoundJoin));
   }
@@ -163,6 +167,7 @@ void PainterCanvas::begin_group(const std::string&, const cloth::SvgStyle& style
                                 bool crisp) {
   groups_.push_back({style, untouchable});
   painter_.save();
+  painter_.setOpacity(painter_.opacity() * style.opacity);  // of each shape: SVG's is of the group as a whole
   if (crisp) painter_.setRenderHint(QPainter::Antialiasing, false);
 }
 

@@ -35,7 +35,6 @@
 namespace clothlab {
 namespace {
 
-constexpr int poll_interval = 100;  // ms
 constexpr int choices_width = 346;  // px
 
 }  // namespace
@@ -43,7 +42,7 @@ constexpr int choices_width = 346;  // px
 StudiesPanel::StudiesPanel(LabDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
   setObjectName("studiesPanel");
   makeLayout();
-  timer_.setInterval(poll_interval);
+  timer_.setInterval(run_interval);
   connect(&timer_, &QTimer::timeout, this, &StudiesPanel::poll);
   const auto stale = [this] {
     choices_stale_ = true;
@@ -134,7 +133,7 @@ QLayout* StudiesPanel::makeHead(QWidget* right) {
   save_->setToolTip(tr("Save the diagram as SVG, PNG or PDF, or its runs as CSV"));
   open_ = named("openStudy", new QToolButton(right));
   open_->setIcon(icon("open"));
-  open_->setToolTip(tr("Open the folder of a study"));
+  open_->setToolTip(tr("Open the folder of a study, or the report of this one"));
   open_->setPopupMode(QToolButton::InstantPopup);
   recent_ = new QMenu(open_);
   open_->setMenu(recent_);
@@ -186,7 +185,7 @@ QWidget* StudiesPanel::makeRight() {
   connect(go_on_, &QPushButton::clicked, this, [this] {
     sweep_.goOn();
     was_running_ = true;
-    timer_.start(poll_interval);
+    timer_.start(run_interval);
     poll();
   });
   connect(plot_, &StudyPlot::runHovered, this, [this](const QString& text) {

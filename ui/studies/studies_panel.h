@@ -55,7 +55,7 @@ class StudiesPanel : public QWidget {
   SweepStudy& sweep() { return sweep_; }
   /// Prepares a fit to a table of measured values, of this column of the record; empty: as the table says.
   void fitTo(const QString& file, const std::string& column);
-  const FitOutcome* fitted() const { return fitted_.get(); }
+  const cloth::FitAccount* fitted() const { return fitted_.get(); }
 
  Q_SIGNALS:
   /// The user opened a run: its scene, and a note with what the scene does not contain.
@@ -82,10 +82,12 @@ class StudiesPanel : public QWidget {
   void pollFit();
   void showFitStatus();
   QString fitSummary() const;
+  QString fitProgress(const FitRunStatus& status) const;
   QStringList fitDiagrams() const;
   void showFitDiagram();
   void useFit();
   void leaveFit();
+  void openFit(const QString& folder);
 
   void show(std::shared_ptr<const cloth::StudyTable> table);
   void offerDiagrams();
@@ -95,8 +97,11 @@ class StudiesPanel : public QWidget {
   void openRun(int run);
   void saveAs();
   void fillRecentMenu();
+  void offerShown();
   void say(const QString& text, bool error = false);
   QString summary() const;
+
+  static constexpr int run_interval = 100, follow_interval = 500;  // ms, between two looks
 
   LabDocument& document_;
   StudyRunner runner_;
@@ -104,8 +109,10 @@ class StudiesPanel : public QWidget {
   std::shared_ptr<const cloth::StudyTable> table_;
   QString folder_;
   FitRunner fit_;
-  std::shared_ptr<const FitOutcome> fitted_;
+  std::shared_ptr<const cloth::FitAccount> fitted_;
   bool shows_fit_ = false;
+  std::vector<cloth::VariedParameter> fitted_parameters_;  ///< of the fit that runs
+  bool fit_is_opened_ = false;                             ///< from a folder: not what the runner made
   bool was_running_ = false;
   bool choices_stale_ = true;
   QTimer timer_;

@@ -1,5 +1,6 @@
 // StudiesPanel: runs studies and shows what they have come to.
 #include <QComboBox>
+#include <QDesktopServices>
 #include <QDir>
 #include <QEvent>
 #include <QFileDialog>
@@ -12,10 +13,12 @@
 #include <QSignalBlocker>
 #include <QStackedWidget>
 #include <QToolButton>
+#include <QUrl>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/fit_report.h"
 #include "document/result_files.h"
 #include "document/save_dialog.h"
 #include "params/panel_parts.h"
@@ -26,6 +29,7 @@
 #include "studies/sweep_diagrams.h"
 #include "study/extremes_report.h"
 #include "study/grid_convergence_report.h"
+#include "study/iterations_report.h"
 #include "study/stability_report.h"
 #include "study/study_runs.h"
 #include "study/validation/validation_report.h"
@@ -37,8 +41,6 @@
 
 namespace clothlab {
 namespace {
-
-constexpr int run_interval = 100, follow_interval = 500;  // ms
 
 QString time_text(double seconds) {
   const int whole = static_cast<int>(std::ceil(seconds));
@@ -60,6 +62,8 @@ QStringList diagrams_of(const cloth::StudyTable& table) {
             QObject::tr("against force evaluations")};
   if (std::holds_alternative<cloth::GridConvergence>(table))
     return {QObject::tr("values"), QObject::tr("errors")};
+  if (std::holds_alternative<cloth::IterationsStudy>(table))
+    return {QObject::tr("against iterations"), QObject::tr("against time")};
   QStringList names;
   if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
     for (const std::string& name : cloth::diagram_names(*validation)) names << QString::fromStdString(name);
@@ -77,15 +81,20 @@ Diagram diagram_of(const cloth::StudyTable& table, int which) {
   if (const auto* map = std::get_if<cloth::StabilityMap>(&table)) return cloth::study_plot(*map);
   if (const auto* grids = std::get_if<cloth::GridConvergence>(&table))
     return cloth::study_plot(*grids, static_cast<cloth::GridPlot>(which));
+  if (const auto* iterations = std::get_if<cloth::IterationsStudy>(&table))
+    return cloth::study_plot(*iterations, static_cast<cloth::IterationsAgainst>(which));
   if (const auto* validation = std::get_if<cloth::ValidationStudy>(&table))
     return cloth::study_plot(*validation, static_cast<std::size_t>(which));
   return cloth::study_plot(std::get<cloth::ExtremesTable>(table));
 }
 
 QString kind_title(const cloth::StudyTable& table) {
-  const QString titles[] = {QObject::tr("Work-precision"), QObject::tr("Stability map"),
-                            QObject::tr("Extreme cases"), QObject::tr("Grid convergence"),
-                            QObject::tr("Materials against exact solutions")};
+  const QString titles[] = {QObject::tr("Work-precision"),
+                            QObject::tr("Stability map"),
+                            QObject::tr("Extreme cases"),
+                            QObject::tr("Grid convergence"),
+                            QObject::tr("Materials against exact solutions"),
+                            QObject::tr("Convergence of iterations")};
   return titles[table.index()];
 }
 
@@ -127,6 +136,7 @@ void StudiesPanel::startSweep() {
   table_.reset();
   leaveFit();
   plot_->setClickOpens(true);
+  plot_->clearBrushes();
   stack_->setCurrentIndex(0);
   empty_->setText(tr("<p><b>The sweep runs.</b></p><p>Its first runs will be drawn here.</p>"));
   sweep_.start(std::move(chosen));
@@ -145,13 +155,14 @@ void StudiesPanel::stop() {
 }
 
 void StudiesPanel::pollSweep() {
+  const bool runs = sweep_.isRunning();  // asked first: what ends meanwhile is shown by the next look
   if (sweep_.poll()) {
     offerDiagrams();
     refreshDiagram();
     compareWithForm();
   }
   showSweepStatus();
-  if (sweep_.isRunning()) return;
+  if (runs) return;
   timer_.setInterval(follow_interval);
   if (!sweep_.isFollowed()) timer_.stop();
   if (!std::exchange(was_running_, false)) return;
@@ -258,6 +269,9 @@ QString StudiesPanel::summary() const {
       text += QString(". %1: %2")
                   .arg(QString::fromStdString(cloth::words_of_output(grids->outputs[k])),
                        QString::fromStdString(cloth::richardson_of(*grids, k).words).chopped(1));
+  if (const auto* iterations = std::get_if<cloth::IterationsStudy>(table_.get()))
+    if (!iterations->failure.empty())
+      text += tr(". There is nothing to measure against: %1").arg(sentence_text(iterations->failure));
   if (const auto* validation = std::get_if<cloth::ValidationStudy>(table_.get())) {
     QStringList failed;
     for (const cloth::ValidationRow& row : validation->rows)
@@ -317,70 +331,6 @@ void StudiesPanel::openRun(int run) {
   if (!table_) return;
   if (const auto found = cloth::run_of(*table_, run))
     Q_EMIT runOpened(found->scene, sentence_text(found->note));
-}
-
-void StudiesPanel::openFolder(const QString& folder) {
-  if (isRunning()) return;
-  if (SweepStudy::isSweep(folder)) {
-    folder_ = QDir::cleanPath(folder);
-    table_.reset();
-    leaveFit();
-    plot_->setClickOpens(true);
-    stack_->setCurrentIndex(0);
-    empty_->setText(tr("<p><b>No run is there yet.</b></p><p>Runs are drawn as they come.</p>"));
-    sweep_.open(folder_);
-    recent_studies.remember(folder_);
-    timer_.start(run_interval);
-    return poll();
-  }
-  cloth::StudyReading reading = cloth::read_study(folder.toStdString());
-  if (!reading.study) {
-    say(tr("The study was not opened. %1").arg(QString::fromStdString(reading.problem)), true);
-    return;
-  }
-  sweep_.leave();
-  leaveFit();
-  plot_->setClickOpens(false);
-  folder_ = folder;
-  recent_studies.remember(folder);
-  show(std::make_shared<const cloth::StudyTable>(std::move(reading.study->table)));
-  showStatus({});
-}
-
-void StudiesPanel::fillRecentMenu() {
-  recent_->clear();
-  recent_->addAction(tr("Open a folder…"), this, [this] {
-    const QString folder =
-        QFileDialog::getExistingDirectory(this, tr("The folder of a study"), studies_folder());
-    if (!folder.isEmpty()) openFolder(folder);
-  });
-  recent_->addSeparator();
-  const QStringList recent = recent_studies.list();
-  for (const QString& folder : recent)
-    recent_->addAction(QDir(folder).dirName(), this, [this, folder] { openFolder(folder); })
-        ->setToolTip(folder);
-  if (recent.isEmpty()) recent_->addAction(tr("No study was made yet"))->setEnabled(false);
-}
-
-QString StudiesPanel::save(const QString& name) {
-  const auto& view = sweep_.view();
-  if (!table_ && !view && !fitted_) return tr("There is no study to save.");
-  if (!name.endsWith(".csv", Qt::CaseInsensitive)) return save_diagram(plot_->diagram(), name, font());
-  const std::string csv = fitted_ ? targets_csv(fitted_->account)
-                          : view  ? csv_text(sweep_table(view->folder.plan, view->results), "\n")
-                                  : cloth::study_csv(*table_);
-  const QString problem = write_file(name, QByteArray::fromStdString(csv));
-  return problem.isEmpty() ? problem : tr("%1: %2").arg(name, problem);
-}
-
-void StudiesPanel::saveAs() {
-  const QString name = ask_where_to_save(
-      this, tr("Save the study"),
-      {{tr("Drawing"), {".svg"}}, {tr("Picture"), {".png"}}, {tr("Page"), {".pdf"}}, {tr("Runs"), {".csv"}}},
-      QDir(folder_).filePath("study.svg"));
-  if (name.isEmpty()) return;
-  const QString problem = save(name);
-  say(problem.isEmpty() ? saved_in(tr("study"), name) : problem, !problem.isEmpty());
 }
 
 void StudiesPanel::say(const QString& text, bool error) {

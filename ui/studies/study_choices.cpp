@@ -15,7 +15,6 @@
 #include "studies/axis_choice.h"
 #include "studies/fit_choices.h"
 #include "studies/outputs_choice.h"
-#include "studies/study_inputs.h"
 #include "studies/study_library.h"
 #include "studies/sweep_choices.h"
 #include "study/refined_scene.h"
@@ -30,7 +29,6 @@ namespace clothlab {
 namespace {
 
 constexpr int method_rows = 6, protocol_rows = 6, method_height = 22, method_width = 164;  // px
-const char* const made_by = "the Studies window of clothlab";
 
 QString purpose_of(StudyChoices::Kind kind) {
   switch (kind) {
@@ -46,6 +44,11 @@ QString purpose_of(StudyChoices::Kind kind) {
       return QObject::tr(
           "Which method reaches an error in the least time? Every method over a series of "
           "steps, against a reference far more exact.");
+    case StudyChoices::Kind::iterations:
+      return QObject::tr(
+          "How far do the iterations of a solver come? One implicit Euler step of the scene, solved with "
+          "more "
+          "and more of them: what is left of its objective, against iterations and against time.");
     case StudyChoices::Kind::stability:
       return QObject::tr(
           "Which steps can a method take, and does theory know? A run for each cell of a map "
@@ -72,17 +75,6 @@ QString cells_text(const std::vector<int>& cells) {
   return texts.join(", ");
 }
 
-/// nullopt: an entry is no whole number.
-std::optional<std::vector<int>> cells_from(const QString& text) {
-  std::vector<int> cells;
-  for (const QString& entry : text.split(',')) {
-    bool is_whole = false;
-    cells.push_back(entry.trimmed().toInt(&is_whole));
-    if (!is_whole) return std::nullopt;
-  }
-  return cells;
-}
-
 /// Boxes to check, all of them checked, in columns.
 QListWidget* boxes(const char* name, const QString& accessible, int rows, QWidget* parent) {
   auto* list = named(name, new QListWidget(parent));
@@ -103,22 +95,15 @@ void add_box(QListWidget* list, const std::string& title, const std::string& nam
   item->setCheckState(Qt::Checked);
 }
 
-std::vector<std::string> checked(const QListWidget& list) {
-  std::vector<std::string> names;
-  for (int row = 0; row < list.count(); ++row)
-    if (list.item(row)->checkState() == Qt::Checked)
-      names.push_back(list.item(row)->data(Qt::UserRole).toString().toStdString());
-  return names;
-}
-
 }  // namespace
 
 StudyChoices::StudyChoices(LabDocument& document, QWidget* parent) : QWidget(parent) {
   kind_ = named("studyKind", new QComboBox(this));
   sweep_ = new SweepChoices(document, this);
   fit_ = new FitChoices(document, this);
-  kind_->addItems({tr("Sweep"), tr("Fit to measured values"), tr("Work-precision"), tr("Stability map"),
-                   tr("Extreme cases"), tr("Grid convergence"), tr("Materials against exact solutions")});
+  kind_->addItems({tr("Sweep"), tr("Fit to measured values"), tr("Work-precision"),
+                   tr("Convergence of iterations"), tr("Stability map"), tr("Extreme cases"),
+                   tr("Grid convergence"), tr("Materials against exact solutions")});
   purpose_ = new QLabel(this);
   purpose_->setWordWrap(true);
   purpose_->setProperty("muted", true);
@@ -157,6 +142,15 @@ void StudyChoices::makeFields() {
   outputs_ = named("outputs", new OutputsChoice(this));
   time_ = named("studyTime", new QLineEdit(this));
   time_->setToolTip(tr("How long the runs last; empty: the scene's duration"));
+  step_ = named("iteratedStep", new QLineEdit(this));
+  step_->setToolTip(tr("The time step that is solved; empty: the scene's, or 0.01 s where that is auto"));
+  before_ = named("iteratedTime", new QLineEdit(this));
+  before_->setToolTip(tr("Simulated time before the step that is studied, moved by implicit Euler"));
+  before_->setPlaceholderText(number_text(cloth::IterationsOptions{}.time, 4));
+  most_ = named("mostIterations", new QSpinBox(this));
+  most_->setRange(1, 1'000'000);
+  most_->setValue(cloth::IterationsOptions{}.most);
+  most_->setToolTip(tr("A method ends there, at the floor of what can be measured, or after a minute"));
   folder_ = named("studyFolder", new QLineEdit(this));
   folder_->setToolTip(tr("The results' folder; empty: a new one under %1").arg(shown_path(studies_folder())));
   folder_->setPlaceholderText(tr("a new one in %1").arg(shown_path(studies_folder())));
@@ -176,6 +170,9 @@ void StudyChoices::makeRows() {
   form_->addRow(protocols_);
   form_->addRow(tr("Horizon (s)"), horizon_);
   form_->addRow(tr("Repeats"), repeats_);
+  form_->addRow(tr("Step (s)"), step_);
+  form_->addRow(tr("Begins (s)"), before_);
+  form_->addRow(tr("Iterations"), most_);
   form_->addRow(tr("Across"), x_);
   form_->addRow(tr("Up"), y_);
   form_->addRow(tr("Periods"), periods_);
@@ -186,7 +183,8 @@ void StudyChoices::makeRows() {
   form_->addRow(tr("Folder"), folder_);
   form_->setItem(form_->rowCount(), QFormLayout::SpanningRole,
                  new QSpacerItem(0, 0, QSizePolicy::Minimum, QSizePolicy::Expanding));
-  for (QWidget* field : {static_cast<QWidget*>(repeats_), static_cast<QWidget*>(periods_)})
+  for (QWidget* field :
+       {static_cast<QWidget*>(repeats_), static_cast<QWidget*>(periods_), static_cast<QWidget*>(most_)})
     field->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
@@ -205,6 +203,9 @@ void StudyChoices::connectRows() {
   connect(x_, &AxisChoice::changed, this, &StudyChoices::changed);
   connect(y_, &AxisChoice::changed, this, &StudyChoices::changed);
   connect(periods_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
+  connect(step_, &QLineEdit::textChanged, this, &StudyChoices::changed);
+  connect(before_, &QLineEdit::textChanged, this, &StudyChoices::changed);
+  connect(most_, &QSpinBox::valueChanged, this, &StudyChoices::changed);
   connect(cases_, &QComboBox::currentIndexChanged, this, &StudyChoices::changed);
   connect(cells_, &QLineEdit::textChanged, this, &StudyChoices::changed);
   connect(outputs_, &OutputsChoice::changed, this, &StudyChoices::changed);
@@ -228,22 +229,27 @@ void StudyChoices::follow() {
   for (QWidget* field :
        {static_cast<QWidget*>(x_), static_cast<QWidget*>(y_), static_cast<QWidget*>(periods_)})
     form_->setRowVisible(field, now == Kind::stability);
+  for (QWidget* field :
+       {static_cast<QWidget*>(step_), static_cast<QWidget*>(before_), static_cast<QWidget*>(most_)})
+    form_->setRowVisible(field, now == Kind::iterations);
   form_->setRowVisible(cases_, now == Kind::extremes);
   for (QWidget* field :
        {static_cast<QWidget*>(cells_), static_cast<QWidget*>(outputs_), static_cast<QWidget*>(time_)})
     form_->setRowVisible(field, now == Kind::convergence);
   form_->setRowVisible(sweep_, now == Kind::sweep);
   form_->setRowVisible(fit_, now == Kind::fit);
-  form_->setRowVisible(folder_, now != Kind::fit);
   const bool any_method =
       now == Kind::work_precision || now == Kind::stability || now == Kind::extremes;  // or their own
-  form_->setRowVisible(methods_, any_method);
+  form_->setRowVisible(methods_, any_method || now == Kind::iterations);
+  offerMethods(now == Kind::iterations ? cloth::iterated_methods() : cloth::integrator_names());
   form_->setRowVisible(protocols_, now == Kind::validation);
   const auto own = own_methods_.find(now);
   if (own != own_methods_.end())
     checkMethods(own->second);
   else
-    checkMethods(now == Kind::stability ? cloth::methods_with_a_limit() : cloth::integrator_names());
+    checkMethods(now == Kind::stability    ? cloth::methods_with_a_limit()
+                 : now == Kind::iterations ? cloth::iterated_methods()
+                                           : cloth::integrator_names());
   Q_EMIT changed();
 }
 
@@ -263,6 +269,18 @@ void StudyChoices::resizeEvent(QResizeEvent* event) {
   keepPurposeWhole();
 }
 
+/// Others have no box.
+void StudyChoices::offerMethods(const std::vector<std::string>& names) {
+  int offered = 0;
+  for (int row = 0; row < methods_->count(); ++row) {
+    const std::string name = methods_->item(row)->data(Qt::UserRole).toString().toStdString();
+    const bool is_offered = std::find(names.begin(), names.end(), name) != names.end();
+    methods_->item(row)->setHidden(!is_offered);
+    offered += is_offered ? 1 : 0;
+  }
+  methods_->setFixedHeight((offered + 1) / 2 * method_height + spacing);
+}
+
 void StudyChoices::checkMethods(const std::vector<std::string>& names) {
   const QScopedValueRollback checking(checking_, true);
   for (int row = 0; row < methods_->count(); ++row) {
@@ -280,6 +298,7 @@ void StudyChoices::setScene(const cloth::Scene& scene) {
   cells_->setPlaceholderText(cloth::refinement_problem(scene) ? QString()
                                                               : cells_text(cloth::default_cells(scene)));
   outputs_->setScene(scene);
+  step_->setPlaceholderText(number_text(cloth::plan_iterations_study(scene, {}).step, 4));
   sweep_->refresh();
   fit_->refresh();
   time_->setPlaceholderText(number_text(scene.duration, 4));
@@ -290,105 +309,6 @@ void StudyChoices::keepAxes() {
   if (kind() != Kind::stability) return;
   x_->keep();
   y_->keep();
-}
-
-std::vector<std::string> StudyChoices::methods() const {
-  return checked(*methods_);
-}
-
-std::variant<StudyOrder, QString> StudyChoices::validationInputs() const {
-  const cloth::ValidationOptions options{.protocols = checked(*protocols_)};
-  if (options.protocols.empty()) return tr("Choose at least one protocol.");
-  return StudyOrder{scene_, options, {}, made_by};
-}
-
-std::variant<StudyOrder, QString> StudyChoices::stabilityInputs() const {
-  cloth::StabilityOptions options{.methods = methods()};
-  options.criterion.periods = periods_->value();
-  for (const auto& [choice, axis, name] :
-       {std::tuple{x_, &options.x, "across"}, std::tuple{y_, &options.y, "up"}}) {
-    *axis = choice->axis();
-    const auto checked = cloth::parse_axis(cloth::axis_text(*axis), name);
-    if (const auto* problem = std::get_if<cloth::Problem>(&checked))
-      return QString::fromStdString(problem->text());
-  }
-  const auto problems = cloth::find_problems(scene_, options);
-  if (!problems.empty()) return QString::fromStdString(problems.front().text());
-  return StudyOrder{scene_, options, {}, made_by};
-}
-
-std::variant<StudyOrder, QString> StudyChoices::precisionInputs() const {
-  cloth::WorkPrecisionOptions options;
-  options.methods = methods();
-  options.repeats = repeats_->value();
-  if (const QString text = horizon_->text().trimmed(); !text.isEmpty()) {
-    const cloth::Quantity typed = typed_quantity(text, "s");
-    options.horizon = typed.value;
-    if (!typed.ok() || !(typed.value > 0))
-      return tr("Horizon: \"%1\" must be a time in s, more than 0.").arg(text);
-  }
-  return StudyOrder{scene_, options, {}, made_by};
-}
-
-std::variant<StudyOrder, QString> StudyChoices::convergenceInputs() const {
-  cloth::GridConvergenceOptions options;
-  options.outputs = outputs_->outputs();
-  if (const QString text = cells_->text().trimmed(); !text.isEmpty()) {
-    const auto cells = cells_from(text);
-    if (!cells) return tr("Cells: \"%1\" must be whole numbers between commas.").arg(text);
-    options.cells = *cells;
-  }
-  if (const QString text = time_->text().trimmed(); !text.isEmpty()) {
-    const cloth::Quantity typed = typed_quantity(text, "s");
-    options.time = typed.value;
-    if (!typed.ok() || !(typed.value > 0))
-      return tr("Time: \"%1\" must be a time in s, more than 0.").arg(text);
-  }
-  const auto problems = cloth::find_problems(scene_, options);
-  if (problems.empty()) return StudyOrder{scene_, options, {}, made_by};
-  const cloth::Problem& first = problems.front();
-  const QString rule = QString::fromStdString(first.rule);
-  if (first.path == "--cells") return tr("Cells: %1").arg(rule);
-  if (first.path == "--output") return tr("Outputs: %1").arg(rule);
-  if (first.path == "--time") return tr("Time: %1").arg(rule);
-  return QString::fromStdString(first.text());
-}
-
-std::variant<StudyOrder, QString> StudyChoices::inputs() const {
-  if (kind() == Kind::sweep || kind() == Kind::fit) return QString();  // by other runners
-  if (kind() == Kind::convergence) return convergenceInputs();
-  if (kind() == Kind::validation) return validationInputs();
-  if (methods().empty()) return tr("Choose at least one method.");
-  if (kind() == Kind::stability) return stabilityInputs();
-  if (kind() == Kind::work_precision) return precisionInputs();
-  cloth::ExtremesOptions options{.methods = methods()};
-  if (cases_->currentIndex() == 0) options.scene = scene_;
-  return StudyOrder{scene_, options, {}, made_by};
-}
-
-/// As typed, else a new one.
-std::filesystem::path StudyChoices::folder() const {
-  const QString typed = path_from(folder_->text().trimmed());
-  const QString title = kind() == Kind::validation ? QString() : QString::fromStdString(scene_.title);
-  return (typed.isEmpty() ? new_study_folder(kind_->currentText(), title) : typed).toStdString();
-}
-
-std::variant<StudyOrder, QString> StudyChoices::order() const {
-  auto result = inputs();
-  if (auto* order = std::get_if<StudyOrder>(&result)) order->folder = folder();
-  return result;
-}
-
-std::variant<SweepOrder, QString> StudyChoices::sweepOrder() const {
-  auto plan = sweep_->plan();
-  if (auto* problem = std::get_if<QString>(&plan)) return *problem;
-  return SweepOrder{folder(), std::get<cloth::SweepPlan>(std::move(plan))};
-}
-
-bool StudyChoices::describes(const cloth::StudyTable& table) const {
-  const auto now = inputs();
-  const auto* order = std::get_if<StudyOrder>(&now);
-  return order && has_inputs(table, *order);
 }
 
 }  // namespace clothlab

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "bridge/fit_runner.h"
 #include "bridge/study_runner.h"
 #include "bridge/sweep_runner.h"
 
@@ -28,7 +29,7 @@ class StudyChoices : public QWidget {
   Q_OBJECT
 
  public:
-  enum class Kind { sweep, fit, work_precision, stability, extremes, convergence, validation };
+  enum class Kind { sweep, fit, work_precision, iterations, stability, extremes, convergence, validation };
 
   explicit StudyChoices(LabDocument& document, QWidget* parent = nullptr);
 
@@ -39,8 +40,9 @@ class StudyChoices : public QWidget {
 
   /// The order, or a sentence that says which choice breaks a rule.
   std::variant<StudyOrder, QString> order() const;
-  /// Likewise of a sweep, which is run by another runner.
+  /// Likewise of a sweep and of a fit, which are run by others.
   std::variant<SweepOrder, QString> sweepOrder() const;
+  std::variant<FitOrder, QString> fitOrder() const;
   const SweepChoices& sweep() const { return *sweep_; }
   FitChoices& fit() const { return *fit_; }
   /// The axes of what is started stay, whatever scene comes.
@@ -61,6 +63,7 @@ class StudyChoices : public QWidget {
   void makeRows();
   void connectRows();
   void follow();  ///< the kind
+  void offerMethods(const std::vector<std::string>& names);
   void checkMethods(const std::vector<std::string>& names);
   std::vector<std::string> methods() const;
   std::filesystem::path folder() const;
@@ -70,6 +73,7 @@ class StudyChoices : public QWidget {
   std::variant<StudyOrder, QString> precisionInputs() const;
   std::variant<StudyOrder, QString> convergenceInputs() const;
   std::variant<StudyOrder, QString> validationInputs() const;
+  std::variant<StudyOrder, QString> iterationsInputs() const;
 
   cloth::Scene scene_;
   QComboBox* kind_;
@@ -84,6 +88,8 @@ class StudyChoices : public QWidget {
   QSpinBox* periods_;
   QComboBox* cases_;
   QLineEdit *cells_, *time_;
+  QLineEdit *step_, *before_;  ///< of the convergence of iterations
+  QSpinBox* most_;
   OutputsChoice* outputs_;
   SweepChoices* sweep_;
   FitChoices* fit_;

@@ -46,6 +46,13 @@ bool has_inputs(const cloth::ValidationStudy& study, const cloth::Scene&,
   return study.protocols == options.protocols;
 }
 
+bool has_inputs(const cloth::IterationsStudy& study, const cloth::Scene& scene,
+                const cloth::IterationsOptions& options) {
+  const cloth::IterationsStudy plan = cloth::plan_iterations_study(scene, options);
+  return study.scene == plan.scene && study.asked == plan.asked && study.asked_time == plan.asked_time &&
+         study.most == plan.most;
+}
+
 }  // namespace
 
 bool has_inputs(const cloth::StudyTable& table, const StudyOrder& order) {

@@ -25,7 +25,8 @@ QString path_from(const QString& shown) {
 
 const RecentPaths recent_studies{"recentStudies", 12, [](const QString& folder) {
                                    return QFileInfo::exists(QDir(folder).filePath("study.json")) ||
-                                          QFileInfo::exists(QDir(folder).filePath("sweep.json"));
+                                          QFileInfo::exists(QDir(folder).filePath("sweep.json")) ||
+                                          QFileInfo::exists(QDir(folder).filePath("identified.json"));
                                  }};
 
 }  // namespace clothlab

@@ -22,7 +22,8 @@ namespace {
 constexpr double reach = 5;  // px around a shape that still count as on it
 constexpr double smallest_width = 480, lowest_plot = 130, lowest_panel = 110, narrowest_panel = 170;  // px
 constexpr double beside_panels = 90;                                                                  // px
-constexpr double export_scale = 2;  // of a PNG
+constexpr double export_scale = 2;                   // of a PNG
+constexpr double label_size = 13, beyond_axis = 60;  // px, of a label and how far it may go beyond its axis
 
 double height_of(const Diagram& diagram) {
   return std::visit([](const auto& plot) { return cloth::height_of(plot); }, diagram);
@@ -51,6 +52,9 @@ void fit(Diagram& diagram, QSizeF room) {
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) {
     plot->width = room.width();
     fill_height(diagram, lowest_plot, room.height(), room.height(), [&](double h) { plot->plot_height = h; });
+    // Beside a low plot there is no room for what qualifies the label: the files have it.
+    if (cloth::text_width(plot->y.label, label_size) > plot->plot_height + beyond_axis)
+      plot->y.label = plot->y.label.substr(0, plot->y.label.find(','));
   } else if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
     map->width = room.width();
     const int panels = std::max(1, static_cast<int>(map->panels.size()));
@@ -96,7 +100,10 @@ double lowest(Diagram diagram, double width) {
 Diagram for_screen(Diagram diagram) {
   std::visit([](auto& plot) { plot.title.clear(), plot.subtitle.clear(); }, diagram);
   if (auto* plot = std::get_if<cloth::LinePlot>(&diagram)) plot->caption.clear();
-  if (auto* lines = std::get_if<cloth::ParallelCoordinates>(&diagram)) lines->caption.clear();
+  if (auto* lines = std::get_if<cloth::ParallelCoordinates>(&diagram)) {
+    lines->caption.clear();
+    lines->invitation = QObject::tr("Drag along an axis to pick runs").toStdString();
+  }
   if (auto* map = std::get_if<cloth::HeatMap>(&diagram)) {
     map->caption.clear();
     map->y.label =
@@ -132,6 +139,7 @@ StudyPlot::StudyPlot(QWidget* parent) : QWidget(parent) {
 }
 
 void StudyPlot::setDiagram(Diagram diagram) {
+  keepBrushes(diagram);
   diagram_ = std::move(diagram);
   stale_ = true;
   const std::optional<PlotTouch> before = std::exchange(marked_, std::nullopt);
@@ -178,6 +186,8 @@ void StudyPlot::refresh() {
   draw(canvas, shown);
   touches_ = canvas.touches();
   smallest_label_ = canvas.smallestText();
+  const auto* lines = std::get_if<cloth::ParallelCoordinates>(&shown);
+  axes_ = lines ? axes_of(*lines) : std::vector<cloth::ParallelAxis>();
 }
 
 double StudyPlot::smallestLabel() const {
@@ -220,6 +230,8 @@ void StudyPlot::mark(const PlotTouch* touch) {
 }
 
 void StudyPlot::hover(QPointF at) {
+  if (const int axis = axisAt(at); axis >= 0) return hoverAxis(static_cast<std::size_t>(axis), at);
+  leaveAxis();
   const PlotTouch* touch = touchAt(at);
   const bool same = touch ? marked_ && marked_->box == touch->box && marked_->tag == touch->tag : !marked_;
   if (same) return;
@@ -257,23 +269,33 @@ const PlotTouch* StudyPlot::next(int dx, int dy) const {
   return best;
 }
 
+/// The run that an arrow key leads to.
+const PlotTouch* StudyPlot::toward(int key) const {
+  switch (key) {
+    case Qt::Key_Left:
+      return next(-1, 0);
+    case Qt::Key_Right:
+      return next(1, 0);
+    case Qt::Key_Up:
+      return next(0, -1);
+    case Qt::Key_Down:
+      return next(0, 1);
+    default:
+      return nullptr;
+  }
+}
+
 void StudyPlot::keyPressEvent(QKeyEvent* event) {
   if (!click_opens_) return QWidget::keyPressEvent(event);
   refresh();
-  const PlotTouch* to = nullptr;
+  if (takeBrushKey(*event)) return;
   switch (event->key()) {
     case Qt::Key_Left:
-      to = next(-1, 0);
-      break;
     case Qt::Key_Right:
-      to = next(1, 0);
-      break;
     case Qt::Key_Up:
-      to = next(0, -1);
-      break;
     case Qt::Key_Down:
-      to = next(0, 1);
-      break;
+      if (const PlotTouch* to = toward(event->key())) mark(to);
+      return;
     case Qt::Key_Return:
     case Qt::Key_Enter:
       if (marked_ && marked_->tag >= 0)
@@ -282,7 +304,6 @@ void StudyPlot::keyPressEvent(QKeyEvent* event) {
     default:
       return QWidget::keyPressEvent(event);
   }
-  if (to) mark(to);
 }
 
 void StudyPlot::paintEvent(QPaintEvent*) {
@@ -293,6 +314,7 @@ void StudyPlot::paintEvent(QPaintEvent*) {
   if (hasFocus()) {
     painter.setPen(QPen(theme().accent, 1, Qt::DotLine));
     painter.drawRect(rect().adjusted(0, 0, -1, -1));
+    paintChosenAxis(painter);
   }
   if (!marked_) return;
   const bool is_line = !marked_->line.isEmpty() && marked_->box.width() > 4 * reach;
@@ -318,18 +340,24 @@ void StudyPlot::resizeEvent(QResizeEvent*) {
 }
 
 void StudyPlot::mouseMoveEvent(QMouseEvent* event) {
-  hover(event->position());
+  drag_ ? drag(event->position().y()) : hover(event->position());
+}
+
+void StudyPlot::mousePressEvent(QMouseEvent* event) {
+  pressed_ = !beginDrag(*event) && event->button() == Qt::LeftButton;
 }
 
 void StudyPlot::mouseReleaseEvent(QMouseEvent* event) {
-  if (!click_opens_ || event->button() != Qt::LeftButton) return;
+  if (event->button() != Qt::LeftButton) return;
+  if (drag_) return endDrag(event->position().y());
+  if (!std::exchange(pressed_, false) || !click_opens_ || axisAt(event->position()) >= 0) return;
   const PlotTouch* touch = touchAt(event->position());
   if (touch && touch->tag >= 0)
     Q_EMIT runClicked(touch->tag, event->modifiers().testFlag(Qt::ControlModifier));
 }
 
 void StudyPlot::mouseDoubleClickEvent(QMouseEvent* event) {
-  if (click_opens_) return;
+  if (beginDrag(*event) || click_opens_) return;
   const PlotTouch* touch = touchAt(event->position());
   if (touch && touch->tag >= 0) Q_EMIT runActivated(touch->tag);
 }

@@ -1,5 +1,7 @@
 // A study's diagram: the engine's plot, fitted into the widget. Resting the pointer on a run names it, a
-// double-click asks for it; of a sweep a click does, and the arrow keys and Enter.
+// double-click asks for it; of a sweep a click does, and the arrow keys and Enter. On the axes of parallel
+// coordinates the pointer draws ranges (brushes): runs outside of any are faint and are not there for a
+// click.
 #pragma once
 
 #include <QPixmap>
@@ -35,6 +37,12 @@ class StudyPlot : public QWidget {
   /// The run under a place and what is said of it.
   const PlotTouch* touchAt(QPointF at) const;
 
+  /// Where the axis of a column of parallel coordinates is drawn, in the widget's px; empty: there is none.
+  QRectF placeOfAxis(std::size_t column) const;
+  /// Of parallel coordinates; they stay where a diagram of the same columns comes.
+  std::vector<cloth::AxisBrush> brushes() const;
+  void clearBrushes();
+
   /// It is to be seen in a scroll area of this size: the diagram fills it, or is as large as it must be for
   /// its labels to stay legible.
   void setRoom(QSize room);
@@ -53,6 +61,7 @@ class StudyPlot : public QWidget {
   void paintEvent(QPaintEvent* event) override;
   void changeEvent(QEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
@@ -65,6 +74,30 @@ class StudyPlot : public QWidget {
   void hover(QPointF at);
   void mark(const PlotTouch* touch);
   const PlotTouch* next(int dx, int dy) const;
+  const PlotTouch* toward(int key) const;
+  // study_plot_brush.cpp
+  struct BrushDrag {
+    std::size_t column = 0;
+    double from = 0;  // px
+    double value = 0;
+    std::optional<cloth::AxisBrush> before;
+  };
+  cloth::ParallelCoordinates* lines();
+  int axisAt(QPointF at) const;
+  void keepBrushes(Diagram& next);
+  const cloth::AxisBrush* brushOf(std::size_t column) const;
+  void setBrush(std::size_t column, std::optional<cloth::AxisBrush> brush);
+  void showBrushes();
+  bool beginDrag(const QMouseEvent& event);
+  void drag(double y);
+  void endDrag(double y);
+  void hoverAxis(std::size_t column, QPointF at);
+  void leaveAxis();
+  void chooseAxis(int step);
+  bool takeBrushKey(const QKeyEvent& event);
+  void moveEnd(bool upper, double part);
+  QString axisWords(std::size_t column) const;
+  void paintChosenAxis(QPainter& painter) const;
 
   Diagram diagram_;
   QPixmap picture_;
@@ -72,7 +105,13 @@ class StudyPlot : public QWidget {
   QSize room_;
   double smallest_label_ = 0;  // px
   bool stale_ = true, click_opens_ = false;
+  bool pressed_ = false;             // not on an axis: its release is a click
+  bool over_axis_ = false;           // the pointer
   std::optional<PlotTouch> marked_;  // the run under the pointer, or chosen by key
+  std::vector<cloth::ParallelAxis> axes_;
+  std::optional<BrushDrag> drag_;
+  int chosen_axis_ = -1;       // by key or by the last drag; -1: none
+  bool shows_choice_ = false;  // it was by key
 };
 
 /// The diagram as a file, on white paper, with its title and caption; `name` ends in .svg, .png or .pdf.

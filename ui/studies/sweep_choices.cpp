@@ -86,7 +86,7 @@ void copy_varied(const cloth::SweepPlan& plan, const cloth::Scene& from, cloth::
 SweepChoices::SweepChoices(LabDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
   setObjectName("sweepChoices");
   auto* column = spaced(new QVBoxLayout(this), spacing / 2);
-  varied_ = new VariedList(document, this);
+  varied_ = new VariedList(document, RangeRow::Place::dock, this);
   column->addWidget(varied_);
   makeOutputs();
   time_ = named("sweepTime", new QLabel(this));

@@ -7,13 +7,13 @@
 #include <algorithm>
 
 #include "document/varied_ranges.h"
-#include "params/range_row.h"
 #include "theme/theme.h"
 #include "widgets/building.h"
 
 namespace clothlab {
 
-VariedList::VariedList(LabDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
+VariedList::VariedList(LabDocument& document, RangeRow::Place place, QWidget* parent)
+    : QWidget(parent), document_(document), place_(place) {
   auto* column = spaced(new QVBoxLayout(this), spacing / 2);
   hint_ = named("sweepHint",
                 muted(new QLabel(tr("Nothing is varied yet: choose “Vary…” in the menu ⋮ of a parameter, or "
@@ -76,8 +76,7 @@ void VariedList::rebuild() {
   }
   QWidget* last = nullptr;
   for (const VariedRange& range : document_.varied().list()) {
-    auto* row =
-        new RangeRow(document_, *find_parameter(document_.scene(), range.path), RangeRow::Place::dock, this);
+    auto* row = new RangeRow(document_, *find_parameter(document_.scene(), range.path), place_, this);
     connect(row, &RangeRow::ruleBroken, this, &VariedList::ruleBroken);
     ranges_->addWidget(row);
     rows_.push_back(row);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "document/lab_document.h"
+#include "params/range_row.h"
 
 class QLabel;
 class QMenu;
@@ -13,13 +14,11 @@ class QVBoxLayout;
 
 namespace clothlab {
 
-class RangeRow;
-
 class VariedList : public QWidget {
   Q_OBJECT
 
  public:
-  explicit VariedList(LabDocument& document, QWidget* parent = nullptr);
+  VariedList(LabDocument& document, RangeRow::Place place, QWidget* parent = nullptr);
 
   /// The document's scene, or what is varied of it, is another one.
   void refresh();
@@ -33,6 +32,7 @@ class VariedList : public QWidget {
   void rebuild();
 
   LabDocument& document_;
+  RangeRow::Place place_;
   std::vector<RangeRow*> rows_;
   QVBoxLayout* ranges_ = nullptr;
   QLabel* hint_ = nullptr;

@@ -104,7 +104,8 @@ void ClothView::showFrame(std::shared_ptr<const ClothFrame> frame) {
   const bool new_topology = !frame_ || frame_->topology != frame->topology || frame_->rows != frame->rows ||
                             frame_->columns != frame->columns;
   if (new_topology) {
-    if (gesture_ == Gesture::pull || gesture_ == Gesture::click || gesture_ == Gesture::obstacle) endGesture();
+    if (gesture_ == Gesture::pull || gesture_ == Gesture::click || gesture_ == Gesture::obstacle)
+      endGesture();
     hovered_.reset();
     strain_range_.reset();
   }
@@ -285,6 +286,7 @@ void ClothView::paintOverlays(QPainter& painter) {
   if (painted_theme_ != &look) overlay_.forget();
   painted_theme_ = &look;
   painter.setFont(font());
+  overlay_.begin_labels();
   if (!has_cloth(frame_)) {
     overlay_.message(painter, size(), look, tr("No cloth yet"), tr("Open a scene, or drop one here."));
     return;

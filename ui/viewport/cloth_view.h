@@ -53,6 +53,8 @@ class ClothView : public QWidget {
   /// ignored.
   void showFrame(std::shared_ptr<const ClothFrame> frame);
   const std::shared_ptr<const ClothFrame>& frame() const { return frame_; }
+  /// Where the labels of the probes were drawn last, px.
+  const std::vector<QRectF>& probeLabels() const { return overlay_.labels(); }
   /// Removes the frame and shows the empty state.
   void clear();
 
@@ -160,6 +162,7 @@ class ClothView : public QWidget {
   void paintHand(QPainter& painter);
   void paintHandle(QPainter& painter);
   void paintProbes(QPainter& painter);
+  void paintProbesOf(bool shape, QPainter& painter);
   void paintProbeTool(QPainter& painter);
   void paintContactNote(QPainter& painter);
   bool showsMode() const;

@@ -79,19 +79,26 @@ QPolygonF ClothView::screenLine(const std::vector<int>& particles) const {
   return line;
 }
 
+/// The list of those of the whole shape has its place; the labels at particles keep clear of it, wherever in
+/// the scene they stand.
 void ClothView::paintProbes(QPainter& painter) {
+  paintProbesOf(true, painter);
+  paintProbesOf(false, painter);
+}
+
+void ClothView::paintProbesOf(bool shape, QPainter& painter) {
   const Theme& look = theme();
-  overlay_.begin_labels();
   std::size_t value = 0;
-  int row = 0;
   for (const cloth::ProbeReader::Probed& probed : frame_->probes) {
     const std::size_t count = facts_of(probed.probe.measure).values.size();
     if (value + count > frame_->probe_values.size()) break;
     const auto first = frame_->probe_values.begin() + static_cast<std::ptrdiff_t>(value);
-    const ProbeLabel label = probe_label(probed.probe, {first, first + static_cast<std::ptrdiff_t>(count)});
+    ProbeLabel label = probe_label(probed.probe, {first, first + static_cast<std::ptrdiff_t>(count)});
     value += count;
-    if (probed.particles.empty())
-      overlay_.shape_probe(painter, look, label, row++, showsMode());
+    if (probed.particles.empty() != shape) continue;
+    if (!shape && !showsMode()) label.values.clear();  // in a small pane the values would cover the cloth
+    if (shape)
+      overlay_.shape_probe(painter, look, label);
     else
       overlay_.probe(painter, size(), look, screenLine(probed.particles), &label);
   }

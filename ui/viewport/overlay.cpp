@@ -94,19 +94,22 @@ QRectF place_beside_handle(QPointF at, QSizeF label, const QPolygonF& keys, QSiz
 /// another side or further away.
 QRectF place_beside(QPointF at, QSizeF room, QSizeF view, const std::vector<QRectF>& others) {
   constexpr double gap = 12;
-  constexpr int rounds = 4;
+  constexpr int rounds = 8;
   const QRectF whole(QPointF(), view);
   const double right = at.x() + gap, left = at.x() - gap - room.width();
-  for (int round = 0; round < rounds; ++round) {
-    const double further = gap + round * (room.height() + 2);
-    for (const double y : {at.y() - further - room.height(), at.y() + further})
-      for (const double x : {right, left}) {
-        const QRectF area(QPointF(x, y), room);
-        const bool is_free = std::none_of(others.begin(), others.end(),
-                                          [&](const QRectF& other) { return other.intersects(area); });
-        if (is_free && whole.contains(area)) return area;
-      }
-  }
+  const double most = std::max(0.0, view.width() - room.width());
+  // Where neither side has room for the whole label, it may stand above or below the place.
+  for (const bool shifted : {false, true})
+    for (int round = 0; round < rounds; ++round) {
+      const double further = gap + round * (room.height() + 2);
+      for (const double y : {at.y() - further - room.height(), at.y() + further})
+        for (const double x : {right, left}) {
+          const QRectF area(QPointF(shifted ? std::clamp(x, 0.0, most) : x, y), room);
+          const bool is_free = std::none_of(others.begin(), others.end(),
+                                            [&](const QRectF& other) { return other.intersects(area); });
+          if (is_free && whole.contains(area)) return area;
+        }
+    }
   return {QPointF(std::clamp(right, 0.0, std::max(0.0, view.width() - room.width())),
                   std::clamp(at.y() + gap, 0.0, std::max(0.0, view.height() - room.height()))),
           room};
@@ -225,6 +228,7 @@ void Overlay::mode_name(QPainter& view, const Theme& theme, ViewMode mode, Quant
   const QRectF area(QPointF(2 * spacing, 2 * spacing), card_size(view, font, name));
   mode_.lay(view, area, {static_cast<double>(mode), static_cast<double>(quantity)},
             [&](QPainter& p) { text_card(p, area, theme, font, theme.muted_text, name); });
+  labels_.push_back(area);
 }
 
 void Overlay::contact_note(QPainter& view, const Theme& theme, int touches, bool below_mode) {
@@ -235,6 +239,7 @@ void Overlay::contact_note(QPainter& view, const Theme& theme, int touches, bool
   const QRectF area(corner, size);
   contact_.lay(view, area, {static_cast<double>(touches)},
                [&](QPainter& p) { text_card(p, area, theme, note_font(view), theme.text, note); });
+  labels_.push_back(area);
 }
 
 void Overlay::handle(QPainter& view, const Theme& theme, QPointF at, const std::array<QPointF, 3>& tips,
@@ -372,13 +377,12 @@ void Overlay::probe(QPainter& view, QSizeF size, const Theme& theme, const QPoly
   view.restore();
 }
 
-void Overlay::shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label, int row,
-                          bool below_mode) {
+void Overlay::shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label) {
   view.save();
   view.setRenderHint(QPainter::Antialiasing);
   const QSizeF room = label_size(view, label);
-  const double top = below_mode ? 3 * spacing + card_size(view, note_font(view), {}).height() : 2 * spacing;
-  const QRectF area(QPointF(2 * spacing, top + row * (room.height() + spacing / 2.0)), room);
+  const double top = labels_.empty() ? 2 * spacing : labels_.back().bottom() + spacing / 2.0;
+  const QRectF area(QPointF(2 * spacing, top), room);
   label_card(view, area, theme, label);
   labels_.push_back(area);
   view.restore();

@@ -66,11 +66,13 @@ class Overlay {
   void motion(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& keys, QPointF at);
   /// Labels of probes keep clear of those laid since.
   void begin_labels() { labels_.clear(); }
+  const std::vector<QRectF>& labels() const { return labels_; }  ///< px
   /// Particles and the lines between them; with a label beside them, or without as what a click would choose.
   void probe(QPainter& view, QSizeF size, const Theme& theme, const QPolygonF& particles,
              const ProbeLabel* label);
-  /// A probe of the whole shape: a line of the list at the left edge.
-  void shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label, int row, bool below_mode);
+  /// A probe of the whole shape: a line of the list at the left edge, below what was laid last. They come
+  /// before those at particles.
+  void shape_probe(QPainter& view, const Theme& theme, const ProbeLabel& label);
   /// What is read off under the cursor.
   void reading(QPainter& view, QSizeF size, const Theme& theme, QPointF at, const QStringList& lines);
   /// One line at the lower edge.

@@ -11,7 +11,9 @@
 namespace cloth {
 namespace {
 
-constexpr double title_line = 15, side = 70, bar_width = 14, legend_height = 34, legend_width = 180;
+constexpr double title_line = 15, side = 70, bar_width = parallel_bar_width, legend_height = 34,
+                 legend_width = 180;
+constexpr double brushed_opacity = 0.45;
 constexpr double bottom = 14;
 
 const PageColour& failed_colour() {
@@ -67,11 +69,25 @@ std::size_t class_of(const ParallelLayout& layout, std::size_t row) {
                                       : 0;
 }
 
+/// Runs that a brush leaves out: behind the others, and not there for the pointer. They are of a light
+/// colour, not of a transparent one, which would become dark where many of them meet.
+void draw_faint_rows(PlotCanvas& canvas, const ParallelLayout& layout, const std::vector<std::size_t>& rows) {
+  canvas.begin_group("faint", {}, true);
+  for (const std::size_t row : rows)
+    canvas.path(path_of(layout, row), {.stroke = page_colours().grid, .stroke_width = 1.2});
+  canvas.end_group();
+}
+
 void draw_rows(PlotCanvas& canvas, const ParallelLayout& layout) {
   const PointTable& table = layout.plot.table;
-  const std::vector<std::size_t> rows = table.some_rows(most_parallel_rows);
+  std::vector<std::size_t> rows = table.some_rows(most_parallel_rows);
+  const auto outside = std::stable_partition(
+      rows.begin(), rows.end(), [&layout](std::size_t row) { return is_kept(layout.plot, row); });
+  const std::vector<std::size_t> faint(outside, rows.end());
+  rows.erase(outside, rows.end());
   const double opacity = std::clamp(9 / std::sqrt(static_cast<double>(rows.size()) + 1), 0.3, 0.9);
   canvas.begin_group("rows");
+  if (!faint.empty()) draw_faint_rows(canvas, layout, faint);
   canvas.begin_group("failed", {.stroke = failed_colour(), .dash = Dash::dashed, .opacity = 0.6});
   for (const std::size_t row : rows)
     if (table.failed(row))
@@ -85,6 +101,23 @@ void draw_rows(PlotCanvas& canvas, const ParallelLayout& layout) {
         canvas.path(path_of(layout, row), {.stroke = ramp_colours()[k], .stroke_width = 1.4},
                     {table.text_of(row), table.tag_of(row)});
     canvas.end_group();
+  }
+  canvas.end_group();
+}
+
+void draw_brushes(PlotCanvas& canvas, const ParallelLayout& layout) {
+  canvas.begin_group("brushes", {}, true);
+  for (const AxisBrush& brush : layout.plot.brushes) {
+    const AxisMap& map = layout.maps[brush.column];
+    const auto place = [&](double value) {
+      return std::clamp(can_show(map.scale(), value) ? map.place(value) : layout.frame.bottom,
+                        layout.frame.top, layout.frame.bottom);
+    };
+    const double top = place(brush.high), height = place(brush.low) - top;
+    const double left = layout.x(brush.column) - bar_width / 2;
+    const PageColour& colour = style_of_series(0).colour;
+    canvas.rect({left, top}, bar_width, height, {.fill = colour, .opacity = brushed_opacity});
+    canvas.rect({left, top}, bar_width, height, {.stroke = colour, .stroke_width = 1.5});
   }
   canvas.end_group();
 }
@@ -134,6 +167,22 @@ void draw_ramp_legend(PlotCanvas& canvas, const ParallelLayout& layout) {
                 {.stroke = failed_colour(), .stroke_width = 1.5, .dash = Dash::dashed});
     canvas.text({x + 38, y + 11}, {.text = fmt::format("failed ({})", failures), .size = small_size});
   }
+  canvas.end_group();
+}
+
+/// Of the runs that are kept, or what is said in its place: the page's script writes there, too.
+void draw_count(PlotCanvas& canvas, const ParallelCoordinates& plot) {
+  const bool counts = !plot.brushes.empty();
+  const PageColours& page = page_colours();
+  canvas.begin_group("count", {}, true);
+  canvas.text({plot.width - plot_margin, titles_height(plot.title, plot.subtitle, plot.width) + 11},
+              {.text = counts                    ? kept_words(plot)
+                       : plot.invitation.empty() ? " "
+                                                 : plot.invitation,
+               .size = small_size,
+               .anchor = Anchor::end,
+               .bold = counts,
+               .colour = counts ? page.ink : page.muted});
   canvas.end_group();
 }
 
@@ -197,6 +246,28 @@ constexpr const char* brush_script = R"(
 
 }  // namespace
 
+bool is_kept(const ParallelCoordinates& plot, std::size_t row) {
+  return std::all_of(plot.brushes.begin(), plot.brushes.end(), [&](const AxisBrush& brush) {
+    const double value = plot.table.columns[brush.column].values[row];
+    return value >= brush.low && value <= brush.high;
+  });
+}
+
+std::string kept_words(const ParallelCoordinates& plot) {
+  std::size_t kept = 0;
+  const std::size_t rows = plot.table.rows();
+  for (std::size_t row = 0; row < rows; ++row) kept += is_kept(plot, row) ? 1 : 0;
+  return fmt::format("{} of {} runs", kept, rows);
+}
+
+std::vector<ParallelAxis> axes_of(const ParallelCoordinates& plot) {
+  const ParallelLayout layout(plot);
+  std::vector<ParallelAxis> axes;
+  for (std::size_t c = 0; c < layout.maps.size(); ++c)
+    axes.push_back({layout.x(c), layout.frame.top, layout.frame.bottom, layout.maps[c]});
+  return axes;
+}
+
 double height_of(const ParallelCoordinates& plot) {
   return ParallelLayout(plot).height();
 }
@@ -212,13 +283,11 @@ void draw(PlotCanvas& canvas, const ParallelCoordinates& plot) {
                 {.fill = page_colours().band});
   canvas.end_group();
   draw_rows(canvas, layout);
+  if (!plot.brushes.empty()) draw_brushes(canvas, layout);
   canvas.begin_group("axes", {}, true);
   for (std::size_t c = 0; c < layout.maps.size(); ++c) draw_parallel_axis(canvas, layout, c);
   canvas.end_group();
-  canvas.begin_group("count", {}, true);
-  canvas.text({plot.width - plot_margin, titles_height(plot.title, plot.subtitle, plot.width) + 11},
-              {.text = " ", .size = small_size, .anchor = Anchor::end, .colour = page_colours().muted});
-  canvas.end_group();
+  draw_count(canvas, plot);
   draw_caption(canvas, layout.caption, layout.frame.bottom + bottom, plot.width);
 }
 

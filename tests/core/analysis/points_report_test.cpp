@@ -145,6 +145,52 @@ TEST(ParallelCoordinates, HaveBarsWhereTheLinesBend) {
   EXPECT_EQ(count_of(all_elements(document.root), "script"), 1u);
 }
 
+TEST(ParallelCoordinates, DrawRunsOutsideOfAnyBrushFaintlyAndCountTheOthers) {
+  PointsAccount account = account_of(Design::sobol, 64);
+  account.table.columns[3].values[7] = none;
+  ParallelCoordinates plot = parallel_plot(account);
+  plot.brushes = {{.column = 0, .low = 0, .high = 4}, {.column = 3, .low = -100, .high = 100}};
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < 64; ++row) {
+    const bool inside = account.table.columns[0].values[row] >= 0 && row != 7;  // which has no output
+    EXPECT_EQ(is_kept(plot, row), inside) << row;
+    kept += inside ? 1 : 0;
+  }
+  const XmlDocument document = read_xml(to_svg(plot));
+  ASSERT_EQ(document.error, "");
+  EXPECT_EQ(count_of(group_of(document, "rows"), "path"), 64u);
+  EXPECT_EQ(count_of(group_of(document, "faint"), "path"), 64 - kept);
+  EXPECT_EQ(count_of(group_of(document, "faint"), "title"), 0u);
+  EXPECT_EQ(kept_words(plot), std::to_string(kept) + " of 64 runs");
+  EXPECT_NE(to_svg(plot).find(kept_words(plot)), std::string::npos);
+}
+
+TEST(ParallelCoordinates, SayWhereTheirAxesAre) {
+  const ParallelCoordinates plot = parallel_plot(account_of(Design::sobol, 16));
+  const XmlDocument document = read_xml(to_svg(plot));
+  const auto axes = axes_of(plot);
+  std::size_t c = 0;
+  for (const XmlElement* bar : group_of(document, "bars")) {
+    if (bar->name != "rect") continue;
+    ASSERT_LT(c, axes.size());
+    EXPECT_EQ(bar->attributes.at("x"), svg_number(axes[c].x - parallel_bar_width / 2));
+    EXPECT_EQ(bar->attributes.at("y"), svg_number(axes[c].top));
+    EXPECT_EQ(bar->attributes.at("height"), svg_number(axes[c].bottom - axes[c].top));
+    ++c;
+  }
+  EXPECT_EQ(c, axes.size());
+}
+
+TEST(AxisMap, GivesTheValueOfAPlaceBack) {
+  const std::vector<double> values{0.02, 3, 170};
+  for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
+    const AxisMap map({.scale = scale}, values, 400, 100);  // upwards
+    for (const double value : values) EXPECT_NEAR(map.value_at(map.place(value)), value, 1e-12 * 170);
+    EXPECT_DOUBLE_EQ(map.value_at(1000), map.low());
+    EXPECT_DOUBLE_EQ(map.value_at(-1000), map.high());
+  }
+}
+
 TEST(ParallelCoordinates, OfManyRunsDrawSomeAndSaySo) {
   const std::string svg = to_svg(parallel_plot(account_of(Design::sobol, 4096)));
   EXPECT_EQ(count_of(group_of(read_xml(svg), "rows"), "path"), most_parallel_rows);

@@ -107,7 +107,7 @@ void check_axis(const StudyAxis& axis) {
 std::optional<std::size_t> place_on(const std::vector<double>& values, double value) {
   auto at = std::lower_bound(values.begin(), values.end(), value);
   if (at == values.end() || (at != values.begin() && value - at[-1] < *at - value)) --at;
-  if (!(std::abs(*at - value) <= 1e-9 * std::abs(value))) return std::nullopt;
+  if (!std::isfinite(value) || std::abs(*at - value) > 1e-9 * std::abs(value)) return std::nullopt;
   return static_cast<std::size_t>(at - values.begin());
 }
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
 #include "study/extremes_report.h"
@@ -158,6 +161,37 @@ TEST(StudyFolder, SaysWhatIsWrongWithIt) {
   EXPECT_FALSE(read_study(folder.path()).study);
   write_file(folder / "study.json", "{\"format\": \"clothlab/study/1\", \"kind\": 3}");
   EXPECT_FALSE(read_study(folder.path()).study);
+}
+
+/// A part of a study has gaps: a row is placed by what it says.
+TEST(StudyFolder, NamesTheRowThatIsNoneOfItsCellsOrIsThereTwice) {
+  const Scene scene = small_cloth();
+  const TemporaryFolder folder;
+  const StabilityMap map = run_stability_map(scene, small_map(scene));
+  ASSERT_FALSE(StudyRecorder::write(folder.path(), map, "", 0));
+  auto index = nlohmann::ordered_json::parse(content_of(folder / "study.json"));
+  index.erase("files");  // no digests: the study is being made
+  index["complete"] = false;
+  write_file(folder / "study.json", index.dump());
+  const CsvTable table = table_of(map);
+  for (const auto& [x, rule] : {std::pair<std::string, std::string>{table.rows[3][1], "are there already"},
+                                {"infinity", "is not on its axis"},
+                                {"1e-30", "is not on its axis"}}) {
+    CsvTable changed = table;
+    changed.rows[2][1] = x;
+    std::swap(changed.rows.front(), changed.rows.back());
+    write_file(folder / "stability.csv", csv_text(changed, "\n"));
+    const StudyReading reading = read_study(folder.path());
+    EXPECT_FALSE(reading.study) << x;
+    EXPECT_NE(reading.problem.find("stability.csv, line "), std::string::npos) << reading.problem;
+    EXPECT_NE(reading.problem.find(rule), std::string::npos) << reading.problem;
+  }
+  CsvTable turned = table;
+  std::reverse(turned.rows.begin(), turned.rows.end());
+  write_file(folder / "stability.csv", csv_text(turned, "\n"));
+  const StudyReading reading = read_study(folder.path());
+  ASSERT_TRUE(reading.study) << reading.problem;
+  EXPECT_EQ(study_csv(reading.study->table), study_csv(map));
 }
 
 TEST(StudyFolder, TheLastPartialWorkPrecisionIsTheFinalOne) {

@@ -68,6 +68,10 @@ QFont sized(QFont font, double size, bool bold) {
 
 }  // namespace
 
+QString PlotTouch::text() const {
+  return sentence_text(words);
+}
+
 PainterCanvas::PainterCanvas(QPainter& painter, const QFont& font, Look look)
     : painter_(painter), font_(font), look_(look) {
   painter_.setRenderHint(QPainter::Antialiasing);
@@ -106,8 +110,8 @@ void PainterCanvas::draw(const QPainterPath& shape, const cloth::SvgStyle& own, 
   painter_.restore();
   const bool answers = !tip.text.empty() && (groups_.empty() || !groups_.back().untouchable);
   if (answers)
-    touches_.push_back({shape.boundingRect(), sentence_text(tip.text), tip.tag,
-                        style.fill || tip.tag < 0 ? QPainterPath() : shape});
+    touches_.push_back(
+        {shape.boundingRect(), tip.text, tip.tag, style.fill || tip.tag < 0 ? QPainterPath() : shape});
 }
 
 void PainterCanvas::path(const std::string& data, const cloth::SvgStyle& style, const cloth::SvgTip& tip) {

@@ -8,6 +8,7 @@
 #include <QPainterPath>
 #include <QRectF>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "report/svg.h"
@@ -17,9 +18,10 @@ namespace clothlab {
 /// A shape with a tooltip, in px of the drawing.
 struct PlotTouch {
   QRectF box;
-  QString text;
+  std::string words;    ///< of the engine; text() is as people read it, and costs more than the drawing
   int tag = -1;         ///< the run's number; -1: none
   QPainterPath line{};  ///< of a shape without a fill, which is where its line is; else empty
+  QString text() const;
 };
 
 class PainterCanvas : public cloth::PlotCanvas {

@@ -142,15 +142,8 @@ void StudyPlot::setDiagram(Diagram diagram) {
   keepBrushes(diagram);
   diagram_ = std::move(diagram);
   stale_ = true;
-  const std::optional<PlotTouch> before = std::exchange(marked_, std::nullopt);
   keepLegible();
   update();
-  // A diagram that fills keeps the mark of a run.
-  if (before && before->tag >= 0) {
-    refresh();
-    for (const PlotTouch& touch : touches_)
-      if (touch.tag == before->tag) marked_ = touch;
-  }
 }
 
 void StudyPlot::setClickOpens(bool opens) {
@@ -187,6 +180,10 @@ void StudyPlot::refresh() {
   touches_ = canvas.touches();
   smallest_label_ = canvas.smallestText();
   const auto* lines = std::get_if<cloth::ParallelCoordinates>(&shown);
+  // A diagram that fills keeps the mark of a run, as far as it is there.
+  const std::optional<PlotTouch> before = std::exchange(marked_, std::nullopt);
+  for (const PlotTouch& touch : touches_)
+    if (before && before->tag >= 0 && touch.tag == before->tag) marked_ = touch;
   axes_ = lines ? axes_of(*lines) : std::vector<cloth::ParallelAxis>();
 }
 
@@ -225,8 +222,9 @@ void StudyPlot::mark(const PlotTouch* touch) {
   marked_ = touch ? std::optional(*touch) : std::nullopt;
   update();
   setCursor(touch && touch->tag >= 0 ? Qt::PointingHandCursor : Qt::ArrowCursor);
-  setAccessibleDescription(touch ? touch->text : QString());
-  Q_EMIT runHovered(touch ? touch->text : QString());
+  const QString text = touch ? touch->text() : QString();
+  setAccessibleDescription(text);
+  Q_EMIT runHovered(text);
 }
 
 void StudyPlot::hover(QPointF at) {
@@ -237,7 +235,7 @@ void StudyPlot::hover(QPointF at) {
   if (same) return;
   mark(touch);
   if (touch) {
-    QString tip = touch->text.toHtmlEscaped().replace('\n', "<br>");
+    QString tip = touch->text().toHtmlEscaped().replace('\n', "<br>");
     if (touch->tag >= 0)
       tip += click_opens_ ? tr("<br><i>Click to open this run, with Ctrl beside those that are open</i>")
                           : tr("<br><i>Double-click to open this run</i>");
@@ -350,6 +348,7 @@ void StudyPlot::mousePressEvent(QMouseEvent* event) {
 void StudyPlot::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
   if (drag_) return endDrag(event->position().y());
+  refresh();  // a click is on what is there now
   if (!std::exchange(pressed_, false) || !click_opens_ || axisAt(event->position()) >= 0) return;
   const PlotTouch* touch = touchAt(event->position());
   if (touch && touch->tag >= 0)

@@ -96,13 +96,9 @@ void StudyPlot::setBrush(std::size_t column, std::optional<cloth::AxisBrush> bru
   showBrushes();
 }
 
-/// A run that is faint now is no longer marked.
+/// Drawn at the next painting, once for all moves of the pointer since the last.
 void StudyPlot::showBrushes() {
   stale_ = true;
-  refresh();
-  const std::optional<PlotTouch> before = std::exchange(marked_, std::nullopt);
-  for (const PlotTouch& touch : touches_)
-    if (before && before->tag >= 0 && touch.tag == before->tag) marked_ = touch;
   const auto* all = lines();
   const QString words = all->brushes.empty() ? QString() : QString::fromStdString(kept_words(*all));
   setAccessibleDescription(words);

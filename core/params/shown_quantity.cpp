@@ -84,9 +84,9 @@ ShownQuantity shown_quantity(double value, const std::string& unit, int digits) 
   for (const int tens : {0, -3, 3, -6, 6, -9, 9, -12, 12}) {
     const int exponent = decimal.exponent - tens;
     if (exponent < -1 || exponent > 2 || tens + own > largest) continue;
-    const auto prefix = std::find_if(prefixes.begin(), prefixes.end(), [&](const Prefix& one) {
-      return one.is_shown && one.tens == tens + own;
-    });
+    const auto prefix =
+        std::find_if(prefixes.begin(), prefixes.end(),
+                     [&, tens = tens + own](const Prefix& one) { return one.is_shown && one.tens == tens; });
     if (prefix == prefixes.end()) continue;
     decimal.exponent = exponent;
     return {fixed_text(decimal, value < 0),

@@ -49,6 +49,7 @@ until [ "$(cells)" -ge 20 ] || [ -z "$(squeue -h)" ]; do
   [ $tries -le 600 ] || fail "no cells come"
   sleep 0.1
 done
+# shellcheck disable=SC2046 # names of tasks, split on purpose
 set -- $(squeue -h -t RUNNING -r -o %i)
 [ $# -ge 2 ] || fail "no two tasks run"
 # Slurm tells a task that ends at once a second time, and complains that it is gone.

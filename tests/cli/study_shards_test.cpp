@@ -9,7 +9,7 @@
 #include "io/text_file.h"
 #include "support/files.h"
 
-namespace cloth::test::shards_test {
+namespace cloth::test::study_shards_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -68,27 +68,27 @@ void expect_parts_to_be_the_whole(const std::string& study, const std::string& c
     EXPECT_TRUE(std::filesystem::exists(place / (std::string("parts/") + name))) << name;
 }
 
-TEST(Shards, OfExtremesMergedAreTheSingleRun) {
+TEST(StudyShards, OfExtremesMergedAreTheSingleRun) {
   expect_parts_to_be_the_whole(few, "extremes.csv");
 }
 
-TEST(Shards, OfAStabilityMapMergedAreTheSingleRun) {
+TEST(StudyShards, OfAStabilityMapMergedAreTheSingleRun) {
   expect_parts_to_be_the_whole(map, "stability.csv");
 }
 
-TEST(Shards, OfWorkAndPrecisionMergedAreTheSingleRunButForTimes) {
+TEST(StudyShards, OfWorkAndPrecisionMergedAreTheSingleRunButForTimes) {
   expect_parts_to_be_the_whole(precision, "work_precision.csv");
 }
 
-TEST(Shards, OfGridConvergenceMergedAreTheSingleRun) {
+TEST(StudyShards, OfGridConvergenceMergedAreTheSingleRun) {
   expect_parts_to_be_the_whole(grids, "convergence.csv");
 }
 
-TEST(Shards, OfAValidationMergedAreTheSingleRun) {
+TEST(StudyShards, OfAValidationMergedAreTheSingleRun) {
   expect_parts_to_be_the_whole(strips, "validation.csv");
 }
 
-TEST(Shards, KilledGoOnAndToldToEndExitWith130) {
+TEST(StudyShards, KilledGoOnAndToldToEndExitWith130) {
   const Place place;
   const CommandResult result = place.sh(R"sh(
     study="extremes --methods verlet,rk4,implicit-euler --out"
@@ -105,7 +105,7 @@ TEST(Shards, KilledGoOnAndToldToEndExitWith130) {
   EXPECT_EQ(place.table("parts/extremes.csv"), place.table("whole/extremes.csv"));
 }
 
-TEST(Shards, OfOtherOptionsExitWithTwoAndAreNamed) {
+TEST(StudyShards, OfOtherOptionsExitWithTwoAndAreNamed) {
   const Place place;
   const CommandResult result = place.sh("\"$CLI\" " + map + " --out parts --shard 1/2 || exit 7\n\"$CLI\" " +
                                         map + " --periods 50 --out parts");
@@ -115,7 +115,7 @@ TEST(Shards, OfOtherOptionsExitWithTwoAndAreNamed) {
   EXPECT_FALSE(std::filesystem::exists(place / "parts/study.json"));
 }
 
-TEST(Shards, ThatDoNotAgreeExitWithFiveAndAreNamed) {
+TEST(StudyShards, ThatDoNotAgreeExitWithFiveAndAreNamed) {
   const Place place;
   ASSERT_EQ(place.sh("exec \"$CLI\" " + few + " --out parts --shard 1/3").exit_code, 0);
   // As of a process that came to something else and was killed: a finished table has a digest.
@@ -135,7 +135,7 @@ TEST(Shards, ThatDoNotAgreeExitWithFiveAndAreNamed) {
   EXPECT_FALSE(std::filesystem::exists(place / "parts/study.json"));
 }
 
-TEST(Shards, ThatAreBadUsageSayWhy) {
+TEST(StudyShards, ThatAreBadUsageSayWhy) {
   const std::pair<std::string, const char*> cases[] = {
       {few + " --shard 1/2", "--out"},
       {few + " --out x --shard 3/2", "--shard: the index 3 must be 1 to 2"},
@@ -152,4 +152,4 @@ TEST(Shards, ThatAreBadUsageSayWhy) {
 }
 
 }  // namespace
-}  // namespace cloth::test::shards_test
+}  // namespace cloth::test::study_shards_test

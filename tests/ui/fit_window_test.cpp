@@ -243,6 +243,7 @@ class FitWindowTest : public QObject {
     QVERIFY(drop(bench.window.charts(), folder_.filePath("swing.csv")));
     document.varied().add("obstacles.0.friction");
     QTest::qWait(100);
+    bench.type("studyFolder", folder_.filePath("friction"));
     bench.push("startStudy");
     QTRY_VERIFY_WITH_TIMEOUT(!bench.panel().isRunning() && bench.panel().fitted(), 120000);
     QVERIFY(!bench.panel().fitted()->result.all_identified());

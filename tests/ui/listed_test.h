@@ -2,8 +2,6 @@
 #pragma once
 
 #include <QApplication>
-#include <QDir>
-#include <QFile>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <map>
@@ -30,11 +28,6 @@ int test_main(int argc, char** argv) {
   if (!home.isValid()) qFatal("no folder for the settings: %s", qPrintable(home.errorString()));
   qputenv("XDG_CONFIG_HOME", home.filePath("config").toUtf8());
   qputenv("XDG_DATA_HOME", home.filePath("data").toUtf8());
-  QDir().mkpath(home.filePath("config"));  // results without a folder of their own go to the user's documents
-  QFile folders(home.filePath("config/user-dirs.dirs"));
-  if (!folders.open(QIODevice::WriteOnly)) qFatal("no settings: %s", qPrintable(folders.errorString()));
-  folders.write("XDG_DOCUMENTS_DIR=\"" + home.filePath("documents").toUtf8() + "\"\n");
-  folders.close();
   Application application(argc, argv);
   application.setOrganizationName("Clothlab");
   application.setApplicationName("clothlab");

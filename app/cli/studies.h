@@ -44,7 +44,8 @@ std::variant<MadeStudy<Table>, int> make_study(const Table& plan, Options option
   const auto chosen = chosen_shard(place.shard);
   if (const int* failed = std::get_if<int>(&chosen)) return *failed;
   const std::optional<cloth::Shard> shard = std::get<0>(chosen);
-  if (shard) options.shard = *shard;
+  if constexpr (requires { options.shard; })
+    if (shard) options.shard = *shard;
   listen_for_stop();
   options.stop = stop_is_requested;
   cloth::StudyRecorder recorder;

@@ -50,6 +50,10 @@ double length_of_union(std::vector<Interval>& intervals) {
   return length;
 }
 
+bool are_finite(const std::vector<Vector2d>& points) {
+  return std::all_of(points.begin(), points.end(), [](const Vector2d& point) { return point.allFinite(); });
+}
+
 /// The outline without what is shorter than a 24th of the way around.
 std::vector<double> smooth(const std::vector<double>& outline) {
   constexpr int harmonics = 24;
@@ -84,9 +88,11 @@ double flat_area(const std::vector<Triangle>& triangles, const Vec3Field& flat) 
 double shadow_area(const std::vector<Triangle>& triangles, const Vec3Field& position, const DrapeDisc& disc,
                    int lines) {
   const std::vector<Vector2d> points = seen_from_above(position, disc);
+  if (!are_finite(points)) return std::numeric_limits<double>::quiet_NaN();
   double low = -disc.radius, high = disc.radius;
   for (const Vector2d& point : points) low = std::min(low, point.y()), high = std::max(high, point.y());
   const double spacing = (high - low) / lines;
+  if (!(spacing > 0)) return 0;  // seen edge-on, along the lines
   const auto height_of = [&](int line) { return low + (line + 0.5) * spacing; };
   const auto line_at = [&](double y) {  // the first that is not below y
     return std::clamp(static_cast<int>(std::ceil((y - low) / spacing - 0.5)), 0, lines);
@@ -115,6 +121,10 @@ std::vector<double> shadow_outline(const std::vector<Triangle>& triangles, const
                                    const DrapeDisc& disc, int directions) {
   const std::vector<Vector2d> points = seen_from_above(position, disc);
   std::vector<double> outline(static_cast<std::size_t>(directions), disc.radius);
+  if (!are_finite(points)) {
+    std::ranges::fill(outline, std::numeric_limits<double>::quiet_NaN());
+    return outline;
+  }
   const double step = 2 * std::numbers::pi / directions;
   const auto look_at_edge = [&](const Vector2d& p, const Vector2d& q) {
     const double begin = std::atan2(p.y(), p.x());

@@ -31,7 +31,7 @@ struct Drape {
 /// The area in m^2 of all that lies below or above the horizontal plane through the disc's middle, with the
 /// disc: exact along each of `lines` parallel lines and by the midpoint rule across them. Where the shadow's
 /// width along the lines changes by V in all, the error is at most V times half of their spacing; for a disc
-/// it falls with the power 3/2 of the spacing.
+/// it falls with the power 3/2 of the spacing. Not a number where a position is not finite, as the outline.
 double shadow_area(const std::vector<Triangle>& triangles, const Vec3Field& position, const DrapeDisc& disc,
                    int lines = 2000);
 

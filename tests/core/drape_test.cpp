@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 namespace cloth::test::drape_test {
@@ -138,6 +139,20 @@ TEST(Drape, HasAnErrorWithinTheStatedBoundOnEveryNumberOfLines) {
     EXPECT_LT(std::abs(error), 0.5 * spacing * 0.6) << lines;
     EXPECT_LT(std::abs(error), 0.5 * std::pow(spacing, 1.5) * std::sqrt(0.15)) << lines;
   }
+}
+
+TEST(Shadow, OfASheetSeenEdgeOnIsNothingAndOfNoPlaceNoNumber) {
+  const std::vector<Triangle> triangle{{0, 1, 2}};
+  Vec3Field position(3);
+  for (const double angle : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
+    position.set(0, {0, 0, 0}), position.set(1, {std::cos(angle), 0, std::sin(angle)});
+    position.set(2, {0, 1, 0});
+    EXPECT_NEAR(shadow_area(triangle, position, {.radius = 0}), 0, 1e-15);
+  }
+  position.set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_TRUE(std::isnan(shadow_area(triangle, position, {.radius = 0.1})));
+  EXPECT_TRUE(std::isnan(shadow_outline(triangle, position, {.radius = 0.1}).front()));
+  EXPECT_TRUE(std::isnan(measure_drape(triangle, position, position, {.radius = 0.1}).shadow));
 }
 
 }  // namespace

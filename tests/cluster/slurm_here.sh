@@ -21,7 +21,7 @@ wait_for_node() {
   tries=0
   until sinfo -h -o %T 2>/dev/null | grep -qE 'idle|mixed|allocated'; do
     tries=$((tries + 1))
-    [ $tries -le 100 ] || {
+    [ $tries -le 600 ] || {
       echo "slurm_here.sh: the node does not come up; see $dir/log" >&2
       exit 1
     }

@@ -1,8 +1,9 @@
 // A study that several processes make, each a part of it in a folder of its own: what the parts have, as one.
 //
 //     StudyParts parts(plan, shard);
-//     for (const auto& place : part_folders(folder)) parts.add(read_study(place).study->table,
-//     place.string()); if (parts.disagreements().empty()) use(parts.table());
+//     for (const auto& place : part_folders(folder))
+//       parts.add(read_study(place).study->table, place.string());
+//     if (parts.disagreements().empty()) use(parts.table());
 #pragma once
 
 #include <filesystem>

@@ -1,8 +1,8 @@
 // The folder of a sweep, which many processes on many machines may fill at once without a lock:
 //
-//     sweep.json       the whole plan, and the engine that its points are made by; the first process writes
-//     it shards/          a file for each attempt, see sweep_rows.h sweep.csv, ...   made of them by a merge,
-//     at any time
+//     sweep.json       the plan, and the engine that its points are made by; the first process writes it
+//     shards/          a file for each attempt, see sweep_rows.h
+//     sweep.csv, ...   made of them by a merge, at any time
 #pragma once
 
 #include <filesystem>

@@ -81,7 +81,7 @@ struct SweepTerms {
   double stretch_time = 0;    ///< s, of dampers along springs
   double bending_time = 0;    ///< s, of dampers of bending
   const Air* air = nullptr;
-  double air_drag = 0;  ///< N s/m
+  double air_drag = 0, air_friction = 0;  ///< N s/m, along the normal and across it
   bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
 };
 

@@ -15,6 +15,12 @@ class SkinFriction : public Force {
   SkinFriction(const Air& air, const NodeCoefficient& friction, const ClothSystem& system)
       : air_(air), friction_(friction), mass_(&system.mass) {}
 
+  KernelCoverage join(SweepTerms& terms) const override {
+    if ((friction_.per_mass > 0) != terms.has_shares) return KernelCoverage::none;
+    terms.air = &air_;
+    terms.air_friction = friction_.of(terms.mass);
+    return KernelCoverage::whole_steps;
+  }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
     particle_normals(system, position, normal_);

@@ -14,7 +14,7 @@ SweepLoads loads_at(const ForceModel& forces, std::span<const double> times) {
                    .stretch_time = swept.stretch_time,
                    .bending_time = swept.bending_time};
   if (swept.air) {
-    loads.air.drag = swept.air_drag;
+    loads.air.drag = swept.air_drag, loads.air.friction = swept.air_friction;
     for (std::size_t k = 0; k < times.size(); ++k) loads.air.wind[k] = wind_at(*swept.air, times[k]);
   }
   return loads;

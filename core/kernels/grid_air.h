@@ -1,6 +1,7 @@
-// The air's push on a grid, row by row within a pass: F = c (n . (u - v)) n, Eq. (4) of the source report,
-// where n is the normalised sum of the cross products of the particle's triangles (see cloth/normals.h).
-// Included once for every instruction set, after its Lanes; everything here has internal linkage.
+// The air's push on a grid, row by row within a pass: F = c_n (n . w) n + c_t (w - (n . w) n), w = u - v
+// (forces/air.h), where n is the normalised sum of the cross products of the particle's triangles (see
+// cloth/normals.h). Included once for every instruction set, after its Lanes; everything here has internal
+// linkage.
 //
 // A cell has two triangles, `lower` (d - a) x (c - a) and `upper` (c - a) x (b - a), with a b above and d c
 // below. A particle belongs to the lower one and the upper one of the cells above left and below right of it,
@@ -26,7 +27,9 @@ class AirRows {
   /// scratch.
   void begin(const Pass& pass, const double* wind, const Row& lower, const Row& upper) {
     columns_ = pass.grid.columns;
-    drag_ = Lanes::set(pass.air_drag), wind_ = vector_of(wind);
+    along_ = Lanes::set(pass.air_drag - pass.air_friction), friction_ = Lanes::set(pass.air_friction);
+    has_friction_ = pass.air_friction > 0;
+    wind_ = vector_of(wind);
     lower_ = lower, upper_ = upper;
     for (int j = 0; j < columns_; j += Lanes::width) store(lower_, j, nothing()), store(upper_, j, nothing());
   }
@@ -76,13 +79,21 @@ class AirRows {
     if (!force.x) return;
     const V inverse = Lanes::inverse_root<true>(squared(sum));
     const Vector n = scaled(inverse, sum), v = load_part<Edge>(velocity, j, count);
-    const V along = Lanes::mul(shares.of(drag_, j), product(n, wind_ - v));
+    const Vector w = wind_ - v;
+    const V along = Lanes::mul(shares.of(along_, j), product(n, w));
     power = Lanes::fma(along, product(n, v), power);
-    store(force, j, plus(load(force, j), along, n));
+    Vector with_air = plus(load(force, j), along, n);
+    if (has_friction_) {
+      const V friction = shares.of(friction_, j);
+      power = Lanes::fma(friction, product(w, v), power);
+      with_air = plus(with_air, friction, w);
+    }
+    store(force, j, with_air);
   }
 
   int columns_ = 0;
-  V drag_{};
+  bool has_friction_ = false;
+  V along_{}, friction_{};  // c_n - c_t and c_t
   Vector wind_{};
   Row lower_{}, upper_{};
 };

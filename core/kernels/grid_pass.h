@@ -81,7 +81,8 @@ struct Pass {
   bool has_dampers = false;               ///< along springs, or of bending
   double spring_damping[spring_kinds]{};  ///< N s/m, dampers along springs
   double bending_time = 0;                ///< s, damper over stiffness of bending elements
-  double air_drag = 0;                    ///< N s/m per particle, along the normal
+  bool has_air = false;
+  double air_drag = 0, air_friction = 0;  ///< N s/m per particle, along the normal and across it
   double wind[4][3] = {};                 ///< m/s, for each evaluation of the force in a step
   double mass_of_free = 1;                ///< kg
   double step = 0;                        ///< s

@@ -34,7 +34,7 @@ void euler_rows(const Pass& pass) {
         store_sum(pass, squares_before, row, update.before);
         store_sum(pass, squares_after, row, update.after);
         if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, powers.dampers);
-        if (pass.air_drag > 0) store_sum(pass, air_before, row, powers.air);
+        if (pass.has_air) store_sum(pass, air_before, row, powers.air);
       });
 }
 
@@ -156,7 +156,7 @@ void predicted_rows(const Pass& pass) {
         store_sum(pass, squares_before, row, update.before);
         store_sum(pass, squares_after, row, update.after);
         if constexpr (law == Law::damped) store_sum(pass, dampers_before, row, powers.dampers);
-        if (pass.air_drag > 0) store_sum(pass, air_before, row, powers.air);
+        if (pass.has_air) store_sum(pass, air_before, row, powers.air);
       });
 }
 
@@ -300,7 +300,7 @@ void runge_kutta_rows(const Pass& pass) {
       if (!own) continue;
       store_sum(pass, stage_squares + s, row, update.squares);
       if constexpr (law == Law::damped) store_sum(pass, stage_dampers + s, row, powers.dampers);
-      if (pass.air_drag > 0) store_sum(pass, stage_air + s, row, powers.air);
+      if (pass.has_air) store_sum(pass, stage_air + s, row, powers.air);
       if (s + 1 == kutta_stages) store_sum(pass, squares_of_result, row, update.after);
     }
 }

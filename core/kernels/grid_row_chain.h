@@ -75,7 +75,7 @@ class RowChain {
     }
     begin(work_.a, first_row);
     if (first_row + 1 < pass.grid.rows) begin(work_.b, first_row + 1);
-    if (pass.air_drag > 0)
+    if (pass.has_air)
       air_.begin(pass, pass.wind[place.evaluation], scratch_row(pass, place.air_buffer),
                  scratch_row(pass, place.air_buffer + 1));
   }
@@ -91,7 +91,7 @@ class RowChain {
     if (below >= 2) work_.second = particles(row + 2), work_.load_second = load_of(pass_, row + 2);
     Powers powers{Lanes::zero(), Lanes::zero()};
     if constexpr (share == Share::by_cell) stand_at(row);
-    if (pass_.air_drag > 0) powers.air = push(row, own, below >= 1);
+    if (pass_.has_air) powers.air = push(row, own, below >= 1);
     if (has_all_ && own && below >= 2) {
       powers.dampers = row_pass<law, share, true>(work_, true, update);
       return powers;
@@ -156,7 +156,7 @@ void band_pass(const Pass& pass, Update& update, const Before& before, const Aft
   const Springs springs(pass);
   const int start = first_row_of_springs(pass.first);
   RowChain<law, share> chain(pass, springs, {0, 2}, start);
-  const bool needs_velocity = law != Law::elastic || pass.air_drag > 0;
+  const bool needs_velocity = law != Law::elastic || pass.has_air;
   const auto particles = [&](int row) -> ParticleRow {
     if (!needs_velocity) return {row_of(pass, pass.position, row), {}};
     return {row_of(pass, pass.position, row), row_of(pass, pass.velocity, row)};

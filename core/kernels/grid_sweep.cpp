@@ -62,7 +62,7 @@ int GridSweep::threads() const {
 void GridSweep::make_room(const Plan& plan, std::size_t passes, std::size_t bands) {
   const auto rows = static_cast<std::size_t>(grid_.rows);
   const auto pitch = static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
-  const int air_rows = plan.loads.air.drag > 0 ? plan.evaluations * kernels::air_scratch_rows : 0;
+  const int air_rows = plan.loads.air.acts() ? plan.evaluations * kernels::air_scratch_rows : 0;
   const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows + air_rows) * pitch;
   std::size_t edges = 0;
   for (const Attached& attached : plan.fields) edges += sides * rows_size(attached.halo_rows, grid_.columns);
@@ -98,8 +98,9 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
     pass.spring_damping[k] = plan.loads.spring_damping + plan.loads.stretch_time * grid_.kind[k].stiffness;
   pass.bending_time = plan.loads.bending_time;
   if (has_shares()) pass.shares = layout_.shares();
-  if (const SweptAir& air = plan.loads.air; air.drag > 0) {
-    pass.air_drag = air.drag;
+  if (const SweptAir& air = plan.loads.air; air.acts()) {
+    pass.has_air = true;
+    pass.air_drag = air.drag, pass.air_friction = air.friction;
     for (int k = 0; k < plan.evaluations; ++k)
       for (int axis = 0; axis < 3; ++axis) pass.wind[k][axis] = air.wind[static_cast<std::size_t>(k)][axis];
   }
@@ -191,7 +192,7 @@ double GridSweep::sum_of(const Plan& plan, std::size_t pass, int which) const {
 StepSums GridSweep::step_sums_of(const Plan& plan, std::size_t pass) const {
   StepSums sums{sum_of(plan, pass, kernels::squares_before), sum_of(plan, pass, kernels::squares_after)};
   if (plan.loads.has_dampers()) sums.dampers = sum_of(plan, pass, kernels::dampers_before);
-  if (plan.loads.air.drag > 0) sums.air = sum_of(plan, pass, kernels::air_before);
+  if (plan.loads.air.acts()) sums.air = sum_of(plan, pass, kernels::air_before);
   return sums;
 }
 
@@ -295,7 +296,7 @@ void GridSweep::runge_kutta(double step, const SweepLoads& loads, std::span<Stag
         const auto s = static_cast<std::size_t>(stage);
         of_step.squares[s] = sum_of(plan, k, kernels::stage_squares + stage);
         of_step.dampers[s] = loads.has_dampers() ? sum_of(plan, k, kernels::stage_dampers + stage) : 0;
-        of_step.air[s] = loads.air.drag > 0 ? sum_of(plan, k, kernels::stage_air + stage) : 0;
+        of_step.air[s] = loads.air.acts() ? sum_of(plan, k, kernels::stage_air + stage) : 0;
       }
       of_step.after = sum_of(plan, k, kernels::squares_of_result);
     }

@@ -17,18 +17,19 @@ namespace cloth {
 /// The mass of every particle in kg, if all have the same.
 std::optional<double> common_mass(const ClothSystem& system);
 
-/// Air drag, F_i = drag (n . (wind - v_i)) n (forces/air.h), with the wind at each force evaluation of a
-/// step.
+/// Drag of the air along the normal and friction across it, F_i = drag (n . w) n + friction (w - (n . w) n),
+/// w = wind - v_i (forces/air.h), with the wind at each force evaluation of a step.
 struct SweptAir {
-  double drag = 0;           ///< N s/m
-  std::array<Vec3, 4> wind;  ///< m/s, one for each evaluation of the step; unused without drag
+  double drag = 0, friction = 0;  ///< N s/m
+  std::array<Vec3, 4> wind;       ///< m/s, one for each evaluation of the step; unused where neither acts
+  bool acts() const { return drag > 0 || friction > 0; }
 };
 
 /// The forces beside the springs' elastic ones: f = springs + weight + load + air - damping v - D v, where D
 /// are dampers along the springs: F_i = k_d ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0, with k_d =
 /// spring_damping + stretch_time k; and t K v of the bending elements. Of a grid assembled cell by cell
-/// (GridSweep::has_shares()), weight, damping and the air's drag are those of a particle inside, of which the
-/// others have their share.
+/// (GridSweep::has_shares()), weight, damping and the air's coefficients are those of a particle inside, of
+/// which the others have their share.
 struct SweepLoads {
   Vec3 weight{0, 0, 0};             ///< N, on every particle
   double damping = 0;               ///< N s/m

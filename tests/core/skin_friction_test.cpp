@@ -6,6 +6,9 @@
 
 #include "forces/registry.h"
 #include "integrators/registry.h"
+#include "integrators/verlet.h"
+#include "measure/stability_limit.h"
+#include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/random.h"
@@ -95,14 +98,41 @@ TEST(SkinFriction, BooksItsWorkAsThatOfTheAirWithEveryMethod) {
   }
 }
 
-TEST(SkinFriction, LetsNoExplicitMethodUseAFusedStepThatDoesNotKnowIt) {
-  Scene scene = sheet_in_air(0.01, {1, 0, 0});
-  scene.springs = SpringMaterial{.structural = 50, .shear = 20, .flexion = 2, .damping = 0};
-  DirectRun run(scene, "rk4");
-  ASSERT_TRUE(run.forces.sweeps_steps());
-  EXPECT_FALSE(run.forces.is_swept_whole());
-  EXPECT_FALSE(stepper_kind("verlet", run.forces, {}).fused);
-  EXPECT_FALSE(stepper_kind("rk4", run.forces, {}).fused);
+std::unique_ptr<Integrator> general_method(const std::string& method) {
+  if (method == "verlet") return std::make_unique<Verlet>(EndVelocity::predicted);
+  return make_integrator(exactly(method));
+}
+
+/// Springs with skin friction alone and beside drag, and a material, whose particles have shares of the air.
+std::vector<Scene> scenes_in_wind() {
+  std::vector<Scene> scenes;
+  for (const double drag : {0.0, 0.01}) {
+    scenes.push_back(sheet_in_air(drag, {1, 0.5, -2}));
+    scenes.back().air->gust = Gust{.amplitude = 0.5, .frequency = 2};
+    scenes.back().springs = SpringMaterial{.structural = 50, .shear = 20, .flexion = 2, .damping = 0};
+  }
+  scenes.push_back(builtin_scene("wind-denim"));
+  scenes.back().cloth.rows = 7, scenes.back().cloth.columns = 11;
+  scenes.back().deformation.reset();
+  return scenes;
+}
+
+TEST(SkinFriction, IsTheSameInThePassOfAGridAndInTheGeneralMethods) {
+  for (const Scene& scene : scenes_in_wind())
+    for (const std::string method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"}) {
+      DirectRun fused(scene, method), general(scene, method);
+      fused.predict_damping();
+      ASSERT_TRUE(stepper_kind(method, fused.forces, {.predicts_damping = true}).fused) << method;
+      const double h = 0.02 / guaranteed_frequency(scene);
+      fused.advance(100, h);
+      const std::unique_ptr<Integrator> step = general_method(method);
+      for (int n = 0; n < 100; ++n)
+        step->step(general.forces, {n * h, (n + 1) * h, h}, general.state, general.work);
+      EXPECT_LE(largest_distance(fused.state.position, general.state.position), 1e-13) << method;
+      EXPECT_LE(largest_distance(fused.state.velocity, general.state.velocity), 1e-10) << method;
+      EXPECT_NEAR(fused.work.air, general.work.air, 1e-9 * std::abs(general.work.air)) << method;
+      EXPECT_NE(general.work.air, 0) << method;
+    }
 }
 
 }  // namespace

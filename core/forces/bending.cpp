@@ -32,6 +32,7 @@ class BendingDamping : public Force {
     terms.bending_time = time_;
     return KernelCoverage::every_pass;
   }
+  bool is_swept_damper(const SweepTerms& terms) const override { return terms.bending_time > 0; }
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
     add_bending_product(*system_, time_, velocity, product);

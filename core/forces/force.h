@@ -35,7 +35,8 @@ struct Work {
     return *this;
   }
   friend Work operator*(double scale, const Work& work) {
-    return {scale * work.damping_loss, scale * work.hysteresis_loss, scale * work.air, scale * work.brush, scale * work.pull};
+    return {scale * work.damping_loss, scale * work.hysteresis_loss, scale * work.air, scale * work.brush,
+            scale * work.pull};
   }
 };
 
@@ -62,10 +63,10 @@ struct NodeDamping {
   double held_stiffness = 0;  ///< N/m, of the spring to the hand
   // The parts of D that couple particles: of every spring, per stiffness of it, and per K of bending
   // and of the membrane.
-  double along_springs = 0;  ///< N s/m
-  double stretch_time = 0;   ///< s
-  double bending_time = 0;   ///< s
-  double membrane_time = 0;  ///< s
+  double along_springs = 0;              ///< N s/m
+  double stretch_time = 0;               ///< s
+  double bending_time = 0;               ///< s
+  double membrane_time = 0;              ///< s
   const SliderState* sliders = nullptr;  ///< of hysteresis, for methods that treat elements one by one
 };
 
@@ -109,8 +110,9 @@ class Force {
   /// leave such forces out of the evaluation.
   virtual bool is_internal() const { return false; }
 
-  /// Whether this is the damping along springs, which the kernels compute separately from the rest of D.
-  virtual bool is_damper_of_springs() const { return false; }
+  /// Whether the kernels' pass for dampers (SpringSweep::damp()) computes this part of D, given what the
+  /// forces have added to `terms`.
+  virtual bool is_swept_damper(const SweepTerms& /*terms*/) const { return false; }
 
   /// product += D v, in N
   virtual void add_damping(const Vec3Field& /*position*/, const Vec3Field& /*velocity*/,

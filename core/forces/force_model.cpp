@@ -137,13 +137,15 @@ bool ForceModel::couples_particles() const {
                      [&](const auto& force) { return !force->add_node_damping(unused); });
 }
 
-/// product = D v of the dampers along springs where a sweep computes them, else 0. Returns what they take, in
+/// product = D v of the dampers of springs and bending that a sweep computes, else 0. Returns what they take, in
 /// W.
 double ForceModel::swept_dampers(const Vec3Field& position, const Vec3Field& velocity,
                                  Vec3Field& product) const {
   if (sweeps_dampers()) {
     if (product.size() != velocity.size()) product = Vec3Field(velocity.size());
-    return sweep_->damp({.spring_damping = swept_.spring_damping, .stretch_time = swept_.stretch_time},
+    return sweep_->damp({.spring_damping = swept_.spring_damping,
+                         .stretch_time = swept_.stretch_time,
+                         .bending_time = swept_.bending_time},
                         position, velocity, product);
   }
   clear(product, velocity.size());
@@ -202,7 +204,7 @@ Work ForceModel::power(const Vec3Field& position, const Vec3Field& velocity) con
   return power;
 }
 
-/// Without that of dampers along springs where a sweep computes them.
+/// Without that of dampers that a sweep computes.
 void ForceModel::add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity,
                                           Work& power) const {
   for_each_force([&](Force& force) {

@@ -114,10 +114,8 @@ class ForceModel {
     for (const auto& force : forces_) visit(*force);
     if (pull_) visit(*pull_);
   }
-  bool sweeps_dampers() const { return sweep_ && (swept_.spring_damping > 0 || swept_.stretch_time > 0); }
-  bool is_damped_by_sweep(const Force& force) const {
-    return sweeps_dampers() && force.is_damper_of_springs();
-  }
+  bool sweeps_dampers() const { return sweep_ && swept_.has_dampers(); }
+  bool is_damped_by_sweep(const Force& force) const { return sweep_ && force.is_swept_damper(swept_); }
   double swept_dampers(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   double damping_product(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const;
   void add_power_beside_dampers(const Vec3Field& position, const Vec3Field& velocity, Work& power) const;

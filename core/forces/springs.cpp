@@ -141,7 +141,9 @@ class SpringDamping : public Force {
     terms.stretch_time = time_;
     return KernelCoverage::every_pass;
   }
-  bool is_damper_of_springs() const override { return true; }
+  bool is_swept_damper(const SweepTerms& terms) const override {
+    return terms.spring_damping > 0 || terms.stretch_time > 0;
+  }
   bool is_internal() const override { return true; }
   void add_damping(const Vec3Field& position, const Vec3Field& velocity, Vec3Field& product) const override {
     Chunk g;

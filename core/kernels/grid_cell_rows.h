@@ -9,11 +9,13 @@ namespace cloth::kernels {
 namespace {
 
 /// What a bending element of stiffness k (cloth/bending.h) pulls with, over k: s(x) + t s(v), s the weighted
-/// sum of its points and t the damping time. Adds the power that the damper takes, k t |s(v)|^2 in W.
+/// sum of its points and t the damping time; of the damper alone t s(v). Adds the power that the damper
+/// takes, k t |s(v)|^2 in W.
 template <Law law>
 CLOTHLAB_INLINE Vector bend(V stiffness, const Springs& springs, const Particles& sum, V& loss) {
   if constexpr (law == Law::elastic) return sum.position;
   loss = Lanes::fma(Lanes::mul(stiffness, springs.bending_time), squared(sum.velocity), loss);
+  if constexpr (law == Law::damper) return scaled(springs.bending_time, sum.velocity);
   return plus(sum.position, springs.bending_time, sum.velocity);
 }
 
@@ -113,7 +115,7 @@ CLOTHLAB_INLINE Vector block_force_by_cell(const RowWork& work, int j, int count
                                            Carry& carry, V& loss) {
   const Springs& springs = *work.springs;
   const bool has_below = Full || work.has_below;
-  const bool bends = law != Law::damper && (Full || work.bending.across != nullptr);
+  const bool bends = Full || work.bending.across != nullptr;
   const auto ahead = [&](const ParticleRow& row, int columns) {
     return particles_ahead<law, Edge>(row, j, columns, count, here);
   };

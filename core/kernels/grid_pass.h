@@ -159,7 +159,7 @@ struct GridKernels {
   void (*runge_kutta)(const Pass& pass);
   /// force = springs + weight + load. `load` may be `force` itself. No sums.
   void (*evaluate)(const Pass& pass);
-  /// force = D v of the dampers along springs (SweepLoads), and the power that they dissipate.
+  /// force = D v of the dampers (SweepLoads), and the power that they dissipate.
   void (*damp)(const Pass& pass);
   /// The sums of |v|^2, added in the same order as in a step, into `squares_after`.
   void (*sum_squares)(const Pass& pass);

@@ -70,7 +70,7 @@ class RowChain {
       work_.uses_b = (pass.grid.springs & down_two) != 0;
       has_all_ = pass.grid.springs == (structural_springs | shear_springs | flexion_springs);
     } else {
-      work_.uses_b = law != Law::damper && pass.shares.across;
+      work_.uses_b = bends();
       has_all_ = work_.uses_b && pass.grid.springs == (structural_springs | shear_springs);
     }
     begin(work_.a, first_row);
@@ -107,10 +107,11 @@ class RowChain {
   }
 
  private:
+  bool bends() const { return pass_.shares.across && (law != Law::damper || pass_.bending_time > 0); }
   void stand_at(int row) {
     work_.of_row = Lanes::set(share_of(pass_, row)), work_.of_below = Lanes::set(share_of(pass_, row + 1));
     work_.of_second = Lanes::set(share_of(pass_, row + 2));
-    if (!pass_.shares.across) return;
+    if (!bends()) return;
     const long at = static_cast<long>(row) * pass_.grid.columns;
     work_.bending = {pass_.shares.across + at, pass_.shares.down + at, pass_.shares.twist + at};
   }

@@ -111,8 +111,8 @@ class SpringSweep {
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
   /// to = from. Each thread copies the particles that it will update, so that they are in its cache.
   void copy(const ClothState& from, ClothState& to);
-  /// product = D v of the dampers along the springs at `position`. Returns the power in W that they
-  /// dissipate.
+  /// product = D v of the dampers along the springs at `position`, and of bending. Returns the power in W that
+  /// they dissipate.
   virtual double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
   /// Whether project() is supported: springs of finite stiffness, and of one for each direction.

@@ -38,7 +38,7 @@ Scene sheet_of(int rows, int columns, int features) {
   if (features & without_bending) m.bending_warp = m.bending_weft = m.twist = 0;
   if (features & stretch_damping) m.stretch_damping = 1e-4;
   if (features & bending_damping) m.bending_damping = 2e-4;
-  if (features & air) m.drag_normal = 0.7;
+  if (features & air) m.drag_normal = 0.7, m.drag_tangential = 0.2;
   Scene scene = material_sheet(rows, columns, 0.1, 0.08, m);
   scene.gravity = Vec3(0.3, -9.81, 0.1);
   if (features & air) scene.air = Air{.wind = {0.3, -1, 2}, .gust = Gust{0.5, 30}};
@@ -71,6 +71,29 @@ TEST_P(MaterialsOnEveryInstructionSet, HaveTheForcesOfElementsTakenOneByOne) {
       const Vec3Field& expected = general.forces.position_force();
       EXPECT_LE(largest_distance(swept.forces.position_force(), expected), 1e-13 * largest_norm(expected))
           << rows << " x " << columns << ", features " << features;
+    }
+}
+
+TEST_P(MaterialsOnEveryInstructionSet, HaveTheDampingOfElementsTakenOneByOne) {
+  Random random;
+  for (const auto& [rows, columns] : odd_sizes)
+    for (int features = 0; features < all_features; ++features) {
+      const Scene scene = sheet_of(rows, columns, features);
+      DirectRun swept(scene, "verlet"), general(scene, "verlet");
+      make_general(general);
+      ClothState state = crumpled_state(swept.system, 0.03, 0.5, random);
+      state.position.set(1, state.position[0]);  // a spring of no length
+      Vec3Field force(state.position.size()), expected(state.position.size());
+      Work power, expected_power;
+      for (auto& [run, f, p] : {std::tie(swept, force, power), std::tie(general, expected, expected_power)}) {
+        run.forces.update(state.position, 0);
+        p = run.forces.force_and_power(state.position, state.velocity, f);
+      }
+      const std::string what =
+          std::to_string(rows) + " x " + std::to_string(columns) + ", features " + std::to_string(features);
+      EXPECT_LE(largest_distance(force, expected), 1e-13 * largest_norm(expected)) << what;
+      EXPECT_NEAR(power.damping_loss, expected_power.damping_loss, 1e-12 * expected_power.damping_loss)
+          << what;
     }
 }
 

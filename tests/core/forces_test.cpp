@@ -50,7 +50,7 @@ TEST(SpringDamping, ByRunsIsTheSumOverTheSprings) {
     const auto entry =
         std::find_if(force_registry().begin(), force_registry().end(), [&](const ForceEntry& e) {
           const auto force = e.make(scene, system);
-          return force && force->is_damper_of_springs();
+          return force && force->is_swept_damper({.spring_damping = 0.7});
         });
     const auto damping = entry->make(scene, system);
     Vec3Field product(state.position.size()), none(state.position.size()), expected;

@@ -52,8 +52,10 @@ class RestSearch {
     evaluate();
     const double enough = std::max(options_.tolerance, rounding_);
     for (; rest.iterations < options_.iterations && residual() > enough && shift_ < most_shift;
-         ++rest.iterations)
+         ++rest.iterations) {
+      if (options_.stop && options_.stop()) break;
       if (find_step()) take_step();
+    }
     rest.position = state_.position;
     rest.residual = residual();
     rest.found = rest.residual <= enough;

@@ -186,6 +186,7 @@ RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Fie
     const int iterations = rest.iterations;
     rest = search.run();
     rest.iterations += iterations;
+    if (options.stop && options.stop()) break;
     history = search.end_step();
   }
   return rest;

@@ -17,6 +17,7 @@ struct ExtremesArguments {
   cloth::ExtremesOptions options;  ///< methods and cases
   std::string folder;
   std::string shard;       ///< that is made alone; empty: all
+  int jobs = 0;            ///< 0: all cores
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false, markdown = false;
 };
@@ -47,6 +48,7 @@ std::string command_of(const ExtremesArguments& arguments) {
 
 int extremes(const ExtremesArguments& arguments) {
   cloth::ExtremesOptions options = arguments.options;
+  options.jobs = chosen_jobs(arguments.jobs);
   if (!arguments.scene.empty()) {
     LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
     if (!loaded.scene) return loaded.exit_code;
@@ -88,6 +90,7 @@ void add_extremes(Program& program) {
       add_path(command, "--out", arguments.folder,
                "Folder for extremes.csv, extremes.svg, study.json and report.html; made if missing");
   add_shard(command, arguments.shard, out);
+  add_jobs(command, arguments.jobs, "Cells that are run at once, fewer where memory is short");
   add_overwrite(command, arguments.overwrite);
   CLI::Option* json = add_json(command, arguments.json);
   command.add_flag("--markdown", arguments.markdown, "Print the table as Markdown")

@@ -7,7 +7,6 @@
 #include "commands.h"
 #include "console.h"
 #include "progress.h"
-#include "simulation/step_batches.h"
 #include "studies.h"
 #include "study/identify/fit_folder.h"
 
@@ -101,7 +100,7 @@ int identify(const IdentifyArguments& arguments) {
   if (!loaded.scene) return loaded.exit_code;
   cloth::IdentifyPlan plan{.scene = std::move(*loaded.scene), .options = arguments.options};
   plan.command = command_of(arguments);
-  plan.jobs = arguments.jobs > 0 ? arguments.jobs : cloth::machine_threads();
+  plan.jobs = chosen_jobs(arguments.jobs);
   for (const auto method : {cloth::FitMethod::levenberg_marquardt, cloth::FitMethod::derivative_free})
     if (arguments.method == cloth::name_of(method)) plan.options.method = method;
   if (const auto problems = fill(arguments, plan); !problems.empty()) return report(problems);
@@ -146,10 +145,7 @@ void add_search_options(CLI::App& command, IdentifyArguments& arguments) {
                   "Of central differences, as a part of the value (0.001; derivative-free 0.05)")
       ->check(CLI::Range(1e-9, 0.5));
   command.add_option("--seed", arguments.options.seed, "Of the Latin hypercube (1)");
-  command
-      .add_option("--jobs", arguments.jobs,
-                  "Runs beside each other; without it one for each core. The results are the same to the bit")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(command, arguments.jobs, "Runs beside each other");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct StabilityArguments {
   cloth::StabilityOptions options;  ///< without axes; no methods: those with a limit
   std::string folder;
   std::string shard;       ///< that is made alone; empty: all
+  int jobs = 0;            ///< 0: all cores
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -63,6 +64,7 @@ int stability(const StabilityArguments& arguments) {
   const LoadedScene loaded = load_scene(arguments.scene, arguments.settings);
   if (!loaded.scene) return loaded.exit_code;
   cloth::StabilityOptions options = arguments.options;
+  options.jobs = chosen_jobs(arguments.jobs);
   const auto problems = read_options(arguments, *loaded.scene, options);
   if (!problems.empty()) return report(problems);
   if (options.full_size)
@@ -115,6 +117,7 @@ void add_stability(Program& program) {
       add_path(command, "--out", arguments.folder,
                "Folder for stability.csv, stability.svg, study.json and report.html; made if missing");
   add_shard(command, arguments.shard, out->required());
+  add_jobs(command, arguments.jobs, "Cells that are run at once, fewer where memory is short");
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

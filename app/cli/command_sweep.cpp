@@ -5,7 +5,6 @@
 #include "commands.h"
 #include "console.h"
 #include "progress.h"
-#include "simulation/step_batches.h"
 #include "sweep/run_sweep.h"
 #include "sweep_commands.h"
 
@@ -42,8 +41,8 @@ int run_shard(const cloth::SweepFolder& folder, const SweepArguments& arguments,
   cloth::SweepRun run;
   {
     Progress bar;
-    cloth::SweepRunOptions options{.shard = shard, .stop = stop_is_requested};
-    options.jobs = arguments.jobs > 0 ? arguments.jobs : cloth::machine_threads();
+    cloth::SweepRunOptions options{
+        .jobs = chosen_jobs(arguments.jobs), .shard = shard, .stop = stop_is_requested};
     options.progress = [&](std::int64_t there, std::int64_t of) {
       bar.show(static_cast<double>(there) / static_cast<double>(of),
                fmt::format("{} of {} points", there, of));
@@ -83,8 +82,7 @@ void add_sweep(Program& program) {
       *command, "--shard", arguments->shard,
       "I/N: the points p with p mod N = I - 1 alone. auto/N takes I from the environment of an array job "
       "(Slurm, PBS, SGE, LSF), auto takes both, auto+OFFSET/N adds to I");
-  command->add_option("--jobs", arguments->jobs, "Points that are run at once; without it one on each core")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(*command, arguments->jobs, "Points that are run at once");
   command
       ->add_option("--stopped-exit-code", arguments->stopped_exit_code,
                    "Exit code after Ctrl+C or SIGTERM, with every finished point on disk")

@@ -19,6 +19,7 @@ struct ValidateArguments {
   std::string folder, strips, scored;
   SceneChecks of_scenes;   ///< all but folder and json
   std::string shard;       ///< that is made alone; empty: all
+  int jobs = 0;            ///< 0: all cores
   bool overwrite = false;  ///< an unfinished study of other inputs
   bool json = false;
 };
@@ -60,7 +61,7 @@ int validate(const ValidateArguments& arguments) {
     checks.folder = arguments.folder, checks.json = arguments.json;
     return validate_scenes(checks);
   }
-  cloth::ValidationOptions options{.protocols = arguments.only};
+  cloth::ValidationOptions options{.protocols = arguments.only, .jobs = chosen_jobs(arguments.jobs)};
   std::string command = "clothlab-cli validate";
   if (!arguments.only.empty()) command += fmt::format(" --only {}", fmt::join(arguments.only, ","));
   const auto made =
@@ -132,8 +133,9 @@ void add_validate(Program& program) {
   for (CLI::Option* one : {strips, scored}) one->excludes(only)->excludes(out);
   strips->excludes(scored);
   CLI::Option* shard = add_shard(command, arguments.shard, out);
+  CLI::Option* jobs = add_jobs(command, arguments.jobs, "Rows that are measured at once");
   CLI::Option* scene = add_scene_checks(command, arguments.of_scenes);
-  for (CLI::Option* one : {only, strips, scored, shard}) scene->excludes(one);
+  for (CLI::Option* one : {only, strips, scored, shard, jobs}) scene->excludes(one);
   add_overwrite(command, arguments.overwrite);
   add_json(command, arguments.json);
 }

@@ -11,6 +11,7 @@
 #include "io/machine.h"
 #include "io/printable.h"
 #include "kernels/instruction_set.h"
+#include "simulation/step_batches.h"
 
 namespace clothlab::cli {
 namespace {
@@ -68,6 +69,16 @@ CLI::Option* add_shard(CLI::App& command, std::string& shard, CLI::Option* out) 
              "I/N: make part I of N alone, into DIR/shards/I-of-N; auto/N and auto as for sweep. The command "
              "without this option then takes what the parts have and makes the rest")
       ->needs(out);
+}
+
+CLI::Option* add_jobs(CLI::App& command, int& jobs, const std::string& what) {
+  return command
+      .add_option("--jobs", jobs, what + "; without it one on each core. The results are the same to the bit")
+      ->check(CLI::Range(1, 1024));
+}
+
+int chosen_jobs(int jobs) {
+  return jobs > 0 ? jobs : cloth::machine_threads();
 }
 
 std::variant<std::optional<cloth::Shard>, int> chosen_shard(const std::string& text) {

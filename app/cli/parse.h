@@ -47,6 +47,11 @@ void add_overwrite(CLI::App& command, bool& overwrite);  ///< of an unfinished s
 /// --shard of a study, which needs the folder of `out`.
 CLI::Option* add_shard(CLI::App& command, std::string& shard, CLI::Option* out);
 
+/// --jobs, 0 without it. `what`: "Cells that are run at once".
+CLI::Option* add_jobs(CLI::App& command, int& jobs, const std::string& what);
+/// What was asked for, or as many as there are cores.
+int chosen_jobs(int jobs);
+
 /// The part that was asked for, none for an empty text; or the exit code after a message.
 std::variant<std::optional<cloth::Shard>, int> chosen_shard(const std::string& text);
 

@@ -7,13 +7,10 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <system_error>
-#include <thread>
 
 #include "integrators/registry.h"
 #include "scene/scene_edits.h"
+#include "simulation/in_threads.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
 
@@ -211,28 +208,10 @@ void LockStep::set_stop_test(const std::function<bool()>& test) {
 }
 
 bool LockStep::advance(std::int64_t index, const std::function<bool()>& may_go_on, int threads) {
-  std::atomic<std::size_t> next{0};
   std::atomic<bool> whole{true};
-  std::mutex mutex;
-  std::exception_ptr failure;  // of any thread, for the caller
-  const auto work = [&] {
-    try {
-      for (std::size_t i = next++; i < lanes_.size(); i = next++)
-        if (!advance_lane(i, index, may_go_on)) whole = false;
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    try {
-      for (int t = 1; t < std::min(threads, static_cast<int>(lanes_.size())); ++t) helpers.emplace_back(work);
-    } catch (const std::system_error&) {  // no more threads to be had: those that are there do it all
-    }
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_threads(lanes_.size(), threads, [&](std::size_t i) {
+    if (!advance_lane(i, index, may_go_on)) whole = false;
+  });
   if (!whole) return false;
   if (keeps_history()) put_in_force(index);
   compare();

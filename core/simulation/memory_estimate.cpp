@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/process.h"
 #include "scene/method_facts.h"
 #include "scene/scene_cloth.h"
@@ -63,6 +65,14 @@ std::optional<std::string> memory_problem(const std::vector<Scene>& scenes) {
                          : fmt::format("{} runs of {} particles at once", scenes.size(), particles);
   return fmt::format("there is not enough memory: {} {} {} at least, and {} are to be had", what,
                      scenes.size() == 1 ? "takes" : "take", megabytes(needed), megabytes(*available));
+}
+
+int runs_that_fit(const std::vector<Scene>& scenes, int most) {
+  double largest = 0;
+  for (const Scene& scene : scenes) largest = std::max(largest, least_memory(scene));
+  const auto available = available_memory();
+  if (!available || largest * most <= *available) return most;
+  return std::max(1, static_cast<int>(*available / largest));
 }
 
 }  // namespace cloth

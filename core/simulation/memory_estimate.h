@@ -16,4 +16,8 @@ std::optional<std::string> memory_problem(const Scene& scene);
 /// The same of runs that are all in memory at once, as the panes of a comparison.
 std::optional<std::string> memory_problem(const std::vector<Scene>& scenes);
 
+/// How many runs like the largest of these fit into the memory that there is, at once: at most `most`, at
+/// least one. No scene: `most`.
+int runs_that_fit(const std::vector<Scene>& scenes, int most);
+
 }  // namespace cloth

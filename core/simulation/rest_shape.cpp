@@ -52,8 +52,10 @@ class RestSearch {
     evaluate();
     const double enough = std::max(options_.tolerance, rounding_);
     for (; rest.iterations < options_.iterations && residual() > enough && shift_ < most_shift;
-         ++rest.iterations)
+         ++rest.iterations) {
+      if (options_.stop && options_.stop()) break;
       if (find_step()) take_step();
+    }
     rest.position = state_.position;
     rest.residual = residual();
     rest.found = rest.residual <= enough;
@@ -184,6 +186,7 @@ RestShape find_rest(const Scene& scene, const ClothSystem& system, const Vec3Fie
     const int iterations = rest.iterations;
     rest = search.run();
     rest.iterations += iterations;
+    if (options.stop && options.stop()) break;
     history = search.end_step();
   }
   return rest;

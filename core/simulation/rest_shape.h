@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "cloth/cloth_system.h"
@@ -17,6 +18,8 @@ struct RestOptions {
   /// Of a cloth with hysteresis: its weight comes in so many equal parts, and its threads slip after each.
   int load_steps = 1;
   double longest_move = 0.02;  ///< of a particle in one iteration, over the sheet's diagonal
+  /// Asked before each iteration; true ends the search, which then has found nothing. Empty: nothing does.
+  std::function<bool()> stop{};
 };
 
 struct RestShape {

@@ -9,8 +9,10 @@
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_contact.h"
 #include "integrators/registry.h"
+#include "simulation/memory_estimate.h"
 #include "simulation/recorder.h"
 #include "simulation/time_step.h"
+#include "study/study_team.h"
 
 namespace cloth {
 namespace {
@@ -24,11 +26,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// One cell on its way.
 class CellRun {
  public:
-  CellRun(const ExtremeCase& extreme, const Scene& scene, double time_step)
+  CellRun(const ExtremeCase& extreme, const Scene& scene, double time_step, int threads)
       : simulation_(scene, extreme.prepare),
         last_(std::min(extreme.max_steps, steps_to_cover(scene.duration, time_step))),
         stride_(std::max<std::int64_t>(1, last_ / records_of_a_run)),
-        max_evaluations_(extreme.max_evaluations) {}
+        max_evaluations_(extreme.max_evaluations) {
+    if (simulation_.system().size() > most_particles_alone) simulation_.set_threads(threads);
+  }
 
   ExtremeCell to_end(ExtremeCell cell, const StopTest& stop) {
     record();
@@ -135,9 +139,21 @@ class CellRun {
   double max_strain_ = 0, energy_ratio_ = 0, added_ = 0, largest_excess_ = 0, last_excess_ = 0;
 };
 
+/// Of all cells.
+std::vector<Scene> scenes_of(const ExtremesTable& table) {
+  std::vector<Scene> scenes;
+  for (const ExtremeCase& extreme : table.cases)
+    for (const std::string& method : table.methods) {
+      scenes.push_back(extreme.scene);
+      scenes.back().integrator.method = method;
+    }
+  return scenes;
+}
+
 }  // namespace
 
-ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop) {
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop,
+                        int threads) {
   ExtremeCell cell{.case_name = extreme.name, .method = method, .detail = {}};
   Scene scene = extreme.scene;
   scene.integrator.method = method;
@@ -149,7 +165,7 @@ ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, c
   }
   cell.time_step = *time_step;
   const auto start = std::chrono::steady_clock::now();
-  cell = CellRun(extreme, scene, *time_step).to_end(std::move(cell), stop);
+  cell = CellRun(extreme, scene, *time_step, threads).to_end(std::move(cell), stop);
   cell.wall = seconds_since(start);
   return cell;
 }
@@ -185,19 +201,35 @@ ExtremesTable run_extremes(const ExtremesOptions& options) {
   ExtremesTable table = empty_table(options);
   if (options.earlier) table.cells = options.earlier->cells;
   const std::size_t methods = table.methods.size(), all = table.cases.size() * methods;
-  for (std::size_t number = 0; number < all; ++number) {
-    const std::size_t c = number / methods, m = number % methods;
-    if (!options.shard.has(static_cast<std::int64_t>(number)) || table.cell(c, m)) continue;
-    const StudyProgress progress{static_cast<double>(number) / static_cast<double>(all),
-                                 table.cases[c].name + ", " + table.methods[m]};
-    if (options.progress && !options.progress(progress)) return table;
-    ExtremeCell cell = run_extreme(table.cases[c], table.methods[m], options.stop);
-    if (is_to_stop(options.stop)) return table;  // half a cell is none
+  std::vector<std::size_t> missing;
+  for (std::size_t number = 0; number < all; ++number)
+    if (options.shard.has(static_cast<std::int64_t>(number)) &&
+        !table.cell(number / methods, number % methods))
+      missing.push_back(number);
+  StudyTeam team({.jobs = options.jobs,
+                  .at_once = runs_that_fit(scenes_of(table), options.jobs),
+                  .stop = options.stop,
+                  .progress = options.progress});
+  std::size_t there = all - missing.size();
+  team.run(missing.size(), [&](std::size_t k) {
+    const ExtremeCase& extreme = table.cases[missing[k] / methods];
+    const std::string& method = table.methods[missing[k] % methods];
+    {
+      const auto lock = team.alone();
+      team.report({static_cast<double>(there) / static_cast<double>(all), extreme.name + ", " + method});
+    }
+    if (team.is_stopped()) return false;
+    ExtremeCell cell = run_extreme(
+        extreme, method, [&] { return team.is_stopped(); }, team.threads());
+    if (team.is_stopped()) return false;  // half a cell is none
+    const auto lock = team.alone();
     const auto place = std::ranges::lower_bound(table.cells, table.number_of(cell), {},
                                                 [&](const ExtremeCell& of) { return table.number_of(of); });
     table.cells.insert(place, std::move(cell));
+    ++there;
     if (options.partial) options.partial(table);
-  }
+    return true;
+  });
   return table;
 }
 

@@ -77,8 +77,10 @@ struct ExtremeCell {
 /// Runs one cell: at most `max_steps` and `max_evaluations`. Energy growth: at the records of the second
 /// half (there are some 50 of a run) the kinetic, elastic and gravity energies are in the mean above those of
 /// the start and all works into the cloth by more than the threshold, losses by damping not counted.
-/// `stop` is asked after every step, and within one that takes long; true ends the run.
-ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop = {});
+/// `stop` is asked after every step, and within one that takes long; true ends the run. No bit depends on
+/// `threads`, which a step of a larger cloth may use.
+ExtremeCell run_extreme(const ExtremeCase& extreme, const std::string& method, const StopTest& stop = {},
+                        int threads = 1);
 
 /// Case after case, each with every method; an interrupted run, or a part of one, has fewer cells.
 struct ExtremesTable {
@@ -96,11 +98,12 @@ struct ExtremesTable {
 };
 
 struct ExtremesOptions {
-  std::optional<Scene> scene{};                          ///< push this one; none: the fixed list
-  std::vector<std::string> methods{};                    ///< empty: all
-  std::vector<std::string> cases{};                      ///< empty: all
+  std::optional<Scene> scene{};        ///< push this one; none: the fixed list
+  std::vector<std::string> methods{};  ///< empty: all
+  std::vector<std::string> cases{};    ///< empty: all
+  int jobs = 1;                        ///< cells at once, fewer where memory is short; no bit depends on it
   std::function<bool(const StudyProgress&)> progress{};  ///< before each cell; false stops the study
-  /// The table so far, after every cell; the last is what is returned.
+  /// The table so far, after every cell, from one thread at a time; the last is what is returned.
   std::function<void(const ExtremesTable&)> partial{};
   StopTest stop{};  ///< asked after every step; half a cell is none
   /// The same table, not whole: its cells are not run again.

@@ -67,8 +67,8 @@ constexpr const char* markdown_head = R"(# Stiff and extreme cases
 
 `clothlab-cli extremes` runs every method on a fixed, named list of cases that break simulations. Every cell is a finite
 result or a stop that names step, particle and cause; none hangs, and none goes on with values that are not finite. With
-`--out DIR` the same table is a page with the numbers of every cell (`report.html`) and a file (`extremes.csv`). Several processes
-share its cells by `--shard` ([how](../command-line.md#a-study-in-parts)).
+`--out DIR` the same table is a page with the numbers of every cell (`report.html`) and a file (`extremes.csv`). Its cells
+are run on all cores (`--jobs`), and several machines share them by `--shard` ([how](../command-line.md#a-study-in-parts)).
 
 The base scene has 9 x 9 particles of 10 g, 0.1 m apart, hung by two corners, structural springs of 100 N/m, shear of 50, flexion
 of 10, viscous damping of 0.001 N s/m, gravity, steps of 2 ms. Most cases change one thing. A cell has a fixed number of steps,

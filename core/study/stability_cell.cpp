@@ -15,6 +15,7 @@
 #include "simulation/step_batches.h"
 #include "simulation/time_step.h"
 #include "study/stability_map.h"
+#include "study/study_team.h"
 
 namespace cloth {
 namespace {
@@ -116,7 +117,8 @@ std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCr
   return static_cast<std::int64_t>(std::min(steps, 1e15));
 }
 
-StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion, const StopTest& stop) {
+StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion, const StopTest& stop,
+                       int threads) {
   StabilityCell cell;
   const auto time_step = resolved_time_step(scene);
   if (!time_step) {
@@ -132,7 +134,7 @@ StabilityCell run_cell(const Scene& scene, const StabilityCriterion& criterion, 
   Simulation run(scene, perturbation(scene, criterion));
   const double scale = energy_scale(run);
   std::vector<EnergySample> samples{{0, 0}};
-  if (run.system().size() > study_grid * study_grid) run.set_threads(machine_threads());
+  if (run.system().size() > most_particles_alone) run.set_threads(threads);
   StepBatches batches(run, stop);
   const std::optional<Divergence>& divergence = batches.divergence();
   for (std::int64_t step = 0; step < steps && !divergence;) {

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "integrators/registry.h"
 #include "measure/stability_limit.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_cloth.h"
+#include "simulation/memory_estimate.h"
 #include "simulation/time_step.h"
+#include "study/study_team.h"
 
 namespace cloth {
 namespace {
@@ -23,50 +26,112 @@ double expected_work(const StabilityCell& cell, const StabilityCriterion& criter
   return cell.time_step > 1.05 * cell.limits.spectrum ? 0.2 * steps : steps;
 }
 
+/// Of the corners of the map, where values that make a grid larger are largest.
+std::vector<Scene> scenes_at_corners(const Scene& scene, const StabilityMap& map) {
+  std::vector<Scene> scenes;
+  for (const std::string& method : map.options.methods)
+    for (const double x : {map.x_values.front(), map.x_values.back()})
+      for (const double y : {map.y_values.front(), map.y_values.back()})
+        scenes.push_back(cell_scene(scene, map.options, method, x, y));
+  return scenes;
+}
+
+/// Cells of one method that have one value of the other axis, along the time step where that is an axis, else
+/// along x; see line_of.
+struct MapLine {
+  std::size_t method = 0, first = 0, stride = 1, count = 0;
+  bool is_along_step = false;  ///< it has a limit that is measured once its cells are there
+  std::size_t left = 0;        ///< cells that are to be run yet
+  std::size_t cell(std::size_t k) const { return first + k * stride; }
+};
+
+/// Of all methods.
+std::vector<MapLine> map_lines(const StabilityMap& map) {
+  const std::size_t columns = map.x_values.size(), rows = map.y_values.size();
+  const bool x_is_step = map.options.x.path == time_step_path,
+             y_is_step = map.options.y.path == time_step_path;
+  std::vector<MapLine> lines;
+  for (std::size_t method = 0; method < map.options.methods.size(); ++method)
+    for (std::size_t k = 0; k < (y_is_step ? columns : rows); ++k)
+      lines.push_back({.method = method,
+                       .first = y_is_step ? k : k * columns,
+                       .stride = y_is_step ? columns : 1,
+                       .count = y_is_step ? rows : columns,
+                       .is_along_step = x_is_step || y_is_step});
+  return lines;
+}
+
 /// Goes through the cells, keeps count of the work, and stops when told to.
 class MapRunner {
  public:
-  MapRunner(const Scene& scene, const StabilityOptions& options) : scene_(scene), options_(options) {}
+  MapRunner(const Scene& scene, const StabilityOptions& options)
+      : scene_(scene),
+        options_(options),
+        map_(plan_stability_map(scene, options)),
+        lines_(map_lines(map_)),
+        team_({.jobs = options.jobs,
+               .at_once = runs_that_fit(scenes_at_corners(scene, map_), options.jobs),
+               .stop = options.stop,
+               .progress = options.progress}) {}
 
   StabilityMap run();
 
  private:
+  /// A cell to run; none: a line whose cells are all there, and whose limit is not.
+  struct Unit {
+    std::size_t line = 0;
+    std::optional<std::size_t> cell{};
+  };
+
   MethodMap begun(const std::string& method) const;
-  bool lay_out(MethodMap& map);
-  bool run_cells(MethodMap& map);
-  bool measure_limits(MethodMap& map);
+  bool lay_out();
+  void lay_out(const MapLine& line);
+  std::vector<Unit> missing_units();
+  bool lacks_limit(const MapLine& line) const;
+  bool make(const Unit& unit);
+  bool run_missing(MapLine& line, std::size_t cell);
+  bool measure_limit(const MapLine& line);
+  MeasuredLimit limit_between_cells(const MapLine& line) const;
   bool narrow(const std::string& method, MeasuredLimit& limit);
-  bool is_mine(const MethodMap& map, std::size_t cell) const {
-    const auto method = static_cast<std::size_t>(&map - map_.methods.data());
-    return options_.shard.has(line_of(map_, method, cell));
-  }
-  PredictedLimits limits_beside(const MethodMap& map, double other) const;
   StabilityCell run_at(const std::string& method, double x, double y);
-  bool is_stopped() {
-    return is_to_stop(options_.stop) || (++batches_ % batches_between_reports == 0 && !report());
+  std::size_t number_of(const MapLine& line) const { return static_cast<std::size_t>(&line - lines_.data()); }
+  bool is_mine(const MapLine& line) const {
+    return options_.shard.has(static_cast<std::int64_t>(number_of(line)));
   }
+  /// The other axis' value.
+  double other_of(const MapLine& line) const {
+    const std::size_t columns = map_.x_values.size();
+    return x_is_step() ? map_.y_values[line.first / columns] : map_.x_values[line.first % columns];
+  }
+  bool x_is_step() const { return options_.x.path == time_step_path; }
+
+  // Within team_.alone().
   void tell() const {
     if (options_.partial) options_.partial(map_);
   }
-  bool report() { return !options_.progress || options_.progress({std::min(1.0, done_ / work_), text_}); }
-
-  bool x_is_step() const { return options_.x.path == time_step_path; }
-  bool y_is_step() const { return options_.y.path == time_step_path; }
-  const std::vector<double>& other_values() const { return x_is_step() ? y_values_ : x_values_; }
+  void report() { team_.report({std::min(1.0, done_ / work_), text_}); }
 
   const Scene& scene_;
   const StabilityOptions& options_;
-  std::vector<double> x_values_, y_values_;
-  double work_ = 0, done_ = 0;
-  std::int64_t batches_ = 0;
-  std::size_t cells_ = 0, cell_ = 0;  ///< of all methods; the one that is run
-  std::string text_ = "laying out the map";
   StabilityMap map_;
+  std::vector<MapLine> lines_;
+  StudyTeam team_;
+  double work_ = 0, done_ = 0;
+  std::size_t cells_ = 0, begun_ = 0;  ///< of all methods
+  std::string text_ = "laying out the map";
 };
 
 StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
-  StabilityCell cell = run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion,
-                                [this] { return is_stopped(); });
+  int batches = 0;
+  const StopTest stop = [&] {
+    if (++batches % batches_between_reports == 0) {
+      const auto lock = team_.alone();
+      report();
+    }
+    return team_.is_stopped();
+  };
+  StabilityCell cell =
+      run_cell(cell_scene(scene_, options_, method, x, y), options_.criterion, stop, team_.threads());
   cell.x = x;
   cell.y = y;
   return cell;
@@ -74,50 +139,94 @@ StabilityCell MapRunner::run_at(const std::string& method, double x, double y) {
 
 /// A method's cells, those run that the map which goes on has, with its measured limits.
 MethodMap MapRunner::begun(const std::string& name) const {
+  const std::vector<double>&x_values = map_.x_values, &y_values = map_.y_values;
   MethodMap map{name, {}, {}};
   if (options_.earlier)
     for (const MethodMap& method : options_.earlier->methods)
       if (method.method == name) map = method;
-  for (std::size_t k = map.cells.size(); k < x_values_.size() * y_values_.size(); ++k)
-    map.cells.push_back({.x = x_values_[k % x_values_.size()], .y = y_values_[k / x_values_.size()]});
+  for (std::size_t k = map.cells.size(); k < x_values.size() * y_values.size(); ++k)
+    map.cells.push_back({.x = x_values[k % x_values.size()], .y = y_values[k / x_values.size()]});
   return map;
 }
 
 /// Fills in what is known without running: the limits, and how long each cell will take.
-bool MapRunner::lay_out(MethodMap& map) {
-  for (std::size_t k = 0; k < map.cells.size(); ++k) {
-    if (!is_mine(map, k)) continue;
-    if (is_to_stop(options_.stop)) return false;
-    StabilityCell& cell = map.cells[k];
+bool MapRunner::lay_out() {
+  std::vector<const MapLine*> mine;
+  for (const MapLine& line : lines_)
+    if (is_mine(line)) mine.push_back(&line);
+  return team_.run(mine.size(), [&](std::size_t k) {
+    lay_out(*mine[k]);
+    return !team_.is_stopped();
+  });
+}
+
+void MapRunner::lay_out(const MapLine& line) {
+  MethodMap& map = map_.methods[line.method];
+  for (std::size_t k = 0; k < line.count && !team_.is_stopped(); ++k) {
+    StabilityCell& cell = map.cells[line.cell(k)];
     const Scene scene = cell_scene(scene_, options_, map.method, cell.x, cell.y);
     // A time step does not change them.
-    cell.limits = k % x_values_.size() == 0 || !x_is_step() ? predict_limits(scene) : map.cells[k - 1].limits;
+    cell.limits = k == 0 || !line.is_along_step ? predict_limits(scene) : map.cells[line.cell(k - 1)].limits;
     if (cell.status != CellStatus::not_run) continue;
     cell.time_step = resolved_time_step(scene).value_or(0);
     cell.wanted_steps = cell.time_step > 0 ? wanted_steps(scene, cell.time_step, options_.criterion) : 0;
-    work_ += expected_work(cell, options_.criterion);
-    ++cells_;
   }
-  for (MeasuredLimit& limit : map.measured) limit.limits = limits_beside(map, limit.other);
-  return true;
+  for (MeasuredLimit& limit : map.measured)
+    if (line.is_along_step && limit.other == other_of(line)) limit.limits = map.cells[line.first].limits;
 }
 
-bool MapRunner::run_cells(MethodMap& map) {
-  for (std::size_t k = 0; k < map.cells.size(); ++k) {
-    StabilityCell& cell = map.cells[k];
-    if (!is_mine(map, k) || cell.status != CellStatus::not_run) continue;
-    const PredictedLimits limits = cell.limits;
-    const double work = expected_work(cell, options_.criterion);
-    text_ = fmt::format("cell {} of {}", ++cell_, cells_);
-    StabilityCell result = run_at(map.method, cell.x, cell.y);
-    if (result.status == CellStatus::not_run) return false;
-    result.limits = limits;
-    cell = std::move(result);
-    done_ += work;
-    tell();
-    if (!report()) return false;
+bool MapRunner::lacks_limit(const MapLine& line) const {
+  const std::vector<MeasuredLimit>& measured = map_.methods[line.method].measured;
+  const auto is_its = [&](const MeasuredLimit& limit) { return limit.other == other_of(line); };
+  return line.is_along_step && std::none_of(measured.begin(), measured.end(), is_its);
+}
+
+/// Method after method: its cells in their order, then lines that lack nothing but their limits.
+std::vector<MapRunner::Unit> MapRunner::missing_units() {
+  std::vector<Unit> units;
+  for (std::size_t m = 0; m < map_.methods.size(); ++m) {
+    const std::vector<StabilityCell>& cells = map_.methods[m].cells;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto line = static_cast<std::size_t>(line_of(map_, m, k));
+      if (!is_mine(lines_[line]) || cells[k].status != CellStatus::not_run) continue;
+      units.push_back({line, k});
+      ++lines_[line].left;
+      ++cells_;
+      work_ += expected_work(cells[k], options_.criterion);
+    }
+    for (const MapLine& line : lines_)
+      if (line.method == m && is_mine(line) && line.left == 0 && lacks_limit(line))
+        units.push_back({number_of(line), std::nullopt});
   }
-  return true;
+  return units;
+}
+
+bool MapRunner::make(const Unit& unit) {
+  MapLine& line = lines_[unit.line];
+  return unit.cell ? run_missing(line, *unit.cell) : measure_limit(line);
+}
+
+/// Whoever runs the last cell of a line measures its limit.
+bool MapRunner::run_missing(MapLine& line, std::size_t number) {
+  const std::string& method = map_.methods[line.method].method;
+  StabilityCell& cell = map_.methods[line.method].cells[number];
+  {
+    const auto lock = team_.alone();
+    text_ = fmt::format("cell {} of {}", ++begun_, cells_);
+  }
+  StabilityCell result = run_at(method, cell.x, cell.y);
+  if (result.status == CellStatus::not_run) return false;
+  bool wants_limit = false;
+  {
+    const auto lock = team_.alone();
+    done_ += expected_work(cell, options_.criterion);
+    result.limits = cell.limits;
+    cell = std::move(result);
+    wants_limit = --line.left == 0 && lacks_limit(line);
+    tell();
+    report();
+  }
+  return !team_.is_stopped() && (!wants_limit || measure_limit(line));
 }
 
 /// Halves the ratio between the last stable and the first unstable cell a few times.
@@ -132,55 +241,41 @@ bool MapRunner::narrow(const std::string& method, MeasuredLimit& limit) {
   return true;
 }
 
-/// Those of the last step that was run with a value of the other axis.
-PredictedLimits MapRunner::limits_beside(const MethodMap& map, double other) const {
-  const std::vector<double>& others = other_values();
-  const auto k =
-      static_cast<std::size_t>(std::lower_bound(others.begin(), others.end(), other) - others.begin());
-  const std::size_t columns = x_values_.size(), rows = y_values_.size();
-  return map.cells[x_is_step() ? k * columns + columns - 1 : (rows - 1) * columns + k].limits;
+MeasuredLimit MapRunner::limit_between_cells(const MapLine& line) const {
+  const std::vector<StabilityCell>& cells = map_.methods[line.method].cells;
+  const std::vector<double>& steps = x_is_step() ? map_.x_values : map_.y_values;
+  MeasuredLimit limit{.other = other_of(line), .limits = cells[line.first].limits};
+  for (std::size_t k = 0; k < line.count; ++k) {
+    const StabilityCell& cell = cells[line.cell(k)];
+    if (cell.status != CellStatus::run) continue;
+    if (!cell.stable())
+      limit.shortest_unstable = std::min(limit.shortest_unstable, steps[k]);
+    else if (steps[k] < limit.shortest_unstable)
+      limit.longest_stable = steps[k];
+    else
+      limit.stable_beyond = true;
+  }
+  return limit;
 }
 
-bool MapRunner::measure_limits(MethodMap& map) {
-  const std::size_t columns = x_values_.size();
-  const std::vector<double>& others = other_values();
-  const std::vector<double>& steps = x_is_step() ? x_values_ : y_values_;
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    if (!is_mine(map, x_is_step() ? k * columns : k)) continue;
-    const auto at = std::ranges::lower_bound(map.measured, others[k], {}, &MeasuredLimit::other);
-    if (at != map.measured.end() && at->other == others[k]) continue;
-    MeasuredLimit limit{.other = others[k]};
-    limit.limits = limits_beside(map, limit.other);
-    for (std::size_t s = 0; s < steps.size(); ++s) {
-      const StabilityCell& cell = map.cells[x_is_step() ? k * columns + s : s * columns + k];
-      if (cell.status != CellStatus::run) continue;
-      if (!cell.stable())
-        limit.shortest_unstable = std::min(limit.shortest_unstable, steps[s]);
-      else if (steps[s] < limit.shortest_unstable)
-        limit.longest_stable = steps[s];
-      else
-        limit.stable_beyond = true;
-    }
-    if (!narrow(map.method, limit)) return false;
-    map.measured.insert(at, limit);
-    tell();
-  }
+/// Precondition: the line's cells are there, and no other thread changes them any more.
+bool MapRunner::measure_limit(const MapLine& line) {
+  MethodMap& map = map_.methods[line.method];
+  MeasuredLimit limit = limit_between_cells(line);
+  if (!narrow(map.method, limit)) return false;
+  const auto lock = team_.alone();
+  map.measured.insert(std::ranges::lower_bound(map.measured, limit.other, {}, &MeasuredLimit::other), limit);
+  tell();
   return true;
 }
 
 StabilityMap MapRunner::run() {
-  map_ = plan_stability_map(scene_, options_);
-  x_values_ = map_.x_values;
-  y_values_ = map_.y_values;
   for (const std::string& method : options_.methods) map_.methods.push_back(begun(method));
-  for (MethodMap& method : map_.methods) map_.complete = map_.complete && lay_out(method);
-  const bool has_limits = x_is_step() || y_is_step();
-  if (has_limits) work_ *= 1.2;  // for the limits' own runs
+  map_.complete = lay_out();
+  const std::vector<Unit> units = missing_units();
+  if (!lines_.empty() && lines_.front().is_along_step) work_ *= 1.2;  // for the limits' own runs
   work_ = std::max(work_, 1.0);
-  for (MethodMap& method : map_.methods) {
-    map_.complete = map_.complete && run_cells(method) && (!has_limits || measure_limits(method));
-    if (!map_.complete) break;
-  }
+  map_.complete = map_.complete && team_.run(units.size(), [&](std::size_t k) { return make(units[k]); });
   tell();
   return std::move(map_);
 }

@@ -24,8 +24,10 @@ struct StabilityOptions {
   StudyAxis x{}, y{};
   StabilityCriterion criterion{};
   bool full_size = false;
+  int jobs = 1;  ///< cells at once, fewer where memory is short; no bit depends on it
   std::function<bool(const StudyProgress&)> progress{};  ///< between and within cells; false stops the study
-  /// The map so far, after every finished cell and measured limit; the last is what is returned.
+  /// The map so far, after every finished cell and measured limit, from one thread at a time; the last is
+  /// what is returned.
   std::function<void(const StabilityMap&)> partial{};
   StopTest stop{};  ///< asked between batches of steps; stops like `progress`
   /// The same map, not whole: its cells and measured limits are not run again.
@@ -110,8 +112,10 @@ PredictedLimits predict_limits(const Scene& cell);
 /// That the criterion asks for in runs of the cell's scene.
 std::int64_t wanted_steps(const Scene& cell, double time_step, const StabilityCriterion& criterion);
 
-/// One run, judged. `stop` is asked between batches of steps; after true the cell's status is not_run.
-StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion, const StopTest& stop = {});
+/// One run, judged. `stop` is asked between batches of steps; after true the cell's status is not_run. No bit
+/// depends on `threads`, which a step of a larger cloth may use.
+StabilityCell run_cell(const Scene& cell, const StabilityCriterion& criterion, const StopTest& stop = {},
+                       int threads = 1);
 
 /// A line of the map: the cells of one method and one value of the other axis, along the time step where that
 /// is an axis, else along x. Its number, method after method, of a cell or a measured limit.

@@ -53,6 +53,17 @@ bool is_finished(const StabilityCell& cell) {
   return cell.status != CellStatus::not_run;
 }
 
+/// What the study's file has once these cells are kept: cells that were not run have no row.
+CsvTable kept_rows(const StudyTable& table) {
+  const auto* map = std::get_if<StabilityMap>(&table);
+  if (!map) return std::visit([](const auto& of) { return table_of(of); }, table);
+  CsvTable kept{table_of(StabilityMap{}).header, {}};
+  for (const MethodMap& method : map->methods)
+    for (const StabilityCell& cell : method.cells)
+      if (is_finished(cell)) kept.rows.push_back(written(cell, method.method).texts);
+  return kept;
+}
+
 /// Whether there is anything that need not be made again.
 bool has_beginning(const StudyTable& table) {
   const auto* study = std::get_if<WorkPrecision>(&table);
@@ -195,6 +206,7 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
   rows_kept_.clear();
   samples_kept_.clear();
   cells_kept_.clear();
+  map_kept_.clear();
   limits_kept_ = 0;
   step_kept_ = false;
   if (const auto* study = std::get_if<WorkPrecision>(&table)) {
@@ -203,35 +215,28 @@ std::optional<IoError> StudyRecorder::begin_tables(const StudyTable& table) {
       samples_kept_.emplace_back();
       for (const WorkPrecisionRun& run : method.runs) samples_kept_.back().push_back(run.samples.size());
     }
-    if (auto error = begin_table(folder_, csv_name(table), table_of(*study), rows_)) return error;
+    if (auto error = begin_table(folder_, csv_name(table), kept_rows(table), rows_)) return error;
     return begin_table(folder_, samples_name, sample_table(*study), samples_);
   }
-  CsvTable kept;
   if (const auto* map = std::get_if<StabilityMap>(&table)) {
-    kept.header = table_of(StabilityMap{}).header;
-    rows_kept_.assign(map->options.methods.size(), 0);
     for (const MethodMap& method : map->methods) {
-      for (const StabilityCell& cell : method.cells)
-        if (is_finished(cell)) kept.rows.push_back(written(cell, method.method).texts);
+      map_kept_.emplace_back();
+      for (const StabilityCell& cell : method.cells) map_kept_.back().push_back(is_finished(cell));
       limits_kept_ += method.measured.size();
     }
   } else if (const auto* grids = std::get_if<GridConvergence>(&table)) {
-    kept = table_of(*grids);
     for (const GridRun& run : grids->runs) cells_kept_.insert(run.cells);
   } else if (const auto* validation = std::get_if<ValidationStudy>(&table)) {
     for (const ValidationRow& row : validation->rows) cells_kept_.insert(validation->number_of(row));
     if (auto error = begin_table(folder_, validation_points_name, points_table(*validation), samples_))
       return error;
-    kept = table_of(*validation);
   } else if (const auto* iterations = std::get_if<IterationsStudy>(&table)) {
-    kept = table_of(*iterations);
     for (const MethodIterations& method : iterations->methods) rows_kept_.push_back(method.steps.size());
   } else {
     const auto& extremes = std::get<ExtremesTable>(table);
-    kept = table_of(extremes);
     for (const ExtremeCell& cell : extremes.cells) cells_kept_.insert(extremes.number_of(cell));
   }
-  return begin_table(folder_, csv_name(table), kept, rows_);
+  return begin_table(folder_, csv_name(table), kept_rows(table), rows_);
 }
 
 std::optional<IoError> StudyRecorder::write_index(const StudyTable& so_far) {
@@ -268,19 +273,15 @@ std::optional<IoError> StudyRecorder::keep(const WorkPrecision& so_far) {
 }
 
 std::optional<IoError> StudyRecorder::keep(const StabilityMap& so_far) {
-  const auto* before = earlier_ ? &std::get<StabilityMap>(earlier_->table) : nullptr;
-  const auto was_there = [&](std::size_t m, std::size_t k) {
-    return before && k < before->methods[m].cells.size() && is_finished(before->methods[m].cells[k]);
-  };
+  map_kept_.resize(so_far.methods.size());
   std::size_t limits = 0;
   for (std::size_t m = 0; m < so_far.methods.size(); ++m) {
     const MethodMap& method = so_far.methods[m];
-    for (std::size_t& k = rows_kept_[m]; k < method.cells.size(); ++k) {
-      if (!is_finished(method.cells[k])) {
-        if (!shard_ || shard_->has(line_of(so_far, m, k))) break;  // it is the next
-      } else if (!was_there(m, k)) {
-        if (auto error = rows_.add(written(method.cells[k], method.method).texts)) return error;
-      }
+    map_kept_[m].resize(method.cells.size());
+    for (std::size_t k = 0; k < method.cells.size(); ++k) {
+      if (!is_finished(method.cells[k]) || map_kept_[m][k]) continue;
+      map_kept_[m][k] = true;
+      if (auto error = rows_.add(written(method.cells[k], method.method).texts)) return error;
     }
     limits += method.measured.size();
   }
@@ -316,9 +317,15 @@ std::optional<IoError> StudyRecorder::keep(const ValidationStudy& so_far) {
   return rows_.flush();
 }
 
-/// The tables stay as they grew, and the states too: whoever makes the whole study may need them.
+/// No cell that was not run has a row, and the states stay: whoever makes the whole study may need them.
 std::optional<IoError> StudyRecorder::end_part(const StudyTable& table, double wall) {
   std::string text;
+  // Several jobs end cells in any order.
+  if (auto error = write_text_file(folder_ / csv_name(table), csv_text(kept_rows(table), "\n"))) return error;
+  if (const auto* validation = std::get_if<ValidationStudy>(&table)) {
+    text = csv_text(points_table(*validation), "\n");
+    if (auto error = write_text_file(folder_ / validation_points_name, text)) return error;
+  }
   for (const std::string& name : study_files(table)) {
     if (!name.ends_with(".csv")) continue;
     if (auto error = read_text_file(folder_ / name, text)) return error;

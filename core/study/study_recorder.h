@@ -1,6 +1,7 @@
-// A study's folder while the study is made: each finished cell is in its table on disk before the next
-// begins, and a study that was stopped or killed goes on from there. Several processes may make a part each,
-// in folders of their own within it (study_parts.h); whoever makes the whole study takes what they have.
+// A study's folder while the study is made: each finished cell is in its table on disk before its thread
+// begins another, and a study that was stopped or killed goes on from there. Rows are in the order in which
+// cells ended, until the study ends or goes on: then in the study's own. Several processes may make a part
+// each, in folders of their own within it (study_parts.h); whoever makes the whole study takes what they have.
 //
 //     StudyRecorder recorder;
 //     if (auto error = recorder.begin(folder, plan_stability_map(scene, options), {.command = command})) ...
@@ -48,7 +49,7 @@ class StudyRecorder {
   /// Where this study or part is made.
   const std::filesystem::path& path() const { return folder_.path(); }
 
-  /// Appends what `so_far` has beyond the last call, in the order in which it was run.
+  /// Appends what `so_far` has beyond the last call. From one thread at a time.
   std::optional<IoError> keep(const StudyTable& so_far);
   std::optional<IoError> keep(const WorkPrecision& so_far);
   std::optional<IoError> keep(const StabilityMap& so_far);
@@ -89,6 +90,7 @@ class StudyRecorder {
   std::vector<std::string> disagreements_;
   CsvFile rows_, samples_;
   std::set<std::int64_t> cells_kept_;                   ///< by number; of the kinds without methods
+  std::vector<std::vector<bool>> map_kept_;             ///< of a map, of each method's cells
   std::vector<std::size_t> rows_kept_;                  ///< of each method
   std::vector<std::vector<std::size_t>> samples_kept_;  ///< of each run of each method
   std::size_t limits_kept_ = 0;

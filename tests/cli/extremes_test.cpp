@@ -24,9 +24,9 @@ TEST(Extremes, LeaveATableWithTheColumnsOfTheManual) {
   const CommandResult result = cli(few + "--out '" + (folder / "result").string() + "'");
   EXPECT_EQ(result.exit_code, 0) << "cells that diverge are the result, not a failure: " << result.errors;
   const CsvTable table = parse_csv(content_of(folder / "result/extremes.csv"));
-  EXPECT_EQ(table.header, (std::vector<std::string>{"case", "method", "status", "detail", "steps",
-                                                    "max_strain", "energy_ratio", "wall_s",
-                                                    "time_step_s", "ended_early"}));
+  EXPECT_EQ(table.header,
+            (std::vector<std::string>{"case", "method", "status", "detail", "steps", "max_strain",
+                                      "energy_ratio", "wall_s", "time_step_s", "ended_early"}));
   ASSERT_EQ(table.rows.size(), 4u);
   EXPECT_EQ(table.rows[0][0], "step-1s");  // the list's order, and the methods'
   EXPECT_EQ(table.rows[0][1], "explicit-euler");
@@ -73,6 +73,20 @@ TEST(Extremes, OfAnUnknownMethodOrCaseAreBadUsage) {
 
 TEST(Extremes, ThatCannotBeWrittenExitWithFour) {
   EXPECT_EQ(cli(few + "--out /dev/null/x").exit_code, 4);
+}
+
+TEST(Extremes, OfSeveralJobsLeaveTheTableOfOne) {
+  const TemporaryFolder folder;
+  const auto table_of = [&](const std::string& jobs) {
+    const CommandResult result = cli(few + "--jobs " + jobs + " --out '" + (folder / jobs).string() + "'");
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return without_column(parse_csv(content_of(folder / jobs / "extremes.csv")), "wall_s").rows;
+  };
+  const auto one = table_of("1");
+  EXPECT_EQ(table_of("2"), one);
+  EXPECT_EQ(table_of("100"), one) << "more than there are cells";
+  for (const char* bad : {"--jobs 0", "--jobs many", "--jobs 2000"})
+    EXPECT_EQ(cli(few + bad).exit_code, 2) << bad;
 }
 
 TEST(Extremes, ThatAreInterruptedLeaveValidFiles) {

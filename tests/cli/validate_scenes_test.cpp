@@ -185,6 +185,7 @@ TEST_F(ValidateScene, RefusesWhatTheSceneDoesNotHave) {
   EXPECT_EQ(cli("validate --scene flag").exit_code, 2) << "it names no points";
   EXPECT_EQ(cli("validate --cells 10,20").exit_code, 2) << "of no scene";
   EXPECT_EQ(validate(scene, fall(10), "--only catenary").exit_code, 2);
+  EXPECT_EQ(validate(scene, fall(10), "--jobs 2").exit_code, 2) << "its steps use the cores";
   EXPECT_EQ(validate(scene, fall(10), "--cells 4,3").exit_code, 2);
 }
 

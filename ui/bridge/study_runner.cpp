@@ -7,6 +7,7 @@
 
 #include "bridge/worker_pace.h"
 #include "io/process.h"
+#include "simulation/step_batches.h"
 
 namespace clothlab {
 namespace {
@@ -208,6 +209,7 @@ void StudyRunner::carry_out(Job& job, const std::stop_token& stop) {
     options.progress = [&](const cloth::StudyProgress& now) { return note(job, now); };
     options.partial = [&](const auto& table) { offer(job, table); };
     options.stop = [&stop] { return stop.stop_requested(); };
+    if constexpr (requires { options.jobs; }) options.jobs = cloth::machine_threads();
     options.earlier = begin(job, plan(options));
     end(job, run(options));
   };

@@ -62,7 +62,7 @@ class StudyRunner {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// One study. All but `ended` belongs to its own thread.
+  /// One study. All but `ended` belongs to its own thread, and to those of its cells one at a time.
   struct Job {
     StudyOrder order;
     Clock::time_point start, offered;

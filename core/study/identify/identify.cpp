@@ -2,18 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <set>
-#include <thread>
 
 #include "io/fnv_hash.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_json.h"
+#include "simulation/in_threads.h"
 #include "simulation/recorder.h"
 #include "study/refined_scene.h"
 #include "study/study_axis.h"
@@ -86,31 +83,6 @@ std::vector<double> kept_outputs(const IdentifyPlan& plan, const std::vector<dou
   const bool was_cut_short = outputs.empty() && is_to_stop(plan.stop);
   if (!was_cut_short) plan.runs->add(values, outputs);
   return outputs;
-}
-
-/// Calls work(0), ..., work(count - 1) from so many threads, each the next that is left. The first exception
-/// is passed on when all have ended.
-template <class Work>
-void in_threads(std::size_t count, int threads, const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr thrown;
-  std::mutex of_thrown;
-  const auto take = [&] {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(of_thrown);
-      if (!thrown) thrown = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> team;
-    for (std::size_t k = 1; k < std::min(count, static_cast<std::size_t>(threads)); ++k)
-      team.emplace_back(take);
-    take();
-  }
-  if (thrown) std::rethrow_exception(thrown);
 }
 
 FitParameter fit_parameter(const VariedParameter& varied) {

@@ -9,8 +9,9 @@ namespace cloth {
 namespace {
 
 /// Where `is_beyond` becomes true between two loads.
-double threshold(double low, double high, const std::function<bool(double)>& is_beyond) {
-  while (high / low - 1 > 1e-7) {
+double threshold(double low, double high, const StopTest& stop,
+                 const std::function<bool(double)>& is_beyond) {
+  while (high / low - 1 > 1e-7 && !is_to_stop(stop)) {
     const double middle = std::sqrt(low * high);
     (is_beyond(middle) ? high : low) = middle;
   }
@@ -28,12 +29,12 @@ ValidationProtocol astm() {
                          .method = "rests by Newton's method, until the chord has the angle",
                          .exact = std::cbrt(exact::gamma_of_chord(exact::astm_chord))};
   };
-  protocol.measure = [](const ValidationRow&, int cells) {
+  protocol.measure = [](const ValidationRow&, int cells, const StopTest& stop) {
     ValidationReading reading;
-    const double gamma = threshold(4, 16, [&](double load) {
+    const double gamma = threshold(4, 16, stop, [&](double load) {
       const StripRest found =
           rest_of_strip({.load = load, .cells = cells},
-                        {exact::heavy_cantilever(load).points, StripEnd::clamped, StripEnd::free});
+                        {exact::heavy_cantilever(load).points, StripEnd::clamped, StripEnd::free}, stop);
       if (!found.rest.found) reading.failure = found.rest.failure;
       const Eigen::Vector2d chord = found.points.back() - found.points.front();
       return std::atan2(-chord.y(), chord.x()) > exact::astm_chord;
@@ -45,9 +46,9 @@ ValidationProtocol astm() {
 }
 
 /// Whether a strip that is straight at rest gives way sideways under this load.
-bool gives_way(const Scene& scene, std::string& failure) {
+bool gives_way(const Scene& scene, const StopTest& stop, std::string& failure) {
   const ClothSystem system = make_cloth(scene);
-  const RestShape rest = find_rest(scene, system, system.start);
+  const RestShape rest = find_rest(scene, system, system.start, {.stop = stop});
   if (!rest.found) failure = rest.failure;
   return !is_minimum(scene, system, rest.position);
 }
@@ -60,12 +61,12 @@ ValidationProtocol self_buckling() {
                          .method = buckling_method,
                          .exact = exact::self_buckling_gamma()};
   };
-  protocol.measure = [](const ValidationRow&, int cells) {
+  protocol.measure = [](const ValidationRow&, int cells, const StopTest& stop) {
     ValidationReading reading;
-    reading.value = threshold(6, 10, [&](double load) {
+    reading.value = threshold(6, 10, stop, [&](double load) {
       Scene scene = strip_scene({.load = load, .cells = cells}, {{}, StripEnd::clamped, StripEnd::free});
       scene.gravity = -gravity_of(scene).norm() * scene.cloth.across;
-      return gives_way(scene, reading.failure);
+      return gives_way(scene, stop, reading.failure);
     });
     return reading;
   };
@@ -73,12 +74,12 @@ ValidationProtocol self_buckling() {
 }
 
 /// On edge, clamped at one end, so many times as long as it is wide; square cells.
-double lateral_load(int slenderness, int across, std::string& failure) {
-  return threshold(12, 30, [&](double load) {
+double lateral_load(int slenderness, int across, const StopTest& stop, std::string& failure) {
+  return threshold(12, 30, stop, [&](double load) {
     Scene scene = strip_scene({.load = load, .cells = slenderness * across, .across = across},
                               {{}, StripEnd::clamped, StripEnd::free});
     scene.gravity = gravity_of(scene).norm() * scene.cloth.down;
-    return gives_way(scene, failure);
+    return gives_way(scene, stop, failure);
   });
 }
 
@@ -94,9 +95,11 @@ ValidationProtocol lateral_buckling() {
         .exact = exact::lateral_buckling_gamma(1),
         .promise = Promise::error};  // the corners of the clamp leave no order
   };
-  protocol.measure = [](const ValidationRow&, int cells) {
+  protocol.measure = [](const ValidationRow&, int cells, const StopTest& stop) {
     ValidationReading reading;
-    const auto load = [&](int slenderness) { return lateral_load(slenderness, cells / 10, reading.failure); };
+    const auto load = [&](int slenderness) {
+      return lateral_load(slenderness, cells / 10, stop, reading.failure);
+    };
     reading.value = (load(5) - 6 * load(10) + 8 * load(20)) / 3;  // a parabola in the width, at none
     return reading;
   };

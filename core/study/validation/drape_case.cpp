@@ -21,7 +21,7 @@ Scene drape_scene(const Material& material, int cells) {
   return scene;
 }
 
-DrapeReading measure_drape_of(const Material& material, int cells, std::uint64_t seed) {
+DrapeReading measure_drape_of(const Material& material, int cells, std::uint64_t seed, const StopTest& stop) {
   const Scene scene = drape_scene(material, cells);
   const ClothSystem system = make_cloth(scene);
   constexpr double most = 0.002;  // m
@@ -34,7 +34,8 @@ DrapeReading measure_drape_of(const Material& material, int cells, std::uint64_t
   DrapeReading reading;
   const int load_steps = system.sliders.empty() ? 1 : 20;
   reading.rest = find_rest(scene, system, position,
-                           {.tolerance = 1e-7, .iterations = 2000, .load_steps = load_steps});
+                           {.tolerance = 1e-7, .iterations = 2000, .load_steps = load_steps, .stop = stop});
+  if (is_to_stop(stop)) return reading;
   // Friction also holds what its bending alone would not: with hysteresis such a rest is not asked for.
   reading.is_minimum = !system.sliders.empty() || is_minimum(scene, system, reading.rest.position);
   reading.failure = reading.rest.failure;

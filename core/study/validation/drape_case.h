@@ -9,6 +9,7 @@
 #include "measure/oblique_locking.h"
 #include "scene/scene.h"
 #include "simulation/rest_shape.h"
+#include "study/study_progress.h"
 
 namespace cloth {
 
@@ -28,6 +29,7 @@ struct DrapeReading {
 /// The rest that is found from the flat specimen, whose free particles were moved up or down at random by up
 /// to 2 mm. A flat cloth is in equilibrium with its weight along every fold alike: other seeds lead to other
 /// rests.
-DrapeReading measure_drape_of(const Material& material, int cells, std::uint64_t seed);
+DrapeReading measure_drape_of(const Material& material, int cells, std::uint64_t seed,
+                              const StopTest& stop = {});
 
 }  // namespace cloth

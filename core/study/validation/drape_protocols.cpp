@@ -84,9 +84,8 @@ ValidationRow expected_drape(double parameter) {
   return row;
 }
 
-ValidationReading drape_on(const ValidationRow& row, int cells) {
-  const DrapeReading reading =
-      measure_drape_of(fabric_of(row).material(), cells, first_seed);
+ValidationReading drape_on(const ValidationRow& row, int cells, const StopTest& stop) {
+  const DrapeReading reading = measure_drape_of(fabric_of(row).material(), cells, first_seed, stop);
   return {.value = reading.drape.coefficient, .failure = reading.failure, .drape = facts_of(reading)};
 }
 
@@ -96,9 +95,8 @@ bool measure_other_seeds(ValidationRow& row, const StopTest& stop) {
     if (grid.cells == row.seed_cells && grid.drape)
       row.seeds.push_back({first_seed, grid.value, *grid.drape});
   for (std::uint64_t seed = first_seed + 1; seed < first_seed + seed_count; ++seed) {
+    const DrapeReading reading = measure_drape_of(fabric_of(row).material(), row.seed_cells, seed, stop);
     if (is_to_stop(stop)) return false;
-    const DrapeReading reading =
-        measure_drape_of(fabric_of(row).material(), row.seed_cells, seed);
     if (!reading.failure.empty()) continue;  // fewer are listed
     row.seeds.push_back({seed, reading.drape.coefficient, facts_of(reading)});
   }

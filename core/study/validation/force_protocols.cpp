@@ -37,9 +37,9 @@ ValidationProtocol stick_slip() {
     return row;
   };
   protocol.strip = [](double, int cells) { return StripCase{.load = weightless, .cells = cells}; };
-  protocol.measure = [strip = protocol.strip](const ValidationRow& row, int cells) {
+  protocol.measure = [strip = protocol.strip](const ValidationRow& row, int cells, const StopTest& stop) {
     const StripCase of = strip(row.parameter, cells);
-    const StripRest found = rest_of_strip(of, row.curve);
+    const StripRest found = rest_of_strip(of, row.curve, stop);
     const Vec3 push = force_of_end(strip_scene(of, row.curve), found.rest.position);
     return ValidationReading{
         .value = std::abs(push.x() / push.y()), .failure = found.rest.failure, .points = found.points};
@@ -66,10 +66,10 @@ double chain_mode(double arc) {
 
 /// The logarithm of the speed at one passage through the middle over that at the next but one, one swing
 /// later; of the part of the motion in the first mode.
-ValidationReading decrement_of_swing(double mass_damping, int cells) {
+ValidationReading decrement_of_swing(double mass_damping, int cells, const StopTest& stop) {
   const Scene scene = hanging_strip(mass_damping, cells);
   const ClothSystem resting = make_cloth(scene);
-  const RestShape rest = find_rest(scene, resting, resting.start);
+  const RestShape rest = find_rest(scene, resting, resting.start, {.stop = stop});
   if (!rest.found) return {.failure = rest.failure};
   std::vector<double> mode(rest.position.size());
   for (std::size_t i = 0; i < mode.size(); ++i) mode[i] = chain_mode(resting.start[i].x() / strip_length);
@@ -86,6 +86,7 @@ ValidationReading decrement_of_swing(double mass_damping, int cells) {
   std::vector<double> passages;
   double place = part(simulation.state().position.y()), speed = 0;
   while (passages.size() < 3) {
+    if (is_to_stop(stop)) return {.failure = "stopped"};
     if (const auto divergence = simulation.step()) return {.failure = describe(*divergence)};
     const double next = part(simulation.state().position.y()),
                  next_speed = part(simulation.state().velocity.y());
@@ -108,8 +109,8 @@ ValidationProtocol swing() {
         .method = "one swing, from the first mode on, by Verlet at its automatic step",
         .exact = exact::damped_swing(frequency, mass_damping).decrement};
   };
-  protocol.measure = [](const ValidationRow& row, int cells) {
-    return decrement_of_swing(row.parameter, cells);
+  protocol.measure = [](const ValidationRow& row, int cells, const StopTest& stop) {
+    return decrement_of_swing(row.parameter, cells, stop);
   };
   return protocol;
 }

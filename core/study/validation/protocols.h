@@ -22,7 +22,8 @@ struct ValidationProtocol {
   std::string parameter_name;  ///< empty: none
   std::vector<double> parameters;
   std::function<ValidationRow(double parameter)> expect;  ///< all but the name, the parameter and the grids
-  std::function<ValidationReading(const ValidationRow& row, int cells)> measure;
+  /// Asks `stop` often; after true what it returns is worth nothing.
+  std::function<ValidationReading(const ValidationRow& row, int cells, const StopTest& stop)> measure;
   std::vector<int> cells{validation_cells.begin(), validation_cells.end()};
   /// Other rests on the row's seed_cells, where it has some; false where it was stopped.
   std::function<bool(ValidationRow& row, const StopTest& stop)> measure_seeds = nullptr;
@@ -37,7 +38,8 @@ const ValidationProtocol* find_protocol(const std::string& name);
 /// In the order of the table.
 const std::vector<ValidationProtocol>& protocols();
 
-/// Shapes of strips at rest; loads at which they buckle; what moves or pushes; what shears; how fabrics drape.
+/// Shapes of strips at rest; loads at which they buckle; what moves or pushes; what shears; how fabrics
+/// drape.
 std::vector<ValidationProtocol> shape_protocols();
 std::vector<ValidationProtocol> buckling_protocols();
 std::vector<ValidationProtocol> force_protocols();

@@ -10,8 +10,8 @@
 #include "simulation/recorder.h"
 #include "simulation/rest_shape.h"
 #include "simulation/time_step.h"
-#include "study/run_output.h"
 #include "study/refined_scene.h"
+#include "study/run_output.h"
 
 namespace cloth {
 namespace {
@@ -145,10 +145,12 @@ class MeasuredReader {
   OutputReducer reading_;
 };
 
-void read_rest(const SceneValidation& study, Scene scene, MeasuredRun& run) {
-  const RestShape rest = find_rest(scene);
+/// False where it was stopped.
+bool read_rest(const SceneValidation& study, Scene scene, const StopTest& stop, MeasuredRun& run) {
+  const RestShape rest = find_rest(scene, {.stop = stop});
+  if (is_to_stop(stop)) return false;
   run.failure = rest.failure;
-  if (!rest.found) return;
+  if (!rest.found) return true;
   if (!resolved_time_step(scene))
     scene.integrator.time_step = scene.record.interval;  // of no step that is taken
   const Simulation simulation(scene,
@@ -156,6 +158,7 @@ void read_rest(const SceneValidation& study, Scene scene, MeasuredRun& run) {
   MeasuredReader reader(study, run);
   reader.add_row(simulation, simulation.measure());
   reader.end(simulation.system(), rest.position);
+  return true;
 }
 
 /// False where it was stopped.
@@ -188,10 +191,9 @@ std::optional<MeasuredRun> run_on(const SceneValidation& study, int cells,
                                   const SceneValidationOptions& options) {
   const Scene scene = study.one_grid.empty() ? refined_scene(study.scene, cells) : study.scene;
   MeasuredRun run{.cells = cells, .rows = scene.cloth.rows, .columns = scene.cloth.columns};
-  if (study.scene.measured->state == "rest")
-    read_rest(study, scene, run);
-  else if (!read_end(study, scene, options, run))
-    return std::nullopt;
+  const bool is_whole = study.scene.measured->state == "rest" ? read_rest(study, scene, options.stop, run)
+                                                              : read_end(study, scene, options, run);
+  if (!is_whole) return std::nullopt;
   if (run.failure.empty()) compare(study, run);
   return run;
 }

@@ -30,8 +30,9 @@ double drop_of_lowest(const PlanePoints& points) {
 
 /// The rest of the protocol's strip, which starts on the row's curve, and how far it is from it.
 void measure_at_rest(ValidationProtocol& protocol) {
-  protocol.measure = [strip = protocol.strip, value = protocol.value](const ValidationRow& row, int cells) {
-    StripRest found = rest_of_strip(strip(row.parameter, cells), row.curve);
+  protocol.measure = [strip = protocol.strip, value = protocol.value](const ValidationRow& row, int cells,
+                                                                      const StopTest& stop) {
+    StripRest found = rest_of_strip(strip(row.parameter, cells), row.curve, stop);
     ValidationReading reading{.failure = found.rest.failure};
     if (!reading.failure.empty()) return reading;
     reading.value = value(found.points);

@@ -28,14 +28,14 @@ using Framing = FramedPoint (*)(const Vec3& flat, double gamma);
 /// The power of what holds the pinned particles of the resting sheet over `speed`, at which what is pulled
 /// moves apart with gamma (m/rad): N. `disturbance` in m moves the free ones at the start.
 ValidationReading pull_at_rest(const Scene& scene, double gamma, Framing framing,
-                               Vec3 (*disturbance)(const Vec3& flat), double speed) {
+                               Vec3 (*disturbance)(const Vec3& flat), double speed, const StopTest& stop) {
   const ClothSystem system = make_cloth(scene);
   Vec3Field start(system.start.size());
   for (std::size_t i = 0; i < start.size(); ++i) {
     start.set(i, framing(system.start[i], gamma).place);
     if (!system.pinned[i]) start.add(i, disturbance(system.start[i]));
   }
-  const RestShape rest = find_rest(scene, system, start);
+  const RestShape rest = find_rest(scene, system, start, {.stop = stop});
   const Vec3Field force = conservative_forces(scene, system, rest.position);
   double power = 0;
   for (std::size_t i = 0; i < start.size(); ++i)
@@ -69,13 +69,13 @@ FramedPoint framed(const Vec3& flat, double gamma) {
 }
 
 /// Pull at the corners of the resting sheet, N.
-ValidationReading pull_of_frame(double gamma, int cells) {
+ValidationReading pull_of_frame(double gamma, int cells, const StopTest& stop) {
   const auto bulged = [](const Vec3& flat) -> Vec3 {
     return std::sin(std::numbers::pi * flat.x() / side) * std::sin(std::numbers::pi * flat.y() / side) *
            bulge * side * Vec3(1, -0.5, 0.5);
   };
   const double speed = side * std::sin(std::numbers::pi / 4 - gamma / 2);
-  return pull_at_rest(framed_scene(cells), gamma, framed, bulged, speed);
+  return pull_at_rest(framed_scene(cells), gamma, framed, bulged, speed, stop);
 }
 
 ValidationProtocol picture_frame() {
@@ -92,8 +92,8 @@ ValidationProtocol picture_frame() {
         .exact = shear,
         .promise = Promise::exact};
   };
-  protocol.measure = [](const ValidationRow& row, int cells) {
-    ValidationReading reading = pull_of_frame(row.parameter, cells);
+  protocol.measure = [](const ValidationRow& row, int cells, const StopTest& stop) {
+    ValidationReading reading = pull_of_frame(row.parameter, cells, stop);
     reading.value = exact::shear_stiffness_of_frame(law, reading.value, side, row.parameter);
     return reading;
   };
@@ -152,13 +152,13 @@ Scene bias_scene(int cells) {
 }
 
 /// Pull at the end of the resting strip, N.
-ValidationReading pull_of_strip(double gamma, int cells) {
+ValidationReading pull_of_strip(double gamma, int cells, const StopTest& stop) {
   const auto bulged = [](const Vec3& flat) -> Vec3 {
     return std::sin(std::numbers::pi * flat.x() / bias_length) * bulge * strip_width * Vec3(1, -0.5, 0);
   };
   const double speed =
       (bias_length - strip_width) / std::numbers::sqrt2 * std::sin(std::numbers::pi / 4 - gamma / 2);
-  return pull_at_rest(bias_scene(cells), gamma, bias_extended, bulged, speed);
+  return pull_at_rest(bias_scene(cells), gamma, bias_extended, bulged, speed, stop);
 }
 
 ValidationProtocol bias_extension() {
@@ -176,8 +176,8 @@ ValidationProtocol bias_extension() {
         .exact = shear,
         .promise = Promise::error};
   };
-  protocol.measure = [](const ValidationRow& row, int cells) {
-    ValidationReading reading = pull_of_strip(row.parameter, cells);
+  protocol.measure = [](const ValidationRow& row, int cells, const StopTest& stop) {
+    ValidationReading reading = pull_of_strip(row.parameter, cells, stop);
     reading.value /=
         exact::bias_extension_force(exact::ShearLaw::green, 1, bias_length, strip_width, row.parameter);
     return reading;

@@ -91,10 +91,10 @@ Vec3Field start_of_strip(const StripCase& of, const StripCurve& curve, const Clo
   return position;
 }
 
-StripRest rest_of_strip(const StripCase& of, const StripCurve& curve) {
+StripRest rest_of_strip(const StripCase& of, const StripCurve& curve, const StopTest& stop) {
   const Scene scene = strip_scene(of, curve);
   const ClothSystem system = make_cloth(scene);
-  StripRest found{find_rest(scene, system, start_of_strip(of, curve, system)), {}};
+  StripRest found{find_rest(scene, system, start_of_strip(of, curve, system), {.stop = stop}), {}};
   for (int k = 0; k <= of.cells; ++k) {
     const int i = system.index(of.across / 2, k + behind(curve.first));
     const Vec3 x = found.rest.position[static_cast<std::size_t>(i)] / strip_length;

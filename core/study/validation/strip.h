@@ -6,6 +6,7 @@
 #include "exact/elastica.h"
 #include "scene/scene.h"
 #include "simulation/rest_shape.h"
+#include "study/study_progress.h"
 
 namespace cloth {
 
@@ -47,7 +48,7 @@ struct StripRest {
   RestShape rest;
   std::vector<Eigen::Vector2d> points;
 };
-StripRest rest_of_strip(const StripCase& of, const StripCurve& curve);
+StripRest rest_of_strip(const StripCase& of, const StripCurve& curve, const StopTest& stop = {});
 
 inline constexpr double strip_length = 0.1, standard_gravity = 9.81;  // m, m/s^2
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "study/richardson.h"
+#include "study/study_team.h"
 #include "study/validation/protocols.h"
 
 namespace cloth {
@@ -19,9 +20,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool measure(const ValidationProtocol& protocol, ValidationRow& row, const StopTest& stop) {
   for (const int cells : protocol.cells) {
     if (!row.failure.empty()) return true;
-    if (is_to_stop(stop)) return false;
     const auto start = std::chrono::steady_clock::now();
-    ValidationReading reading = protocol.measure(row, cells);
+    ValidationReading reading = protocol.measure(row, cells, stop);
+    if (is_to_stop(stop)) return false;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!reading.failure.empty()) {
       row.failure = fmt::format("{} cells: {}", cells, reading.failure);
@@ -123,17 +124,26 @@ ValidationStudy run_validation(const ValidationOptions& options) {
   ValidationStudy study = plan_validation(options);
   if (options.earlier) study.rows = options.earlier->rows;
   const auto number_of = [&](const ValidationRow& row) { return study.number_of(row); };
+  std::vector<std::int64_t> missing;
+  for (std::int64_t number = 0; number < std::ssize(study.expected); ++number)
+    if (options.shard.has(number) && !std::ranges::binary_search(study.rows, number, {}, number_of))
+      missing.push_back(number);
   const double all = static_cast<double>(study.expected.size());
-  for (std::size_t place = 0; place < study.expected.size(); ++place) {
-    const ValidationRow& expected = study.expected[place];
-    const auto number = static_cast<std::int64_t>(place);
-    const auto at = std::ranges::lower_bound(study.rows, number, {}, number_of);
-    if (!options.shard.has(number) || (at != study.rows.end() && number_of(*at) == number)) continue;
-    if (options.progress && !options.progress({static_cast<double>(place) / all, name_of(expected)})) break;
-    const auto keep = [&](ValidationRow row) { study.rows.insert(at, std::move(row)); };
-    if (!validate({expected}, keep, options.stop)) break;
+  double there = all - static_cast<double>(missing.size());
+  StudyTeam team({.jobs = options.jobs, .stop = options.stop, .progress = options.progress});
+  team.run(missing.size(), [&](std::size_t k) {
+    ValidationRow row = study.expected[static_cast<std::size_t>(missing[k])];
+    {
+      const auto lock = team.alone();
+      team.report({there / all, name_of(row)});
+    }
+    if (!measure(*find_protocol(row.protocol), row, [&] { return team.is_stopped(); })) return false;
+    const auto lock = team.alone();
+    study.rows.insert(std::ranges::lower_bound(study.rows, missing[k], {}, number_of), std::move(row));
+    ++there;
     if (options.partial) options.partial(study);
-  }
+    return true;
+  });
   return study;
 }
 

@@ -112,10 +112,12 @@ struct ValidationStudy {
 };
 
 struct ValidationOptions {
-  std::vector<std::string> protocols{};                   ///< empty: exact_protocols()
-  std::function<bool(const StudyProgress&)> progress{};   ///< false stops the study
-  std::function<void(const ValidationStudy&)> partial{};  ///< the study so far, after every row
-  StopTest stop{};                                        ///< asked between grids
+  std::vector<std::string> protocols{};                  ///< empty: exact_protocols()
+  int jobs = 1;                                          ///< rows at once; no bit depends on it
+  std::function<bool(const StudyProgress&)> progress{};  ///< false stops the study
+  /// The study so far, after every row, from one thread at a time.
+  std::function<void(const ValidationStudy&)> partial{};
+  StopTest stop{};  ///< asked between steps and iterations; half a row is none
   /// The same study, not whole: its rows are not measured again.
   const ValidationStudy* earlier = nullptr;
   Shard shard{};  ///< whose rows are measured alone, by their place in `expected`

@@ -1,0 +1,48 @@
+# What clothlab-bench compares with, where it is found: docs/dependencies.md. Without it --peers says what to install.
+option(CLOTHLAB_PEERS "Build what clothlab-bench --peers and --systems compare with, where it is installed" ON)
+
+# Bullet's soft bodies (libbullet-dev): Debian has its library once in double precision and once in single, under the
+# same names, so that each needs a program of its own.
+set(clothlab_peer_definitions)
+set(clothlab_peer_programs)
+if(CLOTHLAB_PEERS)
+  find_path(BULLET_SOFT_BODY_INCLUDE_DIR BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h PATH_SUFFIXES bullet)
+else()
+  unset(BULLET_SOFT_BODY_INCLUDE_DIR CACHE)
+endif()
+
+function(clothlab_bullet suffix ending)
+  set(libraries)
+  foreach(part BulletSoftBody BulletDynamics BulletCollision LinearMath)
+    find_library(CLOTHLAB_${part}${ending} ${part}${ending})
+    if(NOT CLOTHLAB_${part}${ending})
+      return()
+    endif()
+    list(APPEND libraries ${CLOTHLAB_${part}${ending}})
+  endforeach()
+  set(library clothlab_bullet_cloth${suffix})
+  add_library(${library} STATIC EXCLUDE_FROM_ALL peers/bullet_cloth.cpp)
+  target_include_directories(${library} SYSTEM PRIVATE ${BULLET_SOFT_BODY_INCLUDE_DIR})
+  target_compile_definitions(${library} PRIVATE ${ARGN})
+  target_compile_options(${library} PRIVATE $<$<CONFIG:Release>:-O3>)
+  target_link_libraries(${library} PUBLIC clothlab_speed PRIVATE ${libraries})
+  clothlab_target(${library})
+  string(REPLACE _ - program clothlab-bullet${suffix})
+  add_executable(${program} EXCLUDE_FROM_ALL peers/bullet_main.cpp)
+  target_link_libraries(${program} PRIVATE ${library})
+  clothlab_target(${program})
+  set_target_properties(${library} ${program} PROPERTIES UNITY_BUILD OFF)
+  string(TOUPPER CLOTHLAB_BULLET${suffix} definition)
+  set(clothlab_peer_definitions ${clothlab_peer_definitions} ${definition}="$<TARGET_FILE:${program}>" PARENT_SCOPE)
+  set(clothlab_peer_programs ${clothlab_peer_programs} ${program} PARENT_SCOPE)
+endfunction()
+if(BULLET_SOFT_BODY_INCLUDE_DIR)
+  clothlab_bullet("" -float64 BT_USE_DOUBLE_PRECISION)
+  clothlab_bullet(_single "")
+endif()
+
+if(TARGET clothlab_bullet_cloth)
+  clothlab_test(clothlab_bullet_tests LABEL bench TIMEOUT 60
+    SOURCES bullet_test.cpp
+    LIBRARIES clothlab_bullet_cloth)
+endif()

@@ -1,10 +1,9 @@
 // A cloth in Bullet: the same start and the same springs as ours, and what each of its models solves.
-#include "bench/peers/bullet_cloth.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "bench/peers/bullet_cloth.h"
 #include "scene/scene_cloth.h"
 #include "study/reference_solution.h"
 
@@ -87,8 +86,8 @@ TEST(Bullet, ImplicitSpringsAreBackwardEulerOfThem) {
 TEST(Bullet, OneLinkByStiffnessIsBackwardEulerInAnyNumberOfPasses) {
   const double h = 0.01, a = h * h * stiffness * inverse_mass, small = 1e-6;
   for (const int passes : {1, 4}) {
-    const auto d = stretches(
-        {.model = BulletModel::links_by_stiffness, .time_step = h, .iterations = passes}, small, 100);
+    const auto d = stretches({.model = BulletModel::links_by_stiffness, .time_step = h, .iterations = passes},
+                             small, 100);
     for (std::size_t n = 1; n + 1 < d.size(); ++n)
       ASSERT_NEAR(d[n + 1], (2 * d[n] - d[n - 1]) / (1 + a), 1e-5 * small) << passes << " passes";
   }
@@ -139,8 +138,7 @@ TEST(Bullet, SpringsConvergeToOurReferenceWithTheFirstOrderAndLinksDoNot) {
   const ReferenceSolution reference = solve_smooth(scene, 0.2, 1);
   ASSERT_EQ(reference.failure, "");
   const auto order = [&](BulletModel model, int steps) {
-    return std::log2(error_of(model, steps, reference, scene) /
-                     error_of(model, 2 * steps, reference, scene));
+    return std::log2(error_of(model, steps, reference, scene) / error_of(model, 2 * steps, reference, scene));
   };
   EXPECT_NEAR(order(BulletModel::springs_explicit, 800), 1, 0.1);
   EXPECT_NEAR(order(BulletModel::springs_implicit, 800), 1, 0.1);

@@ -40,7 +40,8 @@ std::string broken_bullet_rule(const SpringList& list) {
     double& stiffness = spring.bends ? bend : stretch;
     if (stiffness < 0) stiffness = spring.stiffness;
     if (stiffness != spring.stiffness)
-      return "Bullet's springs have one stiffness in a body, and one for bending: structural and shear springs "
+      return "Bullet's springs have one stiffness in a body, and one for bending: structural and shear "
+             "springs "
              "must be equally stiff";
   }
   return "";

@@ -1,13 +1,13 @@
-// A cloth of springs in Bullet: the same particles, masses, springs, rest lengths, pins and gravity as ours, in
-// one of Bullet's two soft bodies.
+// A cloth of springs in Bullet: the same particles, masses, springs, rest lengths, pins and gravity as ours,
+// in one of Bullet's two soft bodies.
 //
 // `springs`: btDeformableMultiBodyDynamicsWorld with btDeformableMassSpringForce, the same springs in N/m.
-// Explicit it is semi-implicit Euler; implicit it is backward Euler by Newton's method with conjugate gradients.
-// `links`: the classic btSoftBody of btSoftRigidDynamicsWorld, position based: each pass moves the ends of every
-// link by the part kLST of what it is too long. That is another model: with passes without end it is
-// inextensible whatever the step, and with few it depends on the step. kLST is a number in [0, 1], not N/m.
-// `links_by_stiffness`: the same with kLST chosen so that one spring alone, in all passes together, moves as by
-// backward Euler (links_part), by Clothlab, not by Bullet.
+// Explicit it is semi-implicit Euler; implicit it is backward Euler by Newton's method with conjugate
+// gradients. `links`: the classic btSoftBody of btSoftRigidDynamicsWorld, position based: each pass moves the
+// ends of every link by the part kLST of what it is too long. That is another model: with passes without end
+// it is inextensible whatever the step, and with few it depends on the step. kLST is a number in [0, 1], not
+// N/m. `links_by_stiffness`: the same with kLST chosen so that one spring alone, in all passes together,
+// moves as by backward Euler (links_part), by Clothlab, not by Bullet.
 #pragma once
 
 #include <memory>
@@ -30,14 +30,14 @@ struct BulletSettings {
 };
 
 /// The kLST of each of `passes` passes of a link between inverse masses of the sum `inverse_mass` (1/kg), so
-/// that together they move its ends by a / (1 + a) of what it is too long, a = h^2 k inverse_mass: what backward
-/// Euler does to one spring alone. In [0, 1).
+/// that together they move its ends by a / (1 + a) of what it is too long, a = h^2 k inverse_mass: what
+/// backward Euler does to one spring alone. In [0, 1).
 double links_part(double stiffness, double time_step, double inverse_mass, int passes);
 
 class BulletCloth {
  public:
-  /// Precondition: structural springs and those of shear are equally stiff, since Bullet knows two stiffnesses
-  /// in a body, one of them for bending. See broken_bullet_rule.
+  /// Precondition: structural springs and those of shear are equally stiff, since Bullet knows two
+  /// stiffnesses in a body, one of them for bending. See broken_bullet_rule.
   BulletCloth(const SpringList& springs, const BulletSettings& settings);
   ~BulletCloth();
   BulletCloth(const BulletCloth&) = delete;

@@ -2,10 +2,10 @@
 //
 //     clothlab-bullet MODEL TIME_STEP STEPS SAMPLES ITERATIONS < SCENE
 //
-// Prints a line with the version of Bullet and one with the processor time of the steps in s; then, with SAMPLES
-// above 0, the masses and the states at the start and after every STEPS / SAMPLES steps as doubles
-// (study/reference_solution.h, bytes_of). A program of its own for each precision, since both libraries have the
-// same names.
+// Prints a line with the version of Bullet and one with the processor time of the steps in s; then, with
+// SAMPLES above 0, the masses and the states at the start and after every STEPS / SAMPLES steps as doubles
+// (study/reference_solution.h, bytes_of). A program of its own for each precision, since both libraries have
+// the same names.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

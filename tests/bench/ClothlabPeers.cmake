@@ -48,3 +48,38 @@ if(TARGET clothlab_bullet_cloth)
     SOURCES bullet_test.cpp
     LIBRARIES clothlab_bullet_cloth)
 endif()
+
+# What solves the linear systems of implicit Euler: CHOLMOD (libsuitesparse-dev) and hypre (libhypre-dev, which needs
+# MPI).
+set(clothlab_solver_sources)
+set(clothlab_solver_definitions)
+set(clothlab_solver_libraries)
+set(clothlab_solver_includes)
+if(CLOTHLAB_PEERS)
+  find_path(CHOLMOD_INCLUDE_DIR suitesparse/cholmod.h)
+  find_library(CHOLMOD_LIBRARY cholmod)
+  find_path(HYPRE_INCLUDE_DIR HYPRE_parcsr_ls.h PATH_SUFFIXES hypre)
+  find_library(HYPRE_LIBRARY HYPRE)
+  set(MPI_CXX_SKIP_MPICXX ON)
+  find_package(MPI QUIET COMPONENTS CXX)
+  if(CHOLMOD_INCLUDE_DIR AND CHOLMOD_LIBRARY)
+    list(APPEND clothlab_solver_sources solvers/cholmod_subjects.cpp)
+    list(APPEND clothlab_solver_definitions CLOTHLAB_CHOLMOD)
+    list(APPEND clothlab_solver_includes ${CHOLMOD_INCLUDE_DIR})
+    list(APPEND clothlab_solver_libraries ${CHOLMOD_LIBRARY} ${CMAKE_DL_LIBS})
+  endif()
+  if(HYPRE_INCLUDE_DIR AND HYPRE_LIBRARY AND MPI_CXX_FOUND)
+    list(APPEND clothlab_solver_sources solvers/hypre_subjects.cpp)
+    list(APPEND clothlab_solver_definitions CLOTHLAB_HYPRE)
+    list(APPEND clothlab_solver_includes ${HYPRE_INCLUDE_DIR})
+    list(APPEND clothlab_solver_libraries ${HYPRE_LIBRARY} MPI::MPI_CXX)
+  endif()
+endif()
+add_library(clothlab_solvers STATIC EXCLUDE_FROM_ALL
+  solvers/newton_system.cpp solvers/our_subjects.cpp solvers/solver_study.cpp solvers/solver_tables.cpp
+  ${clothlab_solver_sources})
+target_include_directories(clothlab_solvers SYSTEM PRIVATE ${clothlab_solver_includes})
+target_compile_definitions(clothlab_solvers PRIVATE ${clothlab_solver_definitions})
+target_link_libraries(clothlab_solvers PUBLIC clothlab_speed
+  PRIVATE nlohmann_json::nlohmann_json fmt::fmt ${clothlab_solver_libraries})
+clothlab_target(clothlab_solvers)

@@ -68,7 +68,7 @@ if(CLOTHLAB_PEERS)
     list(APPEND clothlab_solver_includes ${CHOLMOD_INCLUDE_DIR})
     list(APPEND clothlab_solver_libraries ${CHOLMOD_LIBRARY} ${CMAKE_DL_LIBS})
   endif()
-  if(HYPRE_INCLUDE_DIR AND HYPRE_LIBRARY AND MPI_CXX_FOUND)
+  if(HYPRE_INCLUDE_DIR AND HYPRE_LIBRARY AND MPI_CXX_FOUND AND NOT CLOTHLAB_SANITIZE)  # MPI leaves memory behind
     list(APPEND clothlab_solver_sources solvers/hypre_subjects.cpp)
     list(APPEND clothlab_solver_definitions CLOTHLAB_HYPRE)
     list(APPEND clothlab_solver_includes ${HYPRE_INCLUDE_DIR})

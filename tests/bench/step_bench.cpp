@@ -113,7 +113,7 @@ int compare_with_peers(const Arguments& arguments) {
   cloth::peers::PeerOptions options;
   options.libraries = peer_libraries();
   if (options.libraries.empty()) {
-    say("this program was built without Bullet: install libbullet-dev, configure and build again");
+    say(cloth::peers::missing_library_message());
     return not_built;
   }
   listen_for_stop();

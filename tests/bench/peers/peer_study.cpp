@@ -138,7 +138,8 @@ class OneScene {
           std::find(options_.methods.begin(), options_.methods.end(), each.method) != options_.methods.end())
         add_ours(each, steps_of(each.method));
     for (const PeerLibrary& library : options_.libraries)
-      for (const TheirMethod& each : their_methods) add_theirs(library, each, steps_of(each.ladder));
+      for (const TheirMethod& each : their_methods)
+        if (!options_.quick || each.iterations == 1) add_theirs(library, each, steps_of(each.ladder));
   }
 
   void add_ours(const OurMethod& each, std::int64_t first_steps) {
@@ -278,6 +279,10 @@ std::vector<NamedScene> peer_scenes(int size) {
           {"swing", "upper edge pinned, released from where it lay flat", swinging}};
 }
 
+std::string missing_library_message() {
+  return "this program was built without Bullet: install libbullet-dev, configure and build again";
+}
+
 PeerReport study_peers(const PeerOptions& options) {
   PeerReport report;
   report.machine = machine_facts();
@@ -285,15 +290,18 @@ PeerReport study_peers(const PeerOptions& options) {
   std::vector<int> sizes = options.sizes;
   if (sizes.empty()) sizes = {options.quick ? 9 : 33};
   double done = 0;
-  for (const int size : sizes)
-    for (const NamedScene& named : peer_scenes(size)) {
-      const double all = 2.0 * static_cast<double>(sizes.size());
+  for (const int size : sizes) {
+    std::vector<NamedScene> scenes = peer_scenes(size);
+    if (options.quick) scenes.resize(1);
+    for (const NamedScene& named : scenes) {
+      const auto all = static_cast<double>(scenes.size() * sizes.size());
       const auto goes_on = [&](double fraction, const std::string& text) {
         return !options.progress || options.progress((done + fraction) / all, text);
       };
       if (!OneScene(options, named, size, report).run(goes_on)) return report;
       done += 1;
     }
+  }
   report.complete = true;
   return report;
 }

@@ -27,7 +27,7 @@ struct PeerOptions {
   std::vector<int> sizes;            ///< particles along an edge; empty: 33
   std::vector<std::string> methods;  ///< of integrator_names(), ours; empty: the usual ones
   int repeats = 5;
-  bool quick = false;  ///< a look: a small cloth, few steps, short runs
+  bool quick = false;  ///< a look: the first scene alone, small, with few steps and short runs
   /// Asked between runs; false ends the study, and what is finished is kept.
   std::function<bool(double fraction, const std::string& text)> progress;
 };
@@ -91,6 +91,9 @@ struct NamedScene {
   Scene scene;
 };
 std::vector<NamedScene> peer_scenes(int size);
+
+/// What a program says that was built without any library to compare with.
+std::string missing_library_message();
 
 /// Precondition: the methods are known.
 PeerReport study_peers(const PeerOptions& options);

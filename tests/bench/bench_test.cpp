@@ -151,6 +151,15 @@ TEST(Bench, OfPeersHasOursBesideBulletWithTheSameErrors) {
   for (std::size_t k = 0; k < ours.size(); ++k)
     EXPECT_NEAR(theirs[k] / ours[k], 1, 1e-6) << "the same method on the same cloth";
 }
+
+TEST(Bench, OfPeersWithMethodsOrPartsThatItHasNotIsBadUsage) {
+  for (const char* arguments : {"--peers --methods bdf2", "--peers --only steps"}) {
+    const CommandResult result = bench(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_EQ(result.output, "") << arguments;
+    EXPECT_NE(result.errors, "") << arguments;
+  }
+}
 #else
 TEST(Bench, OfPeersWithoutThemSaysWhatToInstall) {
   const CommandResult result = bench("--peers");

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "bench/peers/peer_tables.h"
 #include "bench/speed/speed_tables.h"
 #include "cli/console.h"
@@ -65,8 +67,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--repeats", study.repeats, "Timings of each row")
       ->capture_default_str()
       ->check(CLI::Range(3, 1000));
-  add_names(app, "--only", study.parts, fmt::format("Only these parts: {}", fmt::join(speed_parts(), ", ")),
-            speed_parts());
+  CLI::Option* only =
+      add_names(app, "--only", study.parts,
+                fmt::format("Only these parts: {}", fmt::join(speed_parts(), ", ")), speed_parts());
   std::vector<std::string> scenes;
   for (const cloth::BuiltinScene& scene : cloth::builtin_scenes()) scenes.push_back(scene.name);
   add_names(app, "--scenes", study.scenes, "Only these scenes, e.g. flag,wind", scenes);
@@ -116,6 +119,12 @@ int compare_with_peers(const Arguments& arguments) {
     say(cloth::peers::missing_library_message());
     return not_built;
   }
+  const std::vector<std::string> known = cloth::peers::our_peer_methods();
+  for (const std::string& method : arguments.study.methods)
+    if (std::find(known.begin(), known.end(), method) == known.end()) {
+      say(fmt::format("--peers: --methods: '{}' is not compared; {} are", method, fmt::join(known, ", ")));
+      return bad_input;
+    }
   listen_for_stop();
   cloth::ResultFolder folder;
   if (const int refused = claim(arguments, folder)) return refused;

@@ -59,6 +59,8 @@ std::string output_of(std::vector<std::string> words, const std::string& input, 
     failure = "there are no more file descriptors";
     return "";
   }
+  write_all(in.ends[1], input);  // a scene is shorter than a pipe holds: nobody need read yet
+  in.close_end(1);
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
@@ -67,7 +69,8 @@ std::string output_of(std::vector<std::string> words, const std::string& input, 
   posix_spawn_file_actions_adddup2(&actions, in.ends[0], 0);
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], 1);
   for (const Pipe* each : {&in, &out})
-    for (const int end : each->ends) posix_spawn_file_actions_addclose(&actions, end);
+    for (const int end : each->ends)
+      if (end >= 0) posix_spawn_file_actions_addclose(&actions, end);
   pid_t child = 0;
   const int error = posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -76,8 +79,6 @@ std::string output_of(std::vector<std::string> words, const std::string& input, 
     failure = fmt::format("{} could not be started: {}", words[0], std::strerror(error));
     return "";
   }
-  write_all(in.ends[1], input);  // shorter than a pipe holds; where it cannot be, the program says so
-  in.close_end(1);
   std::string text = read_all(out.ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

@@ -124,9 +124,7 @@ class OneScene {
   }
 
   void make_plans() {
-    std::vector<std::string> names;
-    for (const OurMethod& each : our_methods) names.push_back(each.method);
-    const Ladders ladders = make_ladders(named_.scene, names, scene_.horizon);
+    const Ladders ladders = make_ladders(named_.scene, our_peer_methods(), scene_.horizon);
     const auto steps_of = [&](const std::string& method) {
       for (const StepLadder& ladder : ladders.methods)
         if (ladder.facts.name == method)
@@ -277,6 +275,13 @@ std::vector<NamedScene> peer_scenes(int size) {
   swinging.cloth.down = {0, 0, 1};
   return {{"hang", "hung by two corners, released from a slant", hanging},
           {"swing", "upper edge pinned, released from where it lay flat", swinging}};
+}
+
+std::vector<std::string> our_peer_methods() {
+  std::vector<std::string> names;
+  for (const OurMethod& each : our_methods)
+    if (names.empty() || names.back() != each.method) names.push_back(each.method);
+  return names;
 }
 
 std::string missing_library_message() {

@@ -25,7 +25,7 @@ struct PeerLibrary {
 struct PeerOptions {
   std::vector<PeerLibrary> libraries;
   std::vector<int> sizes;            ///< particles along an edge; empty: 33
-  std::vector<std::string> methods;  ///< of integrator_names(), ours; empty: the usual ones
+  std::vector<std::string> methods;  ///< of our_peer_methods(); empty: all
   int repeats = 5;
   bool quick = false;  ///< a look: the first scene alone, small, with few steps and short runs
   /// Asked between runs; false ends the study, and what is finished is kept.
@@ -92,10 +92,12 @@ struct NamedScene {
 };
 std::vector<NamedScene> peer_scenes(int size);
 
+/// Those of ours that are compared.
+std::vector<std::string> our_peer_methods();
+
 /// What a program says that was built without any library to compare with.
 std::string missing_library_message();
 
-/// Precondition: the methods are known.
 PeerReport study_peers(const PeerOptions& options);
 
 }  // namespace cloth::peers

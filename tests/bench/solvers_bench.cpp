@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "bench/solvers/solver_study.h"
 
@@ -49,8 +50,14 @@ int main(int argc, char** argv) {
     return not_built;
   }
   try {
+    if (!as_json)  // what is finished is there to read while the larger systems take their minutes
+      options.partial = [&](const SolverReport& report) {
+        if (report.tables.size() == 1) fmt::print("{}", solver_head(report, as_markdown));
+        fmt::print("{}", solver_text(report.tables.back(), as_markdown));
+        std::fflush(stdout);
+      };
     const SolverReport report = study_solvers(options);
-    fmt::print("{}", as_json ? solver_json(report) : solver_text(report, as_markdown));
+    if (as_json) fmt::print("{}", solver_json(report));
   } catch (const std::exception& error) {
     fmt::print(stderr, "clothlab-solvers-bench: {}\n", error.what());
     return 1;

@@ -147,6 +147,7 @@ SolverReport study_solvers(const SolverOptions& options) {
       OneSystem system(options, shape, size);
       const bool finished = system.run(goes_on);
       report.tables.push_back(system.table());
+      if (options.partial) options.partial(report);
       if (!finished) return report;
       done += 1;
     }

@@ -44,7 +44,9 @@ struct SolverOptions {
   int repeats = 7;
   bool quick = false;
   /// Asked before every sample; false ends the study, and what is finished is kept.
-  std::function<bool(double fraction, const std::string& text)> progress;
+  std::function<bool(double fraction, const std::string& text)> progress = {};
+  /// The report so far, after every system.
+  std::function<void(const struct SolverReport&)> partial = {};
 };
 
 struct SolverReport {
@@ -62,6 +64,9 @@ std::vector<std::string> missing_libraries();
 SolverReport study_solvers(const SolverOptions& options);
 
 std::string solver_text(const SolverReport& report, bool markdown);
+/// The head of that text, and the part of one system.
+std::string solver_head(const SolverReport& report, bool markdown);
+std::string solver_text(const SolverTable& table, bool markdown);
 std::string solver_json(const SolverReport& report);
 
 }  // namespace cloth::solvers

@@ -75,35 +75,43 @@ json row_json(const SolverRow& row, const SolverRow* best) {
 
 }  // namespace
 
-std::string solver_text(const SolverReport& report, bool markdown) {
+std::string solver_head(const SolverReport& report, bool markdown) {
   Page page(markdown);
   const MachineFacts& machine = report.machine;
   page.paragraph(fmt::format("Clothlab {}, {}, {}; {}, {} cores{}{}", machine.version, machine.compiler,
                              machine.build_type, machine.processor, machine.cores,
-                             report.tables.empty() ? "" : "; ", fmt::join(libraries_of(report), "; ")));
+                             libraries_of(report).empty() ? "" : "; ",
+                             fmt::join(libraries_of(report), "; ")));
   page.paragraph(fmt::format(
       "Linear systems of Newton's method in a step of implicit Euler (1/60 s, 1000 N/m), each solved to a "
-      "relative "
-      "residual of {:.0e}. Processor time, one thread, medians of rounds in turns. Analysis: once for a "
-      "pattern. "
-      "Conversion: our blocks to the library's numbers; ours need none, and it is not part of the ratio. / "
-      "ours: "
-      "to the cheapest of ours.",
+      "relative residual of {:.0e}. Processor time, one thread, medians of rounds in turns. Analysis: once "
+      "for a "
+      "pattern. Conversion: our blocks to the library's numbers; ours need none, and it is not part of the "
+      "ratio. "
+      "/ ours: to the cheapest of ours.",
       report.residual));
   if (!report.missing.empty())
     page.paragraph(fmt::format("This program was built without {}.", fmt::join(report.missing, " and ")));
-  if (!report.complete) page.paragraph("Interrupted: this is what was finished.");
-  for (const SolverTable& table : report.tables) {
-    page.heading(fmt::format("{0} x {0}, {1}", table.size, cloth_shape_names[static_cast<int>(table.shape)]));
-    page.paragraph(fmt::format(
-        "Iteration {} of Newton's method, {}, {} unknowns, {:.0f} % of the springs compressed.",
-        table.iteration,
-        table.is_exact ? "the exact Jacobian" : "clamped, since the exact Jacobian is not positive definite",
-        table.unknowns, 100 * table.compressed_part));
-    page.table(solver_table(table));
-  }
   std::string text = page.take();
   return markdown ? text.substr(1) : text;
+}
+
+std::string solver_text(const SolverTable& table, bool markdown) {
+  Page page(markdown);
+  page.heading(fmt::format("{0} x {0}, {1}", table.size, cloth_shape_names[static_cast<int>(table.shape)]));
+  page.paragraph(fmt::format(
+      "Iteration {} of Newton's method, {}, {} unknowns, {:.0f} % of the springs compressed.",
+      table.iteration,
+      table.is_exact ? "the exact Jacobian" : "clamped, since the exact Jacobian is not positive definite",
+      table.unknowns, 100 * table.compressed_part));
+  page.table(solver_table(table));
+  return page.take();
+}
+
+std::string solver_text(const SolverReport& report, bool markdown) {
+  std::string text = solver_head(report, markdown);
+  for (const SolverTable& table : report.tables) text += solver_text(table, markdown);
+  return text;
 }
 
 std::string solver_json(const SolverReport& report) {

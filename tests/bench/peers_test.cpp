@@ -71,6 +71,8 @@ TEST(Peers, DecadesAreThoseBetweenTheErrorsThatWereFound) {
   ASSERT_EQ(decades.size(), 3u);
   EXPECT_NEAR(decades.front(), 1e-2, 1e-12);
   EXPECT_NEAR(decades.back(), 1e-4, 1e-12);
+  scene.reference.floor.rms_position = 5e-4;
+  EXPECT_NEAR(error_decades(scene).back(), 1e-3, 1e-12) << "the reference is not known further";
 }
 
 TEST(Peers, AnswersAreReadToTheBitAndThoseCutOffAreSaidToBe) {

@@ -176,6 +176,7 @@ json series_json(const PeerSeries& series, const PeerScene& scene) {
 }  // namespace
 
 std::vector<double> error_decades(const PeerScene& scene) {
+  const double floor = scene.reference.floor.rms_position;
   double least = 1, most = 0;
   for (const PeerSeries& series : scene.series)
     for (const PeerRun& run : series.runs)
@@ -183,7 +184,8 @@ std::vector<double> error_decades(const PeerScene& scene) {
         least = std::min(least, run.error.rms_position), most = std::max(most, run.error.rms_position);
   std::vector<double> decades;
   for (int power = -1; power >= -12; --power)
-    if (const double error = std::pow(10, power); error >= least && error < most) decades.push_back(error);
+    if (const double error = std::pow(10, power); error >= std::max(least, floor) && error < most)
+      decades.push_back(error);
   return decades;
 }
 

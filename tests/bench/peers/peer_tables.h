@@ -13,8 +13,8 @@ std::string peer_markdown(const PeerReport& report);
 /// bench.json
 std::string peer_json(const PeerReport& report);
 
-/// The errors of the second table, in m: the decades that some series reaches and not all do so with their
-/// first run, from the largest.
+/// The errors of the second table, in m: the decades between the largest and the least error that was found,
+/// and above what the reference is known to, from the largest.
 std::vector<double> error_decades(const PeerScene& scene);
 
 }  // namespace cloth::peers

@@ -129,7 +129,7 @@ TEST(Bench, PrintsTablesAndLeavesTheFile) {
 TEST(Bench, OfPeersHasOursBesideBulletWithTheSameErrors) {
   const TemporaryFolder folder;
   const CommandResult result =
-      bench("--peers --quick --sizes 5 --methods semi-implicit-euler --repeats 3 --json --out '" +
+      bench("--peers --quick --sizes 5 --methods semi-implicit-euler --json --out '" +
             (folder / "result").string() + "'");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const auto json = nlohmann::json::parse(result.output);

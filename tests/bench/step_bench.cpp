@@ -130,7 +130,7 @@ int compare_with_peers(const Arguments& arguments) {
   if (const int refused = claim(arguments, folder)) return refused;
   options.sizes = arguments.study.sizes;
   options.methods = arguments.study.methods;
-  options.repeats = arguments.repeats_given ? arguments.study.repeats : 5;
+  options.repeats = arguments.repeats_given ? arguments.study.repeats : arguments.study.quick ? 1 : 5;
   options.quick = arguments.study.quick;
   cloth::peers::PeerReport result;
   {

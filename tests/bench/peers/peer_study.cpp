@@ -137,7 +137,8 @@ class OneScene {
         add_ours(each, steps_of(each.method));
     for (const PeerLibrary& library : options_.libraries)
       for (const TheirMethod& each : their_methods)
-        if (!options_.quick || each.iterations == 1) add_theirs(library, each, steps_of(each.ladder));
+        if (!options_.quick || (each.iterations == 1 && &library == &options_.libraries.front()))
+          add_theirs(library, each, steps_of(each.ladder));
   }
 
   void add_ours(const OurMethod& each, std::int64_t first_steps) {

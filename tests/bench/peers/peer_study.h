@@ -27,7 +27,7 @@ struct PeerOptions {
   std::vector<int> sizes;            ///< particles along an edge; empty: 33
   std::vector<std::string> methods;  ///< of our_peer_methods(); empty: all
   int repeats = 5;
-  bool quick = false;  ///< a look: the first scene alone, small, with few steps and short runs
+  bool quick = false;  ///< a look: the first scene and library alone, small, few steps, short runs
   /// Asked between runs; false ends the study, and what is finished is kept.
   std::function<bool(double fraction, const std::string& text)> progress;
 };

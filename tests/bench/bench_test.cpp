@@ -125,6 +125,50 @@ TEST(Bench, PrintsTablesAndLeavesTheFile) {
   EXPECT_EQ(nlohmann::json::parse(content_of(folder / "result/bench.json"))["complete"], true);
 }
 
+#ifdef CLOTHLAB_BULLET
+TEST(Bench, OfPeersHasOursBesideBulletWithTheSameErrors) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      bench("--peers --quick --sizes 5 --methods semi-implicit-euler --json --out '" +
+            (folder / "result").string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(nlohmann::json::parse(content_of(folder / "result/bench.json")), json);
+  EXPECT_EQ(json["complete"], true);
+  ASSERT_EQ(json["peers"].size(), 1u);
+  EXPECT_LT(json["peers"][0]["reference_floor_rms_m"], 1e-10);
+  std::vector<double> ours, theirs;
+  for (const auto& series : json["peers"][0]["series"])
+    for (const auto& run : series["runs"]) {
+      EXPECT_TRUE(run["failure"].is_null()) << run.dump();
+      EXPECT_GT(run["processor_ms_per_simulated_s"], 0) << run.dump();
+      if (series["method"] == "semi-implicit-euler") ours.push_back(run["error_rms_m"]);
+      if (series["method"] == "springs-explicit" && series["program"] == "Bullet double")
+        theirs.push_back(run["error_rms_m"]);
+    }
+  ASSERT_EQ(ours.size(), theirs.size());
+  ASSERT_FALSE(ours.empty());
+  for (std::size_t k = 0; k < ours.size(); ++k)
+    EXPECT_NEAR(theirs[k] / ours[k], 1, 1e-6) << "the same method on the same cloth";
+}
+
+TEST(Bench, OfPeersWithMethodsOrPartsThatItHasNotIsBadUsage) {
+  for (const char* arguments : {"--peers --methods bdf2", "--peers --only steps"}) {
+    const CommandResult result = bench(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_EQ(result.output, "") << arguments;
+    EXPECT_NE(result.errors, "") << arguments;
+  }
+}
+#else
+TEST(Bench, OfPeersWithoutThemSaysWhatToInstall) {
+  const CommandResult result = bench("--peers");
+  EXPECT_EQ(result.exit_code, 7);
+  EXPECT_EQ(result.output, "");
+  EXPECT_TRUE(has(result.errors, "libbullet-dev")) << result.errors;
+}
+#endif
+
 TEST(Bench, AsMarkdownIsTables) {
   const std::string text = bench(few + "--only steps --markdown").output;
   EXPECT_TRUE(has(text, "\n| Method | With | Threads |")) << text;

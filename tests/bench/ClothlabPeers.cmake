@@ -1,5 +1,6 @@
-# What clothlab-bench compares with, where it is found: docs/dependencies.md. Without it --peers says what to install.
-option(CLOTHLAB_PEERS "Build what clothlab-bench --peers and --systems compare with, where it is installed" ON)
+# What clothlab-bench --peers and clothlab-solvers-bench compare with, where it is found: docs/dependencies.md. Without it
+# --peers says what to install.
+option(CLOTHLAB_PEERS "Build what clothlab-bench --peers and clothlab-solvers-bench compare with, where it is installed" ON)
 
 # Bullet's soft bodies (libbullet-dev): Debian has its library once in double precision and once in single, under the
 # same names, so that each needs a program of its own.

@@ -5,7 +5,16 @@
 
 #include "io/process.h"
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// GCC and Clang say differently that a sanitizer is in.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CLOTHLAB_SANITIZER_ALLOCATES
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define CLOTHLAB_SANITIZER_ALLOCATES
+#endif
+#endif
+
+#ifndef CLOTHLAB_SANITIZER_ALLOCATES
 
 // The other forms of new call these two, and the other forms of delete likewise.
 void* operator new(std::size_t size) {

@@ -77,10 +77,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str()
       ->check(CLI::Range(0.001, 3600.0));
   app.add_flag(
-      "--peers", arguments.peers,
-      "In place of all parts: error against processor time of our methods beside Bullet's soft bodies "
-      "on the same cloth; takes --sizes (33), --methods, --repeats (5) and --quick. Exit code 7 where "
-      "this program was built without Bullet");
+         "--peers", arguments.peers,
+         "In place of all parts: error against processor time of our methods beside Bullet's soft bodies "
+         "on the same cloth; takes --sizes (33), --methods, --repeats (5) and --quick. Exit code 7 where "
+         "this program was built without Bullet")
+      ->excludes(only);
   app.add_flag("--quick", study.quick, "Small sizes and short timings: a look, not a measurement");
   add_path(app, "--out", arguments.folder,
            "Folder for bench.json; made if missing. Rows are timed in turn, so that a benchmark cannot go on "

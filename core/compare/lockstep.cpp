@@ -150,7 +150,7 @@ bool LockStep::advance_lane(std::size_t number, std::int64_t index, const std::f
     while (!lane.divergence && !is_there()) {
       if (may_go_on && !may_go_on()) break;
       const double step = lane.simulation->time_step();
-      if (!step_lane(lane, steps_beyond(lane.simulation->time(), next - 0.5 * step, step))) break;
+      if (!step_lane(lane, steps_beyond(*lane.simulation, next - 0.5 * step))) break;
     }
     if (lane.divergence) {
       lane.wall += lane.wall_since_;

@@ -36,4 +36,11 @@ std::int64_t steps_beyond(double time, double end, double time_step) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((end - time) / time_step)) + 1);
 }
 
+std::int64_t steps_beyond(const Simulation& simulation, double end) {
+  const std::int64_t steps = steps_beyond(simulation.time(), end, simulation.time_step());
+  if (!simulation.is_within_interval()) return steps;
+  const std::int64_t change = simulation.first_step() + simulation.steps_to_row();
+  return std::clamp<std::int64_t>(change - simulation.state().step, 1, steps);
+}
+
 }  // namespace cloth

@@ -57,6 +57,30 @@ TEST(LockStep, OfOneMethodTwiceHasNoDifferenceToTheBit) {
   }
 }
 
+/// A hand that tugs: the steps of "auto" become shorter in the midst of an interval, whose rest has a length
+/// of its own.
+TEST(LockStep, OfPanesWhoseStepsBecomeShorterMeetsAtItsCommonTimes) {
+  Comparison comparison;
+  comparison.scene = builtin_scene("wind");
+  comparison.scene.cloth.rows = comparison.scene.cloth.columns = 9;
+  comparison.panes = panes_for({"verlet", "rk4"});
+  int shortened = 0;
+  for (int first = 0; first < 12; ++first) {
+    LockStep lockstep(comparison);
+    for (std::int64_t k = 1; k <= 40; ++k) {
+      const double far = 0.3 * static_cast<double>((7 * k + first) % 10);
+      if (k % 2 == first % 2) lockstep.set_pull(Pull{.particle = 40, .target = {far, 0, 0}});
+      ASSERT_TRUE(lockstep.advance(k));
+      for (std::size_t i = 0; i < 2; ++i)
+        if (lockstep.lane(i).going()) {
+          EXPECT_NEAR(lockstep.lane(i).state.time, lockstep.time_of(k), 1e-9) << first << ", " << i;
+        }
+    }
+    shortened += !lockstep.lane(0).simulation->step_changes().empty();
+  }
+  EXPECT_GT(shortened, 0);
+}
+
 TEST(LockStep, RecordsOfEachPaneWhatItsSceneRecordsAlone) {
   for (const char* scene : {"pendulum", "ball", "flag"}) {
     Comparison comparison =

@@ -75,9 +75,7 @@ bool advance(Simulation& simulation, double time, StudyPage& study, double from,
     return !study.go_on(from + (to - from) * (simulation.time() - begin) / (time - begin));
   });
   while (simulation.time() < almost)
-    if (!batches.run_to(simulation.state().step +
-                        steps_beyond(simulation.time(), almost, simulation.time_step())))
-      return false;
+    if (!batches.run_to(simulation.state().step + steps_beyond(simulation, almost))) return false;
   return study.go_on(to);
 }
 

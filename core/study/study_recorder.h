@@ -1,7 +1,8 @@
 // A study's folder while the study is made: each finished cell is in its table on disk before its thread
 // begins another, and a study that was stopped or killed goes on from there. Rows are in the order in which
 // cells ended, until the study ends or goes on: then in the study's own. Several processes may make a part
-// each, in folders of their own within it (study_parts.h); whoever makes the whole study takes what they have.
+// each, in folders of their own within it (study_parts.h); whoever makes the whole study takes what they
+// have.
 //
 //     StudyRecorder recorder;
 //     if (auto error = recorder.begin(folder, plan_stability_map(scene, options), {.command = command})) ...

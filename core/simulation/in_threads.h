@@ -1,7 +1,7 @@
 // Independent pieces of work, such as whole runs, on several threads.
 //
-//     in_threads(scenes.size(), machine_threads(), [&](std::size_t i) { results[i] = run_scene(scenes[i],
-//     {}); });
+//     in_threads(scenes.size(), machine_threads(),
+//                [&](std::size_t i) { results[i] = run_scene(scenes[i], {}); });
 #pragma once
 
 #include <cstddef>

@@ -32,12 +32,9 @@ int machine_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-std::int64_t steps_beyond(double time, double end, double time_step) {
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((end - time) / time_step)) + 1);
-}
-
 std::int64_t steps_beyond(const Simulation& simulation, double end) {
-  const std::int64_t steps = steps_beyond(simulation.time(), end, simulation.time_step());
+  const double whole = std::floor((end - simulation.time()) / simulation.time_step());
+  const std::int64_t steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(whole) + 1);
   if (!simulation.is_within_interval()) return steps;
   const std::int64_t change = simulation.first_step() + simulation.steps_to_row();
   return std::clamp<std::int64_t>(change - simulation.state().step, 1, steps);

@@ -45,10 +45,8 @@ class StepBatches {
 /// Hardware threads of this machine; at least 1.
 int machine_threads();
 
-/// Steps of `time_step` (s) until `time` has passed `end`; at least 1.
-std::int64_t steps_beyond(double time, double end, double time_step);
-/// Such steps of a simulation, but only those up to where its step changes: at the end of the record interval
-/// within which "auto" has shortened it.
+/// Steps of the present length until the time has passed `end` (s), but only those up to where that length
+/// changes: at the end of the record interval within which "auto" has shortened it. At least 1.
 std::int64_t steps_beyond(const Simulation& simulation, double end);
 
 }  // namespace cloth

@@ -112,12 +112,6 @@ struct JobsKind {
 template <class Options, class Plan, class Run>
 JobsKind(Options, Plan, Run) -> JobsKind<Options, Plan, Run>;
 
-Scene small_cloth() {
-  Scene scene = builtin_scene("corners-free");
-  scene.cloth.rows = scene.cloth.columns = 4;
-  return scene;
-}
-
 auto map_of(const StabilityOptions& options) {
   const Scene scene = small_cloth();
   return JobsKind{options, [scene](const StabilityOptions& of) { return plan_stability_map(scene, of); },

@@ -103,12 +103,6 @@ auto few_extremes() {
               empty_table, run_extremes};
 }
 
-Scene small_cloth() {
-  Scene scene = builtin_scene("corners-free");
-  scene.cloth.rows = scene.cloth.columns = 4;
-  return scene;
-}
-
 auto map_kind(const StabilityOptions& options) {
   const Scene scene = small_cloth();
   return Kind{options, [scene](const StabilityOptions& of) { return plan_stability_map(scene, of); },

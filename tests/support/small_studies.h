@@ -1,9 +1,16 @@
 // Studies that are made within moments.
 #pragma once
 
+#include "scene/builtin_scenes.h"
 #include "study/stability_map.h"
 
 namespace cloth::test {
+
+inline Scene small_cloth() {
+  Scene scene = builtin_scene("corners-free");
+  scene.cloth.rows = scene.cloth.columns = 4;
+  return scene;
+}
 
 /// Two methods, four steps, three stiffnesses.
 inline StabilityOptions small_map(const Scene& scene) {

@@ -240,7 +240,7 @@ std::optional<IoError> ResultFolder::begin_anew() {
   changed_ = true;
   for (const std::string& name : old_files_) {
     if (auto error = remove_file(path_ / name)) return error;
-    if (auto error = remove_file(path_ / (name + ".part"))) return error;
+    if (auto error = remove_drafts_of(path_ / name)) return error;
     if (std::find(index_names.begin(), index_names.end(), name) != index_names.end()) sync_folder(path_);
   }
   old_files_.clear();

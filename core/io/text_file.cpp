@@ -4,12 +4,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <vector>
 
+#include "io/process.h"
+
 namespace cloth {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* draft_end = ".part";
+
+}  // namespace
 
 IoError system_error(const fs::path& path) {
   return {path, std::strerror(errno)};
@@ -47,12 +55,34 @@ bool write_to_disk(int descriptor, std::string_view text) {
   return write_bytes(descriptor, text) == text.size() && (::fsync(descriptor) == 0 || errno == EINVAL);
 }
 
+Draft begin_draft(const fs::path& path) {
+  static std::atomic<unsigned> count = 0;
+  Draft draft;
+  do {  // another machine may have a process of this number
+    draft.path = path;
+    draft.path += fmt::format(".{}.{}{}", ::getpid(), count++, draft_end);
+    draft.descriptor = ::open(draft.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (draft.descriptor < 0 && errno == EEXIST);
+  return draft;
+}
+
+std::optional<IoError> remove_drafts_of(const fs::path& path) {
+  const std::string begin = path.filename().string() + ".";
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
+    const std::string name = file->path().filename().string();
+    std::error_code refused;
+    if (name.starts_with(begin) && name.ends_with(draft_end) && !fs::remove(file->path(), refused) && refused)
+      return IoError{file->path(), refused.message()};
+  }
+  if (error) return IoError{folder, error.message()};
+  return std::nullopt;
+}
+
 std::optional<IoError> write_text_file(const fs::path& path, const std::string& text,
                                        const struct stat* old) {
-  fs::path draft = path;
-  draft += ".part";
-  ::unlink(draft.c_str());
-  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const auto [draft, descriptor] = begin_draft(path);
   if (descriptor < 0) return system_error(path);
   if (old) {
     // Who may not give a file away writes one of his own; the mode comes after, since a new owner clears

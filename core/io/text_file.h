@@ -24,8 +24,20 @@ IoError system_error(const std::filesystem::path& path);
 /// Makes the folder and those above it.
 std::optional<IoError> make_folder(const std::filesystem::path& folder);
 
-/// Writes to a file beside it first, then renames: the file is old or new, never half, after a loss of power
-/// too. The new file gets owner and mode of `old`, if that is given.
+/// A new file beside another, to be renamed to it when it is whole: no other thread, process or machine has
+/// it.
+struct Draft {
+  std::filesystem::path path;
+  int descriptor = -1;  ///< open for writing; -1 with errno where it could not be made
+};
+Draft begin_draft(const std::filesystem::path& path);
+
+/// Removes what writers of the file that were killed left beside it. Only where nobody else writes it now.
+std::optional<IoError> remove_drafts_of(const std::filesystem::path& path);
+
+/// Writes to a draft first, then renames: the file is old or new, never half, after a loss of power too and
+/// with several writers, of whom the last one wins. The new file gets owner and mode of `old`, if that is
+/// given.
 std::optional<IoError> write_text_file(const std::filesystem::path& path, const std::string& text,
                                        const struct stat* old = nullptr);
 

@@ -36,10 +36,7 @@ std::string index_text(const SweepFolder& folder) {
 
 /// Writes a file that is whole from the start, where there is none yet: the first of several wins.
 std::optional<IoError> write_once(const fs::path& path, const std::string& text) {
-  fs::path draft = path;
-  draft += fmt::format(".{}.{}.part", host_name(), ::getpid());
-  ::unlink(draft.c_str());
-  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const auto [draft, descriptor] = begin_draft(path);
   if (descriptor < 0) return system_error(path);
   std::optional<IoError> failure;
   if (!write_to_disk(descriptor, text)) failure = system_error(path);

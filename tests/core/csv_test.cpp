@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <bit>
 #include <clocale>
 #include <csignal>
@@ -13,6 +14,8 @@
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <thread>
+#include <vector>
 
 #include "io/text_file.h"
 #include "scene/builtin_scenes.h"
@@ -217,6 +220,40 @@ TEST(TextFile, IsOldOrNewAndNeverHalf) {
   EXPECT_TRUE(failed);
   EXPECT_EQ(content_of(path), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);  // no draft is left
+}
+
+TEST(TextFile, OfManyWritersAtOnceIsWholeAndOneOfTheirs) {
+  const TemporaryFolder folder;
+  const auto path = folder / "t.txt";
+  const auto text_of = [](int writer) { return std::string(100'000, static_cast<char>('a' + writer)); };
+  std::vector<std::thread> writers;
+  std::atomic<int> failures = 0;
+  for (int w = 0; w < 4; ++w)
+    writers.emplace_back([&, w] {
+      for (int k = 0; k < 50; ++k)
+        if (write_text_file(path, text_of(w))) ++failures;
+    });
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(failures, 0);
+  const std::string left = content_of(path);
+  ASSERT_FALSE(left.empty());
+  EXPECT_EQ(left, text_of(left[0] - 'a'));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);  // no draft is left
+}
+
+TEST(TextFile, RemovesDraftsOfItselfAlone) {
+  const TemporaryFolder folder;
+  const auto path = folder / "t.csv";
+  for (const auto& of : {path, path, folder / "u.csv"}) {
+    const Draft draft = begin_draft(of);
+    ASSERT_TRUE(write_to_disk(draft.descriptor, "half"));
+    ::close(draft.descriptor);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
+  ASSERT_FALSE(write_text_file(path, "whole"));
+  ASSERT_FALSE(remove_drafts_of(path));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);  // itself, the other's
+  EXPECT_EQ(content_of(path), "whole");
 }
 
 TEST(TextFile, ThatCannotBeReadSaysWhy) {

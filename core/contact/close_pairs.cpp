@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/obstacle_body.h"
+#include "contact/separations.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 
@@ -13,6 +14,7 @@ constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of t
 /// Candidates are found for this many more displacements like the present one, at most for one more reach.
 constexpr double ways_ahead = 4;
 constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and small motions
+constexpr double rounding = 1e-9;    ///< of a distance
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
@@ -74,11 +76,14 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
     around.particles[i] = {here, here, cached_range_[i]};
   }
   search_.find(around, now.paths, cached_);
-  cached_distance_.resize(cached_.size()), cached_ends_.resize(cached_.size());
+  cached_room_.resize(cached_.size()), cached_sides_.resize(cached_.size());
+  const PairSetting setting{cloth_, now.position, bodies_, now.poses};
   in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
+    PairBatch(setting).find_distances(std::span(cached_).subspan(begin, end - begin),
+                                      cached_room_.data() + begin);
     for (std::size_t k = begin; k < end; ++k) {
-      cached_distance_[k] = distance_of(cached_[k], cloth_, now.position, bodies_, now.poses);
-      cached_ends_[k] = ends_of(cached_[k]);
+      cached_room_[k] = (1 - rounding) * cached_room_[k] - reach_of(cached_[k], now.swept);
+      cached_sides_[k] = sides_of(cached_[k]);
     }
   });
   cached_position_ = now.position;
@@ -90,34 +95,47 @@ double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) c
   return pair.obstacle == FeaturePair::cloth_itself ? swept.own_reach : swept.reach;
 }
 
-ClosePairs::Ends ClosePairs::ends_of(const FeaturePair& pair) const {
-  const PairParticles all = particles_of(pair, cloth_);
-  const int none = static_cast<int>(range_.size());
-  Ends ends{{none, none, none}, {none, none, none}};
-  for (int j = 0; j < all.count; ++j)
-    (j < all.near_count ? ends.near[at(j)] : ends.far[at(j - all.near_count)]) = all.particle[at(j)];
-  return ends;
+ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
+  const int edges = static_cast<int>(range_.size()), faces = edges + static_cast<int>(cloth_.edges.size()),
+            none = faces + static_cast<int>(cloth_.triangles.size());
+  const bool is_own = pair.obstacle == FeaturePair::cloth_itself;
+  switch (pair.kind) {
+    case PairKind::vertex_plane:
+    case PairKind::vertex_box:
+      return {pair.feature, none};
+    case PairKind::vertex_face:
+      return {pair.feature, is_own ? faces + pair.far_feature : none};
+    case PairKind::edge_edge:
+      return {edges + pair.feature, is_own ? edges + pair.far_feature : none};
+    case PairKind::face_sphere:
+    case PairKind::face_vertex:
+      return {faces + pair.feature, none};
+  }
+  return {none, none};
 }
 
-void ClosePairs::add_spent(const PairQuery& now) {
-  spent_.assign(range_.size() + 1, 0);
+/// The features of the candidates: of some scenes none has edges or faces.
+void ClosePairs::add_spent() {
+  spent_.clear();
   most_spent_ = 0;
   for (std::size_t i = 0; i < range_.size(); ++i) {
-    spent_[i] = moved_[i] + range_[i];
+    spent_.push_back(moved_[i] + range_[i]);
     most_spent_ = std::max(most_spent_, spent_[i]);
   }
-  most_spent_ = 2 * most_spent_ + furthest_reach(now.swept);
+  most_spent_ *= 2;
+  if (std::none_of(cached_room_.begin(), cached_room_.end(),
+                   [&](double room) { return room <= most_spent_; }))
+    return;
+  for (const auto& [a, b] : cloth_.edges) spent_.push_back(std::max(spent_[at(a)], spent_[at(b)]));
+  for (const auto& [a, b, c] : cloth_.triangles)
+    spent_.push_back(std::max({spent_[at(a)], spent_[at(b)], spent_[at(c)]}));
+  spent_.push_back(0);
 }
 
 /// Whether is_far() holds for a candidate, from its cached distance.
-bool ClosePairs::is_known_far(std::size_t k, const SweptBounds& swept) const {
-  constexpr double rounding = 1e-9;
-  const double distance = (1 - rounding) * cached_distance_[k];
-  if (distance > most_spent_) return true;
-  const auto most = [&](const std::array<int, 3>& of) {
-    return std::max({spent_[at(of[0])], spent_[at(of[1])], spent_[at(of[2])]});
-  };
-  return distance > reach_of(cached_[k], swept) + most(cached_ends_[k].near) + most(cached_ends_[k].far);
+bool ClosePairs::is_known_far(std::size_t k) const {
+  const double room = cached_room_[k];
+  return room > most_spent_ || room > spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
 }
 
 /// Whether the pair cannot come within its reach: the displacements are too short, or lead along or away.
@@ -139,6 +157,22 @@ bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const Swep
   return !s.normal.isZero(0) && near.low > far.high + reach;
 }
 
+/// Of the part's pairs, those that are not far remain.
+void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
+  auto& [pairs, separations] = part;
+  separations.resize(pairs.size());
+  const PairSetting setting{cloth_, now.position, bodies_, now.poses};
+  PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
+                              separations.data());
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (is_far(pairs[k], separations[k], now.swept)) continue;
+    if (kept < k) pairs[kept] = pairs[k], separations[kept] = separations[k];
+    ++kept;
+  }
+  pairs.resize(kept), separations.resize(kept);
+}
+
 template <class Skip>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
                               const Skip& skip, std::vector<FeaturePair>& pairs,
@@ -146,19 +180,13 @@ void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePai
   const int shares =
       in_shares(team_, candidates.size(), least_kept, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
-        part.pairs.clear(), part.separations.clear();
-        for (std::size_t k = begin; k < end; ++k) {
-          if (skip(k)) continue;
-          const FeaturePair& pair = candidates[k];
-          const Separation s = separate(pair, cloth_, now.position, bodies_, now.poses,
-                                        near_factor * reach_of(pair, now.swept));
-          if (is_far(pair, s, now.swept)) continue;
-          part.pairs.push_back(pair);
-          part.separations.push_back(s);
-        }
+        part.pairs.clear();
+        for (std::size_t k = begin; k < end; ++k)
+          if (!skip(k)) part.pairs.push_back(candidates[k]);
+        separate_part(now, part);
       });
-  pairs.clear(), separations.clear();
-  for (int share = 0; share < shares; ++share) {
+  pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations);
+  for (int share = 1; share < shares; ++share) {
     const Part& part = parts_[at(share)];
     pairs.insert(pairs.end(), part.pairs.begin(), part.pairs.end());
     separations.insert(separations.end(), part.separations.begin(), part.separations.end());
@@ -178,9 +206,9 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
     for (std::size_t i = 0; i < moved_.size(); ++i)
       moved_[i] = (now.position[i] - cached_position_[i]).norm();
   if (!holds(now)) collect_candidates(now);
-  add_spent(now);
+  add_spent();
   separate_all(
-      now, cached_, [&](std::size_t k) { return is_known_far(k, now.swept); }, pairs, separations);
+      now, cached_, [&](std::size_t k) { return is_known_far(k); }, pairs, separations);
 }
 
 }  // namespace cloth

@@ -41,9 +41,9 @@ class ClosePairs {
   const PairSearch& search() const { return search_; }
 
  private:
-  /// The particles of a cached candidate; where a side has fewer than three, the last ones stand for none.
-  struct Ends {
-    std::array<int, 3> near, far;
+  /// The features of a cached candidate as places in `spent_`; an obstacle's is the last place.
+  struct Sides {
+    int near, far;
   };
   struct Part {  ///< the result of one thread
     std::vector<FeaturePair> pairs;
@@ -55,10 +55,11 @@ class ClosePairs {
   bool holds(const PairQuery& now) const;
   void collect_candidates(const PairQuery& now);
   double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
-  Ends ends_of(const FeaturePair& pair) const;
-  void add_spent(const PairQuery& now);
-  bool is_known_far(std::size_t kept, const SweptBounds& swept) const;
+  Sides sides_of(const FeaturePair& pair) const;
+  void add_spent();
+  bool is_known_far(std::size_t kept) const;
   bool is_far(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
+  void separate_part(const PairQuery& now, Part& part) const;
   template <class Skip>
   void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const Skip& skip,
                     std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
@@ -75,12 +76,13 @@ class ClosePairs {
   double longest_ = 0;                  ///< m, longest of the particles' displacements
   std::vector<FeaturePair> found_;      ///< candidates that are not cached
 
-  std::vector<FeaturePair> cached_;      ///< candidates
-  std::vector<Ends> cached_ends_;        ///< of each
-  std::vector<double> cached_distance_;  ///< m, of each, at cached_position_
-  /// m, of each particle, how far it may be at the end of this round from where it was then; and of none, 0.
+  std::vector<FeaturePair> cached_;  ///< candidates
+  std::vector<Sides> cached_sides_;  ///< of each
+  std::vector<double> cached_room_;  ///< m, of each, its distance at cached_position_ beyond its reach
+  /// m, of each vertex, then of each edge and face of the cloth, how far it may be at the end of this round
+  /// from where it was then; and 0.
   std::vector<double> spent_;
-  double most_spent_ = 0;  ///< m, two particles that went furthest, and the reach
+  double most_spent_ = 0;  ///< m, two particles that went furthest
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/separations.h"
 #include "contact/stagger.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
@@ -138,10 +139,11 @@ bool ContinuousContact::find_pairs() {
 
 void ContinuousContact::separate_all() {
   separations_.resize(pairs_.size());
+  const PairSetting setting{surface_, position_, bodies_, poses_};
+  const NearDistances within{near_factor * thickness_, near_factor * self_thickness_};
   const auto separate_share = [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      separations_[k] =
-          separate(pairs_[k], surface_, position_, bodies_, poses_, near_factor * memory_[k].thickness);
+    PairBatch(setting).separate(std::span(pairs_).subspan(begin, end - begin), within,
+                                separations_.data() + begin);
   };
   in_shares(team_, pairs_.size(), least_separated, separate_share);
 }

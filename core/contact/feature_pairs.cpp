@@ -95,16 +95,14 @@ void set_near_level(Separation& s, const ClothSide& cloth) {
 }
 
 template <class Far>
-Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
-                       double within) {
-  const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
-  const Vec3 p = cloth(pair.feature), pa = far(a), pb = far(b), pc = far(c);
-  const PointTriangle closest = closest_on_triangle(p, pa, pb, pc);
+Separation vertex_face(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                       const ClothSide& cloth, const Far& far, double slack, double within) {
+  const auto& [p, a, b, c] = points;
   Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, closest.separation, closest.squared_distance);
   s.weight[0] = 1;
   s.near_level = s.normal.dot(p);
-  s.far_level = std::max({s.normal.dot(pa), s.normal.dot(pb), s.normal.dot(pc)});
+  s.far_level = std::max({s.normal.dot(a), s.normal.dot(b), s.normal.dot(c)});
   s.far_point = p - closest.separation;
   if (is_own(pair)) add_weights(s, closest.weights, -1);
   if (s.distance >= within) return s;
@@ -119,19 +117,16 @@ Separation vertex_face(const FeaturePair& pair, const ClothSide& cloth, const Fa
 }
 
 /// `far_bends_away(point, normal)` says it of the surface beside the far edge.
-template <class Far, class BendsAway>
-Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double within,
-                     const BendsAway& far_bends_away) {
-  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
-  const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
-  const Vec3 pa = cloth(a), pb = cloth(b), pc = far(c), pd = far(d);
-  const SegmentSegment closest = closest_of_segments(pa, pb, pc, pd);
+template <class BendsAway>
+Separation edge_edge(const FeaturePair& pair, const FeaturePoints& points, const SegmentSegment& closest,
+                     const ClothSide& cloth, double within, const BendsAway& far_bends_away) {
+  const auto& [a, b, c, d] = points;
   Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, closest.separation, closest.squared_distance);
   add_weights<2>(s, {1 - closest.first, closest.first}, 1);
-  s.near_level = std::min(s.normal.dot(pa), s.normal.dot(pb));
-  s.far_level = std::max(s.normal.dot(pc), s.normal.dot(pd));
-  s.far_point = pc + closest.second * (pd - pc);
+  s.near_level = std::min(s.normal.dot(a), s.normal.dot(b));
+  s.far_level = std::max(s.normal.dot(c), s.normal.dot(d));
+  s.far_point = c + closest.second * (d - c);
   if (is_own(pair)) add_weights<2>(s, {1 - closest.second, closest.second}, -1);
   if (s.distance >= within) return s;
 
@@ -143,34 +138,22 @@ Separation edge_edge(const FeaturePair& pair, const ClothSide& cloth, const Far&
   return s;
 }
 
-/// With an edge of a mesh or of the cloth.
-template <class Far>
-Separation edge_surface_edge(const FeaturePair& pair, const ClothSide& cloth, const Far& far, double slack,
-                             double within) {
-  return edge_edge(pair, cloth, far, within, [&](const Vec3& point, const Vec3& normal) {
-    return bends_away(far.surface, {-1, pair.far_feature}, point, normal, slack, far);
-  });
-}
-
 /// With an edge of a box: nearest only where the normal lies between those of the box's two sides.
-Separation edge_box_edge(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
-                         const Pose& pose, double within) {
-  const auto& [c, d] = body.surface.edges[at(pair.far_feature)];
-  const auto lies_between = [&, c = c, d = d](const Vec3&, const Vec3& normal) {
-    const Vec3 local = body.box.axes.transpose() * (pose.rotation.transpose() * normal);
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((c ^ d) >> axis & 1) continue;  // along the edge
-      const double outward = (c >> axis & 1) ? local[axis] : -local[axis];
-      if (outward < -slack_of_obstacle) return false;
-    }
-    return true;
-  };
-  return edge_edge(pair, cloth, BodySide{body.surface, body.vertices, pose}, within, lies_between);
+bool lies_between(const ObstacleBody& body, const Pose& pose, int edge, const Vec3& normal) {
+  const auto& [c, d] = body.surface.edges[at(edge)];
+  const Vec3 local = body.box.axes.transpose() * (pose.rotation.transpose() * normal);
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((c ^ d) >> axis & 1) continue;  // along the edge
+    const double outward = (c >> axis & 1) ? local[axis] : -local[axis];
+    if (outward < -slack_of_obstacle) return false;
+  }
+  return true;
 }
 
-Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Vec3& vertex, double within) {
-  const Triangle& face = cloth.surface.triangles[at(pair.feature)];
-  const PointTriangle closest = closest_on_triangle(vertex, cloth(face[0]), cloth(face[1]), cloth(face[2]));
+/// `points`: the obstacle's vertex and the face of the cloth.
+Separation face_vertex(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                       const ClothSide& cloth, double within) {
+  const Vec3& vertex = points[0];
   Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, -closest.separation, closest.squared_distance);
   add_weights(s, closest.weights, 1);
@@ -184,6 +167,25 @@ Separation face_vertex(const FeaturePair& pair, const ClothSide& cloth, const Ve
   const bool in_charge = side.edge < 0 || cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature;
   const Vec3 near_point = vertex - closest.separation;
   s.nearest = in_charge && bends_away(cloth.surface, side, near_point, -s.normal, slack_of_cloth, cloth);
+  return s;
+}
+
+/// `points`: the centre and the face of the cloth.
+Separation face_sphere(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                       const ClothSide& cloth, double radius) {
+  const Vec3& center = points[0];
+  Separation s{particles_of(pair, cloth.surface)};
+  set_normal(s, -closest.separation, closest.squared_distance);
+  add_weights(s, closest.weights, 1);
+  set_near_level(s, cloth);
+  s.distance -= radius;
+  s.far_level = s.normal.dot(center) + radius;
+  s.far_point = center + radius * s.normal;
+
+  const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
+  s.nearest = side.vertex >= 0 ? cloth.surface.triangle_of_vertex[at(side.vertex)] == pair.feature
+              : side.edge >= 0 ? cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature
+                               : true;
   return s;
 }
 
@@ -219,37 +221,26 @@ Separation vertex_box(const FeaturePair& pair, const ClothSide& cloth, const Obs
   return s;
 }
 
-Separation face_sphere(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& body,
-                       const Pose& pose) {
-  const Triangle& face = cloth.surface.triangles[at(pair.feature)];
-  const Vec3 center = pose.at(body.center);
-  const double radius = pose.stretch.x() * body.radius;
-  const PointTriangle closest = closest_on_triangle(center, cloth(face[0]), cloth(face[1]), cloth(face[2]));
-  Separation s{particles_of(pair, cloth.surface)};
-  set_normal(s, -closest.separation, closest.squared_distance);
-  add_weights(s, closest.weights, 1);
-  set_near_level(s, cloth);
-  s.distance -= radius;
-  s.far_level = s.normal.dot(center) + radius;
-  s.far_point = center + radius * s.normal;
-
-  const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
-  s.nearest = side.vertex >= 0 ? cloth.surface.triangle_of_vertex[at(side.vertex)] == pair.feature
-              : side.edge >= 0 ? cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature
-                               : true;
-  return s;
+/// m, of a ball in its pose.
+double radius_of(const FeaturePair& pair, const PairSetting& setting) {
+  return setting.poses[at(pair.obstacle)].stretch.x() * setting.bodies[at(pair.obstacle)].radius;
 }
 
-/// m, between a vertex or an edge of the cloth and a face or an edge of a surface.
+/// The same with a far side of the cloth or of an obstacle.
 template <class Far>
-double distance_to_surface(const FeaturePair& pair, const ClothSide& cloth, const Far& far) {
-  if (pair.kind == PairKind::vertex_face) {
-    const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
-    return std::sqrt(closest_on_triangle(cloth(pair.feature), far(a), far(b), far(c)).squared_distance);
+FeaturePoints points_with(const FeaturePair& pair, const ClothSide& cloth, const Far& far) {
+  if (pair.kind == PairKind::edge_edge) {
+    const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
+    const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
+    return {cloth(a), cloth(b), far(c), far(d)};
   }
-  const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
-  const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
-  return std::sqrt(closest_of_segments(cloth(a), cloth(b), far(c), far(d)).squared_distance);
+  const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
+  return {cloth(pair.feature), far(a), far(b), far(c)};
+}
+
+BodySide body_side(const FeaturePair& pair, const PairSetting& setting) {
+  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
+  return {body.surface, body.vertices, setting.poses[at(pair.obstacle)]};
 }
 
 }  // namespace
@@ -279,41 +270,69 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
   return all;
 }
 
-Separation separate(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
-                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within) {
-  const ClothSide cloth{surface, position};
-  if (is_own(pair))
-    return pair.kind == PairKind::vertex_face ? vertex_face(pair, cloth, cloth, slack_of_cloth, within)
-                                              : edge_surface_edge(pair, cloth, cloth, slack_of_cloth, within);
-  const ObstacleBody& body = bodies[at(pair.obstacle)];
-  const Pose& pose = poses[at(pair.obstacle)];
-  const BodySide far{body.surface, body.vertices, pose};
-  switch (pair.kind) {
-    case PairKind::vertex_plane:
-      return vertex_plane(pair, cloth, body, pose);
-    case PairKind::vertex_box:
-      return vertex_box(pair, cloth, body, pose);
-    case PairKind::face_sphere:
-      return face_sphere(pair, cloth, body, pose);
-    case PairKind::vertex_face:
-      return vertex_face(pair, cloth, far, slack_of_obstacle, within);
-    case PairKind::edge_edge:
-      return body.kind == BodyKind::box ? edge_box_edge(pair, cloth, body, pose, within)
-                                        : edge_surface_edge(pair, cloth, far, slack_of_obstacle, within);
-    case PairKind::face_vertex:
-      return face_vertex(pair, cloth, far(pair.far_feature), within);
-  }
-  return {};
+FeaturePoints points_of(const FeaturePair& pair, const PairSetting& setting) {
+  const ClothSide cloth{setting.cloth, setting.position};
+  if (is_own(pair)) return points_with(pair, cloth, cloth);
+  if (pair.kind != PairKind::face_sphere && pair.kind != PairKind::face_vertex)
+    return points_with(pair, cloth, body_side(pair, setting));
+  const auto& [a, b, c] = setting.cloth.triangles[at(pair.feature)];
+  const Pose& pose = setting.poses[at(pair.obstacle)];
+  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
+  const Vec3& point = pair.kind == PairKind::face_sphere ? body.center : body.vertices[at(pair.far_feature)];
+  return {pose.at(point), cloth(a), cloth(b), cloth(c)};
 }
 
-double distance_of(const FeaturePair& pair, const Surface& surface, const Vec3Field& position,
-                   const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses) {
-  if (pair.kind != PairKind::vertex_face && pair.kind != PairKind::edge_edge)
-    return separate(pair, surface, position, bodies, poses, 0).distance;
-  const ClothSide cloth{surface, position};
-  if (is_own(pair)) return distance_to_surface(pair, cloth, cloth);
-  const ObstacleBody& body = bodies[at(pair.obstacle)];
-  return distance_to_surface(pair, cloth, BodySide{body.surface, body.vertices, poses[at(pair.obstacle)]});
+Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const SegmentSegment& closest,
+                         const PairSetting& setting, double within) {
+  const ClothSide cloth{setting.cloth, setting.position};
+  const auto with = [&](const auto& far, double slack) {
+    return edge_edge(pair, points, closest, cloth, within, [&](const Vec3& point, const Vec3& normal) {
+      return bends_away(far.surface, {-1, pair.far_feature}, point, normal, slack, far);
+    });
+  };
+  if (is_own(pair)) return with(cloth, slack_of_cloth);
+  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
+  if (body.kind != BodyKind::box) return with(body_side(pair, setting), slack_of_obstacle);
+  return edge_edge(pair, points, closest, cloth, within, [&](const Vec3&, const Vec3& normal) {
+    return lies_between(body, setting.poses[at(pair.obstacle)], pair.far_feature, normal);
+  });
+}
+
+Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                         const PairSetting& setting, double within) {
+  const ClothSide cloth{setting.cloth, setting.position};
+  if (pair.kind == PairKind::face_sphere)
+    return face_sphere(pair, points, closest, cloth, radius_of(pair, setting));
+  if (pair.kind == PairKind::face_vertex) return face_vertex(pair, points, closest, cloth, within);
+  if (is_own(pair)) return vertex_face(pair, points, closest, cloth, cloth, slack_of_cloth, within);
+  return vertex_face(pair, points, closest, cloth, body_side(pair, setting), slack_of_obstacle, within);
+}
+
+double distance_of(const FeaturePair& pair, double squared_distance, const PairSetting& setting) {
+  const double distance = std::sqrt(squared_distance);
+  return pair.kind == PairKind::face_sphere ? distance - radius_of(pair, setting) : distance;
+}
+
+Separation separate(const FeaturePair& pair, const PairSetting& setting, double within) {
+  switch (shape_of(pair.kind)) {
+    case PairShape::segments: {
+      const FeaturePoints points = points_of(pair, setting);
+      const auto& [a, b, c, d] = points;
+      return separation_of(pair, points, closest_of_segments(a, b, c, d), setting, within);
+    }
+    case PairShape::point_and_triangle: {
+      const FeaturePoints points = points_of(pair, setting);
+      const auto& [p, a, b, c] = points;
+      return separation_of(pair, points, closest_on_triangle(p, a, b, c), setting, within);
+    }
+    case PairShape::point_and_solid:
+      break;
+  }
+  const ClothSide cloth{setting.cloth, setting.position};
+  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
+  const Pose& pose = setting.poses[at(pair.obstacle)];
+  return pair.kind == PairKind::vertex_plane ? vertex_plane(pair, cloth, body, pose)
+                                             : vertex_box(pair, cloth, body, pose);
 }
 
 }  // namespace cloth

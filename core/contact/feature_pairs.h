@@ -57,13 +57,37 @@ struct Separation : PairParticles {
   double gap() const { return near_level - far_level; }
 };
 
-/// `position` in m; `poses`: one for each body. `nearest` is only determined for pairs closer than `within`,
-/// in m.
-Separation separate(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
-                    const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses, double within);
+/// Where the features of pairs are.
+struct PairSetting {
+  const Surface& cloth;
+  const Vec3Field& position;  ///< m, of the cloth's particles
+  const std::vector<ObstacleBody>& bodies;
+  const std::vector<Pose>& poses;  ///< one for each body
+};
 
-/// m; that of separate(), to the bit.
-double distance_of(const FeaturePair& pair, const Surface& cloth, const Vec3Field& position,
-                   const std::vector<ObstacleBody>& bodies, const std::vector<Pose>& poses);
+/// `nearest` is only determined for pairs closer than `within`, in m.
+Separation separate(const FeaturePair& pair, const PairSetting& setting, double within);
+
+// The parts of separate(), for those who find the closest points of many pairs at once (separations.h).
+
+/// m: the ends of the cloth's edge and of the far one, or a point and a triangle's vertices.
+using FeaturePoints = std::array<Vec3, 4>;
+
+enum class PairShape { segments, point_and_triangle, point_and_solid };
+
+inline PairShape shape_of(PairKind kind) {
+  if (kind == PairKind::edge_edge) return PairShape::segments;
+  return kind == PairKind::vertex_plane || kind == PairKind::vertex_box ? PairShape::point_and_solid
+                                                                        : PairShape::point_and_triangle;
+}
+
+/// Precondition of these: no solid.
+FeaturePoints points_of(const FeaturePair& pair, const PairSetting& setting);
+Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const SegmentSegment& closest,
+                         const PairSetting& setting, double within);
+Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                         const PairSetting& setting, double within);
+/// m, from that of the closest points.
+double distance_of(const FeaturePair& pair, double squared_distance, const PairSetting& setting);
 
 }  // namespace cloth

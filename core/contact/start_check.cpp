@@ -102,7 +102,7 @@ void check_own_distance(const TriangleMesh& cloth, const Vec3Field& position, do
   PairSearch(surface, {}, true, 0).find(around, {}, pairs);
   double least = thickness;
   for (const FeaturePair& pair : pairs)
-    least = std::min(least, separate(pair, surface, position, {}, {}, 0).distance);
+    least = std::min(least, separate(pair, {surface, position, {}, {}}, 0).distance);
   if (least < thickness)
     problems.push_back(
         {"self_contact.thickness", fmt::format("{} m", thickness),

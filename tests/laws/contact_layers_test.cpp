@@ -65,7 +65,7 @@ double least_own_distance(const Simulation& simulation, double within) {
   PairSearch(surface, {}, true, 0).find(around, {}, pairs);
   double least = within;
   for (const FeaturePair& pair : pairs)
-    least = std::min(least, separate(pair, surface, position, {}, {}, 0).distance);
+    least = std::min(least, separate(pair, {surface, position, {}, {}}, 0).distance);
   return least;
 }
 

@@ -78,7 +78,7 @@ void for_random_pairs(const Look& look) {
     for (const FeaturePair& pair : all_pairs(surface, setting.bodies, true)) {
       if (random.integer(0, 3) > 0 && pair.far_feature > 0) continue;
       const Separation s =
-          separate(pair, surface, setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
+          separate(pair, {surface, setting.sheet.position, setting.bodies, setting.poses}, Bounds::infinity);
       if (!(s.distance > 1e-6)) continue;
       ++looked;
       look(setting, pair, s, random);
@@ -136,8 +136,9 @@ TEST(ASeparation, NamesThePointsOfItsDistance) {
 std::vector<Separation> nearest_of(const std::vector<FeaturePair>& pairs, const Setting& setting) {
   std::vector<Separation> nearest;
   for (const FeaturePair& pair : pairs) {
-    const Separation s = separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
-                                  setting.poses, Bounds::infinity);
+    const Separation s =
+        separate(pair, {setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses},
+                 Bounds::infinity);
     if (s.nearest) nearest.push_back(s);
   }
   return nearest;
@@ -168,9 +169,11 @@ TEST(TheNearestPair, AmongTheFacesThatAParticleSeesOfAConvexMeshIsOne) {
     }
     double least = HUGE_VAL;
     for (const FeaturePair& pair : pairs)
-      least = std::min(least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
-                                       setting.poses, Bounds::infinity)
-                                  .distance);
+      least = std::min(
+          least,
+          separate(pair, {setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses},
+                   Bounds::infinity)
+              .distance);
     const std::vector<Separation> nearest = nearest_of(pairs, setting);
     ASSERT_GE(nearest.size(), 1u);
     for (const Separation& s : nearest) ASSERT_NEAR(s.distance, least, 1e-3 * least);
@@ -189,9 +192,11 @@ TEST(TheNearestPair, OfASphereIsTheFaceWithTheClosestPoint) {
     std::vector<FeaturePair> pairs = all_pairs(setting.sheet.surface, setting.bodies, false);
     double least = HUGE_VAL;
     for (const FeaturePair& pair : pairs)
-      least = std::min(least, separate(pair, setting.sheet.surface, setting.sheet.position, setting.bodies,
-                                       setting.poses, Bounds::infinity)
-                                  .distance);
+      least = std::min(
+          least,
+          separate(pair, {setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses},
+                   Bounds::infinity)
+              .distance);
     int closest = 0;
     for (const Separation& s : nearest_of(pairs, setting)) closest += s.distance <= least + rounding ? 1 : 0;
     ASSERT_EQ(closest, 1) << "of the faces around the closest point one answers for it";
@@ -207,8 +212,9 @@ TEST(APairThatMeets, HasNoNormalAndIsNoPush) {
   const auto& [a, b, c] = setting.bodies[0].surface.triangles[0];
   const auto& vertices = setting.bodies[0].vertices;
   setting.sheet.position.set(0, vertices[at(a)]);
-  const Separation s = separate({0, PairKind::vertex_face, 0, 0}, setting.sheet.surface,
-                                setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
+  const Separation s = separate(
+      {0, PairKind::vertex_face, 0, 0},
+      {setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses}, Bounds::infinity);
   EXPECT_EQ(s.distance, 0);
   EXPECT_EQ(s.normal, Vec3(0, 0, 0));
   EXPECT_FALSE(s.gap() > 0);
@@ -224,8 +230,9 @@ TEST(AParticleInABox, IsToldTheNearestWayOut) {
   setting.bodies = {body_of(box)};
   setting.poses = {Pose{}};
   setting.sheet.position.set(0, {0.1, 0.45, -0.2});
-  const Separation s = separate({0, PairKind::vertex_box, 0, 0}, setting.sheet.surface,
-                                setting.sheet.position, setting.bodies, setting.poses, Bounds::infinity);
+  const Separation s = separate(
+      {0, PairKind::vertex_box, 0, 0},
+      {setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses}, Bounds::infinity);
   EXPECT_EQ(s.normal, Vec3(0, 1, 0));
   EXPECT_NEAR(s.distance, -0.05, rounding);
   EXPECT_NEAR(s.gap(), -0.05, rounding);

@@ -284,7 +284,7 @@ TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         ASSERT_EQ(separations[k].distance, fresh_separations[k].distance);
         differing += separations[k].distance !=
-                     separate(pairs[k], cloth, motion.from, meeting.bodies, poses, 0).distance;
+                     separate(pairs[k], {cloth, motion.from, meeting.bodies, poses}, 0).distance;
       }
       compared += pairs.size();
       expect_none_missed(pairs, meeting, motion, looked);

@@ -1,0 +1,103 @@
+#include "contact/separations.h"
+
+#include "geometry/at.h"
+#include "kernels/instruction_set.h"
+
+namespace cloth {
+namespace {
+
+Vec3 point_in(const ClosestBlock& block, std::size_t which, std::size_t k) {
+  return {block.point[which][0][k], block.point[which][1][k], block.point[which][2][k]};
+}
+
+FeaturePoints points_in(const ClosestBlock& block, std::size_t k) {
+  return {point_in(block, 0, k), point_in(block, 1, k), point_in(block, 2, k), point_in(block, 3, k)};
+}
+
+Vec3 separation_in(const ClosestBlock& block, std::size_t k) {
+  return {block.separation[0][k], block.separation[1][k], block.separation[2][k]};
+}
+
+}  // namespace
+
+/// Whether the block is full then.
+bool PairBatch::add(std::size_t item, const FeaturePoints& points, Waiting& waiting) {
+  const auto k = at(waiting.count++);
+  waiting.item[k] = item;
+  for (std::size_t which = 0; which < 4; ++which)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      waiting.block.point[which][axis][k] = points[which][static_cast<Eigen::Index>(axis)];
+  return waiting.count == ClosestBlock::size;
+}
+
+template <class Take>
+void PairBatch::finish_segments(const Take& take) {
+  const ClosestBlock& block = segments_.block;
+  active_kernels<ClosestKernels>().of_segments(segments_.block);
+  for (std::size_t k = 0; k < at(segments_.count); ++k) {
+    const FeaturePoints points = points_in(block, k);
+    const SegmentSegment closest = block.is_sound[k] != 0
+                                       ? SegmentSegment{block.weight[0][k], block.weight[1][k],
+                                                        separation_in(block, k), block.squared_distance[k]}
+                                       : closest_of_segments(points[0], points[1], points[2], points[3]);
+    take(segments_.item[k], points, closest);
+  }
+  segments_.count = 0;
+}
+
+template <class Take>
+void PairBatch::finish_triangles(const Take& take) {
+  const ClosestBlock& block = triangles_.block;
+  active_kernels<ClosestKernels>().on_triangles(triangles_.block);
+  for (std::size_t k = 0; k < at(triangles_.count); ++k) {
+    const FeaturePoints points = points_in(block, k);
+    const PointTriangle closest =
+        block.is_sound[k] != 0 ? PointTriangle{{block.weight[0][k], block.weight[1][k], block.weight[2][k]},
+                                               separation_in(block, k),
+                                               block.squared_distance[k]}
+                               : closest_on_triangle(points[0], points[1], points[2], points[3]);
+    take(triangles_.item[k], points, closest);
+  }
+  triangles_.count = 0;
+}
+
+/// take(k, points, closest) for pairs that have closest points by vectors, alone(k) for the others.
+template <class Take, class Alone>
+void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take, const Alone& alone) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const FeaturePair& pair = pairs[k];
+    switch (shape_of(pair.kind)) {
+      case PairShape::segments:
+        if (add(k, points_of(pair, setting_), segments_)) finish_segments(take);
+        break;
+      case PairShape::point_and_triangle:
+        if (add(k, points_of(pair, setting_), triangles_)) finish_triangles(take);
+        break;
+      case PairShape::point_and_solid:
+        alone(k);
+    }
+  }
+  if (segments_.count > 0) finish_segments(take);
+  if (triangles_.count > 0) finish_triangles(take);
+}
+
+void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* distances) {
+  go_through(
+      pairs,
+      [&](std::size_t k, const FeaturePoints&, const auto& closest) {
+        distances[k] = distance_of(pairs[k], closest.squared_distance, setting_);
+      },
+      [&](std::size_t k) { distances[k] = cloth::separate(pairs[k], setting_, 0).distance; });
+}
+
+void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within,
+                         Separation* separations) {
+  go_through(
+      pairs,
+      [&](std::size_t k, const FeaturePoints& points, const auto& closest) {
+        separations[k] = separation_of(pairs[k], points, closest, setting_, within(pairs[k]));
+      },
+      [&](std::size_t k) { separations[k] = cloth::separate(pairs[k], setting_, within(pairs[k])); });
+}
+
+}  // namespace cloth

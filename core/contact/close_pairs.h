@@ -24,8 +24,9 @@ struct PairQuery {
 class ClosePairs {
  public:
   /// The arguments are those of PairSearch.
-  ClosePairs(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin)
-      : cloth_(cloth), bodies_(bodies), search_(cloth, bodies, with_itself, skin) {}
+  ClosePairs(const Surface& cloth, const Vec3Field& start, const std::vector<ObstacleBody>& bodies,
+             bool with_itself, double skin)
+      : cloth_(cloth), bodies_(bodies), search_(cloth, start, bodies, with_itself, skin) {}
 
   /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);

@@ -73,7 +73,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
       transitions_(std::move(transitions)),
-      close_pairs_(surface_, bodies_, scene.self_contact.has_value(),
+      close_pairs_(surface_, system.start, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
       mean_edge_(mean_edge(surface_, system.start)),
       thickness_transition_(thickness),

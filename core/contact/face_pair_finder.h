@@ -11,6 +11,33 @@
 
 namespace cloth {
 
+/// Whether two faces can have pairs: as they represent features, see Surface. Half of the faces that touch
+/// each other have none.
+inline bool have_pairs(const Surface& near, int face, const Surface& far, int far_face) {
+  const unsigned own = near.represented[at(face)], other = far.represented[at(far_face)];
+  return ((own | other) & 7U) != 0 || (own >> 3 != 0 && other >> 3 != 0);
+}
+
+/// Of the same cloth, whose features may share particles.
+inline bool have_own_pairs(const Surface& cloth, int face, int far_face) {
+  if (!have_pairs(cloth, face, cloth, far_face)) return false;
+  const Triangle &own = cloth.triangles[at(face)], &other = cloth.triangles[at(far_face)];
+  const auto is_in = [](const Triangle& triangle, int vertex) {
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+  };
+  for (int k = 0; k < 3; ++k) {
+    if (cloth.represents_vertex(face, k) && !is_in(other, own[at(k)])) return true;
+    if (cloth.represents_vertex(far_face, k) && !is_in(own, other[at(k)])) return true;
+  }
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j) {
+      if (!cloth.represents_edge(face, k) || !cloth.represents_edge(far_face, j)) continue;
+      const int a = own[at(k)], b = own[at((k + 1) % 3)], c = other[at(j)], d = other[at((j + 1) % 3)];
+      if (a != c && a != d && b != c && b != d) return true;
+    }
+  return false;
+}
+
 /// A surface whose vertices may be anywhere in a region each; slabs of its triangles and boxes of its edges
 /// bound these.
 template <class Region>

@@ -264,8 +264,8 @@ class PairSearch::Step {
   int obstacle_ = FeaturePair::cloth_itself;
 };
 
-PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself,
-                       double skin)
+PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::vector<ObstacleBody>& bodies,
+                       bool with_itself, double skin)
     : cloth_(cloth),
       bodies_(bodies),
       with_itself_(with_itself),
@@ -287,7 +287,10 @@ PairSearch::PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bo
       mesh_edges_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)]));
     mesh_trees_[k] = BoxTree(boxes);
   }
-  needs_trees_ = needs_trees_ || with_itself_;
+  if (!with_itself_) return;
+  needs_trees_ = true;
+  bound_faces(start, 0);
+  cloth_tree_ = BoxTree(faces_);
 }
 
 void PairSearch::set_team(WorkerTeam* team) {
@@ -325,11 +328,14 @@ void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseI
   for (const PoseInterpolation& path : paths) cached_poses_.push_back(path.to());
   if (with_itself_) {
     bound_faces(cached_, 0.5 * swept.own_reach);
-    refit_cloth();
+    cloth_tree_.refit(faces_);
     own_overlaps_.clear();
     in_parts(faces_.size(), least_queries, overlap_parts_, own_overlaps_,
              [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
                cloth_tree_.collect_own(begin, end, part);
+               std::erase_if(part, [&](const BoxPair& faces) {
+                 return !have_own_pairs(cloth_, faces.query, faces.index);
+               });
              });
   }
   bound_faces(cached_, 0);
@@ -340,15 +346,11 @@ void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseI
     in_parts(seen_.size(), least_queries, overlap_parts_, mesh_overlaps_[k],
              [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
                mesh_trees_[k].collect(seen_, begin, end, part);
+               std::erase_if(part, [&](const BoxPair& faces) {
+                 return !have_pairs(cloth_, faces.query, bodies_[k].surface, faces.index);
+               });
              });
   }
-}
-
-void PairSearch::refit_cloth() {
-  if (cloth_tree_.size() == 0)
-    cloth_tree_ = BoxTree(faces_);
-  else
-    cloth_tree_.refit(faces_);
 }
 
 void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
@@ -364,9 +366,7 @@ void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolat
 
 int PairSearch::hierarchy_depth(int body) const {
   if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].depth();
-  if (!with_itself_) return 0;
-  if (cloth_tree_.size() > 0) return cloth_tree_.depth();
-  return BoxTree::depth_of(cloth_.triangles.size());
+  return cloth_tree_.depth();
 }
 
 void PairSearch::append_boxes(int body, int level, const Vec3Field& position, double reach,
@@ -374,7 +374,7 @@ void PairSearch::append_boxes(int body, int level, const Vec3Field& position, do
   if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].append_rounded_boxes(level, boxes);
   if (!with_itself_) return;
   bound_faces(position, reach);
-  refit_cloth();
+  cloth_tree_.refit(faces_);
   cloth_tree_.append_rounded_boxes(level, boxes);
 }
 

@@ -18,19 +18,20 @@ struct SweptBounds {
   double own_reach = 0;  ///< m, of the cloth from itself
 };
 
-/// Builds hierarchies of bounding boxes where a scene needs them: of meshes at construction, of the cloth in
-/// the first search.
+/// Builds hierarchies of bounding boxes at construction, where a scene needs them: of meshes, and of the
+/// cloth as it starts.
 class PairSearch {
  public:
-  /// `cloth` and `bodies` must outlive this. Overlaps of the hierarchies are reused while no particle leaves
-  /// its box by more than `skin`, in m.
-  PairSearch(const Surface& cloth, const std::vector<ObstacleBody>& bodies, bool with_itself, double skin);
+  /// `cloth` and `bodies` must outlive this. `start`: in m, of the particles. Overlaps of the hierarchies are
+  /// reused while no particle leaves its box by more than `skin`, in m.
+  PairSearch(const Surface& cloth, const Vec3Field& start, const std::vector<ObstacleBody>& bodies,
+             bool with_itself, double skin);
 
   /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
 
-  /// Every pair once; pairs and their order depend on the arguments only. Features of the cloth that share a
-  /// particle are no pair.
+  /// Every pair once; pairs and their order depend on the arguments only, these and the constructor's.
+  /// Features of the cloth that share a particle are no pair.
   void find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
             std::vector<FeaturePair>& pairs);
 
@@ -50,7 +51,6 @@ class PairSearch {
   void in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
                 std::vector<Part>& whole, const Fill& fill);
   void find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
-  void refit_cloth();
   template <class Regions>
   void bound_faces(const Regions& particles, double reach);
 

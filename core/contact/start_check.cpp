@@ -99,7 +99,7 @@ void check_own_distance(const TriangleMesh& cloth, const Vec3Field& position, do
   for (const Vec3& vertex : cloth.vertices) around.particles.push_back({vertex, vertex, 0});
   const Surface surface = make_surface(static_cast<int>(cloth.vertices.size()), cloth.triangles);
   std::vector<FeaturePair> pairs;
-  PairSearch(surface, {}, true, 0).find(around, {}, pairs);
+  PairSearch(surface, position, {}, true, 0).find(around, {}, pairs);
   double least = thickness;
   for (const FeaturePair& pair : pairs)
     least = std::min(least, separate(pair, {surface, position, {}, {}}, 0).distance);

@@ -99,11 +99,6 @@ class Bins {
   std::array<std::array<Bin, count>, 3> bins_;
 };
 
-void append_sorted(int query, std::vector<int>& found, std::vector<BoxPair>& pairs) {
-  std::sort(found.begin(), found.end());
-  for (const int index : found) pairs.push_back({query, index});
-}
-
 }  // namespace
 
 struct BoxTree::Builder {
@@ -210,24 +205,15 @@ void BoxTree::fit() {
 
 void BoxTree::collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
                       std::vector<BoxPair>& pairs) const {
-  std::vector<int> found;
-  for (std::size_t q = begin; q < end; ++q) {
-    found.clear();
-    visit(queries[q], [&](int index) { found.push_back(index); });
-    append_sorted(static_cast<int>(q), found, pairs);
-  }
+  for (std::size_t q = begin; q < end; ++q)
+    visit(queries[q], [&, query = static_cast<int>(q)](int index) { pairs.push_back({query, index}); });
 }
 
 void BoxTree::collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const {
-  std::vector<int> found;
-  for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
-    found.clear();
-    const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
-    visit(boxes_[place], [&](int index) {
-      if (index > i) found.push_back(index);
+  for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
+    visit(boxes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])], [&](int index) {
+      if (index > i) pairs.push_back({i, index});
     });
-    append_sorted(i, found, pairs);
-  }
 }
 
 void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const {

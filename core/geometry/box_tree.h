@@ -44,7 +44,8 @@ class BoxTree {
   template <class Callback>
   void visit(const Bounds& query, Callback&& callback) const;
 
-  /// Appends a pair for every query and each box that it overlaps or touches, by query and then by index.
+  /// Appends a pair for every query and each box that it overlaps or touches: by query, and then in the
+  /// tree's order, which refit() does not change.
   void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
     collect(queries, 0, queries.size(), pairs);
   }

@@ -62,7 +62,7 @@ double least_own_distance(const Simulation& simulation, double within) {
   for (std::size_t i = 0; i < position.size(); ++i) around.particles.push_back({position[i], position[i], 0});
   const Surface surface = make_surface(static_cast<int>(position.size()), simulation.cloth_mesh().triangles);
   std::vector<FeaturePair> pairs;
-  PairSearch(surface, {}, true, 0).find(around, {}, pairs);
+  PairSearch(surface, position, {}, true, 0).find(around, {}, pairs);
   double least = within;
   for (const FeaturePair& pair : pairs)
     least = std::min(least, separate(pair, {surface, position, {}, {}}, 0).distance);

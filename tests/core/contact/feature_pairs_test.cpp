@@ -100,14 +100,6 @@ TEST(ASeparation, PartsTheFeaturesByItsLevels) {
   });
 }
 
-TEST(ASeparation, HasTheDistanceThatIsTakenAlone) {
-  for_random_pairs([](const Setting& setting, const FeaturePair& pair, const Separation& s, Random&) {
-    ASSERT_EQ(distance_of(pair, setting.sheet.surface, setting.sheet.position, setting.bodies, setting.poses),
-              s.distance)
-        << static_cast<int>(pair.kind);
-  });
-}
-
 TEST(ASeparation, NamesThePointsOfItsDistance) {
   for_random_pairs([](const Setting& setting, const FeaturePair& pair, const Separation& s, Random&) {
     Vec3 near = Vec3::Zero(), far = Vec3::Zero();

@@ -153,7 +153,8 @@ TEST(NearPairs, MissNoneOfAllPairsThatComeNear) {
     const Intersection meeting = random_meeting(random);
     const Motion motion = random_motion(meeting.sheet.position, random.coin() ? 0.01 : 0.1, random);
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02).find(motion.swept(), meeting.paths, pairs);
+    PairSearch(meeting.sheet.surface, meeting.sheet.position, meeting.bodies, true, 0.02)
+        .find(motion.swept(), meeting.paths, pairs);
     expect_none_missed(pairs, meeting, motion, looked);
   }
   EXPECT_GT(looked.near, 2000u);
@@ -179,7 +180,8 @@ TEST(NearPairs, MissNoneThatAnObstacleSweepsOverAsItTurnsAndShifts) {
       meeting.sheet.position.set(i, place + 0.01 * meeting.sheet.position[i]);
     Motion motion{meeting.sheet.position, meeting.sheet.position, 1e-4, 1e-3, 0};
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, false, 0).find(motion.swept(), meeting.paths, pairs);
+    PairSearch(meeting.sheet.surface, meeting.sheet.position, meeting.bodies, false, 0)
+        .find(motion.swept(), meeting.paths, pairs);
     expect_none_missed(pairs, meeting, motion, looked, false);
     if (HasFatalFailure()) return;
   }
@@ -192,7 +194,8 @@ TEST(NearPairs, ComeOnceAndAreOfFeaturesThatExist) {
     const Intersection meeting = random_meeting(random);
     const Motion motion = random_motion(meeting.sheet.position, 0.05, random);
     std::vector<FeaturePair> pairs;
-    PairSearch(meeting.sheet.surface, meeting.bodies, true, 0.02).find(motion.swept(), meeting.paths, pairs);
+    PairSearch(meeting.sheet.surface, meeting.sheet.position, meeting.bodies, true, 0.02)
+        .find(motion.swept(), meeting.paths, pairs);
     const std::set<FeaturePair> found = told_apart(pairs);
     EXPECT_EQ(found.size(), pairs.size()) << "some came twice";
     const std::vector<FeaturePair> all = all_pairs(meeting.sheet.surface, meeting.bodies, true);
@@ -213,7 +216,7 @@ TEST(NearPairs, OfObstaclesFarAwayAreNone) {
                           {Eigen::Matrix3d::Identity(), {3, 5, 0}});
   }
   std::vector<FeaturePair> pairs{FeaturePair{}};
-  PairSearch(meeting.sheet.surface, meeting.bodies, false, 0)
+  PairSearch(meeting.sheet.surface, meeting.sheet.position, meeting.bodies, false, 0)
       .find(random_motion(meeting.sheet.position, 0, random).swept(), meeting.paths, pairs);
   EXPECT_TRUE(pairs.empty());
 }
@@ -244,10 +247,12 @@ TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKept) {
     constexpr double skin = 0.02;
     std::unique_ptr<PairSearch> keeping;
     walk(random, [&](const Intersection& meeting, const Motion& motion, bool begins) {
-      if (begins) keeping = std::make_unique<PairSearch>(meeting.sheet.surface, meeting.bodies, true, skin);
+      if (begins)
+        keeping = std::make_unique<PairSearch>(meeting.sheet.surface, meeting.sheet.position, meeting.bodies,
+                                               true, skin);
       std::vector<FeaturePair> pairs, fresh;
       keeping->find(motion.swept(), meeting.paths, pairs);
-      PairSearch(meeting.sheet.surface, meeting.bodies, true, skin)
+      PairSearch(meeting.sheet.surface, meeting.sheet.position, meeting.bodies, true, skin)
           .find(motion.swept(), meeting.paths, fresh);
       ASSERT_EQ(pairs, fresh);
       compared += pairs.size();
@@ -271,14 +276,16 @@ TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
     std::unique_ptr<ClosePairs> keeping;
     walk(random, [&](const Intersection& meeting, const Motion& motion, bool begins) {
       const Surface& cloth = meeting.sheet.surface;
-      if (begins) keeping = std::make_unique<ClosePairs>(cloth, meeting.bodies, true, 0.02);
+      if (begins)
+        keeping = std::make_unique<ClosePairs>(cloth, meeting.sheet.position, meeting.bodies, true, 0.02);
       const SweptBounds swept = motion.swept();
       const std::vector<Pose> poses = poses_at_begin(meeting);
       const PairQuery now{motion.from, swept, meeting.paths, poses};
       std::vector<FeaturePair> pairs, fresh;
       std::vector<Separation> separations, fresh_separations;
       keeping->find(now, pairs, separations);
-      ClosePairs(cloth, meeting.bodies, true, 0.02).find(now, fresh, fresh_separations);
+      ClosePairs(cloth, meeting.sheet.position, meeting.bodies, true, 0.02)
+          .find(now, fresh, fresh_separations);
       ASSERT_EQ(pairs, fresh);
       ASSERT_EQ(separations.size(), pairs.size());
       for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -1,0 +1,85 @@
+// Many pairs at once against the functions for one pair.
+#include "contact/separations.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/at.h"
+#include "geometry/bounds.h"
+#include "kernels/instruction_set.h"
+#include "scene/obstacle_shape.h"
+#include "support/contact_bodies.h"
+
+namespace cloth::test::separations_test {
+namespace {
+
+struct EveryInstructionSet : ::testing::Test {
+  ~EveryInstructionSet() override { set_instruction_set(std::nullopt); }
+};
+
+/// Calls `look` for a crumpled or flat sheet among obstacles at random, with all pairs that there are, in
+/// every instruction set. Edges of a flat sheet are parallel to many others.
+template <class Look>
+void for_random_settings(const Look& look) {
+  Random random;
+  for (int trial = 0; trial < 12; ++trial) {
+    Sheet sheet = random_sheet(5, 4, random);
+    if (trial % 3 == 0)
+      for (std::size_t i = 0; i < sheet.position.size(); ++i)
+        sheet.position.set(i, {0.1 * static_cast<double>(i % 4), 0, 0.1 * static_cast<double>(i / 4)});
+    if (trial % 4 == 1) sheet.position.set(3, sheet.position[4]);  // an edge without length
+    std::vector<ObstacleBody> bodies;
+    std::vector<Pose> poses;
+    for (const ObstacleShape* one : obstacle_shapes()) {
+      bodies.push_back(random_body(one, random));
+      poses.push_back(random_interpolation(bodies.back(), random).at(random.uniform(0, 1)));
+    }
+    std::vector<FeaturePair> pairs = all_pairs(sheet.surface, bodies, true);
+    pairs.resize(pairs.size() - static_cast<std::size_t>(random.integer(0, ClosestBlock::size - 1)));
+    for (const InstructionSet set : supported_instruction_sets()) {
+      set_instruction_set(set);
+      SCOPED_TRACE(name_of(set));
+      look(PairSetting{sheet.surface, sheet.position, bodies, poses}, pairs);
+    }
+  }
+}
+
+void expect_same(const Separation& s, const Separation& alone) {
+  EXPECT_EQ(s.count, alone.count);
+  EXPECT_EQ(s.near_count, alone.near_count);
+  EXPECT_EQ(s.particle, alone.particle);
+  EXPECT_EQ(s.weight, alone.weight);
+  EXPECT_EQ(s.normal, alone.normal);
+  EXPECT_EQ(s.far_point, alone.far_point);
+  EXPECT_EQ(s.distance, alone.distance);
+  EXPECT_EQ(s.near_level, alone.near_level);
+  EXPECT_EQ(s.far_level, alone.far_level);
+  EXPECT_EQ(s.nearest, alone.nearest);
+}
+
+TEST_F(EveryInstructionSet, SeparatesManyPairsToTheBitAsEachAlone) {
+  constexpr NearDistances within{0.2, 0.1};
+  int nearest = 0;
+  for_random_settings([&](const PairSetting& setting, const std::vector<FeaturePair>& pairs) {
+    std::vector<Separation> all(pairs.size());
+    PairBatch(setting).separate(pairs, within, all.data());
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      SCOPED_TRACE(testing::Message() << "pair " << k << " of kind " << static_cast<int>(pairs[k].kind));
+      expect_same(all[k], separate(pairs[k], setting, within(pairs[k])));
+      if (::testing::Test::HasFailure()) return;
+      nearest += all[k].nearest;
+    }
+  });
+  EXPECT_GT(nearest, 1000);
+}
+
+TEST_F(EveryInstructionSet, FindsTheDistancesOfTheSeparations) {
+  for_random_settings([&](const PairSetting& setting, const std::vector<FeaturePair>& pairs) {
+    std::vector<double> all(pairs.size());
+    PairBatch(setting).find_distances(pairs, all.data());
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      ASSERT_EQ(all[k], separate(pairs[k], setting, 0).distance) << static_cast<int>(pairs[k].kind);
+  });
+}
+
+}  // namespace
+}  // namespace cloth::test::separations_test

@@ -11,10 +11,11 @@ namespace cloth {
 namespace {
 
 constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of their own
-/// Candidates are found for this many more displacements like the present one, at most for one more reach.
-constexpr double ways_ahead = 4;
-constexpr double least_ahead = 0.1;  ///< of the reach, for rounding and small motions
-constexpr double rounding = 1e-9;    ///< of a distance
+/// Candidates are found for this many more displacements like the present one.
+constexpr double ways_ahead = 6;
+/// Of the reach, how much further at most, and at least: for rounding and small motions.
+constexpr double most_ahead = 1.5, least_ahead = 0.15;
+constexpr double rounding = 1e-9;  ///< of a distance
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
@@ -72,7 +73,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
   for (std::size_t i = 0; i < range_.size(); ++i) {
     const Vec3 here = now.position[i];
     const double length = (around.particles[i].to - around.particles[i].from).norm();
-    cached_range_[i] = range_[i] + std::min(ways_ahead * length, reach) + least_ahead * reach;
+    cached_range_[i] = range_[i] + std::min(ways_ahead * length, most_ahead * reach) + least_ahead * reach;
     around.particles[i] = {here, here, cached_range_[i]};
   }
   search_.find(around, now.paths, cached_);
@@ -86,9 +87,24 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
       cached_sides_[k] = sides_of(cached_[k]);
     }
   });
+  drop_far_candidates();
   cached_position_ = now.position;
   cached_poses_ = now.poses;
   moved_.assign(range_.size(), 0);
+}
+
+/// Those that cannot come within their reach while the candidates hold.
+void ClosePairs::drop_far_candidates() {
+  spent_ = cached_range_;
+  spread_spent();
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < cached_.size(); ++k) {
+    const Sides sides = cached_sides_[k];
+    const double room = cached_room_[k];
+    cached_[kept] = cached_[k], cached_sides_[kept] = sides, cached_room_[kept] = room;
+    kept += room <= spent_[at(sides.near)] + spent_[at(sides.far)] ? 1 : 0;
+  }
+  cached_.resize(kept), cached_sides_.resize(kept), cached_room_.resize(kept);
 }
 
 double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) const {
@@ -126,6 +142,11 @@ void ClosePairs::add_spent() {
   if (std::none_of(cached_room_.begin(), cached_room_.end(),
                    [&](double room) { return room <= most_spent_; }))
     return;
+  spread_spent();
+}
+
+/// From the vertices to edges and faces.
+void ClosePairs::spread_spent() {
   for (const auto& [a, b] : cloth_.edges) spent_.push_back(std::max(spent_[at(a)], spent_[at(b)]));
   for (const auto& [a, b, c] : cloth_.triangles)
     spent_.push_back(std::max({spent_[at(a)], spent_[at(b)], spent_[at(c)]}));

@@ -57,7 +57,9 @@ class ClosePairs {
   void collect_candidates(const PairQuery& now);
   double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
   Sides sides_of(const FeaturePair& pair) const;
+  void drop_far_candidates();
   void add_spent();
+  void spread_spent();
   bool is_known_far(std::size_t kept) const;
   bool is_far(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;

@@ -11,7 +11,17 @@
 
 namespace cloth {
 
-/// Whether two faces can have pairs: as they represent features, see Surface. Half of the faces that touch
+inline bool has_vertex(const Triangle& triangle, int vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+/// Edge k of one triangle and edge j of another.
+inline bool edges_share_vertex(const Triangle& one, std::size_t k, const Triangle& other, std::size_t j) {
+  const int a = one[k], b = one[(k + 1) % 3], c = other[j], d = other[(j + 1) % 3];
+  return a == c || a == d || b == c || b == d;
+}
+
+/// Whether two faces can have pairs: as they represent features, see Surface. Many faces that touch
 /// each other have none.
 inline bool have_pairs(const Surface& near, int face, const Surface& far, int far_face) {
   const unsigned own = near.represented[at(face)], other = far.represented[at(far_face)];
@@ -22,18 +32,14 @@ inline bool have_pairs(const Surface& near, int face, const Surface& far, int fa
 inline bool have_own_pairs(const Surface& cloth, int face, int far_face) {
   if (!have_pairs(cloth, face, cloth, far_face)) return false;
   const Triangle &own = cloth.triangles[at(face)], &other = cloth.triangles[at(far_face)];
-  const auto is_in = [](const Triangle& triangle, int vertex) {
-    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-  };
   for (int k = 0; k < 3; ++k) {
-    if (cloth.represents_vertex(face, k) && !is_in(other, own[at(k)])) return true;
-    if (cloth.represents_vertex(far_face, k) && !is_in(own, other[at(k)])) return true;
+    if (cloth.represents_vertex(face, k) && !has_vertex(other, own[at(k)])) return true;
+    if (cloth.represents_vertex(far_face, k) && !has_vertex(own, other[at(k)])) return true;
   }
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < 3; ++j) {
       if (!cloth.represents_edge(face, k) || !cloth.represents_edge(far_face, j)) continue;
-      const int a = own[at(k)], b = own[at((k + 1) % 3)], c = other[at(j)], d = other[at((j + 1) % 3)];
-      if (a != c && a != d && b != c && b != d) return true;
+      if (!edges_share_vertex(own, at(k), other, at(j))) return true;
     }
   return false;
 }
@@ -79,9 +85,6 @@ class FacePairFinder {
   }
 
  private:
-  static bool has(const Triangle& triangle, int vertex) {
-    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-  }
   bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
   const FarRegion& other_vertex(std::size_t k) const { return far_vertices_[at(other_[k])]; }
 
@@ -95,10 +98,10 @@ class FacePairFinder {
   void find_vertices(const Slab& far, std::vector<FeaturePair>& pairs) const {
     for (std::size_t k = 0; k < 3; ++k) {
       if (near_sides_[k] == 0 && near_.represents_vertex(face_, static_cast<int>(k)) &&
-          !(is_own() && has(other_, own_[k])) && overlap(boxes_[k], far.box))
+          !(is_own() && has_vertex(other_, own_[k])) && overlap(boxes_[k], far.box))
         pairs.push_back({obstacle_, PairKind::vertex_face, own_[k], far_face_});
       if (far_sides_[k] != 0 || !far_.represents_vertex(far_face_, static_cast<int>(k))) continue;
-      if ((is_own() && has(own_, other_[k])) || !overlap(slab_.box, box_of(other_vertex(k)))) continue;
+      if ((is_own() && has_vertex(own_, other_[k])) || !overlap(slab_.box, box_of(other_vertex(k)))) continue;
       if (is_own())
         pairs.push_back({obstacle_, PairKind::vertex_face, other_[k], face_});
       else
@@ -112,17 +115,12 @@ class FacePairFinder {
       if (!overlap(edge_boxes_[k], far.box)) continue;
       for (std::size_t j = 0; j < 3; ++j) {
         if (edge_beyond(far_sides_, j) || !far_.represents_edge(far_face_, static_cast<int>(j))) continue;
-        if (is_own() && edges_share(k, j)) continue;
+        if (is_own() && edges_share_vertex(own_, k, other_, j)) continue;
         const int far_edge = far_.edges_of[at(far_face_)][j];
         if (overlap(edge_boxes_[k], far_edges_[at(far_edge)]))
           pairs.push_back({obstacle_, PairKind::edge_edge, near_.edges_of[at(face_)][k], far_edge});
       }
     }
-  }
-
-  bool edges_share(std::size_t k, std::size_t j) const {
-    const int a = own_[k], b = own_[(k + 1) % 3], c = other_[j], d = other_[(j + 1) % 3];
-    return a == c || a == d || b == c || b == d;
   }
 
   int obstacle_;

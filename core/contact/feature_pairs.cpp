@@ -150,14 +150,20 @@ bool lies_between(const ObstacleBody& body, const Pose& pose, int edge, const Ve
   return true;
 }
 
-/// `points`: the obstacle's vertex and the face of the cloth.
-Separation face_vertex(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
-                       const ClothSide& cloth, double within) {
-  const Vec3& vertex = points[0];
+/// Of a face of the cloth with a point beyond it, but for what is there.
+Separation face_and_point(const FeaturePair& pair, const PointTriangle& closest, const ClothSide& cloth) {
   Separation s{particles_of(pair, cloth.surface)};
   set_normal(s, -closest.separation, closest.squared_distance);
   add_weights(s, closest.weights, 1);
   set_near_level(s, cloth);
+  return s;
+}
+
+/// `points`: the obstacle's vertex and the face of the cloth.
+Separation face_vertex(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
+                       const ClothSide& cloth, double within) {
+  const Vec3& vertex = points[0];
+  Separation s = face_and_point(pair, closest, cloth);
   s.far_level = s.normal.dot(vertex);
   s.far_point = vertex;
   if (s.distance >= within) return s;
@@ -174,10 +180,7 @@ Separation face_vertex(const FeaturePair& pair, const FeaturePoints& points, con
 Separation face_sphere(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
                        const ClothSide& cloth, double radius) {
   const Vec3& center = points[0];
-  Separation s{particles_of(pair, cloth.surface)};
-  set_normal(s, -closest.separation, closest.squared_distance);
-  add_weights(s, closest.weights, 1);
-  set_near_level(s, cloth);
+  Separation s = face_and_point(pair, closest, cloth);
   s.distance -= radius;
   s.far_level = s.normal.dot(center) + radius;
   s.far_point = center + radius * s.normal;
@@ -226,7 +229,7 @@ double radius_of(const FeaturePair& pair, const PairSetting& setting) {
   return setting.poses[at(pair.obstacle)].stretch.x() * setting.bodies[at(pair.obstacle)].radius;
 }
 
-/// The same with a far side of the cloth or of an obstacle.
+/// The points of a pair with a far side that is a surface.
 template <class Far>
 FeaturePoints points_with(const FeaturePair& pair, const ClothSide& cloth, const Far& far) {
   if (pair.kind == PairKind::edge_edge) {

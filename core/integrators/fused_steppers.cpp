@@ -62,10 +62,26 @@ void FusedEuler::sweep(ForceModel& forces, const StepTimes& times, std::span<dou
 
 IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                               Work& work) {
-  if (constraint_ && constraint_->holds()) return general_.step(forces, times, state, work);
+  if (constraint_ && constraint_->holds()) return held_step(forces, times, state, work);
   if (constraint_) constraint_->before_kick(times.step, times.step, state);
   const IntegratorReport report = FusedEuler::step(forces, times, state, work);
   if (constraint_) constraint_->after_drift(0, state);
+  return report;
+}
+
+/// The forces are those at the velocity before the constraint's kick, which is therefore added after the pass.
+IntegratorReport FusedSemiImplicitEuler::held_step(ForceModel& forces, const StepTimes& times,
+                                                   ClothState& state, Work& work) {
+  before_ = state.velocity;
+  constraint_->before_kick(times.step, times.step, state);
+  std::swap(before_, state.velocity);
+  Vec3Field& kick = before_;
+  add_scaled(-1, state.velocity, kick);
+  IntegratorReport report = FusedEuler::step(forces, times, state, work);
+  add_scaled(1, kick, state.velocity);
+  add_scaled(times.step, kick, state.position);
+  constraint_->after_drift(0, state);
+  report.speed_squares.reset();
   return report;
 }
 

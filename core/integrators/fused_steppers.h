@@ -45,7 +45,7 @@ class FusedEuler : public FusedStepper {
   std::vector<StepSums> sums_;  ///< scratch
 };
 
-/// Semi-implicit Euler. A step in which a constraint holds particles is one of the general method.
+/// Semi-implicit Euler.
 class FusedSemiImplicitEuler : public FusedEuler {
  public:
   FusedSemiImplicitEuler() : FusedEuler(false) {}
@@ -56,12 +56,14 @@ class FusedSemiImplicitEuler : public FusedEuler {
   }
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;
-    return general_.set_drift_constraint(constraint);
+    return true;
   }
 
  private:
+  IntegratorReport held_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
+
   DriftConstraint* constraint_ = nullptr;
-  SemiImplicitEuler general_;
+  Vec3Field before_;  ///< m/s, scratch
 };
 
 /// Only for scenes without dampers along springs, air drag and constraints; with these the kicks need the

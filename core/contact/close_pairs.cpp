@@ -15,7 +15,7 @@ constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of t
 constexpr double ways_ahead = 6;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
 constexpr double most_ahead = 1.5, least_ahead = 0.15;
-constexpr double rounding = 1e-9;  ///< of a distance
+constexpr double of_rounding = 1e-9;  ///< of a distance
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
@@ -78,12 +78,12 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
   }
   search_.find(around, now.paths, cached_);
   cached_room_.resize(cached_.size()), cached_sides_.resize(cached_.size());
-  const PairSetting setting{cloth_, now.position, bodies_, now.poses};
+  const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
     PairBatch(setting).find_distances(std::span(cached_).subspan(begin, end - begin),
                                       cached_room_.data() + begin);
     for (std::size_t k = begin; k < end; ++k) {
-      cached_room_[k] = (1 - rounding) * cached_room_[k] - reach_of(cached_[k], now.swept);
+      cached_room_[k] = (1 - of_rounding) * cached_room_[k] - reach_of(cached_[k], now.swept);
       cached_sides_[k] = sides_of(cached_[k]);
     }
   });
@@ -162,6 +162,7 @@ bool ClosePairs::is_known_far(std::size_t k) const {
 /// Whether the pair cannot come within its reach: the displacements are too short, or lead along or away.
 bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const SweptBounds& swept) const {
   const double reach = reach_of(pair, swept);
+  if (s.distance <= reach && s.gap() <= reach) return false;  // as all that follows would show
   double near_range = 0, far_range = 0;
   Interval near, far{s.far_level, s.far_level};
   for (int j = 0; j < s.count; ++j) {
@@ -182,7 +183,7 @@ bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const Swep
 void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   auto& [pairs, separations] = part;
   separations.resize(pairs.size());
-  const PairSetting setting{cloth_, now.position, bodies_, now.poses};
+  const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
                               separations.data());
   std::size_t kept = 0;

@@ -19,6 +19,7 @@ struct PairQuery {
   const SweptBounds& swept;                     ///< of the particles in this round, and the reaches
   const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this substep
   const std::vector<Pose>& poses;               ///< of the obstacles now
+  const PlacedBodies* placed = nullptr;         ///< in these poses
 };
 
 class ClosePairs {

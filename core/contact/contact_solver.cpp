@@ -64,6 +64,7 @@ double mobility_of(const ContactConstraint& contact, const std::vector<double>& 
 
 void apply_impulses(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
                     Vec3Field& value) {
+  if (contact.normal_impulse == 0 && contact.friction_impulse.isZero(0)) return;
   add_impulse(contact, inverse_mass, contact.normal_impulse * contact.normal + contact.friction_impulse,
               value);
 }

@@ -14,8 +14,8 @@ namespace {
 
 /// Radius of a capsule as a part of the thickness, or of the displacement if that gives more.
 constexpr double margin_part = 0.1, aside_part = 0.1;
-constexpr std::size_t least_separated = 500;  ///< pairs that are worth a thread of their own
-constexpr double skin_part = 0.25;            ///< of a mean edge, see PairSearch
+constexpr std::size_t least_shared = 500;  ///< pairs that are worth a thread of their own
+constexpr double skin_part = 0.25;         ///< of a mean edge, see PairSearch
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
@@ -129,7 +129,8 @@ bool ContinuousContact::find_pairs() {
         length > longest_path_ ? Vec3(here + longest_path_ / length * step) : target_position_[i];
     swept_.particles[i] = {here, end, radius_scale_[i] * std::max(least, aside_part * length)};
   }
-  close_pairs_.find({position_, swept_, paths_, poses_}, pairs_, separations_);
+  placed_.update(bodies_, poses_);
+  close_pairs_.find({position_, swept_, paths_, poses_, &placed_}, pairs_, separations_);
   memory_.assign(pairs_.size(), {});
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
@@ -139,13 +140,14 @@ bool ContinuousContact::find_pairs() {
 
 void ContinuousContact::separate_all() {
   separations_.resize(pairs_.size());
-  const PairSetting setting{surface_, position_, bodies_, poses_};
+  placed_.update(bodies_, poses_);
+  const PairSetting setting{surface_, position_, bodies_, poses_, &placed_};
   const NearDistances within{near_factor * thickness_, near_factor * self_thickness_};
   const auto separate_share = [&](int, std::size_t begin, std::size_t end) {
     PairBatch(setting).separate(std::span(pairs_).subspan(begin, end - begin), within,
                                 separations_.data() + begin);
   };
-  in_shares(team_, pairs_.size(), least_separated, separate_share);
+  in_shares(team_, pairs_.size(), least_shared, separate_share);
 }
 
 /// The constraint at the end of the step, with the plane moved along with the obstacle.
@@ -185,7 +187,6 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
 }
 
 void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field& from) {
-  constraints_.clear();
   constraint_pair_.clear();
   target_position_ = free_position_;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -195,10 +196,15 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
       memory_[k].normal_impulse = 0, memory_[k].friction_impulse.setZero();
       continue;
     }
-    constraints_.push_back(constraint_of(k, system, from));
     constraint_pair_.push_back(k);
-    apply_impulses(constraints_.back(), system.inverse_mass, target_position_);
   }
+  constraints_.resize(constraint_pair_.size());
+  in_shares(team_, constraints_.size(), least_shared, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      constraints_[c] = constraint_of(constraint_pair_[c], system, from);
+  });
+  for (const ContactConstraint& contact : constraints_)
+    apply_impulses(contact, system.inverse_mass, target_position_);
   double last_missing = infinity;
   int sweeps = solver_sweeps;
   for (int all = 0; all < max_solver_sweeps; all += sweeps, sweeps = more_solver_sweeps) {

@@ -111,7 +111,7 @@ class ContinuousContact : public ContactStage {
   Vec3 total_impulse(const ClothSystem& system) const;
   void find_work(const ContactStep& step, const ClothState& state);
   double recovering_work(const ContactStep& step) const;
-  Vec3 start_change_of(std::size_t particle, const ContactStep& step) const;
+  void find_start_change(const ContactStep& step);
   void add_half_steps_work(const ContactStep& step, const ClothState& state);
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
   void bounce(const ContactStep& step, bool follows, ClothState& state);
@@ -125,6 +125,7 @@ class ContinuousContact : public ContactStage {
   std::vector<Obstacle> obstacles_;
   ObstacleTransitions transitions_;
   ClosePairs close_pairs_;
+  PlacedBodies placed_;
   WorkerTeam* team_ = nullptr;
   std::function<bool()> stop_test_;
   double mean_edge_ = 0;       ///< m, of the cloth at its start
@@ -172,6 +173,7 @@ class ContinuousContact : public ContactStage {
 
   // of the velocity solve
   Vec3Field motion_;                   ///< m/s, mean of the step, without the recovery of too near pairs
+  Vec3Field start_change_;             ///< m/s, by contact at the beginning of the step
   Vec3Field free_velocity_;            ///< m/s, before the velocity solve
   std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
   std::vector<double> work_;           ///< J, of each particle

@@ -85,7 +85,8 @@ struct BodySide {
   const Surface& surface;
   const std::vector<Vec3>& vertices;
   const Pose& pose;
-  Vec3 operator()(int vertex) const { return pose.at(vertices[at(vertex)]); }
+  const Vec3* placed;
+  Vec3 operator()(int vertex) const { return placed ? placed[vertex] : pose.at(vertices[at(vertex)]); }
 };
 
 void set_near_level(Separation& s, const ClothSide& cloth) {
@@ -192,14 +193,13 @@ Separation face_sphere(const FeaturePair& pair, const FeaturePoints& points, con
   return s;
 }
 
-Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const ObstacleBody& plane,
-                        const Pose& pose) {
+Separation vertex_plane(const FeaturePair& pair, const ClothSide& cloth, const PlacedBodies::Plane& plane) {
   const Vec3 p = cloth(pair.feature);
   Separation s{particles_of(pair, cloth.surface)};
-  s.normal = pose.rotation * plane.normal;
+  s.normal = plane.normal;
   s.weight[0] = 1;
   s.near_level = s.normal.dot(p);
-  s.far_level = s.normal.dot(pose.at(plane.point));
+  s.far_level = plane.level;
   s.distance = s.near_level - s.far_level;
   s.far_point = p - s.distance * s.normal;
   s.nearest = true;
@@ -243,7 +243,8 @@ FeaturePoints points_with(const FeaturePair& pair, const ClothSide& cloth, const
 
 BodySide body_side(const FeaturePair& pair, const PairSetting& setting) {
   const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
-  return {body.surface, body.vertices, setting.poses[at(pair.obstacle)]};
+  return {body.surface, body.vertices, setting.poses[at(pair.obstacle)],
+          setting.placed_vertices(pair.obstacle)};
 }
 
 }  // namespace
@@ -279,10 +280,10 @@ FeaturePoints points_of(const FeaturePair& pair, const PairSetting& setting) {
   if (pair.kind != PairKind::face_sphere && pair.kind != PairKind::face_vertex)
     return points_with(pair, cloth, body_side(pair, setting));
   const auto& [a, b, c] = setting.cloth.triangles[at(pair.feature)];
-  const Pose& pose = setting.poses[at(pair.obstacle)];
-  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
-  const Vec3& point = pair.kind == PairKind::face_sphere ? body.center : body.vertices[at(pair.far_feature)];
-  return {pose.at(point), cloth(a), cloth(b), cloth(c)};
+  const Vec3 point = pair.kind == PairKind::face_sphere
+                         ? setting.poses[at(pair.obstacle)].at(setting.bodies[at(pair.obstacle)].center)
+                         : body_side(pair, setting)(pair.far_feature);
+  return {point, cloth(a), cloth(b), cloth(c)};
 }
 
 Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const SegmentSegment& closest,
@@ -332,10 +333,8 @@ Separation separate(const FeaturePair& pair, const PairSetting& setting, double 
       break;
   }
   const ClothSide cloth{setting.cloth, setting.position};
-  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
-  const Pose& pose = setting.poses[at(pair.obstacle)];
-  return pair.kind == PairKind::vertex_plane ? vertex_plane(pair, cloth, body, pose)
-                                             : vertex_box(pair, cloth, body, pose);
+  if (pair.kind == PairKind::vertex_plane) return vertex_plane(pair, cloth, setting.plane(pair.obstacle));
+  return vertex_box(pair, cloth, setting.bodies[at(pair.obstacle)], setting.poses[at(pair.obstacle)]);
 }
 
 }  // namespace cloth

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/obstacle_body.h"
+#include "contact/placed_bodies.h"
 
 namespace cloth {
 
@@ -62,7 +62,16 @@ struct PairSetting {
   const Surface& cloth;
   const Vec3Field& position;  ///< m, of the cloth's particles
   const std::vector<ObstacleBody>& bodies;
-  const std::vector<Pose>& poses;  ///< one for each body
+  const std::vector<Pose>& poses;        ///< one for each body
+  const PlacedBodies* placed = nullptr;  ///< in these poses
+
+  /// Null: not placed.
+  const Vec3* placed_vertices(int obstacle) const { return placed ? placed->vertices(obstacle) : nullptr; }
+  PlacedBodies::Plane plane(int obstacle) const {
+    const PlacedBodies::Plane* kept = placed ? placed->plane(obstacle) : nullptr;
+    const auto k = static_cast<std::size_t>(obstacle);
+    return kept ? *kept : PlacedBodies::place_plane(bodies[k], poses[k]);
+  }
 };
 
 /// `nearest` is only determined for pairs closer than `within`, in m.

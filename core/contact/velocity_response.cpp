@@ -70,16 +70,22 @@ bool ContinuousContact::find_motion(const ContactStep& step) {
   if (motion_.size() != position_.size()) motion_ = Vec3Field(position_.size());
   for (std::size_t i = 0; i < position_.size(); ++i)
     motion_.set(i, (position_[i] - step.position_before[i]) / step.times.step);
+  const auto gap_of = [](const Touch& touch) {  // m, beyond the thickness as the step began
+    return touch.contact.normal.dot(touch.contact.rest) - touch.contact.bound;
+  };
+  const auto is_missing = [&](double gap) { return gap < -arrived_length(); };
+  if (substeps_ > 1 || std::none_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+        return touch.acts() && is_missing(gap_of(touch));
+      }))
+    return false;
   constraints_.clear();
-  std::vector<double> gaps;  // m, beyond the thickness as the step began
+  std::vector<double> gaps;
   for (const Touch& touch : touches_) {
     if (!touch.acts()) continue;
-    gaps.push_back(touch.contact.normal.dot(touch.contact.rest) - touch.contact.bound);
+    gaps.push_back(gap_of(touch));
     constraints_.push_back(touch.on_velocities(step.times.step));
     constraints_.back().bound -= std::max(gaps.back(), 0.0) / step.times.step;
   }
-  const auto is_missing = [&](double gap) { return gap < -arrived_length(); };
-  if (substeps_ > 1 || std::none_of(gaps.begin(), gaps.end(), is_missing)) return false;
   Vec3Field solved(position_.size());
   for (std::size_t i = 0; i < position_.size(); ++i)
     solved.set(i, (integrated_position_[i] - step.position_before[i]) / step.times.step);
@@ -107,9 +113,13 @@ double ContinuousContact::recovering_work(const ContactStep& step) const {
                 step.potential(led));
 }
 
-/// m/s: contact's change of the velocity at the beginning of the step.
-Vec3 ContinuousContact::start_change_of(std::size_t i, const ContactStep& step) const {
-  return motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step;
+/// Contact's change of the velocity at the beginning of the step.
+void ContinuousContact::find_start_change(const ContactStep& step) {
+  if (start_change_.size() != position_.size()) start_change_ = Vec3Field(position_.size());
+  const auto change = start_change_.flat();
+  const std::span<const double> motion = motion_.flat(), to = integrated_position_.flat(),
+                                from = step.position_before.flat();
+  for (std::size_t k = 0; k < change.size(); ++k) change[k] = motion[k] - (to[k] - from[k]) / step.times.step;
 }
 
 /// m/s, relative normal velocity of a contact, negative where the two sides approach; 0 if that is no impact.
@@ -163,6 +173,7 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
     solve_constraints(system, state.velocity);
   }
   work_.assign(position_.size(), 0.0);
+  if (follows) find_start_change(step);
   if (follows)
     add_half_steps_work(step, state);
   else
@@ -171,7 +182,7 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   report.impulse = total_impulse(system);
   if (follows)
     for (std::size_t i = 0; i < position_.size(); ++i)
-      if (!system.pinned[i]) report.impulse += system.mass[i] * start_change_of(i, step);
+      if (!system.pinned[i]) report.impulse += system.mass[i] * start_change_[i];
   report.held_back = limit_held_back(step, state);
   remember(system, state, follows, step.memory);
   for (const double work : work_) report.work += work;
@@ -207,7 +218,7 @@ void ContinuousContact::add_half_steps_work(const ContactStep& step, const Cloth
   for (std::size_t i = 0; i < position_.size(); ++i) {
     if (step.system.pinned[i]) continue;
     const double mass = step.system.mass[i];
-    const Vec3 opening = start_change_of(i, step);
+    const Vec3 opening = start_change_[i];
     work_[i] = mass * opening.dot(step.velocity_before[i] + 0.5 * opening) +
                kinetic_change(mass, free_velocity_[i], state.velocity[i]) - step.memory.deferred[i];
   }
@@ -256,7 +267,7 @@ void ContinuousContact::bounce(const ContactStep& step, bool follows, ClothState
     const double mass = system.mass[i];
     const Vec3 change = state.velocity[i] - stopped[i];
     Vec3 impulse = stopped[i] - free_velocity_[i];
-    if (follows) impulse += start_change_of(i, step);
+    if (follows) impulse += start_change_[i];
     Share& share = shares[at(islands.of(static_cast<int>(i)))];
     if (follows) deferred_of_bounced_[i] = deferred_by_load(system, i, stopped[i]);
     share.taken -= work_[i] - mass * impulse.dot(obstacle_velocity[i]) + deferred_of_bounced_[i];

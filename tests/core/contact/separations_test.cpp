@@ -81,5 +81,43 @@ TEST_F(EveryInstructionSet, FindsTheDistancesOfTheSeparations) {
   });
 }
 
+TEST_F(EveryInstructionSet, SeparatesFromObstaclesAtRestToTheBitAsFromMovingOnes) {
+  for_random_settings([&](const PairSetting& setting, const std::vector<FeaturePair>& pairs) {
+    PlacedBodies placed;
+    placed.update(setting.bodies, setting.poses);
+    placed.update(setting.bodies, setting.poses);
+    for (std::size_t k = 0; k < setting.bodies.size(); ++k)
+      ASSERT_NE(placed.vertices(static_cast<int>(k)), nullptr);
+    PairSetting at_rest = setting;
+    at_rest.placed = &placed;
+    for (const FeaturePair& pair : pairs) {
+      expect_same(separate(pair, at_rest, 0.2), separate(pair, setting, 0.2));
+      if (::testing::Test::HasFailure()) return;
+    }
+  });
+}
+
+TEST(PlacedBodies, AreThoseOfThePresentPoseOrNone) {
+  ObstacleBody plane;
+  plane.kind = BodyKind::half_space;
+  ObstacleBody mesh;
+  mesh.kind = BodyKind::surface, mesh.vertices = {{1, 2, 3}};
+  const std::vector<ObstacleBody> bodies{plane, mesh};
+  std::vector<Pose> poses(2);
+  PlacedBodies placed;
+  placed.update(bodies, poses);
+  EXPECT_EQ(placed.vertices(1), nullptr);
+  placed.update(bodies, poses);
+  ASSERT_NE(placed.vertices(1), nullptr);
+  EXPECT_EQ(*placed.vertices(1), Vec3(1, 2, 3));
+  poses[1].translation = {1, 0, 0};
+  placed.update(bodies, poses);
+  EXPECT_EQ(placed.vertices(1), nullptr);
+  ASSERT_NE(placed.plane(0), nullptr);
+  placed.update(bodies, poses);
+  ASSERT_NE(placed.vertices(1), nullptr);
+  EXPECT_EQ(*placed.vertices(1), Vec3(2, 2, 3));
+}
+
 }  // namespace
 }  // namespace cloth::test::separations_test

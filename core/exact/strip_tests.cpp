@@ -10,13 +10,19 @@ using Eigen::Vector2d, Eigen::Vector3d, Eigen::VectorXd;
 
 constexpr double half = 0.5;
 
+/// Solutions are followed on this part of the steps and solved for on all of them where they lead: the error
+/// of order 4 of the former is that of a first guess.
+constexpr int rough = 5;
+
 /// Where a strip starts, how it is loaded there and how far it goes.
 struct Shot {
   ElasticaPoint start;
   ElasticaLoad load;
   double length = half;
 
-  ElasticaPoint end() const { return end_of_elastica(start, load, length); }
+  static constexpr int steps = 2000;
+
+  ElasticaPoint end(int part = 1) const { return end_of_elastica(start, load, length, steps / part); }
 };
 
 /// A half from its first point to the plane of symmetry, whose y follows. Shot from both ends and met between
@@ -29,15 +35,17 @@ struct Half {
   static constexpr int upper_steps = 1400, steps = 4000;
   static constexpr double upper_part = half * upper_steps / steps;
 
+  ElasticaLoad at_last() const { return {load.horizontal, load.vertical + load.weight * half, load.weight}; }
   std::vector<ElasticaPoint> upper() const {
     return integrate_elastica(first, load, upper_part, upper_steps);
   }
   std::vector<ElasticaPoint> lower() const {
-    const ElasticaLoad at_last{load.horizontal, load.vertical + load.weight * half, load.weight};
-    return integrate_elastica(last, at_last, upper_part - half, steps - upper_steps);
+    return integrate_elastica(last, at_last(), upper_part - half, steps - upper_steps);
   }
-  VectorXd gap() const {
-    const ElasticaPoint above = upper().back(), below = lower().back();
+  VectorXd gap(int part = 1) const {
+    const ElasticaPoint above = end_of_elastica(first, load, upper_part, upper_steps / part);
+    const ElasticaPoint below =
+        end_of_elastica(last, at_last(), upper_part - half, (steps - upper_steps) / part);
     return Vector3d(above.x - below.x, above.angle - below.angle, (above.curvature - below.curvature) / 10);
   }
 };
@@ -57,7 +65,7 @@ StripShape shape_of(const Shot& shot, bool is_half) {
   shape.is_half = is_half;
   shape.load = shot.load;
   if (shot.start.arc > 0) shape.points.push_back({0, shot.start.x - shot.start.arc, 0, rightward, 0});
-  const std::vector<ElasticaPoint> bent = integrate_elastica(shot.start, shot.load, shot.length);
+  const std::vector<ElasticaPoint> bent = integrate_elastica(shot.start, shot.load, shot.length, Shot::steps);
   shape.points.insert(shape.points.end(), bent.begin(), bent.end());
   shape.resting = shot.start.arc * (is_half ? 2 : 1);
   measure(shape);
@@ -88,12 +96,26 @@ std::optional<StripShape> unless_crossing(const StripShape& shape, double x, dou
   return shape;
 }
 
+/// What has to vanish, on all steps or a part of them.
+using SteppedConditions = std::function<VectorXd(double along, const VectorXd& unknowns, int part)>;
+
+/// From one end of `along` to the other; the solution there is that of all steps.
+std::optional<VectorXd> follow(const SteppedConditions& conditions, const VectorXd& solution, double from,
+                               double to) {
+  const auto guess = follow_solution(
+      [&](double along, const VectorXd& u) { return conditions(along, u, rough); }, solution, from, to);
+  if (!guess) return std::nullopt;
+  const auto found = solve_by_newton([&](const VectorXd& u) { return conditions(to, u, 1); }, *guess);
+  const bool is_of_the_branch = found && (*found - *guess).norm() <= 0.3 * (1 + guess->norm());
+  return is_of_the_branch ? found : std::nullopt;
+}
+
 /// Follows the half from one end of `along` to the other.
 using HalfFamily = std::function<Half(double along, const VectorXd& unknowns)>;
 std::optional<VectorXd> follow_half(const HalfFamily& half_of, const VectorXd& solution, double from,
                                     double to) {
-  return follow_solution([&](double along, const VectorXd& u) { return half_of(along, u).gap(); }, solution,
-                         from, to);
+  return follow([&](double along, const VectorXd& u, int part) { return half_of(along, u).gap(part); },
+                solution, from, to);
 }
 
 /// Right half of what hangs from a point at the origin, by symmetry with half the weight on it. Unknown: the
@@ -163,12 +185,12 @@ std::optional<StripShape> hanging_ring(double gamma) {
 }
 
 std::optional<StripShape> standing_ring(double gamma) {
-  const auto closes = [&](double weight, const VectorXd& unknowns) -> VectorXd {
-    const ElasticaPoint end = standing_half(weight, unknowns).end();
+  const auto closes = [&](double weight, const VectorXd& unknowns, int part) -> VectorXd {
+    const ElasticaPoint end = standing_half(weight, unknowns).end(part);
     return Vector2d(end.x, end.angle - leftward);
   };
   auto found = std::optional<VectorXd>(Vector2d(2 * pi, 0));
-  found = follow_solution(closes, *found, 0, gamma);
+  found = follow(closes, *found, 0, gamma);
   if (!found) return std::nullopt;
   const StripShape shape = shape_of(standing_half(gamma, *found), true);
   if (shape.points.back().y <= 0) return std::nullopt;
@@ -195,27 +217,27 @@ double clamped_fold_limit() {
 std::optional<StripShape> clamped_fold(double gamma) {
   const double limit = clamped_fold_limit();
   if (gamma > limit) return std::nullopt;
-  const auto comes_back = [](double weight, const VectorXd& unknowns) -> VectorXd {
-    const ElasticaPoint end = clamped_fold_shot(weight, unknowns).end();
+  const auto comes_back = [](double weight, const VectorXd& unknowns, int part) -> VectorXd {
+    const ElasticaPoint end = clamped_fold_shot(weight, unknowns).end(part);
     return Vector3d(end.x, end.y, end.angle - leftward);
   };
   const StripShape fold = free_fold().value();
   const double length = std::cbrt(limit);  // in the bending length
   const Vector3d at_limit(-fold.points.back().x / length, 0, fold.load.vertical * length * length);
-  const auto found = follow_solution(comes_back, at_limit, limit, gamma);
+  const auto found = follow(comes_back, at_limit, limit, gamma);
   if (!found) return std::nullopt;
   return shape_of(clamped_fold_shot(gamma, *found), false);
 }
 
 std::optional<StripShape> standing_wrinkle(double gamma) {
-  const auto is_level_on_top = [](double weight, const VectorXd& unknowns) -> VectorXd {
-    const ElasticaPoint end = wrinkle_half(weight, unknowns[0]).end();
+  const auto is_level_on_top = [](double weight, const VectorXd& unknowns, int part) -> VectorXd {
+    const ElasticaPoint end = wrinkle_half(weight, unknowns[0]).end(part);
     return VectorXd::Constant(1, (end.angle - rightward) / weight);
   };
   // A low wrinkle is the buckled beam on a floor: n_x = -4 z^2, where tan z = z.
   constexpr double z = 4.493409457909064;
   const auto low = VectorXd::Constant(1, -4 * z * z);
-  const auto found = follow_solution(is_level_on_top, low, std::min(gamma, 1.0) / 1e3, gamma);
+  const auto found = follow(is_level_on_top, low, std::min(gamma, 1.0) / 1e3, gamma);
   if (!found) return std::nullopt;
   const StripShape shape = shape_of(wrinkle_half(gamma, (*found)[0]), true);
   return unless_crossing(shape, shape.points.back().x, -1);
@@ -241,24 +263,24 @@ std::optional<PressedStrip> pressed_strip(double eps) {
   const auto shot = [](const VectorXd& unknowns) -> Shot {
     return {{0, 0, 0, downward, unknowns[0]}, {unknowns[1], unknowns[2], 0}, 1};
   };
-  const auto is_pressed = [&](double by, const VectorXd& unknowns) -> VectorXd {
-    const ElasticaPoint tip = shot(unknowns).end();
+  const auto is_pressed = [&](double by, const VectorXd& unknowns, int part) -> VectorXd {
+    const ElasticaPoint tip = shot(unknowns).end(part);
     return Vector3d(tip.x, tip.y + 1 - by, tip.curvature);
   };
   // The first mode of the clamped and hinged strip: curvature a (sin(z s) - z cos(z s)), tan z = z.
   constexpr double z = 4.493409457909064;
   const double little = std::min(eps, 0.01), a = 2 * std::sqrt(little / (1 + 1 / (z * z)));
-  const auto first = solve_by_newton([&](const VectorXd& u) { return is_pressed(little, u); },
+  const auto first = solve_by_newton([&](const VectorXd& u) { return is_pressed(little, u, 1); },
                                      Vector3d(-a * z, a * z, z * z));
   if (!first) return std::nullopt;
-  const auto found = little < eps ? follow_solution(is_pressed, *first, little, eps) : first;
+  const auto found = little < eps ? follow(is_pressed, *first, little, eps) : first;
   if (!found) return std::nullopt;
   PressedStrip strip;
   strip.tangential = (*found)[1];
   strip.normal = (*found)[2];
   strip.friction = std::abs(strip.tangential / strip.normal);
   const Shot solved = shot(*found);
-  strip.points = integrate_elastica(solved.start, solved.load, solved.length);
+  strip.points = integrate_elastica(solved.start, solved.load, solved.length, Shot::steps);
   return strip;
 }
 

@@ -193,7 +193,7 @@ TEST(Bench, ThatCannotBeWrittenExitsWithFour) {
 TEST(Bench, HasItsFolderForItself) {
   const TemporaryFolder folder;
   const std::string out = "--out '" + (folder / "result").string() + "'";
-  const CommandResult two = shell(program + "\"$BENCH\" --only steps " + out +
+  const CommandResult two = shell(program + "\"$BENCH\" --quick --only steps " + out +
                                   " > /dev/null &\n"
                                   "run=$!\n"
                                   "until [ -s '" +
@@ -219,7 +219,7 @@ TEST(Bench, HasItsFolderForItself) {
 TEST(Bench, ThatIsInterruptedLeavesAValidFile) {
   const TemporaryFolder folder;
   const std::string out = (folder / "result").string();
-  const CommandResult result = shell(program + "\"$BENCH\" --only steps --out '" + out +
+  const CommandResult result = shell(program + "\"$BENCH\" --quick --only steps --out '" + out +
                                      "' &\n"
                                      "run=$!\n"
                                      "until [ -d '" +

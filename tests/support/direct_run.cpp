@@ -1,5 +1,7 @@
 #include "support/direct_run.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "cloth/grid.h"
@@ -9,10 +11,14 @@
 
 namespace cloth::test {
 
-IntegratorChoice exactly(const std::string& method, std::optional<double> time_step) {
+IntegratorChoice exactly(const std::string& method, std::optional<double> time_step, double w) {
+  constexpr double rounding = 1e-16;
+  constexpr int most = 30;
   IntegratorChoice choice{method, time_step};
   choice.tolerance = facts_of(method).settings == MethodSettings::error_control ? 0 : 1e-12;
-  choice.projective_iterations = choice.xpbd_iterations = choice.vbd_iterations = 30;
+  const double needed = w < 1 ? std::ceil(std::log(rounding) / (2 * std::log(w))) + 2 : most;
+  const int iterations = static_cast<int>(std::min<double>(needed, most));
+  choice.projective_iterations = choice.xpbd_iterations = choice.vbd_iterations = iterations;
   choice.substeps = 1;
   return choice;
 }

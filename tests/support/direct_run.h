@@ -11,9 +11,10 @@
 namespace cloth::test {
 
 /// The method with settings that leave nothing but its step to decide the answer: no error control, no
-/// substeps, Newton's method to rounding, and 30 iterations over local solves or constraints, each of which
-/// gains a factor of (omega h)^2 at the steps of these laws.
-IntegratorChoice exactly(const std::string& method, std::optional<double> time_step = {});
+/// substeps, Newton's method to rounding, and iterations over local solves or constraints, each of which
+/// gains a factor of w^2, as many as reach rounding and two more, at most 30. w: omega h or more; omega in
+/// rad/s of the fastest motion.
+IntegratorChoice exactly(const std::string& method, std::optional<double> time_step = {}, double w = 1);
 
 class DirectRun {
  public:

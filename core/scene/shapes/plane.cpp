@@ -1,10 +1,25 @@
 #include <algorithm>
+#include <cmath>
 
 #include "params/field_builders.h"
 #include "scene/obstacle_shape.h"
 
 namespace cloth {
 namespace {
+
+/// The rotation by the least angle that takes one direction to the other. As Eigen's FromTwoVectors, but that
+/// any axis across will do where they are opposite: Eigen finds one by a singular value decomposition, which
+/// takes longer to compile than the rest of the room.
+Eigen::Matrix3d least_rotation(const Vec3& from, const Vec3& to) {
+  const double cosine = std::max(-1.0, to.dot(from)), half = std::sqrt((1 + cosine) / 2);
+  Eigen::Quaterniond rotation;
+  rotation.w() = half;
+  if (cosine < -1 + 1e-12)
+    rotation.vec() = std::sqrt(1 - half * half) * from.unitOrthogonal();
+  else
+    rotation.vec() = from.cross(to) * (1 / (2 * half));
+  return rotation.toRotationMatrix();
+}
 
 class PlaneShape final : public ObstacleShape {
  public:
@@ -26,7 +41,7 @@ class PlaneShape final : public ObstacleShape {
   Vec3 stretch_between(const Obstacle&, const Obstacle&) const override { return Vec3::Ones(); }
   Eigen::Matrix3d rotation_between(const Obstacle& from, const Obstacle& to) const override {
     if (from.normal == to.normal) return Eigen::Matrix3d::Identity();
-    return Eigen::Quaterniond::FromTwoVectors(from.normal, to.normal).toRotationMatrix();
+    return least_rotation(from.normal.normalized(), to.normal.normalized());
   }
   std::optional<SurfacePoint> penetration(const Obstacle& plane, const Vec3& point) const override {
     const Vec3 normal = plane.normal.normalized();

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scene/obstacle_motion.h"
+#include "scene/obstacle_shape.h"
 
 namespace cloth::test::rigid_motion_test {
 namespace {
@@ -84,6 +85,25 @@ TEST(TheHighestSpeed, IsThatOfTheFastestPoint) {
   EXPECT_DOUBLE_EQ(highest_speed(obstacle, 0.5), 4);
   obstacle.keyframes = {{0, {0, 0, 0}, {0, 0, 0}}, {2, {2, 0, 0}, {0, 1, 0}}};
   EXPECT_NEAR(highest_speed(obstacle, 4), 1 + 4 * 0.5, 1e-12);
+}
+
+/// As an edit of its normal does, by the least angle, also where that is half a turn.
+TEST(APlane, TurnsWithItsNormal) {
+  Obstacle from, to;
+  from.shape = to.shape = &plane_shape();
+  const Vec3 normals[] = {{0, 1, 0},   {0, 3, 0},     {0, -1, 0}, {1, 2, -2},
+                          {-1, -2, 2}, {1e-9, -1, 0}, {1, 0, 0}};
+  for (const Vec3& before : normals)
+    for (const Vec3& after : normals) {
+      from.normal = before, to.normal = after;
+      const Eigen::Matrix3d rotation = shape_of(to).rotation_between(from, to);
+      EXPECT_LE((rotation * before.normalized() - after.normalized()).norm(), 1e-7) << before << "\n"
+                                                                                    << after;
+      EXPECT_LE((rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+      EXPECT_NEAR(rotation.determinant(), 1, 1e-14);
+      const double cosine = before.normalized().dot(after.normalized());
+      EXPECT_NEAR((rotation.trace() - 1) / 2, cosine, 1e-12) << "the least angle";
+    }
 }
 
 }  // namespace

@@ -44,8 +44,9 @@ double resolution(int order) {
   return std::map<int, double>{{1, 0.02}, {2, 0.08}, {4, 0.2}, {5, 0.12}}.at(order);
 }
 
-double error_after(const Motion& motion, const std::string& method, int steps) {
-  DirectRun run(motion.system, motion.scene, exactly(method));
+/// `fastest`: the largest frequency in rad/s.
+double error_after(const Motion& motion, const std::string& method, int steps, double fastest) {
+  DirectRun run(motion.system, motion.scene, exactly(method, {}, 1.5 * fastest * motion.time / steps));
   run.state = motion.start;
   if (motion.load) run.forces.add(motion.load());
   run.advance(steps, motion.time / steps);
@@ -59,7 +60,8 @@ void expect_followed(const Motion& motion, const std::string& method, double amp
   const double fastest = largest_eigenfrequency(motion.system, motion.start.position);
   const int steps = static_cast<int>(
       std::ceil(motion.time * std::max(motion.frequency / resolution(order), fastest / 0.8)));
-  const double coarse = error_after(motion, method, steps), fine = error_after(motion, method, 2 * steps);
+  const double coarse = error_after(motion, method, steps, fastest),
+               fine = error_after(motion, method, 2 * steps, fastest);
   const double observed = std::log2(coarse / fine);
   std::printf("%s: %d steps, error %.2e of the amplitude, order %.2f\n", method.c_str(), 2 * steps,
               fine / amplitude, observed);

@@ -29,10 +29,10 @@ struct FreeRun {
   FreeRun(const std::string& method, double w, double spring_damping = 0) {
     Scene scene = free_sheet();
     scene.springs->damping = spring_damping;
-    DirectRun run(scene, method);
-    run.state = waving_state(run.system, 0.05, 0.3);
     const double omega = largest_frequency(scene.cloth, *scene.springs);
     const int steps = static_cast<int>(std::ceil(horizon * omega / w));
+    DirectRun run(scene, exactly(method, {}, 1.5 * w));
+    run.state = waving_state(run.system, 0.05, 0.3);
     const auto energy = [&] { return measure_energy(run.system, Vec3::Zero(), run.state).total(); };
     const double first_energy = energy();
     const Vec3 first_momentum = momentum(run.system, run.state);

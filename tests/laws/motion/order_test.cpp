@@ -6,6 +6,7 @@
 #include <map>
 
 #include "integrators/registry.h"
+#include "measure/stability_limit.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/scenes.h"
@@ -45,8 +46,13 @@ Ladder ladder_of(const std::string& method) {
   return ladders.at(method);
 }
 
+/// The method with as many local iterations as its step needs, forces of dampers included.
+IntegratorChoice resolved(const Scene& scene, const std::string& method, double step) {
+  return exactly(method, step, 2 * guaranteed_frequency(scene) * step);
+}
+
 ClothState solve(const Scene& scene, const std::string& method, int steps, double time) {
-  DirectRun run(scene, exactly(method));
+  DirectRun run(scene, resolved(scene, method, time / steps));
   run.advance(steps, time / steps);
   return run.state;
 }
@@ -112,7 +118,7 @@ TEST_P(ObservedOrder, IsTheNominalOneWithSpringDampingToo) {
 
 /// The ledger's error at the horizon, in J, through the loop.
 double ledger_error(Scene scene, const std::string& method, int steps, double time) {
-  scene.integrator = exactly(method, time / steps);
+  scene.integrator = resolved(scene, method, time / steps);
   Simulation simulation(scene);
   for (int n = 0; n < steps; ++n) simulation.step();
   return std::abs(simulation.measure().energy_error());

@@ -12,9 +12,9 @@ namespace {
 
 /// Chosen so that the ledgers of `ball`, `cube` and `tablecloth` close to two per cent.
 constexpr double largest_load_in_contact = 0.55;
-/// So many steps take less time than one that solves for its damping (docs/performance.md): where their
-/// damping is in the pass of the forces, and where hysteresis keeps it out.
-constexpr double steps_for_a_solve = 8, general_steps_for_a_solve = 1.25;
+/// So many steps, with their damping in the pass of the forces, take less time than one that solves for it
+/// (docs/performance.md).
+constexpr double steps_for_a_solve = 8;
 
 bool touches_by_particles(const Scene& scene) {
   return !scene.obstacles.empty() && !has_continuous_contact(scene);
@@ -28,10 +28,6 @@ bool has_dampers_to_predict(const Scene& scene) {
   return scene.springs && scene.springs->damping > 0;
 }
 
-bool has_hysteresis(const Scene& scene) {
-  return scene.material && (scene.material->hysteresis_warp > 0 || scene.material->hysteresis_weft > 0);
-}
-
 }  // namespace
 
 double allowed_damping_load(const Scene& scene) {
@@ -43,8 +39,7 @@ double parts_to_predict(const Scene& scene, double interval, double parts) {
   const auto predicts = [&](double n) {
     return predicted_damping_load(scene, interval / n) <= allowed_damping_load(scene);
   };
-  const double more = has_hysteresis(scene) ? general_steps_for_a_solve : steps_for_a_solve;
-  double too_few = parts - 1, enough = std::max(parts + 1, std::floor(more * parts));
+  double too_few = parts - 1, enough = std::max(parts + 1, std::floor(steps_for_a_solve * parts));
   if (!predicts(enough)) return parts;
   while (enough - too_few > 1) {
     const double half = std::floor(0.5 * (too_few + enough));

@@ -13,8 +13,7 @@ double allowed_damping_load(const Scene& scene);
 
 /// The number of steps to a record interval of `interval` s where `parts` are enough for stability: `parts`,
 /// or the smallest larger number at which Verlet may predict the damping of a grid's dampers, if that is one
-/// more or at most eight times as many (a quarter more with hysteresis of bending, which no pass computes). A
-/// step without a solve is several times cheaper.
+/// more or at most eight times as many. A step without a solve is several times cheaper.
 double parts_to_predict(const Scene& scene, double interval, double parts);
 
 }  // namespace cloth

@@ -73,7 +73,7 @@ void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
   start_velocity_ = state.velocity;
   opened_ = holds();
   if (!opened_) return;
-  held_ = tensions_->held(tension_, time_step_);
+  tensions_->hold(tension_, time_step_, held_);
   pull(kick, held_, state);
   size_like(state.position, change_);
   change_.fill(0);
@@ -158,7 +158,8 @@ void StepLimiter::after_drift(double closing_kick, ClothState& state) {
 void StepLimiter::close(ClothState& state) {
   closed_ = closing_kick_ > 0 && holds();
   if (!closed_) return;
-  pull(closing_kick_, tensions_->held(tension_, time_step_), state);
+  tensions_->hold(tension_, time_step_, held_);
+  pull(closing_kick_, held_, state);
   size_like(state.position, closing_);
   closing_.fill(0);
   add_acceleration(*system_, closing_kick_, pull_, closing_);

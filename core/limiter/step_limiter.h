@@ -75,7 +75,7 @@ class StepLimiter : public DriftConstraint {
   DeformationLimiter limiter_;
   std::optional<TensionSolver> tensions_;  ///< none: solver "sweeps" or "direct"
   std::vector<double> tension_;            ///< N, at the end of the last step
-  std::vector<double> held_;               ///< N, in the present step's opening kick
+  std::vector<double> held_;               ///< N, in the present step's latest kick
   bool holds_ = false;                     ///< any of tension_ is above 0
 
   // Of the present step.

@@ -76,12 +76,12 @@ void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec
   }
 }
 
-std::vector<double> TensionSolver::held(const std::vector<double>& tension, double time_step) const {
-  std::vector<double> result(tension.size(), 0.0);
-  if (unreachable_) return result;
+void TensionSolver::hold(const std::vector<double>& tension, double time_step,
+                         std::vector<double>& held) const {
+  held.assign(tension.size(), 0.0);
+  if (unreachable_) return;
   const double per_square = 1 / (time_step * time_step);
-  for (std::size_t s = 0; s < tension.size(); ++s) result[s] = std::min(tension[s], hold_[s] * per_square);
-  return result;
+  for (std::size_t s = 0; s < tension.size(); ++s) held[s] = std::min(tension[s], hold_[s] * per_square);
 }
 
 /// Rounds until the residual is small enough or the bound on rounds is reached.
@@ -162,11 +162,10 @@ TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, 
   const TensionTask task{.time_step = time_step,
                          .tolerance = std::min(target_residual, deformation_.tolerance),
                          .softness = unreachable_ ? soft_springs : 0};
-  const Vec3Field start = position;
-  const std::vector<double> first = tension;
+  start_ = position, first_ = tension;
   run_rounds(task, system, tension, position, report);
   if (!report.converged && !unreachable_) {
-    position = start, tension = first;
+    position = start_, tension = first_;
     restart_from_nearest(task, system, tension, position, report);
     run_rounds(task, system, tension, position, report);
   }

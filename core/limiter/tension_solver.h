@@ -5,7 +5,7 @@
 // step begins with the held tensions as forces, and only their changes are solved for.
 //
 //     std::vector<double> tension(solver.springs().size(), 0.0);
-//     each step: held = solver.held(tension, h);  add_force(held, position, force);  drift;
+//     each step: solver.hold(tension, h, held);  add_force(held, position, force);  drift;
 //                tension = held;  solver.solve(system, h, tension, position);
 //
 // Each round is one sweep over the lines of springs, in which the tensions of a line are solved for together
@@ -60,9 +60,10 @@ class TensionSolver {
   /// force += J^T tension, N: each tension pulls its ends together.
   void add_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
 
-  /// The part of each tension that may act as a force over a step of h seconds: at most half of m (1 + rate)
-  /// L/h^2, because a rotating spring would overshoot with more. Zero where the rate is unreachable.
-  std::vector<double> held(const std::vector<double>& tension, double time_step) const;
+  /// `held` becomes the part of each tension that may act as a force over a step of h seconds: at most half of
+  /// m (1 + rate) L/h^2, because a rotating spring would overshoot with more. Zero where the rate is
+  /// unreachable.
+  void hold(const std::vector<double>& tension, double time_step, std::vector<double>& held) const;
 
   bool unreachable() const { return unreachable_; }
 
@@ -81,6 +82,8 @@ class TensionSolver {
   std::optional<GridPlan> grid_;
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for
+  Vec3Field start_;            ///< m, of the present solve
+  std::vector<double> first_;  ///< N, of the present solve
   double shortest_ = 0;
   bool unreachable_;
 };

@@ -109,35 +109,38 @@ class SliderEnds {
   }
 
   /// What a row reads and writes.
+  struct Slips {
+    const double *curvature, *now;
+    double* next;
+    Row changed;
+  };
   struct Work {
     ConstRow above, here, below, normal;
     Row next_normal;
-    const double *curvature_across, *curvature_down, *slip_across, *slip_down;
-    double *next_slip_across, *next_slip_down;
-    Row changed_across, changed_down;
+    Slips across, down;
     V of_row;
     bool own;
   };
+  /// The normals of a block before and after the end of the step.
+  struct Turn {
+    const Vector &normal, &next;
+  };
+  Slips slips_at(const SliderLine& line, int row, const Row& changed) const {
+    return {row_at(line.curvature, pass_, row), row_at(line.slip, pass_, row),
+            row_at(line.next_slip, pass_, row), changed};
+  }
   Work work_at(int row) const {
     const SliderPass& s = pass_.sliders;
-    Work work{.above = position_row(pass_, row - 1),
-              .here = position_row(pass_, row),
-              .below = position_row(pass_, row + 1),
-              .normal = slider_row(pass_, s.across, row).normal,
-              .next_normal = {row_at(s.next_normal[0], pass_, row), row_at(s.next_normal[1], pass_, row),
-                              row_at(s.next_normal[2], pass_, row)},
-              .curvature_across = row_at(s.across.curvature, pass_, row),
-              .curvature_down = row_at(s.down.curvature, pass_, row),
-              .slip_across = row_at(s.across.slip, pass_, row),
-              .slip_down = row_at(s.down.slip, pass_, row),
-              .next_slip_across = row_at(s.across.next_slip, pass_, row),
-              .next_slip_down = row_at(s.down.next_slip, pass_, row),
-              .changed_across = {},
-              .changed_down = {},
-              .of_row = Lanes::set(share_of(pass_, row)),
-              .own = row >= pass_.first && row < pass_.last};
-    if (Change) work.changed_across = changed_across(row), work.changed_down = changed_down(row);
-    return work;
+    return {.above = position_row(pass_, row - 1),
+            .here = position_row(pass_, row),
+            .below = position_row(pass_, row + 1),
+            .normal = slider_row(pass_, s.across, row).normal,
+            .next_normal = {row_at(s.next_normal[0], pass_, row), row_at(s.next_normal[1], pass_, row),
+                            row_at(s.next_normal[2], pass_, row)},
+            .across = slips_at(s.across, row, Change ? changed_across(row) : Row{}),
+            .down = slips_at(s.down, row, Change ? changed_down(row) : Row{}),
+            .of_row = Lanes::set(share_of(pass_, row)),
+            .own = row >= pass_.first && row < pass_.last};
   }
 
   template <bool HasBelow>
@@ -163,30 +166,36 @@ class SliderEnds {
     const Vector n = load_part<Edge>(work.normal, j, count);
     const BentBlock bent = BentBlock::at<Edge>(work.above, work.here, work.below, j, count, left);
     const V of_columns = Lanes::load(pass_.shares.part + j);
-    const auto end = [&](const SliderNumbers& numbers, const double* c, const double* slips,
-                         double* next_slips, const Vector& d, V share, const Row& changed) {
-      const V curvature = load_number<Edge>(c, j, count), slip = load_number<Edge>(slips, j, count);
-      const SliderStretch before(curvature, slip, n, d, numbers.most);
-      const V next_slip = Lanes::add(slip, Lanes::sub(before.whole, before.elastic));
-      const SliderStretch after(curvature, next_slip, next, d, numbers.most);
-      if (work.own) {
-        if constexpr (Edge)
-          Lanes::store(next_slips + j, next_slip, count);
-        else
-          Lanes::store(next_slips + j, next_slip);
-        lost = Lanes::fma(numbers.scale(share, curvature),
-                          Lanes::sub(numbers.energy(before), numbers.energy(after)), lost);
-      }
-      if constexpr (Change)
-        store(
-            changed, j,
-            scaled(Lanes::mul(numbers.push, share), scaled(after.elastic, next) - scaled(before.elastic, n)));
-    };
-    end(across_, work.curvature_across, work.slip_across, work.next_slip_across, bent.across, work.of_row,
-        work.changed_across);
-    end(down_, work.curvature_down, work.slip_down, work.next_slip_down, bent.down, of_columns,
-        work.changed_down);
+    const Turn turn{n, next};
+    end_block<Edge>(work, across_, turn, bent.across, work.across, work.of_row, j, count, lost);
+    end_block<Edge>(work, down_, turn, bent.down, work.down, of_columns, j, count, lost);
     if (work.own) store<Edge>(work.next_normal, j, count, next);
+  }
+
+  /// The sliders of a block along rows, or along columns, bent by `d`.
+  template <bool Edge>
+  CLOTHLAB_INLINE static void end_block(const Work& work, const SliderNumbers& numbers, const Turn& turn,
+                                        const Vector& d, const Slips& slips, V share, int j, int count,
+                                        V& lost) {
+    const V curvature = load_number<Edge>(slips.curvature, j, count),
+            slip = load_number<Edge>(slips.now, j, count);
+    const SliderStretch before(curvature, slip, turn.normal, d, numbers.most);
+    const V next_slip = Lanes::add(slip, Lanes::sub(before.whole, before.elastic));
+    const SliderStretch after(curvature, next_slip, turn.next, d, numbers.most);
+    if (work.own) {
+      if constexpr (Edge)
+        Lanes::store(slips.next + j, next_slip, count);
+      else
+        Lanes::store(slips.next + j, next_slip);
+      lost = Lanes::fma(numbers.scale(share, curvature),
+                        Lanes::sub(numbers.energy(before), numbers.energy(after)), lost);
+    }
+    if constexpr (Change) {
+      const V push = Lanes::mul(numbers.push, share);
+      store(slips.changed, j,
+            minus(scaled(Lanes::mul(push, after.elastic), turn.next), Lanes::mul(push, before.elastic),
+                  turn.normal));
+    }
   }
 
   /// From what g n has become in the row and the rows beside it.

@@ -134,8 +134,8 @@ TEST_P(SlidersOnEveryInstructionSet, StepAsTheGeneralWayDoes) {
         const std::string what = std::string(method) + ", " + name_of_case(rows, columns, features);
         EXPECT_LE(largest_distance(whole.state.position, general.state.position), 2e-14) << what;
         EXPECT_LE(largest_distance(whole.state.velocity, general.state.velocity), 2e-11) << what;
-        EXPECT_NEAR(lost, expected, 1e-11 * expected) << what;
-        EXPECT_GT(lost, 0) << what;
+        EXPECT_NEAR(lost, expected, 1e-11 * std::abs(expected)) << what;
+        EXPECT_GT(largest_of(general.forces.history()), 0) << "nothing has yielded: " << what;
         EXPECT_NEAR(whole.work.damping_loss, general.work.damping_loss, 1e-11 * general.work.damping_loss)
             << what;
         EXPECT_LE(largest_difference(whole.forces.history(), general.forces.history()),
@@ -170,11 +170,23 @@ TEST_P(SlidersOnEveryInstructionSet, HaveTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// Another instruction set goes another way in its last digits, so that these are of one.
+/// A scene that begins with waves in its cloth, so that sliders yield at once; `general`: its mass is changed
+/// in its last digits, so that no kernel takes it.
+Simulation waving(const char* name, bool general = false) {
+  return Simulation(builtin_scene(name), [general](ClothSystem& system, ClothState& state) {
+    for (std::size_t i = 0; i < state.position.size(); ++i)
+      if (!system.pinned[i])
+        state.position.add(i, Vec3(0, 0, 0.004 * std::sin(0.7 * static_cast<double>(i))));
+    if (general) system.mass.back() *= 1 + 1e-15, system.inverse_mass.back() = 1 / system.mass.back();
+  });
+}
+double hysteresis_loss_of(const Simulation& run) {
+  return run.measure().ledger.forces.hysteresis_loss;
+}
+
 TEST(SlidersInPasses, GoOnFromACheckpointToTheBit) {
   for (const char* name : {"flag-cotton", "curtain-wool"}) {
-    const Scene scene = builtin_scene(name);
-    Simulation run(scene), again(scene);
+    Simulation run = waving(name), again = waving(name);
     ASSERT_FALSE(run.advance(150));
     const Checkpoint checkpoint = run.checkpoint();
     ASSERT_FALSE(run.advance(150));
@@ -182,25 +194,32 @@ TEST(SlidersInPasses, GoOnFromACheckpointToTheBit) {
     ASSERT_FALSE(again.advance(150));
     EXPECT_TRUE(run.state() == again.state()) << name;
     EXPECT_EQ(run.checkpoint().force_history, again.checkpoint().force_history) << name;
-    EXPECT_EQ(run.measure().ledger.forces.hysteresis_loss, again.measure().ledger.forces.hysteresis_loss);
-    EXPECT_GT(run.measure().ledger.forces.hysteresis_loss, 0) << name;
+    EXPECT_EQ(hysteresis_loss_of(run), hysteresis_loss_of(again)) << name;
+    EXPECT_GT(largest_of(checkpoint.force_history), 0) << name;
   }
 }
 
-TEST(SlidersInPasses, MakeTheSceneMoveAsTheGeneralWayDoes) {
+TEST(SlidersInPasses, MoveAsInTheGeneralWay) {
   for (const char* name : {"flag-cotton", "curtain-wool"}) {
-    const Scene scene = builtin_scene(name);
-    Simulation run(scene);
-    const Preparation make_general = [](ClothSystem& system, ClothState&) {
-      system.mass.back() *= 1 + 1e-15, system.inverse_mass.back() = 1 / system.mass.back();
-    };
-    Simulation general(scene, make_general);
+    Simulation run = waving(name), general = waving(name, true);
     ASSERT_FALSE(run.advance(400));
     ASSERT_FALSE(general.advance(400));
     EXPECT_LE(largest_distance(run.state().position, general.state().position), 1e-12) << name;
-    const double expected = general.measure().ledger.forces.hysteresis_loss;
-    EXPECT_NEAR(run.measure().ledger.forces.hysteresis_loss, expected, 1e-9 * expected) << name;
+    const double expected = hysteresis_loss_of(general);
+    EXPECT_NEAR(hysteresis_loss_of(run), expected, 1e-9 * expected) << name;
     EXPECT_GT(expected, 0) << name;
+    EXPECT_GT(largest_of(general.checkpoint().force_history), 0) << name;
+  }
+}
+
+TEST(SlidersInPasses, CloseTheLedgerOfAScene) {
+  for (const char* name : {"flag-cotton", "curtain-wool"}) {
+    Simulation run = waving(name);
+    const double start = run.measure().energy.elastic;
+    ASSERT_FALSE(run.advance(400));
+    const Measurement end = run.measure();
+    EXPECT_LE(std::abs(end.energy_error()), 2e-3 * start) << name;
+    EXPECT_GT(hysteresis_loss_of(run), 5e-3 * start) << name;
   }
 }
 

@@ -19,6 +19,7 @@
 namespace cloth {
 
 struct Air;
+struct SliderGrid;
 
 /// Power of the non-conservative forces in W, or its time integral, work, in J. Positive values add energy to
 /// the cloth; losses are positive where energy is taken out.
@@ -73,14 +74,16 @@ struct NodeDamping {
 /// Coefficients of the forces that the kernels (kernels/spring_sweep.h) compute in the same pass as the
 /// springs' elastic forces.
 struct SweepTerms {
-  bool uniform_mass = false;  ///< given: all particles have the same mass, or their share of `mass`
-  bool has_shares = false;    ///< given: shares (GridSweep::has_shares()); bending is then computed too
-  double mass = 0;            ///< kg, given: of every particle, or of one that has a whole share
-  Vec3 gravity{0, 0, 0};      ///< m/s^2
-  double damping = 0;         ///< N s/m, viscous
-  double spring_damping = 0;  ///< N s/m, along every spring
-  double stretch_time = 0;    ///< s, of dampers along springs
-  double bending_time = 0;    ///< s, of dampers of bending
+  bool uniform_mass = false;      ///< given: all particles have the same mass, or their share of `mass`
+  bool has_shares = false;        ///< given: shares (GridSweep::has_shares()); bending is then computed too
+  double mass = 0;                ///< kg, given: of every particle, or of one that has a whole share
+  Vec3 gravity{0, 0, 0};          ///< m/s^2
+  double damping = 0;             ///< N s/m, viscous
+  double spring_damping = 0;      ///< N s/m, along every spring
+  double stretch_time = 0;        ///< s, of dampers along springs
+  double bending_time = 0;        ///< s, of dampers of bending
+  bool takes_sliders = false;     ///< given: SpringSweep::takes_sliders()
+  SliderGrid* sliders = nullptr;  ///< of hysteresis
   const Air* air = nullptr;
   double air_drag = 0, air_friction = 0;  ///< N s/m, along the normal and across it
   bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
@@ -129,9 +132,10 @@ class Force {
                                  const LinearisationWeights&, Linearisation& /*to*/) const {}
 
   /// A force that depends on what has been: the energy in J that it stores at `position`, what it loses of it
-  /// as the step ends there, and what it remembers.
+  /// as the step ends there, and what it remembers. As a step ends, `held` (N; null: none), a force at
+  /// `position` that this one is part of, follows.
   virtual double stored_energy(const Vec3Field& /*position*/) const { return 0; }
-  virtual double end_step(const Vec3Field& /*position*/) { return 0; }
+  virtual double end_step(const Vec3Field& /*position*/, Vec3Field* /*held*/) { return 0; }
   virtual std::vector<double> history() const { return {}; }
   virtual void set_history(const std::vector<double>& /*history*/, const Vec3Field& /*position*/) {}
 

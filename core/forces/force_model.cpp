@@ -44,6 +44,7 @@ ForceModel::ForceModel(const Scene& scene, const ClothSystem& system) : system_(
       if (entry.work == &Work::hysteresis_loss) with_history_ = forces_.back().get();
     }
   system_changed();
+  set_history({}, system.start);
 }
 
 void ForceModel::system_changed() {
@@ -55,6 +56,7 @@ void ForceModel::system_changed() {
 void ForceModel::sort_forces() {
   swept_ = {.uniform_mass = sweep_ && sweep_->has_common_mass()};
   swept_.has_shares = sweep_ && sweep_->has_shares();
+  swept_.takes_sliders = sweep_ && sweep_->takes_sliders();
   if (swept_.uniform_mass) swept_.mass = sweep_->mass();
   const bool takes_air = sweep_ && sweep_->takes_air();
   apart_.clear();
@@ -93,7 +95,26 @@ void ForceModel::update(const Vec3Field& position, double time) {
   } else if (position_force_.size() != position.size()) {
     position_force_ = Vec3Field(position.size());
   }
-  sweep_->evaluate({weight(), 0, has_load ? &position_force_ : nullptr}, position, position_force_);
+  sweep_->evaluate(
+      {.weight = weight(), .load = has_load ? &position_force_ : nullptr, .sliders = swept_.sliders},
+      position, position_force_);
+}
+
+double ForceModel::stored_energy(const Vec3Field& position) const {
+  if (swept_.sliders) return sweep_->slider_energy(*swept_.sliders, position);
+  return with_history_ ? with_history_->stored_energy(position) : 0;
+}
+
+double ForceModel::end_step(const Vec3Field& position, Vec3Field* held) {
+  if (swept_.sliders) return sweep_->end_sliders(*swept_.sliders, position, held);
+  return with_history_ ? with_history_->end_step(position, held) : 0;
+}
+
+/// With the normals of the pass that will take them at the end of each step: to the bit what they were.
+void ForceModel::set_history(const std::vector<double>& history, const Vec3Field& position) {
+  if (!with_history_) return;
+  with_history_->set_history(history, position);
+  if (swept_.sliders) sweep_->take_slider_normals(*swept_.sliders, position);
 }
 
 Vec3 ForceModel::weight() const {
@@ -137,8 +158,8 @@ bool ForceModel::couples_particles() const {
                      [&](const auto& force) { return !force->add_node_damping(unused); });
 }
 
-/// product = D v of the dampers of springs and bending that a sweep computes, else 0. Returns what they take, in
-/// W.
+/// product = D v of the dampers of springs and bending that a sweep computes, else 0. Returns what they take,
+/// in W.
 double ForceModel::swept_dampers(const Vec3Field& position, const Vec3Field& velocity,
                                  Vec3Field& product) const {
   if (sweeps_dampers()) {

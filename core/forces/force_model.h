@@ -66,18 +66,14 @@ class ForceModel {
 
   /// Of the force that depends on what has been (Force::stored_energy); whether there is one. At most one.
   bool has_history() const { return with_history_ != nullptr; }
-  double stored_energy(const Vec3Field& position) const {
-    return with_history_ ? with_history_->stored_energy(position) : 0;
-  }
-  double end_step(const Vec3Field& position) {
-    return with_history_ ? with_history_->end_step(position) : 0;
-  }
+  double stored_energy(const Vec3Field& position) const;
+  /// Ends a step at `position`: returns what that force has lost, in J. `held` (N; null: none) is the force
+  /// at `position` with which a method will begin its next step; it becomes what it then is.
+  double end_step(const Vec3Field& position, Vec3Field* held = nullptr);
   std::vector<double> history() const {
     return with_history_ ? with_history_->history() : std::vector<double>();
   }
-  void set_history(const std::vector<double>& history, const Vec3Field& position) {
-    if (with_history_) with_history_->set_history(history, position);
-  }
+  void set_history(const std::vector<double>& history, const Vec3Field& position);
 
   /// A = M + weights.velocity D + weights.position K at the last update.
   void linearise(const Vec3Field& position, const LinearisationWeights& weights, Linearisation& result) const;

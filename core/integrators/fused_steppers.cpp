@@ -12,7 +12,8 @@ SweepLoads loads_at(const ForceModel& forces, std::span<const double> times) {
                    .damping = swept.damping,
                    .spring_damping = swept.spring_damping,
                    .stretch_time = swept.stretch_time,
-                   .bending_time = swept.bending_time};
+                   .bending_time = swept.bending_time,
+                   .sliders = swept.sliders};
   if (swept.air) {
     loads.air.drag = swept.air_drag, loads.air.friction = swept.air_friction;
     for (std::size_t k = 0; k < times.size(); ++k) loads.air.wind[k] = wind_at(*swept.air, times[k]);
@@ -35,10 +36,11 @@ IntegratorReport FusedStepper::step_many(ForceModel& forces, double step, std::s
   return {.force_evaluations = evaluations_, .speed_squares = speed_squares.back()};
 }
 
-/// The steps of a batch take all forces at one time.
+/// The steps of a batch take all forces at one time, and no end of a step lies between them.
 bool FusedStepper::gains_from_batches(const ForceModel& forces) const {
   const Air* air = forces.swept().air;
-  return forces.is_swept_whole() && !(air && air->gust) && forces.sweep()->gains_steps_at_once();
+  return forces.is_swept_whole() && !forces.has_history() && !(air && air->gust) &&
+         forces.sweep()->gains_steps_at_once();
 }
 
 void FusedEuler::sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares,

@@ -29,7 +29,8 @@ struct IntegratorReport {
   int velocity_iterations = 0;  ///< of VelocitySolver
   int inner_steps = 1;          ///< accepted inner steps, of methods that divide the step
   int rejected_steps = 0;       ///< inner steps rejected by error control
-  int iterations = 0;  ///< of Newton's method; of projective dynamics and VBD; passes of XPBD over the springs
+  int iterations =
+      0;  ///< of Newton's method; of projective dynamics and VBD; passes of XPBD over the springs
   int linear_iterations = 0;  ///< of conjugate gradients or another Krylov method
   int factorisations = 0;     ///< of sparse matrices
   /// The largest change of a particle's speed by the last iteration, divided by the largest speed.
@@ -111,6 +112,14 @@ class Integrator {
   /// Tells the method that something else has changed the forces, or the state: values kept of them are
   /// invalid.
   virtual void forget(Change) {}
+
+  /// Called as a step ends where a force depends on what has been (ForceModel::end_step()), so that forces
+  /// change there: the force in N at the state with which the next step will begin, to be brought up to date.
+  /// Null: the method keeps none, or no longer.
+  virtual Vec3Field* held_force() {
+    forget(Change::forces);
+    return nullptr;
+  }
 
   /// Whether the velocity at the end of a step is computed with the force at the end positions, so that it
   /// must be recomputed after contact has moved those.

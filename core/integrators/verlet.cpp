@@ -171,6 +171,16 @@ void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& ti
   add_acceleration(forces.system(), 0.5 * times.step, force(forces), state.velocity);
 }
 
+/// Of a predicted velocity, whose damping stays as it is.
+Vec3Field* Verlet::held_force() {
+  if (end_ == EndVelocity::predicted && holds_force_) {
+    holds_position_force_ = false;
+    return &force_;
+  }
+  forget(Change::forces);
+  return nullptr;
+}
+
 IntegratorMemory Verlet::remember() const {
   if (end_ == EndVelocity::solved || !holds_force_) return {};
   return {.fields = {force_},

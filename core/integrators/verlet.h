@@ -60,6 +60,7 @@ class Verlet : public Integrator {
                                     const Vec3Field& half_velocity, ClothState& state) override;
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = is_open_ = led_by_contact_ = false; }
+  Vec3Field* held_force() override;
   /// A predicted velocity is not part of the state: what was computed with it is remembered.
   IntegratorMemory remember() const override;
   void recall(const IntegratorMemory& memory) override;

@@ -44,6 +44,22 @@ struct CellShares {
   const double *across = nullptr, *down = nullptr, *twist = nullptr;
 };
 
+/// The sliders of hysteresis (cloth/bending_sliders.h) along rows or along columns of a grid, each at the
+/// place of its middle particle, where others have c = 0.
+struct SliderLine {
+  const double* curvature = nullptr;  ///< c in kappa = c n . (x_- - 2 x + x_+), 1/m^2. Null: no sliders
+  const double* slip = nullptr;       ///< 1/m
+  double* next_slip = nullptr;        ///< 1/m, output of `end_sliders`
+  double push = 0;  ///< N m: times kappa - slip and the share, the force of a slider on its ends
+  double most = 0;  ///< 1/m, of |kappa - slip| where it yields
+  double curvature_of_whole = 0;  ///< 1/m^2, the least c
+};
+struct SliderPass {
+  SliderLine across, down;
+  const double* normal[3] = {nullptr, nullptr, nullptr};  ///< unit vectors, of every particle
+  double* next_normal[3] = {nullptr, nullptr, nullptr};   ///< output of `end_sliders` and `slider_normals`
+};
+
 /// Consecutive rows of a field; each component is a contiguous array.
 struct RowBlock {
   double *x = nullptr, *y = nullptr, *z = nullptr;
@@ -65,7 +81,9 @@ constexpr int pitch_of(int columns) {
 }
 /// Rows of scratch memory, of pitch_of(columns) doubles each, that a pass needs.
 inline constexpr int step_scratch_rows = 6, runge_kutta_scratch_rows = 3 * (2 * 4 + 3 * 3 * 2 + 7 * 2),
-                     air_scratch_rows = 6;  ///< in addition, for each evaluation of the force
+                     air_scratch_rows = 6,
+                     slider_scratch_rows = 6;  ///< in addition, for each evaluation of the force
+inline constexpr int slider_end_scratch_rows = 6 + 3 * 5;
 
 /// One pass over a band of rows [first, last) of the grid. Other rows are only read.
 struct Pass {
@@ -77,6 +95,7 @@ struct Pass {
   const double* load[3] = {nullptr, nullptr, nullptr};  ///< N, additional force on each particle; may be null
   double weight[3] = {0, 0, 0};                         ///< N, of every particle; with shares, of a whole one
   CellShares shares;
+  SliderPass sliders;
   double damping = 0;                     ///< N s/m, viscous
   bool has_dampers = false;               ///< along springs, or of bending
   double spring_damping[spring_kinds]{};  ///< N s/m, dampers along springs
@@ -101,6 +120,9 @@ enum StageSum {
   stage_air = 9,
   stage_sums = 13,
 };
+
+/// In J: what the sliders of a row store, or what they have lost.
+enum SliderSum { energy_of_sliders, slider_sums };
 
 /// One visit of every spring by XPBD, see grid_projection.h: moves the velocities alone.
 struct Projection {
@@ -161,6 +183,13 @@ struct GridKernels {
   void (*evaluate)(const Pass& pass);
   /// force = D v of the dampers (SweepLoads), and the power that they dissipate.
   void (*damp)(const Pass& pass);
+  /// The end of a step with sliders: next slips and normals at `position`, and what they have lost. Where
+  /// `force` is given, it becomes what it would be with those.
+  void (*end_sliders)(const Pass& pass);
+  /// Next normals at `position` alone; no sums.
+  void (*slider_normals)(const Pass& pass);
+  /// The energy that the sliders store at `position`.
+  void (*slider_energies)(const Pass& pass);
   /// The sums of |v|^2, added in the same order as in a step, into `squares_after`.
   void (*sum_squares)(const Pass& pass);
   /// Every spring of finite stiffness once, one direction after the other.

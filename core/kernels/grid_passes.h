@@ -4,6 +4,7 @@
 
 #include "kernels/grid_projection.h"
 #include "kernels/grid_row_chain.h"
+#include "kernels/grid_slider_ends.h"
 #include "kernels/grid_visits.h"
 
 namespace cloth::kernels {
@@ -285,7 +286,8 @@ void runge_kutta_rows(const Pass& pass) {
     end[s] = pass.last + reach > pass.grid.rows ? pass.grid.rows : pass.last + reach;
   }
   const auto chain = [&](int s) {
-    return RowChain<law, share>(pass, springs, {2 * s, KuttaRows::first_air_row + 2 * s, s}, start[s]);
+    const int air = KuttaRows::first_air_row, sliders = pass.has_air ? air + 2 * kutta_stages : air;
+    return RowChain<law, share>(pass, springs, {2 * s, air + 2 * s, sliders + 2 * s, s}, start[s]);
   };
   RowChain<law, share> chains[kutta_stages] = {chain(0), chain(1), chain(2), chain(3)};
 
@@ -342,6 +344,9 @@ constexpr GridKernels grid_kernels{euler_band,
                                    runge_kutta_band,
                                    evaluate_band,
                                    damp_band,
+                                   end_sliders_band,
+                                   slider_normals_band,
+                                   slider_energies_band,
                                    sum_squares_band,
                                    project_springs,
                                    descend_all,

@@ -5,6 +5,7 @@
 #include "kernels/grid_air.h"
 #include "kernels/grid_cell_rows.h"
 #include "kernels/grid_rows.h"
+#include "kernels/grid_sliders.h"
 #include "kernels/step_updates.h"
 
 namespace cloth::kernels {
@@ -38,9 +39,10 @@ struct Powers {
   V dampers, air;
 };
 
-/// Where a chain keeps its rows of scratch: two for the springs, two for the air if there is any.
+/// Where a chain keeps its rows of scratch: two for the springs, two for the air if there is any, two for
+/// sliders if there are any.
 struct ChainPlace {
-  int buffer, air_buffer;
+  int buffer, air_buffer, slider_buffer;
   int evaluation = 0;  ///< of the step, for the wind
 };
 
@@ -78,6 +80,9 @@ class RowChain {
     if (pass.has_air)
       air_.begin(pass, pass.wind[place.evaluation], scratch_row(pass, place.air_buffer),
                  scratch_row(pass, place.air_buffer + 1));
+    if (has_sliders())
+      sliders_.begin(pass, scratch_row(pass, place.slider_buffer),
+                     scratch_row(pass, place.slider_buffer + 1));
   }
 
   /// `particles(row)` gives a row's particles; rows must come one after the other. The last two before row
@@ -92,6 +97,9 @@ class RowChain {
     Powers powers{Lanes::zero(), Lanes::zero()};
     if constexpr (share == Share::by_cell) stand_at(row);
     if (pass_.has_air) powers.air = push(row, own, below >= 1);
+    if (has_sliders())
+      sliders_.run(row, work_.of_row, work_.here.position, work_.below.position, work_.second.position,
+                   own ? work_.a : Row{});
     if (has_all_ && own && below >= 2) {
       powers.dampers = row_pass<law, share, true>(work_, true, update);
       return powers;
@@ -108,6 +116,9 @@ class RowChain {
 
  private:
   bool bends() const { return pass_.shares.across && (law != Law::damper || pass_.bending_time > 0); }
+  bool has_sliders() const {
+    return share == Share::by_cell && law != Law::damper && pass_.sliders.across.curvature;
+  }
   void stand_at(int row) {
     work_.of_row = Lanes::set(share_of(pass_, row)), work_.of_below = Lanes::set(share_of(pass_, row + 1));
     work_.of_second = Lanes::set(share_of(pass_, row + 2));
@@ -137,6 +148,7 @@ class RowChain {
   const Pass& pass_;
   RowWork work_{};
   AirRows air_;
+  SliderRows sliders_;
   bool has_all_ = false;
 };
 
@@ -156,7 +168,7 @@ template <Law law, Share share, class Update, class Before, class After>
 void band_pass(const Pass& pass, Update& update, const Before& before, const After& after) {
   const Springs springs(pass);
   const int start = first_row_of_springs(pass.first);
-  RowChain<law, share> chain(pass, springs, {0, 2}, start);
+  RowChain<law, share> chain(pass, springs, {0, 2, pass.has_air ? 4 : 2}, start);
   const bool needs_velocity = law != Law::elastic || pass.has_air;
   const auto particles = [&](int row) -> ParticleRow {
     if (!needs_velocity) return {row_of(pass, pass.position, row), {}};

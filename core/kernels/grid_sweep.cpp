@@ -8,6 +8,7 @@
 #include "cloth/grid.h"
 #include "cloth/sums.h"
 #include "kernels/instruction_set.h"
+#include "kernels/slider_grid.h"
 
 namespace cloth {
 namespace {
@@ -63,7 +64,8 @@ void GridSweep::make_room(const Plan& plan, std::size_t passes, std::size_t band
   const auto rows = static_cast<std::size_t>(grid_.rows);
   const auto pitch = static_cast<std::size_t>(kernels::pitch_of(grid_.columns));
   const int air_rows = plan.loads.air.acts() ? plan.evaluations * kernels::air_scratch_rows : 0;
-  const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows + air_rows) * pitch;
+  const int slider_rows = plan.loads.sliders ? plan.evaluations * kernels::slider_scratch_rows : 0;
+  const std::size_t scratch = static_cast<std::size_t>(plan.scratch_rows + air_rows + slider_rows) * pitch;
   std::size_t edges = 0;
   for (const Attached& attached : plan.fields) edges += sides * rows_size(attached.halo_rows, grid_.columns);
   if (bands == 1) edges = 0;
@@ -98,6 +100,7 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
     pass.spring_damping[k] = plan.loads.spring_damping + plan.loads.stretch_time * grid_.kind[k].stiffness;
   pass.bending_time = plan.loads.bending_time;
   if (has_shares()) pass.shares = layout_.shares();
+  if (plan.loads.sliders) pass.sliders = plan.loads.sliders->pass();
   if (const SweptAir& air = plan.loads.air; air.acts()) {
     pass.has_air = true;
     pass.air_drag = air.drag, pass.air_friction = air.friction;
@@ -320,6 +323,38 @@ double GridSweep::damp(const SweepLoads& dampers, const Vec3Field& position, con
                               {&Pass::force, &product, 0}}}};
   run_once(PassKind::dampers, plan);
   return sum_of(plan, 0, kernels::dampers_before);
+}
+
+double GridSweep::end_sliders(SliderGrid& sliders, const Vec3Field& position, Vec3Field* force) {
+  const SweepLoads loads{.sliders = &sliders};
+  const Plan plan{.kernel = kernels_->end_sliders,
+                  .loads = loads,
+                  .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0},  // only read
+                              {&Pass::force, force, 0}}},
+                  .sums = kernels::slider_sums,
+                  .scratch_rows = kernels::slider_end_scratch_rows};
+  run_once(PassKind::sliders, plan);
+  sliders.take_next();
+  return sum_of(plan, 0, kernels::energy_of_sliders);
+}
+
+void GridSweep::take_slider_normals(SliderGrid& sliders, const Vec3Field& position) {
+  const SweepLoads loads{.sliders = &sliders};
+  run_once(PassKind::sums,
+           {.kernel = kernels_->slider_normals,
+            .loads = loads,
+            .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0}}}});  // only read
+  sliders.take_next_normals();
+}
+
+double GridSweep::slider_energy(SliderGrid& sliders, const Vec3Field& position) {
+  const SweepLoads loads{.sliders = &sliders};
+  const Plan plan{.kernel = kernels_->slider_energies,
+                  .loads = loads,
+                  .fields = {{{&Pass::position, const_cast<Vec3Field*>(&position), 0}}},  // only read
+                  .sums = kernels::slider_sums};
+  run_once(PassKind::sums, plan);
+  return sum_of(plan, 0, kernels::energy_of_sliders);
 }
 
 double GridSweep::squares(const Vec3Field& velocity) {

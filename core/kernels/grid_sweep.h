@@ -38,6 +38,10 @@ class GridSweep : public SpringSweep {
                    ClothState& state) override;
   bool has_shares() const override { return !layout_.part.empty(); }
   bool takes_air() const override { return true; }
+  bool takes_sliders() const override { return has_shares(); }
+  double end_sliders(SliderGrid& sliders, const Vec3Field& position, Vec3Field* force) override;
+  void take_slider_normals(SliderGrid& sliders, const Vec3Field& position) override;
+  double slider_energy(SliderGrid& sliders, const Vec3Field& position) override;
   /// Several steps at once start the threads only once.
   bool gains_steps_at_once() const override { return threads() > 1; }
   void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) override;

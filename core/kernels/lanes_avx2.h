@@ -36,6 +36,7 @@ struct Lanes {
   static V fma(V a, V b, V c) { return _mm256_fmadd_pd(a, b, c); }
   static V fnma(V a, V b, V c) { return _mm256_fnmadd_pd(a, b, c); }
   static V div(V a, V b) { return _mm256_div_pd(a, b); }
+  static V min(V a, V b) { return _mm256_min_pd(a, b); }
   static V max(V a, V b) { return _mm256_max_pd(a, b); }
   static bool any_positive(V a) { return _mm256_movemask_pd(_mm256_cmp_pd(a, zero(), _CMP_GT_OQ)) != 0; }
   static void pairs_one(V a, V b, V& first, V& second) {

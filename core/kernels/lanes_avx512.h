@@ -33,6 +33,7 @@ struct Lanes {
   static V fma(V a, V b, V c) { return _mm512_fmadd_pd(a, b, c); }
   static V fnma(V a, V b, V c) { return _mm512_fnmadd_pd(a, b, c); }
   static V div(V a, V b) { return _mm512_div_pd(a, b); }
+  static V min(V a, V b) { return _mm512_min_pd(a, b); }
   static V max(V a, V b) { return _mm512_max_pd(a, b); }
   static bool any_positive(V a) { return _mm512_cmp_pd_mask(a, zero(), _CMP_GT_OQ) != 0; }
   static void pairs_one(V a, V b, V& first, V& second) {

@@ -52,6 +52,7 @@ struct Lanes {
   static V fma(V a, V b, V c) { return a * b + c; }
   static V fnma(V a, V b, V c) { return c - a * b; }
   static V div(V a, V b) { return a / b; }
+  static V min(V a, V b) { return V{a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1]}; }
   static V max(V a, V b) { return V{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]}; }
   static bool any_positive(V a) { return a[0] > 0 || a[1] > 0; }
   static void pairs_one(V a, V b, V& first, V& second) { first = V{a[0], b[0]}, second = V{a[1], b[1]}; }

@@ -35,6 +35,7 @@ struct Lanes {
   static V fma(V a, V b, V c) { return _mm_add_pd(_mm_mul_pd(a, b), c); }
   static V fnma(V a, V b, V c) { return _mm_sub_pd(c, _mm_mul_pd(a, b)); }
   static V div(V a, V b) { return _mm_div_pd(a, b); }
+  static V min(V a, V b) { return _mm_min_pd(a, b); }
   static V max(V a, V b) { return _mm_max_pd(a, b); }
   static bool any_positive(V a) { return _mm_movemask_pd(_mm_cmpgt_pd(a, zero())) != 0; }
   static void pairs_one(V a, V b, V& first, V& second) {

@@ -25,6 +25,8 @@ struct SweptAir {
   bool acts() const { return drag > 0 || friction > 0; }
 };
 
+struct SliderGrid;
+
 /// The forces beside the springs' elastic ones: f = springs + weight + load + air - damping v - D v, where D
 /// are dampers along the springs: F_i = k_d ((v_j - v_i) . d/|d|) d/|d|, 0 where |d| = 0, with k_d =
 /// spring_damping + stretch_time k; and t K v of the bending elements. Of a grid assembled cell by cell
@@ -38,6 +40,7 @@ struct SweepLoads {
   double stretch_time = 0;          ///< s; only of grids assembled cell by cell
   double bending_time = 0;          ///< s; likewise
   bool has_dampers() const { return spring_damping > 0 || stretch_time > 0 || bending_time > 0; }
+  SliderGrid* sliders = nullptr;  ///< of hysteresis; only where takes_sliders()
   SweptAir air{};  ///< only for euler(), predicted() and runge_kutta(), and only if takes_air()
 };
 
@@ -104,6 +107,14 @@ class SpringSweep {
   virtual bool has_shares() const { return false; }
   /// Whether SweepLoads::air is supported.
   virtual bool takes_air() const { return false; }
+  /// Whether the sliders of hysteresis are supported (kernels/slider_grid.h); then
+  virtual bool takes_sliders() const { return false; }
+  /// the end of a step with them: slips follow where sliders have yielded, normals are taken anew. Returns
+  /// the energy in J that is gone. `force` (N; null: none) that holds what acts at `position` follows.
+  virtual double end_sliders(SliderGrid&, const Vec3Field& /*position*/, Vec3Field* /*force*/) { return 0; }
+  /// Normals alone, and the energy in J that is stored.
+  virtual void take_slider_normals(SliderGrid&, const Vec3Field& /*position*/) {}
+  virtual double slider_energy(SliderGrid&, const Vec3Field& /*position*/) { return 0; }
   /// Whether several steps of euler() or runge_kutta() in one call cost less than single steps.
   virtual bool gains_steps_at_once() const = 0;
 
@@ -111,8 +122,8 @@ class SpringSweep {
   virtual void evaluate(const SweepLoads& loads, const Vec3Field& position, Vec3Field& force) = 0;
   /// to = from. Each thread copies the particles that it will update, so that they are in its cache.
   void copy(const ClothState& from, ClothState& to);
-  /// product = D v of the dampers along the springs at `position`, and of bending. Returns the power in W that
-  /// they dissipate.
+  /// product = D v of the dampers along the springs at `position`, and of bending. Returns the power in W
+  /// that they dissipate.
   virtual double damp(const SweepLoads& dampers, const Vec3Field& position, const Vec3Field& velocity,
                       Vec3Field& product) = 0;
   /// Whether project() is supported: springs of finite stiffness, and of one for each direction.
@@ -129,8 +140,8 @@ class SpringSweep {
 
  protected:
   /// Each kind is timed separately and chooses its own number of threads.
-  enum class PassKind { step, several_steps, evaluation, dampers, sums, copies, drift, closing };
-  static constexpr std::size_t pass_kinds = 8;
+  enum class PassKind { step, several_steps, evaluation, dampers, sums, copies, drift, closing, sliders };
+  static constexpr std::size_t pass_kinds = 9;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
   /// Smallest number of particles per thread. With fewer, waking the threads takes as long as the pass.
   static constexpr int fewest_particles = 1000;

@@ -13,9 +13,8 @@ namespace {
 /// Chosen so that the ledgers of `ball`, `cube` and `tablecloth` close to two per cent.
 constexpr double largest_load_in_contact = 0.55;
 /// So many steps take no more time than one that solves for its damping (docs/performance.md): where their
-/// damping is in the pass of the forces, where contact particle by particle costs its share of each step, and
-/// where hysteresis keeps damping out of the pass.
-constexpr double steps_for_a_solve = 24, contact_steps_for_a_solve = 8, general_steps_for_a_solve = 1.25;
+/// damping is in the pass of the forces, and where contact particle by particle costs its share of each step.
+constexpr double steps_for_a_solve = 24, contact_steps_for_a_solve = 8;
 
 bool touches_by_particles(const Scene& scene) {
   return !scene.obstacles.empty() && !has_continuous_contact(scene);
@@ -29,12 +28,7 @@ bool has_dampers_to_predict(const Scene& scene) {
   return scene.springs && scene.springs->damping > 0;
 }
 
-bool has_hysteresis(const Scene& scene) {
-  return scene.material && (scene.material->hysteresis_warp > 0 || scene.material->hysteresis_weft > 0);
-}
-
 double steps_for_a_solve_of(const Scene& scene) {
-  if (has_hysteresis(scene)) return general_steps_for_a_solve;
   return touches_by_particles(scene) ? contact_steps_for_a_solve : steps_for_a_solve;
 }
 

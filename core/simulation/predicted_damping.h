@@ -13,8 +13,8 @@ double allowed_damping_load(const Scene& scene);
 
 /// The number of steps to a record interval of `interval` s where `parts` are enough for stability: `parts`,
 /// or the smallest larger number at which Verlet may predict the damping of a grid's dampers, if that is one
-/// more or takes no more time than the solves would: at most 24 times as many, 8 times with contact particle by
-/// particle, a quarter more with hysteresis of bending, which no pass computes.
+/// more or takes no more time than the solves would: at most 24 times as many, 8 times with contact particle
+/// by particle.
 double parts_to_predict(const Scene& scene, double interval, double parts);
 
 }  // namespace cloth

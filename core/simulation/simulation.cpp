@@ -221,10 +221,8 @@ std::optional<Divergence> Simulation::step() {
     run_.state.position = position_before_;  // nothing has led it there
   run_.state.time = times.end;
   run_.state.step = next;
-  if (forces_->has_history() && !report.failure) {
-    run_.ledger.forces.hysteresis_loss += forces_->end_step(run_.state.position);
-    integrator_->forget(Change::forces);
-  }
+  if (forces_->has_history() && !report.failure)
+    run_.ledger.forces.hysteresis_loss += forces_->end_step(run_.state.position, integrator_->held_force());
   count_step(report);
 
   if (run_.last_contact.exhausted && !report.failure) return stop_at_exhaustion(*run_.last_contact.pinch);

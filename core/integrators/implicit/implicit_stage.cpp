@@ -15,7 +15,7 @@ namespace {
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
-constexpr int most_futile = 5;          // relaxations, before a step does without
+constexpr int most_futile = 20;         // relaxations, before a step does without
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
 constexpr double good_enough = 1e-3;    // relative change after the last iteration that is still taken

@@ -1,9 +1,13 @@
 // The implicit methods solve their own equations, keep what they must keep, and say so where they cannot.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "cloth/sums.h"
+#include "geometry/split_mix.h"
+#include "integrators/implicit/limited_memory.h"
 #include "integrators/implicit_methods.h"
 #include "measure/energy.h"
 #include "scene/builtin_scenes.h"
@@ -151,6 +155,89 @@ TEST(NewtonsMethod, LeavesTheSaddlesOfAFlagThatBuckles) {
     ASSERT_FALSE(stop->solver_failed) << describe(*stop);
     EXPECT_GT(n, 80) << describe(*stop);  // its steps make energy, for which it is stopped after the buckling
     break;
+  }
+}
+
+struct Push {
+  double narrower = 0;   ///< part of the width by which the corners are nearer to each other
+  double off_plane = 0;  ///< cells, at most, of every particle, at random
+};
+
+/// A sheet of 1 m x 1 m and 0.25 kg that hangs by two corners which are too near for it to be flat.
+Scene pushed_sheet(int size) {
+  Scene scene;
+  scene.cloth.rows = scene.cloth.columns = size;
+  scene.cloth.pins = std::vector<Pin>{NamedPin::top_left, NamedPin::top_right};
+  scene.cloth.down = Vec3(0, -0.95, 0.3);
+  scene.springs = SpringMaterial{.structural = 1000, .shear = 500, .flexion = 100};
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.integrator = {"implicit-euler", 1.0 / 60};
+  return scene;
+}
+
+Preparation pushed(const Push& push) {
+  return [push](ClothSystem& system, ClothState& state) {
+    SplitMix random(1);
+    const double cell = (*system.springs.begin()).rest_length;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      Vec3 x = state.position[i];
+      x.x() *= 1 - push.narrower;
+      const double part = static_cast<double>(random.bits() >> 11) * 0x1p-53;
+      if (!system.pinned[i]) x.z() += push.off_plane * cell * (2 * part - 1);
+      state.position.set(i, x);
+    }
+  };
+}
+
+constexpr Push pushes[] = {{0.15, 0.02}, {0.3, 0.05}};
+
+TEST(NewtonsMethod, TakesAtMostEightIterationsAStepOnAverageWhereASheetBuckles) {
+  for (const int size : {33, 65})
+    for (const Push& push : pushes) {
+      constexpr int steps = 20;  // in the first the flat sheet snaps into its folds
+      Simulation simulation(pushed_sheet(size), pushed(push));
+      for (int n = 0; n < steps; ++n) ASSERT_FALSE(simulation.step()) << size;
+      EXPECT_LE(simulation.count().iterations, 8 * steps) << size << " pushed by " << push.narrower;
+    }
+}
+
+TEST(NewtonsMethod, EndsWhereATighterToleranceWouldToo) {
+  for (const Push& push : pushes) {
+    Simulation simulation(pushed_sheet(33), pushed(push));
+    for (int n = 0; n < 8; ++n) ASSERT_FALSE(simulation.step());
+    Scene tighter = simulation.scene();
+    tighter.integrator.tolerance = 1e-12;
+    Simulation exact(tighter, pushed(push));
+    for (int n = 0; n < 4; ++n) {
+      exact.restore(simulation.checkpoint());
+      ASSERT_FALSE(simulation.step());
+      ASSERT_FALSE(exact.step());
+      const Vec3Field &v = simulation.state().velocity, &better = exact.state().velocity;
+      EXPECT_LE(largest_distance(v, better), 1e-6 * largest_norm(better));
+    }
+  }
+}
+
+TEST(LimitedMemory, MapsTheLastGrowthToItsChangeAndGoesDownhill) {
+  constexpr std::size_t size = 20;
+  Random random;
+  const LinearMap inverse = [](const Vec3Field& in, Vec3Field& out) {
+    out.fill(0);
+    add_scaled(0.3, in, out);
+  };
+  LimitedMemory memory;
+  Vec3Field direction(size);
+  for (int n = 0; n < 12; ++n) {
+    const Vec3Field change = random.field(size, 1);
+    Vec3Field growth = random.field(size, 0.4);
+    add_scaled(2, change, growth);
+    memory.add(change, growth);
+    memory.direction(growth, inverse, direction);
+    EXPECT_LE(largest_distance(direction, combination(-1, change, 0, change)), 1e-11);
+    const Vec3Field residual = random.field(size, 1);
+    memory.direction(residual, inverse, direction);
+    EXPECT_LT(dot(direction.flat(), residual.flat()), 0);
+    memory.add(change, combination(-1, growth, 0, growth));  // falls along the change: not kept
   }
 }
 

@@ -13,9 +13,12 @@ namespace cloth {
 namespace {
 
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
-constexpr double accepted_work = 0.5;  // of the residual along a step that is long enough
-constexpr int max_trials = 13;         // of a length
-constexpr double good_enough = 1e-3;   // relative change after the last iteration that is still taken
+constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
+constexpr int max_trials = 13;          // of a length
+constexpr int most_futile = 20;         // relaxations, before a step does without
+constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
+constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
+constexpr double good_enough = 1e-3;    // relative change after the last iteration that is still taken
 
 double largest_component(const Vec3Field& field) {
   double largest = 0;
@@ -165,13 +168,8 @@ void ImplicitStage::correct_direction(const StageEquation& e) {
     add_scaled(e.weight * e.weight, turned, out);
     clear_pinned(e.forces.system(), out);
   };
-  const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
-    if (linear_method_ == LinearMethod::cholesky) return factors_.solve(in, out);
-    if (linear_method_ == LinearMethod::multigrid) return multigrid_.precondition(in, out);
-    jacobi_.solve(in, out);
-  };
   e.report.linear_iterations +=
-      minimal_residuals(jacobian, preconditioner, negative(residual_), forcing_, direction_).iterations;
+      minimal_residuals(jacobian, preconditioner(), negative(residual_), forcing_, direction_).iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
@@ -186,34 +184,87 @@ void ImplicitStage::add_escape() {
   add_scaled(downwards * std::min(1.0, allowed / reach), escape_, direction_);
 }
 
-/// Goes along the direction until the residual's work along it has fallen: less far where it has turned
-/// against the direction, further where it has hardly fallen, as on the way off a saddle. Returns the largest
-/// change.
-double ImplicitStage::take_step(const StageEquation& e) {
+/// Goes along the direction until the residual's work along it has fallen to the part `accepted`: less far
+/// where it has turned against the direction, further where it has hardly fallen, as on the way off a saddle.
+/// False where it is not finite at last.
+bool ImplicitStage::find_length(const StageEquation& e, double accepted) {
   start_ = e.velocity;
   const double before = work_along(direction_, residual_);
   double near = 0, near_work = before;  // the longest step that was too short
   std::optional<double> far;            // the shortest that was too long, and its work
-  double far_work = 0, length = 1;
+  double far_work = 0;
+  length_ = 1;
   for (int trial = 1;; ++trial) {
     e.velocity = start_;
-    add_scaled(length, direction_, e.velocity);
+    add_scaled(length_, direction_, e.velocity);
     evaluate(e);
     const double after = work_along(direction_, residual_);
-    if (std::abs(after) <= accepted_work * std::abs(before) || trial == max_trials) break;
+    if (std::abs(after) <= accepted * std::abs(before) || trial == max_trials) return std::isfinite(after);
     if (after < 0) {
-      near = length, near_work = after;
+      near = length_, near_work = after;
     } else {
-      far = length, far_work = after;
+      far = length_, far_work = after;
     }
     if (far) {
       const double secant = std::isfinite(far_work) ? near_work / (near_work - far_work) : 0;
-      length = near + (*far - near) * std::clamp(secant, 0.1, 0.5);
+      length_ = near + (*far - near) * std::clamp(secant, 0.1, 0.5);
     } else {
-      length *= 2;
+      length_ *= 2;
     }
   }
-  return length * largest_component(direction_);
+}
+
+/// Returns the largest change.
+double ImplicitStage::take_step(const StageEquation& e) {
+  find_length(e, accepted_work);
+  return length_ * largest_component(direction_);
+}
+
+/// About the inverse of the matrix that was solved with last.
+LinearMap ImplicitStage::preconditioner() {
+  return [this](const Vec3Field& in, Vec3Field& out) {
+    if (linear_method_ == LinearMethod::cholesky) return factors_.solve(in, out);
+    if (linear_method_ == LinearMethod::multigrid) return multigrid_.precondition(in, out);
+    jacobi_.solve(in, out);
+  };
+}
+
+/// Lowers the residual by limited memory until its work along the direction is a millionth of the first. The
+/// preconditioner knows nothing of how much longer a spring gets by turning, and its steps are mostly too
+/// long at first: so a loose condition ends each line search.
+void ImplicitStage::relax(const StageEquation& e) {
+  constexpr int most_steps = 200;
+  constexpr double fall = 1e-6, accepted = 0.9, little = 0.1;
+  const LinearMap inverse = preconditioner();
+  double first = 0, last = 0;
+  for (int n = 0; n < most_steps; ++n) {
+    memory_.direction(residual_, inverse, direction_);
+    ++e.report.linear_iterations;
+    last = -work_along(direction_, residual_);
+    if (n == 0) first = last;
+    if (!(last > fall * first)) break;
+    before_ = residual_;
+    if (!find_length(e, accepted)) {
+      e.velocity = start_;
+      evaluate(e);
+      memory_.forget();
+      break;
+    }
+    Vec3Field change = direction_, growth = residual_;
+    for (double& value : change.flat()) value *= length_;
+    add_scaled(-1, before_, growth);
+    memory_.add(std::move(change), std::move(growth));
+  }
+  if (!(last < little * first)) ++futile_;
+}
+
+/// Whether a further iteration would change no velocity by more than `largest_change`, by what the last one's
+/// solver makes of the residual that is left. A step that was shortened says nothing.
+bool ImplicitStage::is_solved(const StageEquation& e, double largest_change) {
+  if (length_ != 1) return false;
+  preconditioner()(residual_, downhill_);
+  ++e.report.linear_iterations;
+  return largest_component(downhill_) <= largest_change;
 }
 
 void ImplicitStage::solve(const StageEquation& e) {
@@ -227,6 +278,8 @@ void ImplicitStage::solve(const StageEquation& e) {
   double scale = std::max(largest_component(e.velocity), largest_component(e.start_velocity));
   double relative = 0;
   residual_norm_ = 0;
+  futile_ = 0;
+  memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {
     choose_forcing();
     find_direction(e);
@@ -243,6 +296,10 @@ void ImplicitStage::solve(const StageEquation& e) {
       e.report.residual = std::max(e.report.residual, relative);
       return;
     }
+    if (!has_preconditioner()) continue;
+    if (length_ < 1 && futile_ < most_futile) relax(e);
+    const bool is_near = change <= nearly_solved * scale;
+    if (is_near && is_solved(e, estimate_part * tolerance_ * scale + rounding)) return;
   }
   e.report.residual = std::max(e.report.residual, relative);
   if (relative <= good_enough) return;

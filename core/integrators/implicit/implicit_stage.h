@@ -8,8 +8,14 @@
 // compressed springs is left out (Choi and Ko 2002), so that the direction is one of descent and the
 // iteration does not end at a saddle point. The line search uses the work of the residual along the direction
 // (Matthies and Strang 1979); it needs no energy, since drag and dampers have none.
+//
+// Where a step had to be shortened, the linear model holds only nearby: springs that turn get longer by the
+// square of the turning. The residual is then relaxed by a quasi-Newton method that evaluates forces instead
+// of multiplying with the matrix, and has the last iteration's solver as preconditioner: it goes much further
+// for the cost of one linear solve.
 #pragma once
 
+#include "integrators/implicit/limited_memory.h"
 #include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
 #include "integrators/implicit/multigrid_solver.h"
@@ -47,6 +53,11 @@ class ImplicitStage {
   bool solve_by_multigrid(const StageEquation& e);
   void keep_escape(const KrylovReport& krylov);
   double take_step(const StageEquation& e);
+  bool find_length(const StageEquation& e, double accepted);
+  bool has_preconditioner() const { return linear_method_ != LinearMethod::conjugate_gradients; }
+  LinearMap preconditioner();
+  void relax(const StageEquation& e);
+  bool is_solved(const StageEquation& e, double largest_change);
 
   double tolerance_;
   int max_iterations_;
@@ -57,8 +68,11 @@ class ImplicitStage {
   LinearMethod linear_method_ = LinearMethod::cholesky;
   double residual_norm_ = 0;  ///< N s, before the last iteration of this solve; 0: there was none
   double forcing_ = 0;        ///< tolerance of iterative solves, relative to the residual
+  double length_ = 1;         ///< of the last step along its direction
+  int futile_ = 0;            ///< relaxations of this solve that gained little
+  LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
-  Vec3Field force_, residual_, downhill_, direction_, escape_, start_;
+  Vec3Field force_, residual_, downhill_, direction_, escape_, start_, before_;
 };
 
 }  // namespace cloth

@@ -24,11 +24,14 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   // s, measured: dissected factors of a grid grow as size^1.5, an iteration of conjugate gradients is linear.
   constexpr double factor_cost = 130e-9, preconditioner_cost = 60e-9, iteration_cost = 25e-9;
   // Of smooth states, which are most: conjugate gradients need more iterations as well where cloth buckles.
-  constexpr double setup_cost = 600e-9, cycle_cost = 140e-9, cycles = 4;
+  constexpr double start_cost = 200e-6, setup_cost = 600e-9, cycle_cost = 140e-9, cycles = 4;
+  // Of Newton's method: with conjugate gradients a step is neither relaxed, nor is its last iteration spared.
+  constexpr double more_iterations = 1.5;
   // Measured with the forcing of ImplicitStage: as the root of the condition, but a grid has no worse one
   // than its size gives it; and what factors save in iterations of Newton's method where springs are stiffer
   // still.
-  constexpr double iterations_per_root = 1.25, iterations_per_edge = 2.4, stiff = 1e6, growth = 0.25;
+  constexpr double iterations_per_root = 2, stiff = 1e6, growth = 0.25;
+  const double iterations_per_edge = system.bending.empty() ? 1.7 : 4;  // a material's stiffnesses lie apart
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
   for (const BendingRun& run : system.bending) stiffest = std::max(stiffest, 2 * run.stiffness);
@@ -45,12 +48,12 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
       std::min(iterations_per_edge * std::sqrt(size), iterations_per_root * std::sqrt(condition)) *
       std::pow(std::max(1.0, condition / stiff), growth);
   choice.factors = factor_cost * size * std::sqrt(size);
-  choice.gradients = (preconditioner_cost + iteration_cost * choice.iterations) * size;
+  choice.gradients = more_iterations * (preconditioner_cost + iteration_cost * choice.iterations) * size;
   if (choice.gradients < choice.factors) choice.method = LinearMethod::conjugate_gradients;
   // Single precision ends where the springs' part of A is some 1e6 times the masses'.
   constexpr double stiffest_ratio = 3e5;
   if (MultigridSolver::suits(system) && weights.position * stiffest / lightest <= stiffest_ratio) {
-    choice.multigrid = (setup_cost + cycle_cost * cycles) * size;
+    choice.multigrid = start_cost + (setup_cost + cycle_cost * cycles) * size;
     if (*choice.multigrid < std::min(choice.factors, choice.gradients))
       choice.method = LinearMethod::multigrid;
   }

@@ -17,7 +17,8 @@ enum class LinearMethod { cholesky, conjugate_gradients, multigrid };
 /// "factors", "conjugate gradients" or "multigrid"
 const char* name_of(LinearMethod method);
 
-/// Estimates of one solve of A x = b, from the costs of the machine that was measured on.
+/// Estimates of one solve of A x = b, from the costs of the machine that was measured on; that of conjugate
+/// gradients half as much again, since Newton's method takes more iterations with them.
 struct LinearChoice {
   LinearMethod method = LinearMethod::cholesky;  ///< the cheaper one
   double factors = 0;                            ///< s

@@ -8,62 +8,67 @@
 #include "integrators/largest_square.h"
 
 namespace cloth {
-bool Xpbd::is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const {
+Xpbd::Visitor Xpbd::visitor_for(const ForceModel& forces, const NodeDamping& parts) {
   const ClothSystem& system = forces.system();
-  return iterations_ == 1 && forces.sweep() && forces.sweep()->projects() && parts.stretch_time == 0 &&
-         !parts.normal && system.bending.empty() && system.sliders.empty() && system.membrane.empty();
+  has_others_ = !system.bending.empty() || !system.sliders.empty() || !system.membrane.empty();
+  const bool by_grid = iterations_ == 1 && forces.sweep() && forces.sweep()->projects() &&
+                       parts.stretch_time == 0 && !parts.normal && !has_others_;
+  if (by_grid) return Visitor::grid;
+  if (!coloured_.describe(system)) coloured_ = ColouredSprings(system);
+  return coloured_.are_visited_by_vectors() ? Visitor::colours : Visitor::one_by_one;
 }
 
-void Xpbd::begin_kernel_visits(const ForceModel& forces, const NodeDamping& parts, double h) {
+void Xpbd::begin_substeps(const ForceModel& forces, const NodeDamping& parts, double h) {
   const ClothSystem& system = forces.system();
   const std::size_t count = system.mass.size();
-  mass_.resize(count), alike_.resize(count), kept_.resize(count), pushed_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) mass_[i] = system.mass[i] + h * parts.isotropic.of(system.mass[i]);
-  if (parts.held_particle >= 0)
-    mass_[static_cast<std::size_t>(parts.held_particle)] +=
-        h * parts.held_isotropic + h * h * parts.held_stiffness;
+  for (auto* numbers : {&isotropic_, &kept_, &pushed_, &along_}) numbers->resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_pinned = system.inverse_mass[i] == 0;
-    alike_[i] = is_pinned ? 0 : 1 / mass_[i];
-    kept_[i] = is_pinned ? 1 : system.mass[i] / mass_[i];
-    pushed_[i] = is_pinned ? 0 : h / mass_[i];
-  }
-  forces.sweep()->begin_projections(alike_);
-}
-
-double Xpbd::visit_by_kernels(const ForceModel& forces, const NodeDamping& parts, double h,
-                              const Vec3Field& position, Vec3Field& velocity) const {
-  const Vec3Field& force = forces.position_force();
-  const auto predict = [&](double* v, const double* f) {
-    for (std::size_t i = 0; i < kept_.size(); ++i) v[i] = kept_[i] * v[i] + pushed_[i] * f[i];
-  };
-  predict(velocity.x(), force.x());
-  predict(velocity.y(), force.y());
-  predict(velocity.z(), force.z());
-  return forces.sweep()->project(h, parts.along_springs, position, velocity);
-}
-
-/// Inverted after Sherman and Morrison (1950): n is of length one or zero.
-void Xpbd::predict(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity) {
-  const ClothSystem& system = forces.system();
-  const Vec3Field& force = forces.position_force();
-  spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
-  bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
-  sliders_ = parts.sliders;
-  mobility_.assign(velocity.size(), {});
-  for (std::size_t i = 0; i < mobility_.size(); ++i) {
-    if (system.inverse_mass[i] == 0) continue;
-    const double along = h * parts.along_normal.of(system.mass[i]);
     double mass = system.mass[i] + h * parts.isotropic.of(system.mass[i]);
     if (parts.held_particle == static_cast<int>(i))
       mass += h * parts.held_isotropic + h * h * parts.held_stiffness;
-    Mobility& mobility = mobility_[i];
-    mobility.isotropic = 1 / mass;
-    if (parts.normal && along > 0) {
-      mobility.normal = (*parts.normal)[i];
-      mobility.along_normal = along / (mass * (mass + along));
-    }
-    velocity.set(i, mobility.times(system.mass[i] * velocity[i] + h * force[i]));
+    const double along = h * parts.along_normal.of(system.mass[i]);
+    isotropic_[i] = is_pinned ? 0 : 1 / mass;
+    kept_[i] = is_pinned ? 1 : system.mass[i] / mass;
+    pushed_[i] = is_pinned ? 0 : h / mass;
+    along_[i] = is_pinned ? 0 : std::sqrt(along / (mass + along));
+  }
+  spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
+  bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
+  sliders_ = parts.sliders;
+  if (visitor_ == Visitor::grid) forces.sweep()->begin_projections(isotropic_);
+  if (visitor_ == Visitor::colours) coloured_.begin(h, {parts.along_springs, parts.stretch_time}, isotropic_);
+}
+
+/// v* and b. Inverted after Sherman and Morrison (1950): n is of length one or zero.
+void Xpbd::predict(const ForceModel& forces, const NodeDamping& parts, Vec3Field& velocity) {
+  const Vec3Field& force = forces.position_force();
+  const auto push = [&](double* v, const double* f) {
+    for (std::size_t i = 0; i < kept_.size(); ++i) v[i] = kept_[i] * v[i] + pushed_[i] * f[i];
+  };
+  push(velocity.x(), force.x());
+  push(velocity.y(), force.y());
+  push(velocity.z(), force.z());
+  if (!parts.normal) return;
+  if (drag_.size() != velocity.size()) drag_ = Vec3Field(velocity.size());
+  const double *nx = parts.normal->x(), *ny = parts.normal->y(), *nz = parts.normal->z();
+  double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+  double *bx = drag_.x(), *by = drag_.y(), *bz = drag_.z();
+  for (std::size_t i = 0; i < along_.size(); ++i) {
+    const double cx = along_[i] * nx[i], cy = along_[i] * ny[i], cz = along_[i] * nz[i];
+    const double along = cx * vx[i] + cy * vy[i] + cz * vz[i], root = std::sqrt(isotropic_[i]);
+    vx[i] -= along * cx, vy[i] -= along * cy, vz[i] -= along * cz;
+    bx[i] = root * cx, by[i] = root * cy, bz[i] = root * cz;
+  }
+}
+
+void Xpbd::note_mobilities(const NodeDamping& parts) {
+  mobility_.assign(isotropic_.size(), {});
+  for (std::size_t i = 0; i < mobility_.size(); ++i) {
+    mobility_[i].isotropic = isotropic_[i];
+    if (!parts.normal) continue;
+    mobility_[i].normal = (*parts.normal)[i];
+    mobility_[i].along_normal = isotropic_[i] * along_[i] * along_[i];
   }
 }
 
@@ -112,12 +117,17 @@ double Xpbd::visit(const SpringRun& run, std::size_t i, const Vec3Field& start, 
   return std::max(speed_i.squaredNorm(), speed_j.squaredNorm());
 }
 
-double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
+double Xpbd::visit_springs(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
   double largest = 0;
   for_each_spring(system.springs, [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t) {
     if (run.stiffness > 0) largest = std::max(largest, visit(run, i, start, h, impulse_[spring], velocity));
   });
-  std::size_t element = system.springs.spring_count();
+  return largest;
+}
+
+double Xpbd::visit_others(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
+  double largest = 0;
+  std::size_t element = first_of_others(system);
   for (const BendingRun& run : system.bending)
     for (int e = run.first; e < run.first + run.count; ++e, ++element)
       largest = std::max(largest, visit(run, e, start, h, impulse_[element], velocity));
@@ -129,6 +139,18 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, V
     element += 3;
   }
   return largest;
+}
+
+double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, bool measured,
+                  Vec3Field& velocity) {
+  if (visitor_ == Visitor::one_by_one)
+    return std::max(visit_springs(system, start, h, velocity), visit_others(system, start, h, velocity));
+  const double by_springs = coloured_.visit(measured);
+  if (!has_others_) return by_springs;
+  coloured_.give(velocity);
+  const double by_others = visit_others(system, start, h, velocity);
+  coloured_.take(velocity);
+  return std::max(by_springs, by_others);
 }
 
 /// The impulse P on kappa is linear in P where the slider does not yield: P = -h A K (kappa' - slip), kappa'
@@ -228,19 +250,28 @@ double Xpbd::visit(const BendingRun& run, int first, const Vec3Field& start, dou
   return largest;
 }
 
-std::size_t Xpbd::element_count(const ClothSystem& system) {
-  std::size_t count = system.springs.spring_count();
-  for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
-  count += system.sliders.size() + 3 * system.membrane.size();
-  return count;
+std::size_t Xpbd::first_of_others(const ClothSystem& system) const {
+  return visitor_ == Visitor::one_by_one ? system.springs.spring_count() : 0;
 }
 
-double Xpbd::substep(const ForceModel& forces, const NodeDamping& parts, double h, const Vec3Field& position,
-                     Vec3Field& velocity) {
-  predict(forces, parts, h, velocity);
-  impulse_.assign(element_count(forces.system()), Vec3::Zero());
+std::size_t Xpbd::impulse_count(const ClothSystem& system) const {
+  std::size_t count = first_of_others(system);
+  for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
+  return count + system.sliders.size() + 3 * system.membrane.size();
+}
+
+double Xpbd::substep(const ForceModel& forces, const NodeDamping& parts, double h, bool measured,
+                     const Vec3Field& position, Vec3Field& velocity) {
+  predict(forces, parts, velocity);
+  if (visitor_ == Visitor::grid) return forces.sweep()->project(h, parts.along_springs, position, velocity);
+  if (visitor_ == Visitor::colours)
+    coloured_.begin_substep(position, velocity, parts.normal ? &drag_ : nullptr, iterations_ > 1);
+  if (visitor_ == Visitor::one_by_one || has_others_) note_mobilities(parts);
+  impulse_.assign(impulse_count(forces.system()), Vec3::Zero());
   double changed = 0;
-  for (int k = 0; k < iterations_; ++k) changed = pass(forces.system(), position, h, velocity);
+  for (int k = 0; k < iterations_; ++k)
+    changed = pass(forces.system(), position, h, measured && k + 1 == iterations_, velocity);
+  if (visitor_ == Visitor::colours) coloured_.give(velocity);
   return changed;
 }
 
@@ -249,17 +280,15 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
   report.inner_steps = substeps_;
   const double h = times.step / substeps_;
   const NodeDamping parts = forces.damping_parts();
-  const bool by_kernels = is_visited_by_kernels(forces, parts);
-  if (by_kernels) begin_kernel_visits(forces, parts, h);
+  visitor_ = visitor_for(forces, parts);
+  begin_substeps(forces, parts, h);
 
   for (int n = 0; n < substeps_; ++n) {
     const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
     forces.update_external(state.position, end);
     ++report.force_evaluations;
     if (constraint_) constraint_->before_kick(h, h, state);
-    const double changed = by_kernels
-                               ? visit_by_kernels(forces, parts, h, state.position, state.velocity)
-                               : substep(forces, forces.damping_parts(), h, state.position, state.velocity);
+    const double changed = substep(forces, parts, h, n + 1 == substeps_, state.position, state.velocity);
     report.iterations += iterations_;
     if (n + 1 == substeps_) {
       const double fastest = largest_square(state.velocity);

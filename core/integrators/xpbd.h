@@ -6,8 +6,9 @@
 //     W_i^-1 v* = m_i v_i + h p_i,    W_i^-1 = (m_i + h c) I + h c_a n n^T
 //
 // (p gravity, wind and hand at x and t + h, n the normals at x; the hand adds its h c + h^2 k to W^-1), then
-// passes over the springs in a fixed order. The spring between i and j has gathered an impulse P (N s) on j
-// and -P on i, v = v* + W P, x' = x + h v; with l = |x'_j - x'_i| and d = (x'_j - x'_i)/l it is to become
+// passes over the springs in a fixed order, by colours (kernels/coloured_springs.h), then over the elements
+// of bending, sliders and triangles in theirs. The spring between i and j has gathered an impulse P (N s) on
+// j and -P on i, v = v* + W P, x' = x + h v; with l = |x'_j - x'_i| and d = (x'_j - x'_i)/l it is to become
 //
 //     P = lambda d,    lambda = -h (k (l - L) + k_d d . (v_j - v_i))
 //
@@ -23,12 +24,15 @@
 // A bending element (cloth/bending.h) has the impulse P on s = sum c x, linear in s: P = -h k (s' + t sum c
 // v'). A triangle of constant strain (cloth/membrane.h) has three impulses along its edges, solved for
 // together: lambda = -h K (q' + t dq'/dt), with q' to first order in the change of a visit.
-// On a grid of springs alone, with one iteration, a visit begins without an impulse, and the springs are
-// visited by the kernels, many at a time and in their order (kernels/grid_projection.h).
 // A slider of hysteresis (cloth/bending_sliders.h) has an impulse along its normal, bounded by its yield.
+//
+// The kernels visit the springs of a colour many at a time (kernels/coloured_visits.h). On a grid of springs
+// alone, without drag and with one iteration, where a visit begins without an impulse, they do so in an order
+// of the grid's own, without lists of springs (kernels/grid_projection.h).
 #pragma once
 
 #include "integrators/integrator.h"
+#include "kernels/coloured_springs.h"
 
 namespace cloth {
 
@@ -54,19 +58,23 @@ class Xpbd : public Integrator {
     Vec3 times(const Vec3& v) const { return isotropic * v - along_normal * normal.dot(v) * normal; }
   };
 
+  /// Who visits the springs: the kernels in the grid's order, the kernels by colours, or visit() below.
+  enum class Visitor { grid, colours, one_by_one };
+  Visitor visitor_for(const ForceModel& forces, const NodeDamping& parts);
+  /// What substeps of h need of the particles' masses.
+  void begin_substeps(const ForceModel& forces, const NodeDamping& parts, double h);
   /// One substep from `position` to the velocity at its end; returns the largest squared change of a
-  /// particle's velocity by a visit of the last pass.
-  double substep(const ForceModel& forces, const NodeDamping& parts, double h, const Vec3Field& position,
-                 Vec3Field& velocity);
-  /// Whether the kernels can visit all there is; what they need for substeps of h; and a substep by them.
-  bool is_visited_by_kernels(const ForceModel& forces, const NodeDamping& parts) const;
-  void begin_kernel_visits(const ForceModel& forces, const NodeDamping& parts, double h);
-  double visit_by_kernels(const ForceModel& forces, const NodeDamping& parts, double h,
-                          const Vec3Field& position, Vec3Field& velocity) const;
-  void predict(const ForceModel& forces, const NodeDamping& parts, double h, Vec3Field& velocity);
-  /// Over all springs and bending elements, once; returns the largest squared change of a particle's velocity
+  /// particle's velocity by a visit of the last pass, if it is `measured`.
+  double substep(const ForceModel& forces, const NodeDamping& parts, double h, bool measured,
+                 const Vec3Field& position, Vec3Field& velocity);
+  void predict(const ForceModel& forces, const NodeDamping& parts, Vec3Field& velocity);
+  void note_mobilities(const NodeDamping& parts);
+  /// Over all springs and other elements, once; returns the largest squared change of a particle's velocity
   /// by a visit.
-  double pass(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
+  double pass(const ClothSystem& system, const Vec3Field& start, double h, bool measured,
+              Vec3Field& velocity);
+  double visit_springs(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
+  double visit_others(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity);
   double visit(const SpringRun& run, std::size_t i, const Vec3Field& start, double h, Vec3& impulse,
                Vec3Field& velocity) const;
   double visit(const BendingRun& run, int first, const Vec3Field& start, double h, Vec3& impulse,
@@ -76,15 +84,22 @@ class Xpbd : public Integrator {
                Vec3Field& velocity) const;
   double visit(const BendingSlider& slider, std::size_t number, const Vec3Field& start, double h,
                Vec3& impulse, Vec3Field& velocity) const;
-  static std::size_t element_count(const ClothSystem& system);
+  /// Where in impulse_ those of the other elements begin, and how many it holds.
+  std::size_t first_of_others(const ClothSystem& system) const;
+  std::size_t impulse_count(const ClothSystem& system) const;
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
-  // Of kernel visits: W^-1 (kg), W (1/kg, 0 where pinned), and v* = kept v + pushed p.
-  std::vector<double> mass_, alike_, kept_, pushed_;
-  std::vector<Mobility> mobility_;
-  std::vector<Vec3> impulse_;  ///< N s, of every spring, run after run, then of every bending element, then
-                               ///< of every slider (its first number), then of every triangle's corners
+  Visitor visitor_ = Visitor::one_by_one;
+  bool has_others_ = false;  ///< elements beside springs
+  ColouredSprings coloured_;
+  // w (1/kg, 0 where pinned); without drag v* = kept v + pushed p; b = along sqrt(w) n.
+  std::vector<double> isotropic_, kept_, pushed_, along_;
+  Vec3Field drag_;                  ///< b, kg^-1/2: W = w I - b b^T
+  std::vector<Mobility> mobility_;  ///< only where elements are visited one by one
+  /// N s, of every spring that is visited one by one, run after run, then of every bending element, then of
+  /// every slider (its first number), then of every triangle's corners.
+  std::vector<Vec3> impulse_;
   const SliderState* sliders_ = nullptr;
   double spring_damping_ = 0;                                       ///< N s/m
   double stretch_time_ = 0, bending_time_ = 0, membrane_time_ = 0;  ///< s

@@ -9,6 +9,7 @@
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/implicit_euler_step.h"
+#include "support/meshes.h"
 #include "support/random.h"
 #include "support/scenes.h"
 #include "support/states.h"
@@ -152,6 +153,51 @@ TEST(LocalMethods, SolveTheStepEquationsWithEveryForceAndTheHand) {
     rubbed.air->skin_friction = friction;
     expect_the_step_equations_to_hold(rubbed, vbd(200, "none"));
     expect_the_step_equations_to_hold(rubbed, vbd(100));
+  }
+}
+
+/// The same of a mesh of 11 x 13 particles in an irregular triangulation, whose springs the kernels visit by
+/// colours.
+void expect_the_step_equations_to_hold_on_a_mesh(const IntegratorChoice& choice, double damping) {
+  Random random;
+  Scene scene = bare_sheet(2, 2);
+  scene.springs = SpringMaterial{.structural = 60, .shear = 0, .flexion = 6, .damping = damping};
+  scene.gravity = Vec3(0, -g, 0);
+  scene.damping = 0.001;
+  DirectRun run(irregular_triangulation(11, 13, 60, true, random), scene, choice);
+  run.state = crumpled_state(run.system, 0.01, 0.5, random);
+  run.forces.set_pull(Pull{.particle = 20, .target = {0.5, -0.8, 0.3}}, 3, 0.02);
+  const ClothState start = run.state;
+  const double h = 0.004;
+  run.advance(1, h);
+  Vec3Field force(start.position.size());
+  run.forces.update(run.state.position, h);
+  run.forces.force(run.state.position, run.state.velocity, force);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (run.system.pinned[i]) continue;
+    const Vec3 gained = run.state.velocity[i] - start.velocity[i];
+    EXPECT_LE((run.system.mass[i] * gained - h * force[i]).norm(), 1e-14) << choice.method << " " << i;
+  }
+}
+
+TEST(LocalMethods, SolveTheStepEquationsOfAMesh) {
+  for (const double damping : {0.0, 0.005}) {
+    expect_the_step_equations_to_hold_on_a_mesh(xpbd(1, 600), damping);
+    expect_the_step_equations_to_hold_on_a_mesh(vbd(600, "none"), damping);
+    expect_the_step_equations_to_hold_on_a_mesh(vbd(300), damping);
+  }
+}
+
+TEST(Xpbd, KeepsTheMomentumOfAFreeMeshHoweverFarFromConverged) {
+  Random random;
+  for (const IntegratorChoice& choice : {xpbd(1, 1), xpbd(4, 3)}) {
+    Scene scene = bare_sheet(2, 2);
+    scene.springs = SpringMaterial{.structural = 2000, .shear = 0, .flexion = 200, .damping = 0.01};
+    DirectRun run(irregular_triangulation(12, 14, 2000, false, random), scene, choice);
+    run.state = crumpled_state(run.system, 0.01, 0.5, random);
+    const Vec3 first = momentum(run.system, run.state);
+    run.advance(100, 0.02);
+    EXPECT_LE((momentum(run.system, run.state) - first).norm(), 1e-12 * first.norm());
   }
 }
 

@@ -1,0 +1,17 @@
+// A kernel source, see kernel_table.h.
+#include CLOTHLAB_LANES
+//
+#include "kernels/coloured_visits.h"
+
+namespace cloth::kernels {
+namespace {
+
+constexpr LocalKernels local_kernels{project_coloured, field_to_vectors, field_from_vectors};
+
+}  // namespace
+
+const LocalKernels& LocalKernels::CLOTHLAB_SET() {
+  return local_kernels;
+}
+
+}  // namespace cloth::kernels

@@ -1,0 +1,43 @@
+// The interface of the kernels of the local methods on any cloth: the visits of springs by XPBD and of
+// particles by VBD where no grid gives their order. Plain data only, for the reason given in grid_pass.h.
+//
+// Fields of particles are 4-vectors here, x y z 0 of one particle after the other, 64-byte aligned, so that
+// an index reads all of a particle at once; indices are multiplied by 4.
+#pragma once
+
+#include "kernels/kernel_table.h"
+
+namespace cloth::kernels {
+
+/// Lists are filled up to whole multiples of this with entries that change nothing.
+inline constexpr int widest_vector = 8;
+
+/// One visit of every spring by XPBD, see coloured_visits.h: moves the velocities alone. Springs that one
+/// vector holds share no particle; `springs` is a multiple of widest_vector.
+struct ColouredProjection {
+  int springs = 0;
+  const int *first = nullptr, *second = nullptr;  ///< of each spring: its ends, times 4
+  /// Of each spring, with q = 1 + h (h k + k_d) (w_i + w_j): h k/q, h k L/q, h k_d/q and h (h k + k_d)/q; and
+  /// w_i + w_j in 1/kg. `turn` is read only with drag, `both` only with impulses.
+  const double *stretch = nullptr, *tension = nullptr, *damper = nullptr, *turn = nullptr, *both = nullptr;
+  bool is_damped = false;
+  const double* position = nullptr;                  ///< m, at the start of the step; 4-vectors
+  double* velocity = nullptr;                        ///< m/s, in place; 4-vectors
+  const double* mobility = nullptr;                  ///< w, 1/kg, of each particle; 0 where pinned
+  const double* drag = nullptr;                      ///< b, kg^-1/2, 4-vectors: W = w I - b b^T; null: none
+  double* impulse[3] = {nullptr, nullptr, nullptr};  ///< N s, of each spring, in place; null: 0 before
+  double step = 0;                                   ///< s
+  bool measures = false;                             ///< whether largest_change is wanted
+  double largest_change = 0;  ///< output: squared, of a particle's velocity by a visit, (m/s)^2
+};
+
+struct LocalKernels {
+  void (*project)(ColouredProjection& projection);
+  /// Of particles [0, count): to 4-vectors, whose fourth number is 0, and back.
+  void (*to_vectors)(const double* x, const double* y, const double* z, double* vectors, int count);
+  void (*from_vectors)(const double* vectors, double* x, double* y, double* z, int count);
+
+  CLOTHLAB_KERNEL_TABLE(LocalKernels)
+};
+
+}  // namespace cloth::kernels

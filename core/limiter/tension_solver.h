@@ -60,8 +60,8 @@ class TensionSolver {
   /// force += J^T tension, N: each tension pulls its ends together.
   void add_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
 
-  /// `held` becomes the part of each tension that may act as a force over a step of h seconds: at most half of
-  /// m (1 + rate) L/h^2, because a rotating spring would overshoot with more. Zero where the rate is
+  /// `held` becomes the part of each tension that may act as a force over a step of h seconds: at most half
+  /// of m (1 + rate) L/h^2, because a rotating spring would overshoot with more. Zero where the rate is
   /// unreachable.
   void hold(const std::vector<double>& tension, double time_step, std::vector<double>& held) const;
 
@@ -82,8 +82,8 @@ class TensionSolver {
   std::optional<GridPlan> grid_;
   std::unique_ptr<TensionRounds> rounds_;
   std::optional<NearestShape> nearest_;  ///< made when it is first asked for
-  Vec3Field start_;            ///< m, of the present solve
-  std::vector<double> first_;  ///< N, of the present solve
+  Vec3Field start_;                      ///< m, of the present solve
+  std::vector<double> first_;            ///< N, of the present solve
   double shortest_ = 0;
   bool unreachable_;
 };

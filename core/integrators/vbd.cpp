@@ -220,6 +220,7 @@ bool Vbd::is_visited_by_kernels(const Visits& visits) const {
   constexpr double largest_ratio = 1e10;
   const NodeDamping& parts = visits.parts;
   if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_stretch_time())) return false;
+  if (parts.along_normal.each < 0 || parts.along_normal.per_mass < 0) return false;  // no real b
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringBlock& block : visits.system.springs.blocks())
     stiffest = std::max(stiffest, block.run.stiffness);

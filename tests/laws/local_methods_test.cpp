@@ -362,8 +362,11 @@ TEST(LocalMethods, StayBoundedInAnyWind) {
       Scene scene = stiff_cloth(200);
       scene.springs->damping = 0.01;
       scene.air = Air{.drag = 0.05, .wind = {0.2 * wind, 0, wind}, .gust = Gust{1.0, 1.3}};
-      DirectRun run(scene, choice);
-      expect_bounded(run, 2.5 * wind, 5 + 0.05 * wind, choice.method + " " + std::to_string(wind));
+      for (const double friction : {0.0, 0.1}) {  // less and more than the drag
+        scene.air->skin_friction = friction;
+        DirectRun run(scene, choice);
+        expect_bounded(run, 2.5 * wind, 5 + 0.05 * wind, choice.method + " " + std::to_string(wind));
+      }
     }
 }
 

@@ -7,7 +7,9 @@
 
 #include "geometry/at.h"
 #include "integrators/largest_square.h"
+#include "kernels/grid_descent.h"
 #include "kernels/grid_layout.h"
+#include "kernels/mesh_descent.h"
 
 namespace cloth {
 /// By Cholesky; where rounding has left no positive pivot, a step that is short enough whatever the matrix.
@@ -207,30 +209,59 @@ Vbd::Sweep Vbd::iterate(const SweepOnce& sweep, const Extrapolate& extrapolate) 
   return last;
 }
 
+void Vbd::predict_again(ForceModel& forces, double end, Visits& visits, int& evaluations) {
+  forces.update_external(visits.state.position, end);
+  predict(forces, visits.state.position, visits);
+  ++evaluations;
+}
+
 /// The kernels' H^-1 is made of cofactors, which lose what is too small beside the stiffness.
 bool Vbd::is_visited_by_kernels(const Visits& visits) const {
   constexpr double largest_ratio = 1e10;
-  if (!grid_ || visits.parts.normal || visits.parts.stretch_time > 0) return false;
+  const NodeDamping& parts = visits.parts;
+  if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_stretch_time())) return false;
+  if (parts.along_normal.each < 0 || parts.along_normal.per_mass < 0) return false;  // no real b
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringBlock& block : visits.system.springs.blocks())
     stiffest = std::max(stiffest, block.run.stiffness);
   for (const Inertia& inertia : inertia_)
     if (inertia.mass > 0) lightest = std::min(lightest, inertia.mass);
   const double h = visits.step;
-  return h * (h * stiffest + visits.parts.along_springs) < largest_ratio * lightest;
+  return h * ((h + parts.stretch_time) * stiffest + parts.along_springs) < largest_ratio * lightest;
 }
 
-Vbd::Sweep Vbd::descend_by_kernels(Visits& visits) {
+void Vbd::set_drag() {
+  if (drag_.size() != inertia_.size()) drag_ = Vec3Field(inertia_.size());
+  for (std::size_t i = 0; i < inertia_.size(); ++i)
+    drag_.set(i, std::sqrt(inertia_[i].along) * inertia_[i].normal);
+  descent_->set_drag(drag_, predicted_);
+}
+
+Vbd::Sweep Vbd::descend_by_kernels(ForceModel& forces, double end, Visits& visits, int& evaluations) {
   mass_.resize(inertia_.size());
   for (std::size_t i = 0; i < mass_.size(); ++i) mass_[i] = inertia_[i].mass;
-  grid_->begin(visits.step, mass_, visits.parts.along_springs, start_position_, predicted_, accelerated_);
-  const auto sweep_once = [&](int) {
-    const GridDescent::Sums sums = grid_->sweep();
+  const bool has_drag = visits.parts.normal != nullptr;
+  descent_->begin({.step = visits.step,
+                   .mass = mass_,
+                   .spring_damping = visits.parts.along_springs,
+                   .stretch_time = visits.parts.stretch_time,
+                   .position = start_position_,
+                   .predicted = predicted_,
+                   .extrapolates = accelerated_,
+                   .has_drag = has_drag});
+  const auto sweep_once = [&](int k) {
+    if (has_drag) {
+      if (k > 0) {
+        descent_->read_positions(visits.state.position);
+        predict_again(forces, end, visits, evaluations);
+      }
+      set_drag();
+    }
+    const ParticleDescent::Sums sums = descent_->sweep();
     return Sweep{.change = sums.change, .squares = sums.squares};
   };
-  Sweep last = iterate(sweep_once, [&](double weight) { grid_->extrapolate(weight); });
-  visits.state.velocity = predicted_;
-  grid_->end(visits.state.velocity);
+  Sweep last = iterate(sweep_once, [&](double weight) { descent_->extrapolate(weight); });
+  descent_->end(visits.state.velocity);
   for (std::size_t i = 0; i < mass_.size() && last.failed < 0; ++i)
     if (!visits.state.velocity[i].allFinite()) last.failed = static_cast<int>(i);
   visits.state.position = start_position_;
@@ -244,11 +275,7 @@ Vbd::Sweep Vbd::descend(ForceModel& forces, double end, Visits& visits, int& eva
   state.velocity = before_ = predicted_;
   add_scaled(visits.step, state.velocity, state.position);
   const auto sweep_once = [&](int k) {
-    if (k > 0 && visits.parts.normal) {
-      forces.update_external(state.position, end);
-      predict(forces, state.position, visits);
-      ++evaluations;
-    }
+    if (k > 0 && visits.parts.normal) predict_again(forces, end, visits, evaluations);
     if (accelerated_) present_ = state.velocity;
     return sweep(visits);
   };
@@ -261,9 +288,14 @@ Vbd::Sweep Vbd::descend(ForceModel& forces, double end, Visits& visits, int& eva
 void Vbd::prepare(const ClothSystem& system) {
   if (elements_.describe(system)) return;
   elements_ = ParticleElements(system);
-  grid_.reset();
+  descent_.reset();
   if (!system.bending.empty() || !system.sliders.empty() || !system.membrane.empty()) return;
-  if (const auto grid = grid_springs(system); grid && GridDescent::suits(*grid)) grid_.emplace(*grid);
+  if (const auto grid = grid_springs(system)) {
+    if (GridDescent::suits(*grid)) descent_ = std::make_unique<GridDescent>(*grid);
+  } else if (MeshDescent::suits(system.springs)) {
+    elements_.list();
+    descent_ = std::make_unique<MeshDescent>(system.springs, elements_.colours(), system.mass.size());
+  }
 }
 
 IntegratorReport Vbd::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
@@ -277,7 +309,7 @@ IntegratorReport Vbd::step(ForceModel& forces, const StepTimes& times, ClothStat
   forces.update_external(state.position, times.end);
   predict(forces, state.position, visits);
   const Sweep last = is_visited_by_kernels(visits)
-                         ? descend_by_kernels(visits)
+                         ? descend_by_kernels(forces, times.end, visits, report.force_evaluations)
                          : descend(forces, times.end, visits, report.force_evaluations);
   if (last.failed >= 0)
     report.failure = SolverFailure{last.failed, "the equation of a single particle has no finite solution"};

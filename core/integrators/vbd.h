@@ -19,8 +19,8 @@
 // K is clamped: of a spring k [n n^T + max(1 - L/l, 0) (I - n n^T)], likewise of a triangle's edges, so that
 // A is positive definite whatever the shape. A spring without length has k I and no force. No visit moves its
 // particle further than where any element, or its inertia, alone would have it: the reach of a clamped matrix
-// is too long where a cloth is crushed. The particles are visited colour by colour (particle_elements.h), on
-// a grid of springs alone and where W^-1 is isotropic many at a time (kernels/grid_visits.h).
+// is too long where a cloth is crushed. The particles are visited colour by colour (particle_elements.h); of
+// a cloth of springs alone the kernels visit many of a colour at a time (kernels/particle_descent.h).
 //
 // Chebyshev's semi-iteration (Wang 2015; Chen et al., section 3.8) extrapolates after every iteration but the
 // last: x <- omega (x - x_before) + x_before, x_before the iterate that the last one began from was made of.
@@ -35,9 +35,11 @@
 // iteration without extrapolation and a smaller rho.
 #pragma once
 
+#include <memory>
+
 #include "integrators/integrator.h"
 #include "integrators/particle_elements.h"
-#include "kernels/grid_descent.h"
+#include "kernels/particle_descent.h"
 
 namespace cloth {
 
@@ -99,9 +101,12 @@ class Vbd : public Integrator {
   /// The iterations, each sweep(k) and between two of them extrapolate(weight); returns the last sweep.
   template <class SweepOnce, class Extrapolate>
   Sweep iterate(const SweepOnce& sweep, const Extrapolate& extrapolate) const;
+  /// v* and W^-1 at the positions that the visits have come to.
+  void predict_again(ForceModel& forces, double end, Visits& visits, int& evaluations);
   /// The iterations by the kernels, where these know all there is, or one by one.
   bool is_visited_by_kernels(const Visits& visits) const;
-  Sweep descend_by_kernels(Visits& visits);
+  Sweep descend_by_kernels(ForceModel& forces, double end, Visits& visits, int& evaluations);
+  void set_drag();
   Sweep descend(ForceModel& forces, double end, Visits& visits, int& evaluations);
   Sweep sweep(Visits& visits);
   Vec3 change_of(const Visits& visits, std::size_t i) const;
@@ -114,8 +119,9 @@ class Vbd : public Integrator {
   int iterations_;
   bool accelerated_;
   ParticleElements elements_;
-  std::optional<GridDescent> grid_;
-  std::vector<double> mass_;  ///< kg, W^-1 for the kernels
+  std::unique_ptr<ParticleDescent> descent_;  ///< null where there are other elements than springs
+  std::vector<double> mass_;                  ///< kg, of W^-1 for the kernels
+  Vec3Field drag_;                            ///< kg^1/2, likewise: b b^T = along n n^T
   std::vector<Inertia> inertia_;
   Vec3Field start_position_, start_velocity_, predicted_;
   Vec3Field before_, present_;  ///< velocities of the iterate before the last, and of the last

@@ -14,6 +14,8 @@ Xpbd::Visitor Xpbd::visitor_for(const ForceModel& forces, const NodeDamping& par
   const bool by_grid = iterations_ == 1 && forces.sweep() && forces.sweep()->projects() &&
                        parts.stretch_time == 0 && !parts.normal && !has_others_;
   if (by_grid) return Visitor::grid;
+  const bool has_negative_part = parts.along_normal.each < 0 || parts.along_normal.per_mass < 0;
+  if (has_negative_part) return Visitor::one_by_one;  // less drag along the normal than across it
   if (!coloured_.describe(system)) coloured_ = ColouredSprings(system);
   return coloured_.are_visited_by_vectors() ? Visitor::colours : Visitor::one_by_one;
 }
@@ -31,7 +33,7 @@ void Xpbd::begin_substeps(const ForceModel& forces, const NodeDamping& parts, do
     isotropic_[i] = is_pinned ? 0 : 1 / mass;
     kept_[i] = is_pinned ? 1 : system.mass[i] / mass;
     pushed_[i] = is_pinned ? 0 : h / mass;
-    along_[i] = is_pinned ? 0 : std::sqrt(along / (mass + along));
+    along_[i] = is_pinned ? 0 : along / (mass + along);
   }
   spring_damping_ = parts.along_springs, stretch_time_ = parts.stretch_time;
   bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
@@ -50,15 +52,18 @@ void Xpbd::predict(const ForceModel& forces, const NodeDamping& parts, Vec3Field
   push(velocity.y(), force.y());
   push(velocity.z(), force.z());
   if (!parts.normal) return;
-  if (drag_.size() != velocity.size()) drag_ = Vec3Field(velocity.size());
   const double *nx = parts.normal->x(), *ny = parts.normal->y(), *nz = parts.normal->z();
   double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+  for (std::size_t i = 0; i < along_.size(); ++i) {
+    const double along = along_[i] * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+    vx[i] -= along * nx[i], vy[i] -= along * ny[i], vz[i] -= along * nz[i];
+  }
+  if (visitor_ != Visitor::colours) return;
+  if (drag_.size() != velocity.size()) drag_ = Vec3Field(velocity.size());
   double *bx = drag_.x(), *by = drag_.y(), *bz = drag_.z();
   for (std::size_t i = 0; i < along_.size(); ++i) {
-    const double cx = along_[i] * nx[i], cy = along_[i] * ny[i], cz = along_[i] * nz[i];
-    const double along = cx * vx[i] + cy * vy[i] + cz * vz[i], root = std::sqrt(isotropic_[i]);
-    vx[i] -= along * cx, vy[i] -= along * cy, vz[i] -= along * cz;
-    bx[i] = root * cx, by[i] = root * cy, bz[i] = root * cz;
+    const double root = std::sqrt(isotropic_[i] * along_[i]);
+    bx[i] = root * nx[i], by[i] = root * ny[i], bz[i] = root * nz[i];
   }
 }
 
@@ -68,7 +73,7 @@ void Xpbd::note_mobilities(const NodeDamping& parts) {
     mobility_[i].isotropic = isotropic_[i];
     if (!parts.normal) continue;
     mobility_[i].normal = (*parts.normal)[i];
-    mobility_[i].along_normal = isotropic_[i] * along_[i] * along_[i];
+    mobility_[i].along_normal = isotropic_[i] * along_[i];
   }
 }
 

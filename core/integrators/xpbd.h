@@ -93,7 +93,7 @@ class Xpbd : public Integrator {
   Visitor visitor_ = Visitor::one_by_one;
   bool has_others_ = false;  ///< elements beside springs
   ColouredSprings coloured_;
-  // w (1/kg, 0 where pinned); without drag v* = kept v + pushed p; b = along sqrt(w) n.
+  // w (1/kg, 0 where pinned); v* = (I - along n n^T) (kept v + pushed p), b b^T = w along n n^T.
   std::vector<double> isotropic_, kept_, pushed_, along_;
   Vec3Field drag_;                  ///< b, kg^-1/2: W = w I - b b^T
   std::vector<Mobility> mobility_;  ///< only where elements are visited one by one

@@ -28,7 +28,7 @@ CLOTHLAB_INLINE Four load_four(const double* from) {
   __builtin_memcpy(&v, __builtin_assume_aligned(from, sizeof v), sizeof v);
   return v;
 }
-CLOTHLAB_INLINE void store_four(double* to, Four v) {
+CLOTHLAB_INLINE void store_four(double* to, const Four& v) {
   __builtin_memcpy(__builtin_assume_aligned(to, sizeof v), &v, sizeof v);
 }
 

@@ -3,6 +3,7 @@
 // functions, which the linker might use for files compiled for another one.
 #pragma once
 
+#include "kernels/descent_fields.h"
 #include "kernels/kernel_table.h"
 
 namespace cloth::kernels {
@@ -138,20 +139,12 @@ struct Projection {
 };
 
 /// One visit of every particle by VBD, see grid_visits.h. Fields are in the order that grid_descent.h says.
-struct Descent {
+struct Descent : DescentFields {
   Grid grid;
   double rest_length[spring_kinds]{};  ///< m
   int row_stride = 0, residue_stride = 0,
-      first = 0;             ///< doubles: from row to row, from run to run, before row 0
-  double* position[3] = {};  ///< m, in place
-  double* shift[3] = {};     ///< m, in place: from where inertia takes each particle
-  double* start[3] = {};     ///< m, at the start of the step; only read, and only with a damper
-  double* before[3] = {};    ///< m: shifts of the iterate before the last; null: not needed
-  const double *mass = nullptr, *free = nullptr;  ///< N/m, W^-1/h^2; 1 where free to move, else 0
-  const double* there = nullptr;                  ///< 1 where a row has a column, 0 in its padding
-  double damper = 0;                              ///< N/m, damping of every spring over the step
-  /// Output: the largest squared move of a particle by a visit, and the sum of all, m^2.
-  double largest_change = 0, squares = 0;
+      first = 0;                  ///< doubles: from row to row, from run to run, before row 0
+  const double* there = nullptr;  ///< 1 where a row has a column, 0 in its padding
 
   CLOTHLAB_INLINE long place(int row, int residue, int at) const {
     return first + static_cast<long>(row) * row_stride + residue * residue_stride + at;
@@ -194,9 +187,8 @@ struct GridKernels {
   void (*sum_squares)(const Pass& pass);
   /// Every spring of finite stiffness once, one direction after the other.
   void (*project)(Projection& projection);
-  /// Every particle once, colour by colour; and the step of Chebyshev's semi-iteration after that.
+  /// Every particle once, colour by colour.
   void (*descend)(Descent& descent);
-  void (*extrapolate)(const Descent& descent, double weight);
   /// For tests. From squared lengths: result[i] = k - k L / sqrt(s[i]), and k where s[i] is 0; by a refined
   /// estimate [0] and by division [1].
   void (*spring_scales[2])(const SpringKind& kind, const double* squares, double* result, int count);

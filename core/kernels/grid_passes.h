@@ -350,7 +350,6 @@ constexpr GridKernels grid_kernels{euler_band,
                                    sum_squares_band,
                                    project_springs,
                                    descend_all,
-                                   extrapolate_all,
                                    {spring_scales<false>, spring_scales<true>},
                                    {inverse_roots<false>, inverse_roots<true>}};
 

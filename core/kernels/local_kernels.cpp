@@ -1,12 +1,14 @@
 // A kernel source, see kernel_table.h.
 #include CLOTHLAB_LANES
 //
+#include "kernels/coloured_descent.h"
 #include "kernels/coloured_visits.h"
 
 namespace cloth::kernels {
 namespace {
 
-constexpr LocalKernels local_kernels{project_coloured, field_to_vectors, field_from_vectors};
+constexpr LocalKernels local_kernels{project_coloured, descend_coloured, extrapolate_all, field_to_vectors,
+                                     field_from_vectors};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 // an index reads all of a particle at once; indices are multiplied by 4.
 #pragma once
 
+#include "kernels/descent_fields.h"
 #include "kernels/kernel_table.h"
 
 namespace cloth::kernels {
@@ -31,8 +32,23 @@ struct ColouredProjection {
   double largest_change = 0;  ///< output: squared, of a particle's velocity by a visit, (m/s)^2
 };
 
+/// One visit of every particle by VBD, see coloured_descent.h. Eight places are a slice, all of one colour;
+/// a slot holds one spring of each particle of a slice.
+struct ColouredDescent : DescentFields {
+  int slices = 0;
+  const int* slot_begin = nullptr;  ///< slice s has the slots slot_begin[s] to slot_begin[s + 1] - 1
+  const int* neighbour = nullptr;   ///< [slot][lane]: 4 times the place at the other end
+  const double *stiffness = nullptr, *rest_length = nullptr;  ///< [slot][lane]: N/m, m; 0 where there is none
+  double damper_per_stiffness = 0;                            ///< a damping time of the springs over the step
+  double* vectors = nullptr;  ///< m: `position` as 4-vectors, and after it one far from any particle
+  const double* start_vectors = nullptr;  ///< m: `start` likewise; null: there are no dampers
+};
+
 struct LocalKernels {
   void (*project)(ColouredProjection& projection);
+  void (*descend)(ColouredDescent& descent);
+  /// The step of Chebyshev's semi-iteration after a visit of every particle; `position` alone, no 4-vectors.
+  void (*extrapolate)(const DescentFields& descent, double weight);
   /// Of particles [0, count): to 4-vectors, whose fourth number is 0, and back.
   void (*to_vectors)(const double* x, const double* y, const double* z, double* vectors, int count);
   void (*from_vectors)(const double* vectors, double* x, double* y, double* z, int count);

@@ -367,6 +367,18 @@ TEST(LocalMethods, StayBoundedInAnyWind) {
     }
 }
 
+// W^-1 = m I + c n n^T with a negative c.
+TEST(Xpbd, StaysBoundedInAnyWindWithMoreSkinFrictionThanDrag) {
+  for (const IntegratorChoice& choice : {xpbd(10, 1), xpbd(1, 20)})
+    for (const double wind : {10.0, 100.0, 1000.0}) {
+      Scene scene = stiff_cloth(200);
+      scene.air =
+          Air{.drag = 0.05, .skin_friction = 0.1, .wind = {0.2 * wind, 0, wind}, .gust = Gust{1.0, 1.3}};
+      DirectRun run(scene, choice);
+      expect_bounded(run, 2.5 * wind, 5 + 0.05 * wind, std::to_string(wind));
+    }
+}
+
 TEST(LocalMethods, FollowTheHandOfALoopWithStepsBeyondAnyExplicitLimit) {
   for (const IntegratorChoice& choice : {projective(10), xpbd(10, 1), vbd(30)}) {
     Scene scene = stiff_cloth(1e4);

@@ -15,7 +15,7 @@ namespace {
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
-constexpr int most_futile = 20;         // relaxations, before a step does without
+constexpr int most_futile = 100;        // relaxations, before a step does without
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
 constexpr double good_enough = 1e-3;    // relative change after the last iteration that is still taken
@@ -148,6 +148,7 @@ void ImplicitStage::find_direction(const StageEquation& e) {
   const LinearMethod method = choose_linear_method(e.forces.system(), weights).method;
   escape_.fill(0);
   const bool solved = method == LinearMethod::multigrid ? solve_by_multigrid(e) : solve_symmetric(e, method);
+  if (!solved || largest_component(escape_) > 0) is_indefinite_ = true;
   if (!solved) {
     weights.clamped = true;
     e.forces.linearise(e.position, weights, linearisation_);
@@ -278,6 +279,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   double scale = std::max(largest_component(e.velocity), largest_component(e.start_velocity));
   double relative = 0;
   residual_norm_ = 0;
+  is_indefinite_ = false;
   futile_ = 0;
   memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {
@@ -297,7 +299,7 @@ void ImplicitStage::solve(const StageEquation& e) {
       return;
     }
     if (!has_preconditioner()) continue;
-    if (length_ < 1 && futile_ < most_futile) relax(e);
+    if (length_ < 1 && is_indefinite_ && futile_ < most_futile) relax(e);
     const bool is_near = change <= nearly_solved * scale;
     if (is_near && is_solved(e, estimate_part * tolerance_ * scale + rounding)) return;
   }

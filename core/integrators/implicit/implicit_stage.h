@@ -9,10 +9,10 @@
 // iteration does not end at a saddle point. The line search uses the work of the residual along the direction
 // (Matthies and Strang 1979); it needs no energy, since drag and dampers have none.
 //
-// Where a step had to be shortened, the linear model holds only nearby: springs that turn get longer by the
-// square of the turning. The residual is then relaxed by a quasi-Newton method that evaluates forces instead
-// of multiplying with the matrix, and has the last iteration's solver as preconditioner: it goes much further
-// for the cost of one linear solve.
+// Where the exact Jacobian was indefinite and a step had to be shortened, the linear model holds only nearby:
+// springs that turn get longer by the square of the turning. The residual is then relaxed by a quasi-Newton
+// method that evaluates forces instead of multiplying with the matrix, and has the last iteration's solver as
+// preconditioner: it goes much further for the cost of one linear solve.
 #pragma once
 
 #include "integrators/implicit/limited_memory.h"
@@ -66,10 +66,11 @@ class ImplicitStage {
   MultigridSolver multigrid_;
   ConjugateGradients gradients_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
-  double residual_norm_ = 0;  ///< N s, before the last iteration of this solve; 0: there was none
-  double forcing_ = 0;        ///< tolerance of iterative solves, relative to the residual
-  double length_ = 1;         ///< of the last step along its direction
-  int futile_ = 0;            ///< relaxations of this solve that gained little
+  double residual_norm_ = 0;    ///< N s, before the last iteration of this solve; 0: there was none
+  double forcing_ = 0;          ///< tolerance of iterative solves, relative to the residual
+  double length_ = 1;           ///< of the last step along its direction
+  bool is_indefinite_ = false;  ///< the exact matrix was, in an iteration of this solve
+  int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
   Vec3Field force_, residual_, downhill_, direction_, escape_, start_, before_;

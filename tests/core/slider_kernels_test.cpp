@@ -135,8 +135,9 @@ TEST_P(SlidersOnEveryInstructionSet, StepAsTheGeneralWayDoes) {
         EXPECT_LE(largest_distance(whole.state.position, general.state.position), 2e-14) << what;
         EXPECT_LE(largest_distance(whole.state.velocity, general.state.velocity), 2e-11) << what;
         EXPECT_NEAR(lost, expected, 1e-11 * std::abs(expected)) << what;
-        if (rows * columns > 9)
+        if (rows * columns > 9) {
           EXPECT_GT(largest_of(general.forces.history()), 0) << "nothing has yielded: " << what;
+        }
         EXPECT_NEAR(whole.work.damping_loss, general.work.damping_loss, 1e-11 * general.work.damping_loss)
             << what;
         EXPECT_LE(largest_difference(whole.forces.history(), general.forces.history()),

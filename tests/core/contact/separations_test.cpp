@@ -87,7 +87,7 @@ TEST_F(EveryInstructionSet, SeparatesFromObstaclesAtRestToTheBitAsFromMovingOnes
     placed.update(setting.bodies, setting.poses);
     placed.update(setting.bodies, setting.poses);
     for (std::size_t k = 0; k < setting.bodies.size(); ++k)
-      ASSERT_NE(placed.vertices(static_cast<int>(k)), nullptr);
+      ASSERT_NE(placed.plane(static_cast<int>(k)), nullptr);
     PairSetting at_rest = setting;
     at_rest.placed = &placed;
     for (const FeaturePair& pair : pairs) {

@@ -31,7 +31,7 @@ struct IntegratorReport {
   int rejected_steps = 0;       ///< inner steps rejected by error control
   int iterations =
       0;  ///< of Newton's method; of projective dynamics and VBD; passes of XPBD over the springs
-  int linear_iterations = 0;  ///< of conjugate gradients or another Krylov method
+  int linear_iterations = 0;  ///< of conjugate gradients, and steps of relaxation
   int factorisations = 0;     ///< of sparse matrices
   /// The largest change of a particle's speed by the last iteration, divided by the largest speed.
   double residual = 0;

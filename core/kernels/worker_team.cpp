@@ -11,8 +11,8 @@
 namespace cloth {
 namespace {
 
-/// Longer than what lies between two steps, far shorter than what anybody would notice as load.
-constexpr std::chrono::microseconds awake{100};
+/// Longer than what lies between two parallel loops of a step: to wake a thread costs tens of microseconds.
+constexpr std::chrono::microseconds awake{1000};
 
 void relax() {
 #if defined(__x86_64__) || defined(_M_X64)

@@ -21,10 +21,11 @@ const char* name_of(LinearMethod method) {
 }
 
 LinearChoice choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights) {
-  // s, measured: dissected factors of a grid grow as size^1.5, an iteration of conjugate gradients is linear.
+  // s, measured: dissected factors of a grid grow as its size times its shorter side, an iteration of
+  // conjugate gradients is linear.
   constexpr double factor_cost = 130e-9, preconditioner_cost = 60e-9, iteration_cost = 25e-9;
   // Of smooth states, which are most: conjugate gradients need more iterations as well where cloth buckles.
-  constexpr double start_cost = 200e-6, setup_cost = 600e-9, cycle_cost = 140e-9, cycles = 4;
+  constexpr double start_cost = 200e-6, setup_cost = 600e-9, cycle_cost = 140e-9;
   // Of Newton's method: with conjugate gradients a step is neither relaxed, nor is its last iteration spared.
   constexpr double more_iterations = 1.5;
   // Measured with the forcing of ImplicitStage: as the root of the condition, but a grid has no worse one
@@ -34,6 +35,7 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   const double iterations_per_edge = system.bending.empty() ? 1.7 : 4;  // a material's stiffnesses lie apart
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
+  const double stiffest_spring = stiffest;
   for (const BendingRun& run : system.bending) stiffest = std::max(stiffest, 2 * run.stiffness);
   for (const BendingSlider& s : system.sliders)
     stiffest = std::max(stiffest, 8 * s.stiffness * s.area * s.coefficient[0] * s.coefficient[0]);
@@ -47,12 +49,15 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   choice.iterations =
       std::min(iterations_per_edge * std::sqrt(size), iterations_per_root * std::sqrt(condition)) *
       std::pow(std::max(1.0, condition / stiff), growth);
-  choice.factors = factor_cost * size * std::sqrt(size);
+  const double side = system.is_mesh() ? std::sqrt(size) : std::min(system.rows, system.columns);
+  choice.factors = factor_cost * size * side;
   choice.gradients = more_iterations * (preconditioner_cost + iteration_cost * choice.iterations) * size;
   if (choice.gradients < choice.factors) choice.method = LinearMethod::conjugate_gradients;
   // Single precision ends where the springs' part of A is some 1e6 times the masses'.
   constexpr double stiffest_ratio = 3e5;
   if (MultigridSolver::suits(system) && weights.position * stiffest / lightest <= stiffest_ratio) {
+    // A strip of paper takes 5 to 13 cycles a solve, sheets with springs stiffer than bending 3 to 5.
+    const double cycles = stiffest > stiffest_spring ? 7 : 4;
     choice.multigrid = start_cost + (setup_cost + cycle_cost * cycles) * size;
     if (*choice.multigrid < std::min(choice.factors, choice.gradients))
       choice.method = LinearMethod::multigrid;

@@ -15,7 +15,8 @@ constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of t
 constexpr double ways_ahead = 6;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
 constexpr double most_ahead = 1.5, least_ahead = 0.15;
-constexpr double of_rounding = 1e-9;  ///< of a distance
+constexpr double of_rounding = 1e-9;        ///< of a distance
+constexpr double of_closest_points = 1e-6;  ///< by which a gap may be less than the distance
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
@@ -153,84 +154,111 @@ void ClosePairs::spread_spent() {
   spent_.push_back(0);
 }
 
-/// Whether is_far() holds for a candidate, from its cached distance.
-bool ClosePairs::is_known_far(std::size_t k) const {
+/// m, bound of what the motion since the candidates were found, and in this round, takes from the distance of
+/// one; negative where that leaves it beyond its reach.
+double ClosePairs::spent_by(std::size_t k) const {
   const double room = cached_room_[k];
-  return room > most_spent_ || room > spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
+  if (room > most_spent_) return -1;
+  const double spent = spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
+  return room > spent ? -1 : spent;
 }
 
-/// Whether the pair cannot come within its reach: the displacements are too short, or lead along or away.
-bool ClosePairs::is_far(const FeaturePair& pair, const Separation& s, const SweptBounds& swept) const {
+/// m, bound of what this round's motion takes from the distance of a pair.
+double ClosePairs::motion_of(const FeaturePair& pair) const {
+  const PairParticles all = particles_of(pair, cloth_);
+  double near = 0, far = pair.obstacle == FeaturePair::cloth_itself ? 0 : obstacle_paths_[at(pair.obstacle)];
+  for (int j = 0; j < all.count; ++j) {
+    double& range = j < all.near_count ? near : far;
+    range = std::max(range, range_[at(all.particle[at(j)])]);
+  }
+  return near + far;
+}
+
+/// A pair cannot come within its reach where the displacements are too short, or lead along or away.
+ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s,
+                                     const SweptBounds& swept) const {
   const double reach = reach_of(pair, swept);
-  if (s.distance <= reach && s.gap() <= reach) return false;  // as all that follows would show
-  double near_range = 0, far_range = 0;
+  const bool is_within = s.distance <= reach && s.gap() <= reach, holds = is_contact(s, reach);
+  if (is_within && holds) return Role::acts;
+  const double motion = motion_of(pair);
+  if (s.distance > reach + motion) return Role::none;
+  const Role role = !holds && s.gap() > 2 * motion ? Role::waits : Role::acts;
+  if (is_within || s.normal.isZero(0)) return role;
   Interval near, far{s.far_level, s.far_level};
-  for (int j = 0; j < s.count; ++j) {
-    const std::size_t i = at(s.particle[at(j)]);
-    double& range = j < s.near_count ? near_range : far_range;
-    range = std::max(range, range_[i]);
-    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[i]));
-  }
-  if (pair.obstacle != FeaturePair::cloth_itself) {
-    far_range = obstacle_paths_[at(pair.obstacle)];
-    far.high += far_range;
-  }
-  if (s.distance > reach + near_range + far_range) return true;
-  return !s.normal.isZero(0) && near.low > far.high + reach;
+  for (int j = 0; j < s.count; ++j)
+    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[at(s.particle[at(j)])]));
+  if (pair.obstacle != FeaturePair::cloth_itself) far.high += obstacle_paths_[at(pair.obstacle)];
+  return near.low > far.high + reach ? Role::none : role;
 }
 
-/// Of the part's pairs, those that are not far remain.
+/// Of the part's pairs, those that act remain.
 void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
-  auto& [pairs, separations] = part;
-  separations.resize(pairs.size());
+  std::vector<FeaturePair>& pairs = part.pairs;
+  if (part.every.size() < pairs.size()) part.every.resize(pairs.size());
+  part.left_out.resize(pairs.size());
+  part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              separations.data());
+                              part.clear.data(), part.every.data(), part.left_out.data());
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (is_far(pairs[k], separations[k], now.swept)) continue;
-    if (kept < k) pairs[kept] = pairs[k], separations[kept] = separations[k];
-    ++kept;
+    const FeaturePair pair = pairs[k];
+    const double distance = part.left_out[k];
+    Role role = Role::waits;
+    if (distance < 0)
+      role = role_of(pair, part.every[k], now.swept);
+    else if (const double reach = reach_of(pair, now.swept); distance > reach)
+      role = distance > reach + motion_of(pair) ? Role::none : Role::waits;
+    if (role == Role::waits) part.waiting.push_back({pair, kept});
+    if (role != Role::acts) continue;
+    pairs[kept++] = pair;
+    part.separations.push_back(part.every[k]);
   }
-  pairs.resize(kept), separations.resize(kept);
+  pairs.resize(kept);
 }
 
-template <class Skip>
+/// motion(k): m, at least motion_of() of a candidate; negative where its role is none. The result is that of
+/// the first part.
+template <class Motion>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
-                              const Skip& skip, std::vector<FeaturePair>& pairs,
-                              std::vector<Separation>& separations) {
+                              const Motion& motion) {
   const int shares =
       in_shares(team_, candidates.size(), least_kept, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
-        part.pairs.clear();
-        for (std::size_t k = begin; k < end; ++k)
-          if (!skip(k)) part.pairs.push_back(candidates[k]);
+        part.pairs.clear(), part.clear.clear();
+        for (std::size_t k = begin; k < end; ++k) {
+          const double most = motion(k);
+          if (most < 0) continue;
+          part.pairs.push_back(candidates[k]);
+          part.clear.push_back(2 * (1 + of_closest_points) * most);
+        }
         separate_part(now, part);
       });
-  pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   for (int share = 1; share < shares; ++share) {
-    const Part& part = parts_[at(share)];
-    pairs.insert(pairs.end(), part.pairs.begin(), part.pairs.end());
-    separations.insert(separations.end(), part.separations.begin(), part.separations.end());
+    for (WaitingPair& waiting : parts_[at(share)].waiting) waiting.place += parts_[0].pairs.size();
+    append(parts_[0].pairs, parts_[at(share)].pairs);
+    append(parts_[0].separations, parts_[at(share)].separations);
+    append(parts_[0].waiting, parts_[at(share)].waiting);
   }
 }
 
 /// Candidates are cached where the next step will find nearly the same positions.
 void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
-                      std::vector<Separation>& separations) {
+                      std::vector<Separation>& separations, std::vector<WaitingPair>& waiting) {
   measure(now);
   if (longest_ > furthest_reach(now.swept) || !all_at_rest(now)) {
     search_.find(now.swept, now.paths, found_);
-    return separate_all(
-        now, found_, [](std::size_t) { return false; }, pairs, separations);
+    separate_all(now, found_, [&](std::size_t k) { return motion_of(found_[k]); });
+  } else {
+    if (cached_position_.size() == now.position.size())
+      for (std::size_t i = 0; i < moved_.size(); ++i)
+        moved_[i] = (now.position[i] - cached_position_[i]).norm();
+    if (!holds(now)) collect_candidates(now);
+    add_spent();
+    separate_all(now, cached_, [&](std::size_t k) { return spent_by(k); });
   }
-  if (cached_position_.size() == now.position.size())
-    for (std::size_t i = 0; i < moved_.size(); ++i)
-      moved_[i] = (now.position[i] - cached_position_[i]).norm();
-  if (!holds(now)) collect_candidates(now);
-  add_spent();
-  separate_all(
-      now, cached_, [&](std::size_t k) { return is_known_far(k); }, pairs, separations);
+  pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations), waiting.swap(parts_[0].waiting);
 }
 
 }  // namespace cloth

@@ -14,6 +14,16 @@ namespace cloth {
 /// Pairs nearer than this many thicknesses become contact constraints; others only bound the motion.
 inline constexpr double near_factor = 1.5;
 
+inline bool is_contact(const Separation& separation, double thickness) {
+  return separation.nearest && separation.distance < near_factor * thickness && !separation.normal.isZero(0);
+}
+
+/// A pair that waits, see ClosePairs::find(), before the pair with this place in the order of all.
+struct WaitingPair {
+  FeaturePair pair;
+  std::size_t place = 0;  ///< among the pairs that act
+};
+
 struct PairQuery {
   const Vec3Field& position;                    ///< m, of the particles
   const SweptBounds& swept;                     ///< of the particles in this round, and the reaches
@@ -32,9 +42,12 @@ class ClosePairs {
   /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
 
-  /// Replaces `pairs` and `separations` (one for each pair) by those of all pairs that can come within their
-  /// reach (SweptBounds) while particles and obstacles stay in their swept bounds.
-  void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
+  /// All pairs that can come within their reach (SweptBounds) while particles and obstacles stay in their
+  /// swept bounds. `waiting`: those that are no contacts now (is_contact()) and whose gap is more than twice
+  /// what the motion can take from it, so that they do not bound it either; they may become contacts.
+  /// The others in `pairs`, with the separation of each. All three are replaced.
+  void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations,
+            std::vector<WaitingPair>& waiting);
 
   /// Drops the cached candidates. Call it after the reaches have changed.
   void forget() { cached_range_.clear(), search_.forget(); }
@@ -49,8 +62,13 @@ class ClosePairs {
   };
   struct Part {  ///< the result of one thread
     std::vector<FeaturePair> pairs;
+    std::vector<WaitingPair> waiting;
     std::vector<Separation> separations;
+    // scratch, of each pair before those that do not act are dropped
+    std::vector<Separation> every;        ///< may be longer
+    std::vector<double> clear, left_out;  ///< m, see PairBatch
   };
+  enum class Role { none, waits, acts };
 
   void measure(const PairQuery& now);
   bool all_at_rest(const PairQuery& now) const;
@@ -61,12 +79,12 @@ class ClosePairs {
   void drop_far_candidates();
   void add_spent();
   void spread_spent();
-  bool is_known_far(std::size_t kept) const;
-  bool is_far(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
+  double spent_by(std::size_t kept) const;
+  double motion_of(const FeaturePair& pair) const;
+  Role role_of(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
-  template <class Skip>
-  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const Skip& skip,
-                    std::vector<FeaturePair>& pairs, std::vector<Separation>& separations);
+  template <class Motion>
+  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const Motion& motion);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;

@@ -118,7 +118,7 @@ ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& st
   if (substeps_ > 1) drop_superseded_touches(step.position_before, duration);
   if (!has_moved_ && touches_.empty()) return report;
   report.acted = true;
-  report.pairs = pairs_.size();
+  report.pairs = pairs_.size() + waiting_.size();
   report.contacts = count_touched();
   integrated_position_ = state.position;
   state.position = position_;

@@ -130,15 +130,37 @@ bool ContinuousContact::find_pairs() {
     swept_.particles[i] = {here, end, radius_scale_[i] * std::max(least, aside_part * length)};
   }
   placed_.update(bodies_, poses_);
-  close_pairs_.find({position_, swept_, paths_, poses_, &placed_}, pairs_, separations_);
-  memory_.assign(pairs_.size(), {});
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    memory_[k].thickness = pairs_[k].obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_;
+  close_pairs_.find({position_, swept_, paths_, poses_, &placed_}, pairs_, separations_, waiting_);
+  memory_.clear();
+  for (const FeaturePair& pair : pairs_) memory_.push_back(new_state(pair));
   is_separated_ = true;
   return !pairs_.empty() || !are_whole;
 }
 
+ContinuousContact::PairState ContinuousContact::new_state(const FeaturePair& pair) const {
+  return {pair.obstacle == FeaturePair::cloth_itself ? self_thickness_ : thickness_};
+}
+
+/// Puts the pairs that waited among the others, in the order in which all were found: after the cloth has
+/// moved they may be contacts.
+void ContinuousContact::take_waiting() {
+  if (waiting_.empty()) return;
+  std::size_t from = pairs_.size();
+  pairs_.resize(from + waiting_.size()), memory_.resize(pairs_.size());
+  for (std::size_t left = waiting_.size(); left > 0;) {
+    const std::size_t to = from + left - 1;
+    if (waiting_[left - 1].place == from) {
+      pairs_[to] = waiting_[--left].pair, memory_[to] = new_state(pairs_[to]);
+    } else {
+      --from;
+      pairs_[to] = pairs_[from], memory_[to] = memory_[from];
+    }
+  }
+  waiting_.clear();
+}
+
 void ContinuousContact::separate_all() {
+  take_waiting();
   separations_.resize(pairs_.size());
   placed_.update(bodies_, poses_);
   const PairSetting setting{surface_, position_, bodies_, poses_, &placed_};
@@ -190,9 +212,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   constraint_pair_.clear();
   target_position_ = free_position_;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const Separation& s = separations_[k];
-    const bool holds = s.nearest && s.distance < near_factor * memory_[k].thickness && !s.normal.isZero(0);
-    if (!holds) {
+    if (!is_contact(separations_[k], memory_[k].thickness)) {
       memory_[k].normal_impulse = 0, memory_[k].friction_impulse.setZero();
       continue;
     }

@@ -76,6 +76,8 @@ class ContinuousContact : public ContactStage {
   bool note_still();
   void set_thickness(double time);
   bool find_pairs();
+  PairState new_state(const FeaturePair& pair) const;
+  void take_waiting();
   bool may_come_near() const;
   void begin_substep(std::int64_t substep, const Vec3Field& from, const Vec3Field& integrated);
   RoundsEnd go_rounds(const ClothSystem& system, const Vec3Field& from, double step, ContactReport& report);
@@ -160,6 +162,7 @@ class ContinuousContact : public ContactStage {
       radius_scale_;   ///< of each capsule, larger each time that the capsule stopped its particle
   SweptBounds swept_;  ///< particles stay in these until the next search for pairs
   std::vector<FeaturePair> pairs_;
+  std::vector<WaitingPair> waiting_;
   std::vector<PairState> memory_;
   std::vector<Separation> separations_;
   std::vector<ContactConstraint> constraints_;

@@ -41,6 +41,17 @@ Side side_of_triangle(const Surface& surface, int triangle, const std::array<dou
   return {-1, surface.edges_of[at(triangle)][static_cast<std::size_t>((k + 1) % 3)]};
 }
 
+/// Of the triangles that have a point of their border in common, one.
+bool is_in_charge_of(const Side& side, const Surface& surface, int triangle) {
+  if (side.vertex >= 0) return surface.triangle_of_vertex[at(side.vertex)] == triangle;
+  return side.edge < 0 || surface.triangle_of_edge[at(side.edge)] == triangle;
+}
+
+/// Of a face of the cloth with an obstacle's vertex: the pairs of the cloth's vertices hold their points.
+bool is_in_charge_beside_vertex(const Side& side, const Surface& cloth, int triangle) {
+  return side.vertex < 0 && is_in_charge_of(side, cloth, triangle);
+}
+
 /// Whether the surface around an edge's or vertex's `point` does not come closer along `normal`, which points
 /// from it to the other feature.
 template <class Position>
@@ -109,11 +120,8 @@ Separation vertex_face(const FeaturePair& pair, const FeaturePoints& points, con
   if (s.distance >= within) return s;
 
   const Side side = side_of_triangle(far.surface, pair.far_feature, closest.weights);
-  const bool in_charge = side.vertex >= 0
-                             ? far.surface.triangle_of_vertex[at(side.vertex)] == pair.far_feature
-                         : side.edge >= 0 ? far.surface.triangle_of_edge[at(side.edge)] == pair.far_feature
-                                          : true;
-  s.nearest = in_charge && bends_away(far.surface, side, s.far_point, s.normal, slack, far);
+  s.nearest = is_in_charge_of(side, far.surface, pair.far_feature) &&
+              bends_away(far.surface, side, s.far_point, s.normal, slack, far);
   return s;
 }
 
@@ -131,8 +139,7 @@ Separation edge_edge(const FeaturePair& pair, const FeaturePoints& points, const
   if (is_own(pair)) add_weights<2>(s, {1 - closest.second, closest.second}, -1);
   if (s.distance >= within) return s;
 
-  const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
-  if (!inside(closest.first) || !inside(closest.second)) return s;  // a vertex's pair holds these
+  if (!is_in_charge(closest)) return s;
   const Vec3 near_point = s.far_point + closest.separation;
   s.nearest = bends_away(cloth.surface, {-1, pair.feature}, near_point, -s.normal, slack_of_cloth, cloth) &&
               far_bends_away(s.far_point, s.normal);
@@ -170,10 +177,9 @@ Separation face_vertex(const FeaturePair& pair, const FeaturePoints& points, con
   if (s.distance >= within) return s;
 
   const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
-  if (side.vertex >= 0) return s;  // the vertex's own pair holds it
-  const bool in_charge = side.edge < 0 || cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature;
   const Vec3 near_point = vertex - closest.separation;
-  s.nearest = in_charge && bends_away(cloth.surface, side, near_point, -s.normal, slack_of_cloth, cloth);
+  s.nearest = is_in_charge_beside_vertex(side, cloth.surface, pair.feature) &&
+              bends_away(cloth.surface, side, near_point, -s.normal, slack_of_cloth, cloth);
   return s;
 }
 
@@ -187,9 +193,7 @@ Separation face_sphere(const FeaturePair& pair, const FeaturePoints& points, con
   s.far_point = center + radius * s.normal;
 
   const Side side = side_of_triangle(cloth.surface, pair.feature, closest.weights);
-  s.nearest = side.vertex >= 0 ? cloth.surface.triangle_of_vertex[at(side.vertex)] == pair.feature
-              : side.edge >= 0 ? cloth.surface.triangle_of_edge[at(side.edge)] == pair.feature
-                               : true;
+  s.nearest = is_in_charge_of(side, cloth.surface, pair.feature);
   return s;
 }
 
@@ -310,6 +314,22 @@ Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, c
   if (pair.kind == PairKind::face_vertex) return face_vertex(pair, points, closest, cloth, within);
   if (is_own(pair)) return vertex_face(pair, points, closest, cloth, cloth, slack_of_cloth, within);
   return vertex_face(pair, points, closest, cloth, body_side(pair, setting), slack_of_obstacle, within);
+}
+
+/// At their ends a vertex's pair holds them.
+bool is_in_charge(const SegmentSegment& closest) {
+  const auto inside = [](double w) { return w > edge_weight && w < 1 - edge_weight; };
+  return inside(closest.first) && inside(closest.second);
+}
+
+bool is_in_charge(const FeaturePair& pair, const PointTriangle& closest, const PairSetting& setting) {
+  const bool is_far_face = pair.kind == PairKind::vertex_face;
+  const Surface& surface =
+      is_far_face && !is_own(pair) ? setting.bodies[at(pair.obstacle)].surface : setting.cloth;
+  const int triangle = is_far_face ? pair.far_feature : pair.feature;
+  const Side side = side_of_triangle(surface, triangle, closest.weights);
+  return pair.kind == PairKind::face_vertex ? is_in_charge_beside_vertex(side, surface, triangle)
+                                            : is_in_charge_of(side, surface, triangle);
 }
 
 double distance_of(const FeaturePair& pair, double squared_distance, const PairSetting& setting) {

@@ -96,6 +96,10 @@ Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, c
                          const PairSetting& setting, double within);
 Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const PointTriangle& closest,
                          const PairSetting& setting, double within);
+/// False where these closest points are those of another pair as well, which holds them: this one is not
+/// `nearest` then.
+bool is_in_charge(const SegmentSegment& closest);
+bool is_in_charge(const FeaturePair& pair, const PointTriangle& closest, const PairSetting& setting);
 /// m, from that of the closest points.
 double distance_of(const FeaturePair& pair, double squared_distance, const PairSetting& setting);
 

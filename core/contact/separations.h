@@ -29,6 +29,11 @@ class PairBatch {
   /// One for each pair.
   void separate(std::span<const FeaturePair> pairs, const NearDistances& within, Separation* separations);
 
+  /// The same, but for pairs that are further apart than `clear` (m, one for each) and cannot be `nearest`:
+  /// these get no separation. left_out[k]: m, the distance of such a pair, of others -1.
+  void separate(std::span<const FeaturePair> pairs, const NearDistances& within, const double* clear,
+                Separation* separations, double* left_out);
+
  private:
   struct Waiting {
     ClosestBlock block{};

@@ -8,6 +8,8 @@
 #include "contact/feature_pairs.h"
 #include "contact/slab.h"
 #include "geometry/at.h"
+#include "geometry/box_tree.h"
+#include "geometry/rounded_box.h"
 
 namespace cloth {
 
@@ -44,13 +46,14 @@ inline bool have_own_pairs(const Surface& cloth, int face, int far_face) {
   return false;
 }
 
-/// A surface whose vertices may be anywhere in a region each; slabs of its triangles and boxes of its edges
-/// bound these.
+/// A surface whose vertices may be anywhere in a region each; slabs and boxes of its triangles and boxes of
+/// its edges bound these.
 template <class Region>
 struct FacesInRegions {
   const Surface& surface;
   std::span<const Region> vertices;
   std::span<const Slab> faces;
+  std::span<const RoundedBox> boxes;
   std::span<const Bounds> edges;
 };
 
@@ -67,13 +70,36 @@ class FacePairFinder {
         near_vertices_(near_vertices),
         far_vertices_(far.vertices),
         far_faces_(far.faces),
+        far_boxes_(far.boxes),
         far_edges_(far.edges) {}
 
-  /// Appends the pairs of `face` and `far_face`; fastest where consecutive calls have the same `face`.
-  void find(int face, int far_face, std::vector<FeaturePair>& pairs) {
-    if (face != face_) take(face);
+  /// Appends the pairs of the faces in each of `overlaps`; fastest where those of one face follow each other.
+  void find(std::span<const BoxPair> overlaps, std::vector<FeaturePair>& pairs) {
+    for (std::size_t begin = 0, end = 0; begin < overlaps.size(); begin = end) {
+      take(overlaps[begin].query);
+      while (end < overlaps.size() && overlaps[end].query == face_) ++end;
+      for (const int far_face : near_boxes(overlaps.subspan(begin, end - begin))) find(far_face, pairs);
+    }
+  }
+
+ private:
+  bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
+  const FarRegion& other_vertex(std::size_t k) const { return far_vertices_[at(other_[k])]; }
+
+  /// The far faces whose boxes may overlap that of `face_`. Without branches: most do not.
+  std::span<const int> near_boxes(std::span<const BoxPair> overlaps) {
+    if (near_boxes_.size() < overlaps.size()) near_boxes_.resize(overlaps.size());
+    const RoundedLimits limits(slab_.box);
+    std::size_t count = 0;
+    for (const BoxPair& overlap : overlaps) {
+      near_boxes_[count] = overlap.index;
+      count += limits.may_overlap(far_boxes_[at(overlap.index)]) ? 1 : 0;
+    }
+    return {near_boxes_.data(), count};
+  }
+
+  void find(int far_face, std::vector<FeaturePair>& pairs) {
     const Slab& far = far_faces_[at(far_face)];
-    if (!overlap(slab_.box, far.box)) return;
     far_face_ = far_face, other_ = far_.triangles[at(far_face)];
     for (std::size_t k = 0; k < 3; ++k)
       near_sides_[k] = far.side_of(along(far.normal, near_vertices_[at(own_[k])]));
@@ -83,10 +109,6 @@ class FacePairFinder {
     find_vertices(far, pairs);
     find_edges(far, pairs);
   }
-
- private:
-  bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
-  const FarRegion& other_vertex(std::size_t k) const { return far_vertices_[at(other_[k])]; }
 
   void take(int face) {
     face_ = face, own_ = near_.triangles[at(face)];
@@ -128,6 +150,7 @@ class FacePairFinder {
   std::span<const NearRegion> near_vertices_;
   std::span<const FarRegion> far_vertices_;
   std::span<const Slab> far_faces_;
+  std::span<const RoundedBox> far_boxes_;
   std::span<const Bounds> far_edges_;
 
   int face_ = -1, far_face_ = -1;
@@ -135,6 +158,7 @@ class FacePairFinder {
   Slab slab_;
   std::array<Bounds, 3> boxes_, edge_boxes_;  ///< of vertices and edges of `face_`
   Sides near_sides_{}, far_sides_{};
+  std::vector<int> near_boxes_;  ///< scratch
 };
 
 }  // namespace cloth

@@ -132,12 +132,16 @@ class PairSearch::Step {
       const auto& [a, b, c] = cloth_.triangles[f];
       faces[f] = slab_of(near[at(a)], near[at(b)], near[at(c)]);
     }
+    std::vector<RoundedBox>& boxes = search_.own_boxes_;
+    boxes.clear();
+    for (const Slab& face : faces) boxes.emplace_back(face.box);
     std::vector<Bounds>& edges = search_.own_edges_;
     edges.clear();
     for (const auto& [a, b] : cloth_.edges)
       edges.push_back(bounds_of(box_of(near[at(a)]), box_of(near[at(b)])));
-    find_faces<Region, Region>(search_.own_overlaps_,
-                               {FeaturePair::cloth_itself, cloth_, near, {cloth_, near, faces, edges}});
+    find_faces<Region, Region>(
+        search_.own_overlaps_,
+        {FeaturePair::cloth_itself, cloth_, near, {cloth_, near, faces, boxes, edges}});
   }
 
   /// The regions of the particles in the coordinates of an obstacle at rest, grown by the reach.
@@ -230,7 +234,7 @@ class PairSearch::Step {
   void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
     const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
     const FacesInRegions<Vec3> far{body.surface, body.vertices, search_.mesh_faces_[at(obstacle_)],
-                                   search_.mesh_edges_[at(obstacle_)]};
+                                   search_.mesh_boxes_[at(obstacle_)], search_.mesh_edges_[at(obstacle_)]};
     const auto find_near = [&]<class Region>(const std::vector<Region>& near) {
       find_faces<Region, Vec3>(overlaps, {obstacle_, cloth_, near, far});
     };
@@ -247,8 +251,7 @@ class PairSearch::Step {
     search_.in_parts(overlaps.size(), least_share, search_.pair_parts_, pairs_,
                      [&](std::size_t begin, std::size_t end, std::vector<FeaturePair>& part) {
                        auto own_finder = finder;
-                       for (std::size_t k = begin; k < end; ++k)
-                         own_finder.find(overlaps[k].query, overlaps[k].index, part);
+                       own_finder.find(std::span(overlaps).subspan(begin, end - begin), part);
                      });
   }
 
@@ -271,6 +274,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
       with_itself_(with_itself),
       skin_(skin),
       mesh_faces_(bodies.size()),
+      mesh_boxes_(bodies.size()),
       mesh_edges_(bodies.size()),
       mesh_trees_(bodies.size()),
       mesh_overlaps_(bodies.size()) {
@@ -282,6 +286,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
     for (const auto& [a, b, c] : bodies[k].surface.triangles) {
       mesh_faces_[k].push_back(slab_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
       boxes.push_back(mesh_faces_[k].back().box);
+      mesh_boxes_[k].emplace_back(boxes.back());
     }
     for (const auto& [a, b] : bodies[k].surface.edges)
       mesh_edges_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)]));

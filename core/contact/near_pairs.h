@@ -6,6 +6,7 @@
 #include "contact/feature_pairs.h"
 #include "contact/slab.h"
 #include "geometry/box_tree.h"
+#include "geometry/rounded_box.h"
 
 namespace cloth {
 
@@ -59,7 +60,8 @@ class PairSearch {
   bool with_itself_, needs_trees_ = false;
   double skin_;
   WorkerTeam* team_ = nullptr;
-  std::vector<std::vector<Slab>> mesh_faces_;    ///< of each body's triangles
+  std::vector<std::vector<Slab>> mesh_faces_;  ///< of each body's triangles
+  std::vector<std::vector<RoundedBox>> mesh_boxes_;
   std::vector<std::vector<Bounds>> mesh_edges_;  ///< of each body
   std::vector<BoxTree> mesh_trees_;              ///< of each body; empty unless it is a mesh
   BoxTree cloth_tree_;
@@ -67,6 +69,7 @@ class PairSearch {
   std::vector<Capsule> capsules_;
   std::vector<Ball> balls_;
   std::vector<Slab> own_faces_;
+  std::vector<RoundedBox> own_boxes_;  ///< of these
   std::vector<Bounds> own_edges_;
   std::vector<std::vector<FeaturePair>> pair_parts_{1};  ///< of each thread
   std::vector<std::vector<BoxPair>> overlap_parts_{1};

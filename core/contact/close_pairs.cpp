@@ -47,7 +47,9 @@ void ClosePairs::measure(const PairQuery& now) {
   }
   obstacle_paths_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    obstacle_paths_.push_back(longest_path(bodies_[k], now.paths[k]));
+    obstacle_paths_.push_back(same_place(bodies_[k], now.paths[k].from(), now.paths[k].to())
+                                  ? 0
+                                  : longest_path(bodies_[k], now.paths[k]));
 }
 
 bool ClosePairs::all_at_rest(const PairQuery& now) const {
@@ -199,16 +201,12 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              part.clear.data(), part.every.data(), part.left_out.data());
+                              {part.clear, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
+                              part.left_out.data());
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const FeaturePair pair = pairs[k];
-    const double distance = part.left_out[k];
-    Role role = Role::waits;
-    if (distance < 0)
-      role = role_of(pair, part.every[k], now.swept);
-    else if (const double reach = reach_of(pair, now.swept); distance > reach)
-      role = distance > reach + motion_of(pair) ? Role::none : Role::waits;
+    const Role role = part.left_out[k] != 0 ? Role::waits : role_of(pair, part.every[k], now.swept);
     if (role == Role::waits) part.waiting.push_back({pair, kept});
     if (role != Role::acts) continue;
     pairs[kept++] = pair;

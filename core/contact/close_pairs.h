@@ -18,10 +18,11 @@ inline bool is_contact(const Separation& separation, double thickness) {
   return separation.nearest && separation.distance < near_factor * thickness && !separation.normal.isZero(0);
 }
 
-/// A pair that waits, see ClosePairs::find(), before the pair with this place in the order of all.
+/// A pair that waits, see ClosePairs::find().
 struct WaitingPair {
   FeaturePair pair;
-  std::size_t place = 0;  ///< among the pairs that act
+  std::size_t place = 0;  ///< it comes before the acting pair with this number
+  bool operator==(const WaitingPair&) const = default;
 };
 
 struct PairQuery {
@@ -65,8 +66,9 @@ class ClosePairs {
     std::vector<WaitingPair> waiting;
     std::vector<Separation> separations;
     // scratch, of each pair before those that do not act are dropped
-    std::vector<Separation> every;        ///< may be longer
-    std::vector<double> clear, left_out;  ///< m, see PairBatch
+    std::vector<Separation> every;  ///< may be longer
+    std::vector<double> clear;      ///< m, see PairBatch
+    std::vector<std::uint8_t> left_out;
   };
   enum class Role { none, waits, acts };
 

@@ -90,29 +90,27 @@ void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* dista
       [&](std::size_t k) { distances[k] = cloth::separate(pairs[k], setting_, 0).distance; });
 }
 
-void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within, const double* clear,
-                         Separation* separations, double* left_out) {
-  const auto can_be_nearest = [&](const FeaturePair& pair, const auto& closest) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(closest)>, SegmentSegment>)
-      return is_in_charge(closest);
-    else
-      return is_in_charge(pair, closest, setting_);
+void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within,
+                         const NeedlessDistances& needless, Separation* separations, std::uint8_t* left_out) {
+  const auto is_needless = [&](std::size_t k, const auto& closest) {
+    const FeaturePair& pair = pairs[k];
+    if constexpr (std::is_same_v<std::decay_t<decltype(closest)>, SegmentSegment>) {
+      if (is_in_charge(closest)) return false;
+    } else {
+      if (is_in_charge(pair, closest, setting_)) return false;
+    }
+    const double distance = distance_of(pair, closest.squared_distance, setting_);
+    return needless.least[k] < distance && distance < needless.most(pair);
   };
   go_through(
       pairs,
       [&](std::size_t k, const FeaturePoints& points, const auto& closest) {
-        const FeaturePair& pair = pairs[k];
-        left_out[k] = -1;
-        if (!can_be_nearest(pair, closest))
-          if (const double distance = distance_of(pair, closest.squared_distance, setting_);
-              distance > clear[k]) {
-            left_out[k] = distance;
-            return;
-          }
-        separations[k] = separation_of(pair, points, closest, setting_, within(pair));
+        left_out[k] = is_needless(k, closest) ? 1 : 0;
+        if (left_out[k] == 0)
+          separations[k] = separation_of(pairs[k], points, closest, setting_, within(pairs[k]));
       },
       [&](std::size_t k) {
-        left_out[k] = -1;
+        left_out[k] = 0;
         separations[k] = cloth::separate(pairs[k], setting_, within(pairs[k]));
       });
 }

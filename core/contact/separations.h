@@ -9,13 +9,19 @@
 
 namespace cloth {
 
-/// m: pairs nearer than this are asked whether they are nearest, see separate().
+/// m, by what a pair of the cloth is with.
 struct NearDistances {
   double of_obstacles = 0, of_itself = 0;
 
   double operator()(const FeaturePair& pair) const {
     return pair.obstacle == FeaturePair::cloth_itself ? of_itself : of_obstacles;
   }
+};
+
+/// Distances between these two need no separation where a pair cannot be `nearest`.
+struct NeedlessDistances {
+  std::span<const double> least;  ///< m, of each pair
+  NearDistances most;
 };
 
 /// Of one thread. The arguments must outlive it.
@@ -26,13 +32,12 @@ class PairBatch {
   /// m, one for each pair.
   void find_distances(std::span<const FeaturePair> pairs, double* distances);
 
-  /// One for each pair.
+  /// One for each pair. Those nearer than `within` are asked whether they are nearest, see separate().
   void separate(std::span<const FeaturePair> pairs, const NearDistances& within, Separation* separations);
 
-  /// The same, but for pairs that are further apart than `clear` (m, one for each) and cannot be `nearest`:
-  /// these get no separation. left_out[k]: m, the distance of such a pair, of others -1.
-  void separate(std::span<const FeaturePair> pairs, const NearDistances& within, const double* clear,
-                Separation* separations, double* left_out);
+  /// The same but for needless ones. left_out[k]: whether a pair has no separation therefore.
+  void separate(std::span<const FeaturePair> pairs, const NearDistances& within,
+                const NeedlessDistances& needless, Separation* separations, std::uint8_t* left_out);
 
  private:
   struct Waiting {

@@ -267,39 +267,88 @@ std::vector<Pose> poses_at_begin(const Intersection& meeting) {
   return poses;
 }
 
-TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
+/// What ClosePairs finds.
+struct Found {
+  std::vector<FeaturePair> pairs;
+  std::vector<Separation> separations;
+  std::vector<WaitingPair> waiting;
+
+  Found(ClosePairs& close, const PairQuery& now) { close.find(now, pairs, separations, waiting); }
+
+  std::vector<FeaturePair> all() const {
+    std::vector<FeaturePair> both = pairs;
+    for (const WaitingPair& one : waiting) both.push_back(one.pair);
+    return both;
+  }
+};
+
+/// Calls `look` in random walks with what is found by one search after the other, and by a search of its own.
+/// `wide`: factor of the reaches, and divisor of the margins.
+template <class Look>
+void find_on_walks(double wide, const Look& look) {
   Random random;
-  Looked looked;
-  std::size_t compared = 0, differing = 0;
   for (int trial = 0; trial < 12; ++trial) {
     SCOPED_TRACE(trial);
     std::unique_ptr<ClosePairs> keeping;
-    walk(random, [&](const Intersection& meeting, const Motion& motion, bool begins) {
-      const Surface& cloth = meeting.sheet.surface;
-      if (begins)
-        keeping = std::make_unique<ClosePairs>(cloth, meeting.sheet.position, meeting.bodies, true, 0.02);
+    walk(random, [&](const Intersection& meeting, Motion motion, bool begins) {
+      motion.reach *= wide, motion.own_reach *= wide, motion.margin /= wide;
+      const Sheet& sheet = meeting.sheet;
+      const auto search = [&] {
+        return std::make_unique<ClosePairs>(sheet.surface, sheet.position, meeting.bodies, true, 0.02);
+      };
+      if (begins) keeping = search();
       const SweptBounds swept = motion.swept();
       const std::vector<Pose> poses = poses_at_begin(meeting);
       const PairQuery now{motion.from, swept, meeting.paths, poses};
-      std::vector<FeaturePair> pairs, fresh;
-      std::vector<Separation> separations, fresh_separations;
-      keeping->find(now, pairs, separations);
-      ClosePairs(cloth, meeting.sheet.position, meeting.bodies, true, 0.02)
-          .find(now, fresh, fresh_separations);
-      ASSERT_EQ(pairs, fresh);
-      ASSERT_EQ(separations.size(), pairs.size());
-      for (std::size_t k = 0; k < pairs.size(); ++k) {
-        ASSERT_EQ(separations[k].distance, fresh_separations[k].distance);
-        differing += separations[k].distance !=
-                     separate(pairs[k], {cloth, motion.from, meeting.bodies, poses}, 0).distance;
-      }
-      compared += pairs.size();
-      expect_none_missed(pairs, meeting, motion, looked);
+      look(meeting, motion, now, Found(*keeping, now), Found(*search(), now));
     });
   }
+}
+
+TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
+  Looked looked;
+  std::size_t compared = 0, differing = 0;
+  find_on_walks(1, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
+                       const Found& found, const Found& fresh) {
+    ASSERT_EQ(found.pairs, fresh.pairs);
+    ASSERT_EQ(found.waiting, fresh.waiting);
+    ASSERT_EQ(found.separations.size(), found.pairs.size());
+    for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+      ASSERT_EQ(found.separations[k].distance, fresh.separations[k].distance);
+      differing +=
+          found.separations[k].distance !=
+          separate(found.pairs[k], {meeting.sheet.surface, motion.from, meeting.bodies, now.poses}, 0)
+              .distance;
+    }
+    compared += found.pairs.size();
+    expect_none_missed(found.all(), meeting, motion, looked);
+  });
   EXPECT_EQ(differing, 0u) << "separations of another situation";
   EXPECT_GT(compared, 3000u);
   EXPECT_GT(looked.near, 2000u);
+}
+
+TEST(ClosePairs, ThatWaitAreNoContactsAndKeepHalfTheirDistance) {
+  std::size_t looked = 0;
+  find_on_walks(10, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
+                        const Found& found, const Found& fresh) {
+    ASSERT_EQ(found.pairs, fresh.pairs);
+    ASSERT_EQ(found.waiting, fresh.waiting);
+    std::size_t last = 0;
+    for (const auto& [pair, place] : found.waiting) {
+      ASSERT_LE(last, place);
+      ASSERT_LE(place, found.pairs.size());
+      last = place;
+      const double reach = pair.obstacle == FeaturePair::cloth_itself ? motion.own_reach : motion.reach;
+      const Separation s = separate(pair, {meeting.sheet.surface, motion.from, meeting.bodies, now.poses},
+                                    near_factor * reach);
+      ASSERT_FALSE(is_contact(s, reach));
+      ASSERT_GE(least_distance(pair, meeting.sheet.surface, motion, meeting.bodies, meeting.paths),
+                0.5 * s.distance);
+      ++looked;
+    }
+  });
+  EXPECT_GT(looked, 1000u);
 }
 
 }  // namespace

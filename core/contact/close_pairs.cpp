@@ -47,9 +47,7 @@ void ClosePairs::measure(const PairQuery& now) {
   }
   obstacle_paths_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
-    obstacle_paths_.push_back(same_place(bodies_[k], now.paths[k].from(), now.paths[k].to())
-                                  ? 0
-                                  : longest_path(bodies_[k], now.paths[k]));
+    obstacle_paths_.push_back(longest_path(bodies_[k], now.paths[k]));
 }
 
 bool ClosePairs::all_at_rest(const PairQuery& now) const {

@@ -134,12 +134,14 @@ class LongSteps : public ::testing::TestWithParam<std::string> {};
 TEST_P(LongSteps, OfContactParticleByParticleMakeNoEnergy) {
   for (const auto& [method, iterations, most] :
        {LongStep{"implicit-euler"}, LongStep{"bdf2"}, LongStep{"projective", 60},
-        LongStep{"projective", 10, 0.75}, LongStep{"xpbd", 10}, LongStep{"xpbd", 1, 0.5}})
+        LongStep{"projective", 10, 0.75}, LongStep{"xpbd", 10}, LongStep{"xpbd", 1, 0.5},
+        LongStep{"vbd", 60}, LongStep{"vbd", 10, 0.75}})
     for (const double step : {0.01, 1.0 / 60}) {
       Scene scene = coarser(builtin_scene(GetParam()), 0.5);
       scene.integrator = {.method = method, .time_step = step};
       if (method == "projective") scene.integrator.projective_iterations = iterations;
       if (method == "xpbd") scene.integrator.xpbd_iterations = iterations;
+      if (method == "vbd") scene.integrator.vbd_iterations = iterations;
       const ContactLedger ledger = ledger_of(scene, {}, 0.6);
       const std::string where =
           method + ", " + std::to_string(iterations) + " iterations, at " + std::to_string(step);

@@ -1,10 +1,10 @@
 #include "cloth/mesh_bending.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "cloth/mesh_patch.h"
+#include "geometry/dense_decompositions.h"
 
 namespace cloth {
 namespace {
@@ -108,11 +108,11 @@ class CurvatureBuilder {
 void add_elements(const WeightedVertices& curvature, const Eigen::Vector3d& weight, double area,
                   BendingRuns& runs) {
   const MatrixXd form = weight.cwiseSqrt().asDiagonal() * curvature.weight;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(form * form.transpose());
-  const double largest = solver.eigenvalues().maxCoeff();
+  const auto [values, vectors] = symmetric_modes(form * form.transpose());
+  const double largest = values.maxCoeff();
   for (Index k = 0; k < 3; ++k) {
-    if (!(solver.eigenvalues()[k] > 1e-12 * largest)) continue;
-    const Eigen::VectorXd c = form.transpose() * solver.eigenvectors().col(k);
+    if (!(values[k] > 1e-12 * largest)) continue;
+    const Eigen::VectorXd c = form.transpose() * vectors.col(k);
     const double unit = c.cwiseAbs().maxCoeff();
     BendingRun run{.first = 0, .count = 1, .points = static_cast<int>(curvature.vertex.size())};
     for (std::size_t p = 0; p < curvature.vertex.size(); ++p)

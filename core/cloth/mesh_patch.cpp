@@ -1,8 +1,10 @@
 #include "cloth/mesh_patch.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
+
+#include "geometry/dense_decompositions.h"
 
 namespace cloth {
 namespace {
@@ -79,16 +81,15 @@ class PatchConditions {
   static MatrixXd least_energy(const MatrixXd& matrix, const MatrixXd& data, const Eigen::Vector3d& weight) {
     constexpr double undetermined = 1e-3;  // relative: a direction that the corners hardly tell apart
     if (matrix.rows() == 0) return MatrixXd::Zero(3, data.cols());
-    const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
-    const auto& values = svd.singularValues();
+    const auto [left, values, right] = singular_parts(matrix);
     Index rank = 0;
     while (rank < values.size() && values[rank] > undetermined * values[0]) ++rank;
-    const MatrixXd from = svd.matrixV().leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() *
-                          svd.matrixU().leftCols(rank).transpose() * data;
+    const MatrixXd from = right.leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() *
+                          left.leftCols(rank).transpose() * data;
     if (rank == 3) return from;
-    const MatrixXd free = svd.matrixV().rightCols(3 - rank);
+    const MatrixXd free = right.rightCols(3 - rank);
     const MatrixXd root = weight.cwiseSqrt().asDiagonal();
-    return from - free * (root * free).completeOrthogonalDecomposition().solve(root * from);
+    return from - free * shortest_least_squares(root * free, root * from);
   }
 
   const Vec3& vertex(int i) const { return mesh_.vertices[at(i)]; }

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/dense_decompositions.h"
 
 namespace cloth {
 namespace {
@@ -96,13 +97,13 @@ std::string words_of_direction(const std::vector<double>& direction,
 Information information_of(const Eigen::MatrixXd& jacobian, double error_scale,
                            const std::vector<FitParameter>& parameters) {
   const Eigen::Index count = jacobian.cols();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullV);
+  const SingularParts parts = singular_parts(jacobian);
   Information information{Eigen::MatrixXd::Zero(count, count), {}};
-  const double largest = svd.singularValues().size() > 0 ? svd.singularValues()[0] : 0;
+  const double largest = parts.values.size() > 0 ? parts.values[0] : 0;
   const double least = std::max(smallest_seen_ratio * largest, 1e-150);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
-    const Eigen::VectorXd v = svd.matrixV().col(k);
+    const double value = k < parts.values.size() ? parts.values[k] : 0;
+    const Eigen::VectorXd v = parts.right.col(k);
     const double deviation = error_scale / std::max(value, least);
     information.covariance += v * v.transpose() * deviation * deviation;
     FitDirection direction{.singular_value = value, .direction = {v.begin(), v.end()}};

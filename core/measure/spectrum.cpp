@@ -1,9 +1,9 @@
 #include "measure/spectrum.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/dense_decompositions.h"
 #include "geometry/split_mix.h"
 
 namespace cloth {
@@ -106,13 +106,12 @@ Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<do
                        double next) {
   const auto size = static_cast<Index>(diagonal.size());
   const Eigen::Map<const VectorXd> main(diagonal.data(), size), beside(coupling.data(), size - 1);
-  Eigen::SelfAdjointEigenSolver<MatrixXd> solver;
-  solver.computeFromTridiagonal(main, beside);
+  const auto [values, vectors] = tridiagonal_modes(main, beside);
   Spectrum spectrum;
-  spectrum.largest = solver.eigenvalues()[size - 1];
-  spectrum.smallest = solver.eigenvalues()[0];
-  spectrum.largest_residual = next * std::abs(solver.eigenvectors()(size - 1, size - 1));
-  spectrum.smallest_residual = next * std::abs(solver.eigenvectors()(size - 1, 0));
+  spectrum.largest = values[size - 1];
+  spectrum.smallest = values[0];
+  spectrum.largest_residual = next * std::abs(vectors(size - 1, size - 1));
+  spectrum.smallest_residual = next * std::abs(vectors(size - 1, 0));
   spectrum.iterations = static_cast<int>(size);
   return spectrum;
 }

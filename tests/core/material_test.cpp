@@ -1,11 +1,11 @@
 // A material on grids: springs, masses and bending elements that are the same cloth on every grid.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "geometry/dense_decompositions.h"
 #include "integrators/registry.h"
 #include "measure/energy.h"
 #include "measure/spectrum.h"
@@ -153,9 +153,7 @@ double largest_frequency_of(const ClothSystem& system, const Vec3Field& position
   for (Eigen::Index row = 0; row < hessian.rows(); ++row)
     scale[row] = std::sqrt(system.inverse_mass[static_cast<std::size_t>(row / 3)]);
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly)
-                       .eigenvalues()
-                       .maxCoeff());
+  return std::sqrt(symmetric_values(scaled).maxCoeff());
 }
 
 TEST(MaterialFrequency, IsBoundedForEveryShapePinsAndCells) {

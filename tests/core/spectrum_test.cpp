@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "cloth/grid.h"
+#include "geometry/dense_decompositions.h"
 #include "measure/stability_limit.h"
 #include "support/reference.h"
 #include "support/scenes.h"
@@ -49,7 +49,7 @@ Eigen::VectorXd dense_spectrum(const ClothSystem& system, const Vec3Field& posit
   }
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
   const Eigen::MatrixXd reduced = scaled(free, free);
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(reduced, Eigen::EigenvaluesOnly).eigenvalues();
+  return symmetric_values(reduced);
 }
 
 TEST(Spectrum, HasTheExtremesOfTheDenseMatrix) {
@@ -208,7 +208,7 @@ double dense_bound(const ClothSystem& system) {
       matrix(i, j) -= run.stiffness * scale(i) * scale(j),
           matrix(j, i) -= run.stiffness * scale(i) * scale(j);
     }
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues().maxCoeff());
+  return std::sqrt(symmetric_values(matrix).maxCoeff());
 }
 
 TEST(GuaranteedFrequency, OfASystemIsThatOfItsGraphLaplacian) {

@@ -1,7 +1,8 @@
 #include "support/reference.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "geometry/dense_decompositions.h"
 
 namespace cloth::test {
 namespace {
@@ -118,8 +119,7 @@ double largest_eigenfrequency(const ClothSystem& system, const Vec3Field& positi
     hessian.middleRows(3 * i, 3).setZero();
     hessian.middleCols(3 * i, 3).setZero();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(hessian, Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues().maxCoeff() / system.mass.front());
+  return std::sqrt(symmetric_values(hessian).maxCoeff() / system.mass.front());
 }
 
 Eigen::MatrixXd damping_matrix(const ForceModel& forces, const Vec3Field& position) {

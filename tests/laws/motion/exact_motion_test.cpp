@@ -3,7 +3,6 @@
 // motion chosen freely and made exact by the load that it needs.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <numbers>
 
 #include "cloth/grid.h"
+#include "geometry/dense_decompositions.h"
 #include "integrators/registry.h"
 #include "support/direct_run.h"
 #include "support/reference.h"
@@ -191,20 +191,20 @@ class LinearCloth {
     const Eigen::MatrixXd inner = stiff(free_, free_) / mass;
     const Eigen::MatrixXd load = Eigen::VectorXd::Ones(inner.rows()) * gravity.transpose() -
                                  stiff(free_, pins_) / mass * start(pins_, Eigen::all);
-    modes_.compute(inner);
+    modes_ = symmetric_modes(inner);
     rest_ = inner.ldlt().solve(load);
-    amplitudes_ = modes_.eigenvectors().transpose() * (start(free_, Eigen::all) - rest_);
+    amplitudes_ = modes_.vectors.transpose() * (start(free_, Eigen::all) - rest_);
   }
-  double largest_frequency() const { return std::sqrt(modes_.eigenvalues().maxCoeff()); }
+  double largest_frequency() const { return std::sqrt(modes_.values.maxCoeff()); }
   /// The largest distance of a free particle from where it should be.
   double distance(const ClothState& state) const {
-    Eigen::VectorXd factor(modes_.eigenvalues().size());
+    Eigen::VectorXd factor(modes_.values.size());
     for (int k = 0; k < factor.size(); ++k) {
-      const std::complex<double> w = std::sqrt(std::complex<double>(modes_.eigenvalues()[k] - c_ * c_ / 4));
+      const std::complex<double> w = std::sqrt(std::complex<double>(modes_.values[k] - c_ * c_ / 4));
       const auto swing = std::cos(w * state.time) + c_ / (2.0 * w) * std::sin(w * state.time);
       factor[k] = std::exp(-c_ * state.time / 2) * swing.real();
     }
-    const Eigen::MatrixXd exact = rest_ + modes_.eigenvectors() * (factor.asDiagonal() * amplitudes_);
+    const Eigen::MatrixXd exact = rest_ + modes_.vectors * (factor.asDiagonal() * amplitudes_);
     double largest = 0;
     for (int k = 0; k < exact.rows(); ++k)
       largest =
@@ -217,7 +217,7 @@ class LinearCloth {
  private:
   double c_;
   std::vector<int> free_, pins_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes_;
+  SymmetricModes modes_;
   Eigen::MatrixXd rest_, amplitudes_;
 };
 

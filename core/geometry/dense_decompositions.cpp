@@ -1,0 +1,42 @@
+#include "geometry/dense_decompositions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+namespace cloth {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+using Solver = Eigen::SelfAdjointEigenSolver<MatrixXd>;
+
+}  // namespace
+
+SymmetricModes symmetric_modes(const MatrixXd& matrix) {
+  const Solver solver(matrix);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+VectorXd symmetric_values(const MatrixXd& matrix) {
+  return Solver(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+SymmetricModes tridiagonal_modes(const VectorXd& main, const VectorXd& beside) {
+  Solver solver;
+  solver.computeFromTridiagonal(main, beside);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+SingularParts singular_parts(const MatrixXd& matrix) {
+  const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+}
+
+double spectral_norm(const MatrixXd& matrix) {
+  return Eigen::JacobiSVD<MatrixXd>(matrix).singularValues()[0];
+}
+
+MatrixXd shortest_least_squares(const MatrixXd& matrix, const MatrixXd& data) {
+  return matrix.completeOrthogonalDecomposition().solve(data);
+}
+
+}  // namespace cloth

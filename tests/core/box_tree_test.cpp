@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/rounded_box.h"
 #include "support/random.h"
 
 namespace cloth::test::box_tree_test {
@@ -273,6 +274,32 @@ TEST(BoxTree, HasOneBoxAtTheTopAndTheGivenOnesAtTheBottom) {
   EXPECT_EQ(drawn_boxes(tree, 2).size(), 64U);
   EXPECT_EQ(drawn_boxes(tree, 3).size(), 512U);
   for (const Bounds& box : drawn_boxes(tree, 2)) EXPECT_TRUE(overlap(box, all));
+}
+
+TEST(RoundedBox, OverlapsWhereTheBoxDoesAndHardlyElsewhere) {
+  Random random;
+  int overlapping = 0, apart = 0;
+  for (const double far : {0.0, 1e3, 1e7}) {
+    Boxes boxes = random_boxes(200, 0.3, random);
+    for (std::size_t k = 0; k + 1 < 100; k += 2) {  // boxes that touch in a face
+      boxes[k + 1] = boxes[k];
+      boxes[k + 1].lower.x() = boxes[k].upper.x(), boxes[k + 1].upper.x() = boxes[k].upper.x() + 0.1;
+    }
+    for (Bounds& box : boxes) box.lower.array() += far, box.upper.array() += far;
+    for (const Bounds& a : boxes)
+      for (const Bounds& b : boxes) {
+        const bool may = RoundedLimits(a).may_overlap(RoundedBox(b));
+        if (overlap(a, b)) {
+          ASSERT_TRUE(may);
+          ++overlapping;
+        } else if (far == 0 && !overlap(a, b.grown(single_precision))) {
+          ASSERT_FALSE(may);
+          ++apart;
+        }
+      }
+  }
+  EXPECT_GT(overlapping, 1000);
+  EXPECT_GT(apart, 1000);
 }
 
 }  // namespace

@@ -125,7 +125,10 @@ void read_cell(const Rows& rows, std::size_t row, const StabilityMap& map, Metho
   method.cells[place] = std::move(cell);
 }
 
-MeasuredLimit read_limit(const JsonEntry& value, const StabilityMap& map, const MethodMap& method) {
+/// None where the line's last cell is not there: a study that goes on writes study.json before its table, so
+/// that who reads meanwhile may find limits of cells to come. Whoever goes on measures them anew.
+std::optional<MeasuredLimit> read_limit(const JsonEntry& value, const StabilityMap& map,
+                                        const MethodMap& method) {
   const bool x_is_step = map.options.x.path == time_step_path;
   const std::size_t columns = map.x_values.size(), rows = map.y_values.size();
   MeasuredLimit limit{.other = value.at("at").number(),
@@ -137,7 +140,10 @@ MeasuredLimit read_limit(const JsonEntry& value, const StabilityMap& map, const 
   if (!place) throw value.at("at").bad("is not on its axis");
   limit.other = others[*place];
   const std::size_t cell = x_is_step ? *place * columns + columns - 1 : (rows - 1) * columns + *place;
-  if (cell >= method.cells.size()) throw value.bad("is a limit without cells");
+  if (cell >= method.cells.size() || method.cells[cell].status == CellStatus::not_run) {
+    if (map.complete) throw value.bad("is a limit without cells");
+    return std::nullopt;
+  }
   limit.limits = method.cells[cell].limits;
   return limit;
 }
@@ -170,7 +176,7 @@ StabilityMap read_stability(const std::filesystem::path& folder, const JsonEntry
     for (MethodMap& method : map.methods)
       if (method.method == name)
         for (const JsonEntry& value : root.at("limits").at(name).entries())
-          method.measured.push_back(read_limit(value, map, method));
+          if (auto limit = read_limit(value, map, method)) method.measured.push_back(std::move(*limit));
   return map;
 }
 

@@ -194,6 +194,32 @@ TEST(StudyFolder, NamesTheRowThatIsNoneOfItsCellsOrIsThereTwice) {
   EXPECT_EQ(study_csv(reading.study->table), study_csv(map));
 }
 
+/// A study that goes on writes its index before its table, and another part may read both in between.
+TEST(StudyFolder, OfAMapThatIsBeingMadeMayHaveLimitsOfCellsThatAreToCome) {
+  const Scene scene = small_cloth();
+  const TemporaryFolder folder;
+  const StabilityMap map = run_stability_map(scene, small_map(scene));
+  ASSERT_FALSE(map.methods.front().measured.empty());
+  ASSERT_FALSE(StudyRecorder::write(folder.path(), map, "", 0));
+  auto index = nlohmann::ordered_json::parse(content_of(folder / "study.json"));
+  index.erase("files");
+  CsvTable table = table_of(map);
+  while (!table.rows.empty()) {
+    table.rows.pop_back();
+    write_file(folder / "stability.csv", csv_text(table, "\n"));
+    index["complete"] = false;
+    write_file(folder / "study.json", index.dump());
+    const StudyReading reading = read_study(folder.path());
+    ASSERT_TRUE(reading.study) << table.rows.size() << " rows: " << reading.problem;
+    for (const MethodMap& method : std::get<StabilityMap>(reading.study->table).methods)
+      for (const MeasuredLimit& limit : method.measured)
+        EXPECT_GT(limit.limits.predicted, 0) << "a limit of cells that are not there";
+    index["complete"] = true;
+    write_file(folder / "study.json", index.dump());
+    EXPECT_FALSE(read_study(folder.path()).study) << table.rows.size() << " rows";
+  }
+}
+
 TEST(StudyFolder, TheLastPartialWorkPrecisionIsTheFinalOne) {
   WorkPrecisionOptions options = few_runs();
   std::string last;

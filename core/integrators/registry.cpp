@@ -25,7 +25,7 @@ struct Entry {
   Stepper (*make)(const IntegratorChoice&);
   bool (*suits_fused)(const ForceModel&, bool constrained) = nullptr;
   Stepper (*make_fused)() = nullptr;
-  Stepper (*make_predicting)(bool fused) = nullptr;
+  Stepper (*make_unsolved)(const StepperKind&) = nullptr;  ///< of another EndVelocity than solved
 };
 
 template <class Method>
@@ -62,9 +62,9 @@ Stepper made_fused() {
   return std::make_unique<Method>();
 }
 
-Stepper made_predicting_verlet(bool fused) {
-  if (fused) return std::make_unique<FusedPredictedVerlet>();
-  return std::make_unique<Verlet>(EndVelocity::predicted);
+Stepper made_unsolved_verlet(const StepperKind& kind) {
+  if (kind.fused) return std::make_unique<FusedPredictedVerlet>();
+  return std::make_unique<Verlet>(kind.end_velocity);
 }
 
 Entry verlet_entry() {
@@ -81,7 +81,7 @@ Entry verlet_entry() {
           made<Verlet>,
           FusedVerlet::suits,
           made_fused<FusedVerlet>,
-          made_predicting_verlet};
+          made_unsolved_verlet};
 }
 
 /// One entry holds all that is known of a method.
@@ -254,18 +254,19 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice) {
 StepperKind stepper_kind(const std::string& method, const ForceModel& forces, const StepperNeeds& needs) {
   const Entry& entry = entry_of(method);
   StepperKind kind;
-  if (entry.make_predicting && needs.predicts_damping) {
-    const bool sweeps = FusedPredictedVerlet::suits(forces);
-    kind.predicts = forces.couples_particles() || (sweeps && forces.swept().air);
-    kind.fused = kind.predicts && sweeps;
+  if (entry.make_unsolved && needs.end_velocity != EndVelocity::solved) {
+    const bool sweeps =
+        needs.end_velocity == EndVelocity::predicted && FusedPredictedVerlet::suits(forces);
+    if (forces.couples_particles() || (sweeps && forces.swept().air))
+      return {.fused = sweeps, .end_velocity = needs.end_velocity};
   }
-  if (!kind.predicts) kind.fused = entry.suits_fused && entry.suits_fused(forces, needs.constrained);
+  kind.fused = entry.suits_fused && entry.suits_fused(forces, needs.constrained);
   return kind;
 }
 
 std::unique_ptr<Integrator> make_stepper(const IntegratorChoice& choice, const StepperKind& kind) {
   const Entry& entry = entry_of(choice.method);
-  if (kind.predicts) return entry.make_predicting(kind.fused);
+  if (kind.end_velocity != EndVelocity::solved) return entry.make_unsolved(kind);
   return kind.fused ? entry.make_fused() : make_integrator(choice);
 }
 

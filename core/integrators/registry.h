@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "integrators/end_velocity.h"
 #include "scene/method_facts.h"
 
 namespace cloth {
@@ -18,14 +19,14 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice);
 
 /// What decides between the steppers of a method, beside the forces.
 struct StepperNeeds {
-  bool constrained = false;       ///< it steps together with a DriftConstraint
-  bool predicts_damping = false;  ///< the damping is weak enough for EndVelocity::predicted (verlet.h)
+  bool constrained = false;  ///< it steps together with a DriftConstraint
+  EndVelocity end_velocity = EndVelocity::solved;  ///< the cheapest that the damping is weak enough for
 };
 
 struct StepperKind {
   bool fused = false;  ///< a stepper of fused_steppers.h, else the general method
-  bool predicts =
-      false;  ///< EndVelocity::predicted; only Verlet, where damping couples particles or is air's
+  /// Another than solved only of Verlet, where damping couples particles or is air's.
+  EndVelocity end_velocity = EndVelocity::solved;
   bool operator==(const StepperKind&) const = default;
 };
 

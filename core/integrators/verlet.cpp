@@ -51,7 +51,10 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
                         IntegratorReport& report) {
   const double h = times.step;
   forces.update(state.position, times.end);
-  report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
+  if (end_ == EndVelocity::corrected && forces.has_damping())
+    finish_corrected(forces, 0.5 * h, state);
+  else
+    report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
   evaluate(forces, state);
   work += 0.5 * h * power_;
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
@@ -131,7 +134,7 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
   return forces.has_damping() ? force_ : forces.position_force();
 }
 
-/// From the velocity at half the step; `force_` is the guess. Returns the iterations.
+/// From the velocity at half the step; `force_` is the guess, or corrects once. Returns the iterations.
 int Verlet::finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state) {
   holds_force_ = false;
   if (forces.has_damping() && end_ == EndVelocity::predicted) {
@@ -142,10 +145,21 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, double toleran
     add_acceleration(forces.system(), half_step, force_, state.velocity);
     return 0;
   }
-  if (forces.has_damping())
+  if (forces.has_damping() && end_ == EndVelocity::solved)
     return solver_.solve(forces, half_step, tolerance, state.position, state.velocity, force_);
-  add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
+  add_acceleration(forces.system(), half_step, force(forces), state.velocity);
   return 0;
+}
+
+/// From the velocity at half the step.
+void Verlet::finish_corrected(ForceModel& forces, double half_step, ClothState& state) {
+  half_velocity_ = state.velocity;
+  for (int evaluation = 0; evaluation < 2; ++evaluation) {
+    forces.force(state.position, state.velocity, force_);
+    state.velocity = half_velocity_;
+    add_acceleration(forces.system(), half_step, force_, state.velocity);
+  }
+  holds_force_ = false;
 }
 
 /// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
@@ -182,7 +196,7 @@ Vec3Field* Verlet::held_force() {
 }
 
 IntegratorMemory Verlet::remember() const {
-  if (end_ == EndVelocity::solved || !holds_force_) return {};
+  if (end_ != EndVelocity::predicted || !holds_force_) return {};
   return {.fields = {force_},
           .numbers = {power_.damping_loss, power_.hysteresis_loss, power_.air, power_.brush, power_.pull,
                       closing_correction_}};
@@ -190,7 +204,7 @@ IntegratorMemory Verlet::remember() const {
 
 void Verlet::recall(const IntegratorMemory& memory) {
   forget(Change::state);
-  if (end_ == EndVelocity::solved || memory.fields.empty()) return;
+  if (end_ != EndVelocity::predicted || memory.fields.empty()) return;
   force_ = memory.fields[0];
   const std::vector<double>& n = memory.numbers;
   power_ = {n[0], n[1], n[2], n[3], n[4]};

@@ -404,6 +404,10 @@ double predicted_damping_load(const Scene& scene, double step) {
   return 0.25 * std::pow(step * guaranteed_frequency(scene), 2) + step * rates_of(scene, in_any_shape).most;
 }
 
+double damping_load(const Scene& scene, double step) {
+  return step * rates_of(scene, in_any_shape).most;
+}
+
 double explicit_step_limit(const Scene& scene) {
   const double omega = guaranteed_frequency(scene);
   return omega > 0 ? 2 / omega : infinity;

@@ -34,6 +34,15 @@ double steps_for_a_solve_of(const Scene& scene) {
 
 }  // namespace
 
+DampingLoads damping_loads(const Scene& scene, double step) {
+  return {predicted_damping_load(scene, step), damping_load(scene, step)};
+}
+
+EndVelocity end_velocity_for(const Scene& scene, const DampingLoads& loads) {
+  if (loads.whole <= allowed_damping_load(scene)) return EndVelocity::predicted;
+  return loads.damping <= largest_corrected_load ? EndVelocity::corrected : EndVelocity::solved;
+}
+
 double allowed_damping_load(const Scene& scene) {
   return touches_by_particles(scene) ? largest_load_in_contact : largest_predicted_load;
 }

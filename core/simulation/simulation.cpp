@@ -14,7 +14,6 @@
 #include "measure/stability_limit.h"
 #include "scene/scene_cloth.h"
 #include "scene/scene_parameters.h"
-#include "simulation/predicted_damping.h"
 #include "simulation/time_step.h"
 
 namespace cloth {
@@ -114,9 +113,9 @@ void Simulation::assemble() {
 
   find_probes();
 
-  damping_load_ = facts_of(scene_.integrator.method).predicts_damping && forces_->has_damping()
-                      ? predicted_damping_load(scene_, run_.automatic.longest)
-                      : infinity;
+  damping_loads_ = {infinity, infinity};
+  if (facts_of(scene_.integrator.method).predicts_damping && forces_->has_damping())
+    damping_loads_ = damping_loads(scene_, run_.automatic.longest);
   strongest_pull_ = find_strongest_pull();
   apply_hand();
 }
@@ -165,23 +164,25 @@ void Simulation::apply_hand() {
   choose_stepper();
 }
 
-/// Whether the damping, with that of the hand, is weak enough at the longest step.
-bool Simulation::predicts_damping() const {
-  double load = damping_load_;
+/// The cheapest way that the damping, with that of the hand, allows at the longest step.
+EndVelocity Simulation::end_velocity() const {
+  DampingLoads loads = damping_loads_;
   if (run_.pull) {
     const double h = run_.automatic.longest,
                  mass = *std::min_element(system_.mass.begin(), system_.mass.end());
-    load += (h * h * pull_strength_.stiffness + 4 * h * pull_strength_.damping) / (4 * mass);
+    const double damping = h * pull_strength_.damping / mass;
+    loads.damping += damping;
+    loads.whole += 0.25 * h * h * pull_strength_.stiffness / mass + damping;
   }
-  return load <= allowed_damping_load(scene_);
+  return end_velocity_for(scene_, loads);
 }
 
 /// Whenever forces or constraints have become others. What one stepper remembers beside the state is lost
 /// where one of another kind takes over: it begins with the forces at the state.
 void Simulation::choose_stepper() {
-  const StepperKind kind =
-      stepper_kind(scene_.integrator.method, *forces_,
-                   {.constrained = limiter_.has_value(), .predicts_damping = predicts_damping()});
+  const StepperKind kind = stepper_kind(
+      scene_.integrator.method, *forces_,
+      {.constrained = limiter_.has_value(), .end_velocity = end_velocity()});
   if (!integrator_ || kind != stepper_kind_)
     integrator_ = make_stepper(scene_.integrator, kind);
   else

@@ -24,6 +24,7 @@
 #include "measure/energy.h"
 #include "measure/probe_reader.h"
 #include "measure/strain.h"
+#include "simulation/predicted_damping.h"
 #include "simulation/run_state.h"
 
 namespace cloth {
@@ -183,7 +184,7 @@ class Simulation {
   PullStrength find_strongest_pull() const;
   void find_pull_strength();
   void apply_hand();
-  bool predicts_damping() const;
+  EndVelocity end_velocity() const;
   void choose_stepper();
   void share_work();
   void make_limiter(const std::vector<double>& tension);
@@ -222,7 +223,7 @@ class Simulation {
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
   StepperKind stepper_kind_;  ///< of `integrator_`
-  double damping_load_ = 0;   ///< predicted_damping_load() at the longest step; infinity: not asked
+  DampingLoads damping_loads_;  ///< at the longest step; infinity: not asked
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::unique_ptr<ContactStage> contact_;

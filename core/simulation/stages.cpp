@@ -59,17 +59,22 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
   const auto step = resolved_time_step(scene);
   const ForceModel forces(scene, system);
   if (!facts_of(scene.integrator.method).predicts_damping || !step || !forces.has_damping()) return "";
-  const double load = predicted_damping_load(scene, *step), most = allowed_damping_load(scene);
+  const DampingLoads loads = damping_loads(scene, *step);
   const StepperKind kind =
-      stepper_kind(scene.integrator.method, forces, {.constrained = limited, .predicts_damping = true});
-  if (!kind.predicts) return ", damping solved for each particle by itself";
-  if (load <= most)
+      stepper_kind(scene.integrator.method, forces,
+                   {.constrained = limited, .end_velocity = end_velocity_for(scene, loads)});
+  const double most = allowed_damping_load(scene);
+  if (!forces.couples_particles() && kind.end_velocity == EndVelocity::solved)
+    return ", damping solved for each particle by itself";
+  if (kind.end_velocity == EndVelocity::predicted)
     return fmt::format(", damping at the predicted velocity{} (h^2 K + 4 h D is {:.2f} of 4 m, at most {})",
-                       kind.fused ? " in the pass of the forces" : "", load, most);
-  return fmt::format(
-      ", damping solved for by conjugate gradients (h^2 K + 4 h D may reach {:.2f} of 4 m; predicted up to "
-      "{})",
-      load, most);
+                       kind.fused ? " in the pass of the forces" : "", loads.whole, most);
+  const std::string reason =
+      fmt::format("(h^2 K + 4 h D may reach {:.2f} of 4 m, predicted up to {}; h D {:.2f} of m, evaluated "
+                  "twice up to {})",
+                  loads.whole, most, loads.damping, largest_corrected_load);
+  if (kind.end_velocity == EndVelocity::corrected) return ", damping evaluated twice " + reason;
+  return ", damping solved for by conjugate gradients " + reason;
 }
 
 }  // namespace

@@ -255,8 +255,7 @@ StepperKind stepper_kind(const std::string& method, const ForceModel& forces, co
   const Entry& entry = entry_of(method);
   StepperKind kind;
   if (entry.make_unsolved && needs.end_velocity != EndVelocity::solved) {
-    const bool sweeps =
-        needs.end_velocity == EndVelocity::predicted && FusedPredictedVerlet::suits(forces);
+    const bool sweeps = needs.end_velocity == EndVelocity::predicted && FusedPredictedVerlet::suits(forces);
     if (forces.couples_particles() || (sweeps && forces.swept().air))
       return {.fused = sweeps, .end_velocity = needs.end_velocity};
   }

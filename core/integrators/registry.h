@@ -19,7 +19,7 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice);
 
 /// What decides between the steppers of a method, beside the forces.
 struct StepperNeeds {
-  bool constrained = false;  ///< it steps together with a DriftConstraint
+  bool constrained = false;                        ///< it steps together with a DriftConstraint
   EndVelocity end_velocity = EndVelocity::solved;  ///< the cheapest that the damping is weak enough for
 };
 

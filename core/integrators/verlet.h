@@ -12,12 +12,12 @@
 //            known = v_half and weight = h/2): closed where no damping couples particles, else by conjugate
 //            gradients. Stable for omega h < 2 at every damping ratio.
 // corrected: a' = a(x', v1, t+h) with v1 = v_half + h/2 a(x', v_half, t+h): two evaluations from the velocity
-//            at half the step. v' is wrong by O(h^3) a step: order 2. On x'' = -omega^2 x - c x', w = omega h,
-//            g = c h, p = 1 - g/2, q = p + g^2/4, a step has the determinant p q and the trace
-//            1 + p q - (1 + p^2) w^2/2; by Jury's test it is stable where w^2 (1 + p^2) < 4 (1 + p q), which for
-//            g <= 2 is so at every w < 2. Where K and D have no common eigenvectors that is no proof: random
-//            pairs of matrices with w < 2 and g <= 1.2 were searched for growth, and had none. Taken where
-//            h D <= m (damping_load() of measure/stability_limit.h).
+//            at half the step. v' is wrong by O(h^3) a step: order 2. On x'' = -omega^2 x - c x', w = omega
+//            h, g = c h, p = 1 - g/2, q = p + g^2/4, a step has the determinant p q and the trace 1 + p q -
+//            (1 + p^2) w^2/2; by Jury's test it is stable where w^2 (1 + p^2) < 4 (1 + p q), which for g <= 2
+//            is so at every w < 2. Where K and D have no common eigenvectors that is no proof: random pairs
+//            of matrices with w < 2 and g <= 1.2 were searched for growth, and had none. Taken where h D <= m
+//            (damping_load() of measure/stability_limit.h).
 // predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
 //            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
 //            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step

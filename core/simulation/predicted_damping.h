@@ -1,5 +1,5 @@
-// How Verlet finds the damping at the end of a step (integrators/end_velocity.h), and the step at which `auto`
-// lets it predict.
+// How Verlet finds the damping at the end of a step (integrators/end_velocity.h), and the step at which
+// `auto` lets it predict.
 #pragma once
 
 #include "integrators/end_velocity.h"

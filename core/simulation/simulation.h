@@ -222,7 +222,7 @@ class Simulation {
   ThreadUse thread_use_ = ThreadUse::where_they_gain;
   std::unique_ptr<ForceModel> forces_;
   std::unique_ptr<Integrator> integrator_;
-  StepperKind stepper_kind_;  ///< of `integrator_`
+  StepperKind stepper_kind_;    ///< of `integrator_`
   DampingLoads damping_loads_;  ///< at the longest step; infinity: not asked
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step

@@ -69,10 +69,10 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
   if (kind.end_velocity == EndVelocity::predicted)
     return fmt::format(", damping at the predicted velocity{} (h^2 K + 4 h D is {:.2f} of 4 m, at most {})",
                        kind.fused ? " in the pass of the forces" : "", loads.whole, most);
-  const std::string reason =
-      fmt::format("(h^2 K + 4 h D may reach {:.2f} of 4 m, predicted up to {}; h D {:.2f} of m, evaluated "
-                  "twice up to {})",
-                  loads.whole, most, loads.damping, largest_corrected_load);
+  const std::string reason = fmt::format(
+      "(h^2 K + 4 h D may reach {:.2f} of 4 m, predicted up to {}; h D {:.2f} of m, evaluated "
+      "twice up to {})",
+      loads.whole, most, loads.damping, largest_corrected_load);
   if (kind.end_velocity == EndVelocity::corrected) return ", damping evaluated twice " + reason;
   return ", damping solved for by conjugate gradients " + reason;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/face_pair_finder.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 
@@ -57,12 +56,23 @@ void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, con
   }
 }
 
-template <class Region>
-Region region_in(const Capsule& capsule) {
-  if constexpr (std::is_same_v<Region, Ball>)
-    return {capsule.from, capsule.radius};
-  else
-    return capsule;
+bool has_vertex(const Triangle& triangle, int vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+bool share_vertex(const std::array<int, 2>& edge, const std::array<int, 2>& other) {
+  return edge[0] == other[0] || edge[0] == other[1] || edge[1] == other[0] || edge[1] == other[1];
+}
+
+/// From the boxes of the vertices to those of edges and faces.
+template <class Box>
+void spread(const Surface& surface, OfFeatures<std::vector<Box>>& boxes) {
+  const std::vector<Box>& vertices = boxes[Feature::vertex];
+  boxes[Feature::edge].clear(), boxes[Feature::face].clear();
+  for (const auto& [a, b] : surface.edges)
+    boxes[Feature::edge].push_back(joined(vertices[at(a)], vertices[at(b)]));
+  for (const auto& [a, b, c] : surface.triangles)
+    boxes[Feature::face].push_back(joined(joined(vertices[at(a)], vertices[at(b)]), vertices[at(c)]));
 }
 
 bool holds(const Bounds& outer, const Bounds& inner) {
@@ -72,16 +82,14 @@ bool holds(const Bounds& outer, const Bounds& inner) {
 
 }  // namespace
 
-/// fill(begin, end, part) for shares of [0, count); appends the parts in their order.
-template <class Part, class Fill>
-void PairSearch::in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
-                          std::vector<Part>& whole, const Fill& fill) {
-  const int shares = in_shares(team_, count, least, [&](int share, std::size_t begin, std::size_t end) {
-    parts[at(share)].clear();
-    fill(begin, end, parts[at(share)]);
-  });
-  for (int share = 0; share < shares; ++share)
-    whole.insert(whole.end(), parts[at(share)].begin(), parts[at(share)].end());
+Feature PairSearch::Meeting::near() const {
+  if (kind == PairKind::edge_edge) return Feature::edge;
+  return kind == PairKind::vertex_face ? Feature::vertex : Feature::face;
+}
+
+Feature PairSearch::Meeting::far() const {
+  if (kind == PairKind::edge_edge) return Feature::edge;
+  return kind == PairKind::vertex_face ? Feature::face : Feature::vertex;
 }
 
 /// One search.
@@ -95,7 +103,6 @@ class PairSearch::Step {
         reach_(swept.reach),
         pairs_(pairs) {
     for (const Bounds& box : particles_) whole_.add(box);
-    for (const Capsule& capsule : swept.particles) are_balls_ = are_balls_ && capsule.from == capsule.to;
   }
 
   void find(int obstacle, const PoseInterpolation& path) {
@@ -113,56 +120,33 @@ class PairSearch::Step {
     }
   }
 
+  /// Pairs of the cloth itself, each side grown by half the reach.
   void find_own() {
-    if (are_balls_)
-      find_own_of(search_.balls_);
-    else
-      find_own_of(search_.capsules_);
+    std::vector<RoundedBox>& near = search_.near_boxes_[Feature::vertex];
+    near.clear();
+    for (const Bounds& box : particles_) near.emplace_back(box.grown(0.5 * swept_.own_reach));
+    spread(cloth_, search_.near_boxes_);
+    take_near(search_.near_boxes_);
   }
 
  private:
-  template <class Region>
-  void find_own_of(std::vector<Region>& near) {
-    near.clear();
-    for (const Capsule& capsule : swept_.particles)
-      near.push_back(region_in<Region>(capsule).grown(0.5 * swept_.own_reach));
-    std::vector<Slab>& faces = search_.own_faces_;
-    faces.resize(cloth_.triangles.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const auto& [a, b, c] = cloth_.triangles[f];
-      faces[f] = slab_of(near[at(a)], near[at(b)], near[at(c)]);
-    }
-    std::vector<RoundedBox>& boxes = search_.own_boxes_;
-    boxes.clear();
-    for (const Slab& face : faces) boxes.emplace_back(face.box);
-    std::vector<Bounds>& edges = search_.own_edges_;
-    edges.clear();
-    for (const auto& [a, b] : cloth_.edges)
-      edges.push_back(bounds_of(box_of(near[at(a)]), box_of(near[at(b)])));
-    find_faces<Region, Region>(
-        search_.own_overlaps_,
-        {FeaturePair::cloth_itself, cloth_, near, {cloth_, near, faces, boxes, edges}});
+  void take_near(const OfFeatures<std::vector<RoundedBox>>& far) {
+    for (const Meeting& meeting : search_.meetings_)
+      if (meeting.obstacle == obstacle_) search_.take_near(meeting, far, pairs_);
   }
 
-  /// The regions of the particles in the coordinates of an obstacle at rest, grown by the reach.
-  template <class Region>
-  const std::vector<Region>& seen(const PoseInterpolation& path, std::vector<Region>& regions) const {
-    regions.clear();
+  /// Boxes of the particles in the coordinates of an obstacle, for its whole path, grown by the reach.
+  const std::vector<Bounds>& seen_boxes(const ObstacleBody& body, const PoseInterpolation& path) {
+    std::vector<Bounds>& boxes = search_.boxes_[Feature::vertex];
+    if (!path.is_still()) {
+      seen_from_body(body, path, particles_, reach_, boxes);
+      return boxes;
+    }
+    boxes.clear();
     const Pose& pose = path.from();
     for (const Capsule& capsule : swept_.particles)
-      regions.push_back(region_in<Region>({pose.inverse(capsule.from), pose.inverse(capsule.to),
-                                           (capsule.radius + reach_) / path.least_stretch()}));
-    return regions;
-  }
-  /// Boxes around them, for the whole path of an obstacle.
-  const std::vector<Bounds>& seen_boxes(const ObstacleBody& body, const PoseInterpolation& path) {
-    std::vector<Bounds>& boxes = search_.seen_;
-    if (path.is_still()) {
-      boxes.clear();
-      for (const Capsule& capsule : seen(path, search_.capsules_)) boxes.push_back(box_of(capsule));
-    } else {
-      seen_from_body(body, path, particles_, reach_, boxes);
-    }
+      boxes.push_back(box_of(Capsule{pose.inverse(capsule.from), pose.inverse(capsule.to),
+                                     (capsule.radius + reach_) / path.least_stretch()}));
     return boxes;
   }
   void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
@@ -232,27 +216,11 @@ class PairSearch::Step {
   }
 
   void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
-    const std::vector<BoxPair>& overlaps = search_.mesh_overlaps_[at(obstacle_)];
-    const FacesInRegions<Vec3> far{body.surface, body.vertices, search_.mesh_faces_[at(obstacle_)],
-                                   search_.mesh_boxes_[at(obstacle_)], search_.mesh_edges_[at(obstacle_)]};
-    const auto find_near = [&]<class Region>(const std::vector<Region>& near) {
-      find_faces<Region, Vec3>(overlaps, {obstacle_, cloth_, near, far});
-    };
-    if (!path.is_still())
-      find_near(seen_boxes(body, path));
-    else if (are_balls_)
-      find_near(seen(path, search_.balls_));
-    else
-      find_near(seen(path, search_.capsules_));
-  }
-
-  template <class NearRegion, class FarRegion>
-  void find_faces(const std::vector<BoxPair>& overlaps, const FacePairFinder<NearRegion, FarRegion>& finder) {
-    search_.in_parts(overlaps.size(), least_share, search_.pair_parts_, pairs_,
-                     [&](std::size_t begin, std::size_t end, std::vector<FeaturePair>& part) {
-                       auto own_finder = finder;
-                       own_finder.find(std::span(overlaps).subspan(begin, end - begin), part);
-                     });
+    std::vector<RoundedBox>& near = search_.near_boxes_[Feature::vertex];
+    near.clear();
+    for (const Bounds& box : seen_boxes(body, path)) near.emplace_back(box);
+    spread(cloth_, search_.near_boxes_);
+    take_near(search_.mesh_boxes_[at(obstacle_)]);
   }
 
   PairSearch& search_;
@@ -262,7 +230,6 @@ class PairSearch::Step {
   double reach_;
   std::vector<FeaturePair>& pairs_;
   Bounds whole_;
-  bool are_balls_ = true;           ///< the particles' regions
   std::vector<unsigned> outcodes_;  ///< of the particles' boxes
   int obstacle_ = FeaturePair::cloth_itself;
 };
@@ -273,89 +240,134 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
       bodies_(bodies),
       with_itself_(with_itself),
       skin_(skin),
-      mesh_faces_(bodies.size()),
-      mesh_boxes_(bodies.size()),
-      mesh_edges_(bodies.size()),
       mesh_trees_(bodies.size()),
-      mesh_overlaps_(bodies.size()) {
+      mesh_boxes_(bodies.size()) {
+  if (with_itself_) {
+    for (std::size_t i = 0; i < start.size(); ++i) boxes_[Feature::vertex].push_back(bounds_of(start[i]));
+    spread(cloth_, boxes_);
+    for (const Feature feature : {Feature::edge, Feature::face})
+      own_trees_[feature] = BoxTree(boxes_[feature]);
+    meetings_.push_back({.kind = PairKind::edge_edge});
+    meetings_.push_back({.kind = PairKind::vertex_face});
+  }
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies[k].kind != BodyKind::surface) continue;
-    needs_trees_ = true;
-    const std::vector<Vec3>& vertices = bodies[k].vertices;
-    std::vector<Bounds> boxes;
-    for (const auto& [a, b, c] : bodies[k].surface.triangles) {
-      mesh_faces_[k].push_back(slab_of(vertices[at(a)], vertices[at(b)], vertices[at(c)]));
-      boxes.push_back(mesh_faces_[k].back().box);
-      mesh_boxes_[k].emplace_back(boxes.back());
+    boxes_[Feature::vertex].clear();
+    for (const Vec3& vertex : bodies[k].vertices) boxes_[Feature::vertex].push_back(bounds_of(vertex));
+    spread(bodies[k].surface, boxes_);
+    for (const Feature feature : {Feature::vertex, Feature::edge, Feature::face}) {
+      mesh_trees_[k][feature] = BoxTree(boxes_[feature]);
+      for (const Bounds& box : boxes_[feature]) mesh_boxes_[k][feature].emplace_back(box);
     }
-    for (const auto& [a, b] : bodies[k].surface.edges)
-      mesh_edges_[k].push_back(bounds_of(vertices[at(a)], vertices[at(b)]));
-    mesh_trees_[k] = BoxTree(boxes);
+    for (const PairKind kind : {PairKind::edge_edge, PairKind::vertex_face, PairKind::face_vertex})
+      meetings_.push_back({.obstacle = static_cast<int>(k), .kind = kind});
   }
-  if (!with_itself_) return;
-  needs_trees_ = true;
-  bound_faces(start, 0);
-  cloth_tree_ = BoxTree(faces_);
 }
 
 void PairSearch::set_team(WorkerTeam* team) {
   team_ = team;
-  const std::size_t threads = team ? static_cast<std::size_t>(team->size()) : 1;
-  pair_parts_.resize(threads), overlap_parts_.resize(threads);
-}
-
-/// `particles`: regions or positions.
-template <class Regions>
-void PairSearch::bound_faces(const Regions& particles, double reach) {
-  faces_.resize(cloth_.triangles.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const auto& [a, b, c] = cloth_.triangles[f];
-    faces_[f] = bounds_of(particles[at(a)], particles[at(b)], particles[at(c)]).grown(reach);
-  }
+  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
 }
 
 /// The overlaps that the trees have found are reused while every particle stays in its grown box and no mesh
 /// moves. They may be too many; the later tests use the bounds of this step, so that the pairs do not depend
 /// on the cache.
-void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
-  const auto stays = [&](std::size_t i) { return holds(cached_[i], particles_[i]); };
-  bool kept = cached_.size() == particles_.size() && cached_reach_ == swept.reach;
-  for (std::size_t k = 0; k < bodies_.size(); ++k)
-    kept = kept && (bodies_[k].kind != BodyKind::surface ||
-                    (paths[k].is_still() && paths[k].to() == cached_poses_[k]));
-  for (std::size_t i = 0; kept && i < particles_.size(); ++i) kept = stays(i);
-  if (kept) return;
+bool PairSearch::keeps_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) const {
+  if (cached_.size() != particles_.size() || cached_reach_ != swept.reach) return false;
+  for (const Meeting& meeting : meetings_) {
+    if (meeting.obstacle == FeaturePair::cloth_itself) continue;
+    const PoseInterpolation& path = paths[at(meeting.obstacle)];
+    if (!path.is_still() || path.to() != cached_poses_[at(meeting.obstacle)]) return false;
+  }
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    if (!holds(cached_[i], particles_[i])) return false;
+  return true;
+}
 
+void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
+  if (meetings_.empty() || keeps_overlaps(swept, paths)) return;
   cached_reach_ = swept.reach;
   cached_.resize(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) cached_[i] = particles_[i].grown(skin_);
   cached_poses_.clear();
   for (const PoseInterpolation& path : paths) cached_poses_.push_back(path.to());
-  if (with_itself_) {
-    bound_faces(cached_, 0.5 * swept.own_reach);
-    cloth_tree_.refit(faces_);
-    own_overlaps_.clear();
-    in_parts(faces_.size(), least_queries, overlap_parts_, own_overlaps_,
-             [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
-               cloth_tree_.collect_own(begin, end, part);
-               std::erase_if(part, [&](const BoxPair& faces) {
-                 return !have_own_pairs(cloth_, faces.query, faces.index);
-               });
-             });
+  if (with_itself_) find_own_overlaps(swept.own_reach);
+  int seen_from = FeaturePair::cloth_itself;
+  for (Meeting& meeting : meetings_) {
+    if (meeting.obstacle == FeaturePair::cloth_itself) continue;
+    const std::size_t k = at(meeting.obstacle);
+    if (meeting.obstacle != seen_from) {
+      seen_from_body(bodies_[k], paths[k], cached_, swept.reach, boxes_[Feature::vertex]);
+      spread(cloth_, boxes_);
+      seen_from = meeting.obstacle;
+    }
+    const std::vector<Bounds>& near = boxes_[meeting.near()];
+    const BoxTree& tree = mesh_trees_[k][meeting.far()];
+    collect(near.size(), meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+      tree.collect<BoxTest::rounded>(near, begin, end, part);
+    });
   }
-  bound_faces(cached_, 0);
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (bodies_[k].kind != BodyKind::surface) continue;
-    seen_from_body(bodies_[k], paths[k], faces_, swept.reach, seen_);
-    mesh_overlaps_[k].clear();
-    in_parts(seen_.size(), least_queries, overlap_parts_, mesh_overlaps_[k],
-             [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
-               mesh_trees_[k].collect(seen_, begin, end, part);
-               std::erase_if(part, [&](const BoxPair& faces) {
-                 return !have_pairs(cloth_, faces.query, bodies_[k].surface, faces.index);
-               });
-             });
-  }
+}
+
+/// Features that share a vertex are no pair.
+void PairSearch::find_own_overlaps(double reach) {
+  std::vector<Bounds>& vertices = boxes_[Feature::vertex];
+  vertices.clear();
+  for (const Bounds& box : cached_) vertices.push_back(box.grown(0.5 * reach));
+  spread(cloth_, boxes_);
+  for (const Feature feature : {Feature::edge, Feature::face}) own_trees_[feature].refit(boxes_[feature]);
+  collect(vertices.size(), meetings_[1], [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+    own_trees_[Feature::face].collect<BoxTest::rounded>(vertices, begin, end, part);
+    std::erase_if(
+        part, [&](const BoxPair& pair) { return has_vertex(cloth_.triangles[at(pair.index)], pair.query); });
+  });
+  collect(cloth_.edges.size(), meetings_[0],
+          [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+            own_trees_[Feature::edge].collect_own<BoxTest::rounded>(begin, end, part);
+            std::erase_if(part, [&](const BoxPair& pair) {
+              return share_vertex(cloth_.edges[at(pair.query)], cloth_.edges[at(pair.index)]);
+            });
+          });
+}
+
+/// collect_part(begin, end, part) for shares of the queries; the parts follow each other in their order.
+template <class Collect>
+void PairSearch::collect(std::size_t queries, Meeting& meeting, const Collect& collect_part) {
+  const int shares =
+      in_shares(team_, queries, least_queries, [&](int share, std::size_t begin, std::size_t end) {
+        parts_[at(share)].overlaps.clear();
+        collect_part(begin, end, parts_[at(share)].overlaps);
+      });
+  meeting.overlaps.clear();
+  for (int share = 0; share < shares; ++share)
+    meeting.overlaps.insert(meeting.overlaps.end(), parts_[at(share)].overlaps.begin(),
+                            parts_[at(share)].overlaps.end());
+}
+
+/// Appends those of the overlaps whose boxes still overlap. Without branches: most do not.
+void PairSearch::take_near(const Meeting& meeting, const OfFeatures<std::vector<RoundedBox>>& far_boxes,
+                           std::vector<FeaturePair>& pairs) {
+  const std::vector<BoxPair>& overlaps = meeting.overlaps;
+  const std::vector<RoundedBox>&near = near_boxes_[meeting.near()], &far = far_boxes[meeting.far()];
+  const auto take = [&](int share, std::size_t begin, std::size_t end) {
+    Part& part = parts_[at(share)];
+    part.pairs.clear();
+    if (part.hits.size() < end - begin) part.hits.resize(end - begin);
+    for (std::size_t next = begin; begin < end; begin = next) {
+      const int query = overlaps[begin].query;
+      const RoundedLimits limits(near[at(query)]);
+      std::size_t count = 0;
+      for (; next < end && overlaps[next].query == query; ++next) {
+        part.hits[count] = overlaps[next].index;
+        count += limits.may_overlap(far[at(overlaps[next].index)]) ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < count; ++k)
+        part.pairs.push_back({meeting.obstacle, meeting.kind, query, part.hits[k]});
+    }
+  };
+  const int shares = in_shares(team_, overlaps.size(), least_share, take);
+  for (int share = 0; share < shares; ++share)
+    pairs.insert(pairs.end(), parts_[at(share)].pairs.begin(), parts_[at(share)].pairs.end());
 }
 
 void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
@@ -363,24 +375,28 @@ void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolat
   pairs.clear();
   particles_.clear();
   for (const Capsule& capsule : swept.particles) particles_.push_back(box_of(capsule));
-  if (needs_trees_) find_overlaps(swept, paths);
+  find_overlaps(swept, paths);
   Step step(*this, swept, pairs);
   if (with_itself_) step.find_own();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.find(static_cast<int>(k), paths[k]);
 }
 
 int PairSearch::hierarchy_depth(int body) const {
-  if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].depth();
-  return cloth_tree_.depth();
+  if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)][Feature::face].depth();
+  return own_trees_[Feature::face].depth();
 }
 
 void PairSearch::append_boxes(int body, int level, const Vec3Field& position, double reach,
                               std::vector<Bounds>& boxes) {
-  if (body != FeaturePair::cloth_itself) return mesh_trees_[at(body)].append_rounded_boxes(level, boxes);
+  if (body != FeaturePair::cloth_itself)
+    return mesh_trees_[at(body)][Feature::face].append_rounded_boxes(level, boxes);
   if (!with_itself_) return;
-  bound_faces(position, reach);
-  cloth_tree_.refit(faces_);
-  cloth_tree_.append_rounded_boxes(level, boxes);
+  boxes_[Feature::vertex].clear();
+  for (std::size_t i = 0; i < position.size(); ++i)
+    boxes_[Feature::vertex].push_back(bounds_of(position[i]).grown(reach));
+  spread(cloth_, boxes_);
+  own_trees_[Feature::face].refit(boxes_[Feature::face]);
+  own_trees_[Feature::face].append_rounded_boxes(level, boxes);
 }
 
 }  // namespace cloth

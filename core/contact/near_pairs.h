@@ -4,7 +4,7 @@
 #pragma once
 
 #include "contact/feature_pairs.h"
-#include "contact/slab.h"
+#include "contact/regions.h"
 #include "geometry/box_tree.h"
 #include "geometry/rounded_box.h"
 
@@ -19,8 +19,22 @@ struct SweptBounds {
   double own_reach = 0;  ///< m, of the cloth from itself
 };
 
-/// Builds hierarchies of bounding boxes at construction, where a scene needs them: of meshes, and of the
-/// cloth as it starts.
+/// What a cloth and a mesh are made of.
+enum class Feature : std::uint8_t { vertex, edge, face };
+
+/// One for each Feature.
+template <class T>
+class OfFeatures {
+ public:
+  T& operator[](Feature feature) { return all_[static_cast<std::size_t>(feature)]; }
+  const T& operator[](Feature feature) const { return all_[static_cast<std::size_t>(feature)]; }
+
+ private:
+  std::array<T, 3> all_;
+};
+
+/// Builds hierarchies of bounding boxes at construction, where a scene needs them: of the edges and faces of
+/// the cloth as it starts, and of the vertices, edges and faces of meshes.
 class PairSearch {
  public:
   /// `cloth` and `bodies` must outlive this. `start`: in m, of the particles. Overlaps of the hierarchies are
@@ -48,38 +62,47 @@ class PairSearch {
  private:
   class Step;
 
-  template <class Part, class Fill>
-  void in_parts(std::size_t count, std::size_t least, std::vector<std::vector<Part>>& parts,
-                std::vector<Part>& whole, const Fill& fill);
+  /// Features of the cloth and of a mesh or of the cloth itself that can be pairs of one kind.
+  struct Meeting {
+    int obstacle = FeaturePair::cloth_itself;
+    PairKind kind = PairKind::edge_edge;
+    std::vector<BoxPair> overlaps{};  ///< of their hierarchies
+
+    Feature near() const;
+    Feature far() const;
+  };
+  class Step;
+
+  bool keeps_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) const;
   void find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
-  template <class Regions>
-  void bound_faces(const Regions& particles, double reach);
+  void find_own_overlaps(double reach);
+  template <class Collect>
+  void collect(std::size_t queries, Meeting& meeting, const Collect& collect_part);
+  void take_near(const Meeting& meeting, const OfFeatures<std::vector<RoundedBox>>& far,
+                 std::vector<FeaturePair>& pairs);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
-  bool with_itself_, needs_trees_ = false;
+  bool with_itself_;
   double skin_;
   WorkerTeam* team_ = nullptr;
-  std::vector<std::vector<Slab>> mesh_faces_;  ///< of each body's triangles
-  std::vector<std::vector<RoundedBox>> mesh_boxes_;
-  std::vector<std::vector<Bounds>> mesh_edges_;  ///< of each body
-  std::vector<BoxTree> mesh_trees_;              ///< of each body; empty unless it is a mesh
-  BoxTree cloth_tree_;
-  std::vector<Bounds> particles_, faces_, seen_;
-  std::vector<Capsule> capsules_;
-  std::vector<Ball> balls_;
-  std::vector<Slab> own_faces_;
-  std::vector<RoundedBox> own_boxes_;  ///< of these
-  std::vector<Bounds> own_edges_;
-  std::vector<std::vector<FeaturePair>> pair_parts_{1};  ///< of each thread
-  std::vector<std::vector<BoxPair>> overlap_parts_{1};
+  OfFeatures<BoxTree> own_trees_;                                ///< of edges and faces
+  std::vector<OfFeatures<BoxTree>> mesh_trees_;                  ///< of each body; empty unless it is a mesh
+  std::vector<OfFeatures<std::vector<RoundedBox>>> mesh_boxes_;  ///< of each body
+  std::vector<Meeting> meetings_;
+  std::vector<Bounds> particles_;                   ///< of this search
+  OfFeatures<std::vector<Bounds>> boxes_;           ///< scratch
+  OfFeatures<std::vector<RoundedBox>> near_boxes_;  ///< scratch
+  struct Part {                                     ///< of one thread
+    std::vector<FeaturePair> pairs;
+    std::vector<BoxPair> overlaps;
+    std::vector<int> hits;
+  };
+  std::vector<Part> parts_{1};
 
   std::vector<Bounds> cached_;  ///< of the particles, for which the overlaps hold
   std::vector<Pose> cached_poses_;
   double cached_reach_ = 0;
-  std::vector<BoxPair> own_overlaps_;  ///< of faces of the cloth
-  std::vector<std::vector<BoxPair>>
-      mesh_overlaps_;  ///< of each body: a face of the cloth and one of the mesh
 };
 
 }  // namespace cloth

@@ -16,8 +16,6 @@ void add_edges(Surface& surface) {
       surface.edges.push_back({half.low, half.high});
       surface.beside_edge.push_back({beside, -1});
       surface.triangle_of_edge.push_back(half.triangle);
-      surface.represented[triangle] =
-          static_cast<RepresentedFeatures>(surface.represented[triangle] | 1 << (3 + half.corner));
     } else if (surface.beside_edge.back()[1] < 0) {
       surface.beside_edge.back()[1] = beside;
     }
@@ -44,14 +42,11 @@ void add_neighbours(Surface& surface, std::size_t vertices) {
 Surface make_surface(int vertices, std::vector<Triangle> triangles) {
   Surface surface;
   surface.triangles = std::move(triangles);
-  surface.represented.assign(surface.triangles.size(), 0);
   surface.triangle_of_vertex.assign(static_cast<std::size_t>(vertices), -1);
   for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) {
-      int& owner = surface.triangle_of_vertex[at(surface.triangles[f][k])];
-      if (owner >= 0) continue;
-      owner = static_cast<int>(f);
-      surface.represented[f] = static_cast<RepresentedFeatures>(surface.represented[f] | 1 << k);
+    for (const int vertex : surface.triangles[f]) {
+      int& owner = surface.triangle_of_vertex[at(vertex)];
+      if (owner < 0) owner = static_cast<int>(f);
     }
   add_edges(surface);
   add_neighbours(surface, static_cast<std::size_t>(vertices));

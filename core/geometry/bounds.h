@@ -35,6 +35,10 @@ Bounds bounds_of(const Points&... points) {
   return bounds;
 }
 
+inline Bounds joined(const Bounds& a, const Bounds& b) {
+  return bounds_of(a, b);
+}
+
 /// Boxes that touch overlap.
 inline bool overlap(const Bounds& a, const Bounds& b) {
   bool all = true;

@@ -111,6 +111,7 @@ struct BoxTree::Builder {
     tree.depth_ = std::max(tree.depth_, level + 1);
     const std::size_t number = tree.nodes_.size();
     tree.nodes_.emplace_back();
+    tree.end_.push_back(static_cast<int>(range.data() - items.data()) + static_cast<int>(range.size()));
     // As much as a child can hold, so that all are full but the last.
     std::size_t capacity = 1;
     while (capacity * width < range.size()) capacity *= width;
@@ -147,7 +148,7 @@ struct BoxTree::Builder {
   }
 };
 
-BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(boxes.size()) {
+BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()) {
   if (boxes.empty()) return;
   Builder builder{*this, {}};
   builder.items.reserve(boxes.size());
@@ -156,10 +157,7 @@ BoxTree::BoxTree(std::span<const Bounds> boxes) : boxes_(boxes.size()), place_(b
   nodes_.reserve(boxes.size() / (width - 2) + 2);
   builder.add_node(builder.items, 0);
   index_.reserve(boxes.size());
-  for (const Item& item : builder.items) {
-    place_[static_cast<std::size_t>(item.index)] = static_cast<int>(index_.size());
-    index_.push_back(item.index);
-  }
+  for (const Item& item : builder.items) index_.push_back(item.index);
   refit(boxes);
 }
 
@@ -203,18 +201,27 @@ void BoxTree::fit() {
   }
 }
 
+template <BoxTest test>
 void BoxTree::collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
                       std::vector<BoxPair>& pairs) const {
   for (std::size_t q = begin; q < end; ++q)
-    visit(queries[q], [&, query = static_cast<int>(q)](int index) { pairs.push_back({query, index}); });
+    visit<test>(queries[q], [&, query = static_cast<int>(q)](int index) { pairs.push_back({query, index}); });
 }
 
+template <BoxTest test>
 void BoxTree::collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const {
-  for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
-    visit(boxes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])], [&](int index) {
-      if (index > i) pairs.push_back({i, index});
+  for (std::size_t place = begin; place < end; ++place)
+    visit_from<test>(static_cast<int>(place) + 1, boxes_[place], [&, query = index_[place]](int other) {
+      pairs.push_back({query, index_[static_cast<std::size_t>(other)]});
     });
 }
+
+template void BoxTree::collect<BoxTest::exact>(std::span<const Bounds>, std::size_t, std::size_t,
+                                               std::vector<BoxPair>&) const;
+template void BoxTree::collect<BoxTest::rounded>(std::span<const Bounds>, std::size_t, std::size_t,
+                                                 std::vector<BoxPair>&) const;
+template void BoxTree::collect_own<BoxTest::exact>(std::size_t, std::size_t, std::vector<BoxPair>&) const;
+template void BoxTree::collect_own<BoxTest::rounded>(std::size_t, std::size_t, std::vector<BoxPair>&) const;
 
 void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const {
   struct Place {

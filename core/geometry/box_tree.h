@@ -1,9 +1,9 @@
 // A bounding volume hierarchy: which of many boxes overlap a given one.
 //
 // Nodes have eight children, whose boxes are stored in single precision and tested at once; hits are tested
-// again in double precision, so that the result depends on the boxes and not on the tree. Rounding is
-// monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full, and its depth
-// is minimal for eight children.
+// again in double precision, so that the result depends on the boxes and not on the tree (BoxTest::exact).
+// Rounding is monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full,
+// and its depth is minimal for eight children.
 #pragma once
 
 #include <array>
@@ -26,6 +26,10 @@ struct BoxPair {
   auto operator<=>(const BoxPair&) const = default;
 };
 
+/// Whether hits in single precision are tested again. Without it boxes that miss each other by rounding may
+/// be taken for overlapping.
+enum class BoxTest { exact, rounded };
+
 class BoxTree {
  public:
   BoxTree() = default;
@@ -41,22 +45,28 @@ class BoxTree {
 
   /// Calls callback(index) for every box that overlaps or touches `query`, in the order of the tree. Does not
   /// allocate.
-  template <class Callback>
-  void visit(const Bounds& query, Callback&& callback) const;
+  template <BoxTest test = BoxTest::exact, class Callback>
+  void visit(const Bounds& query, Callback&& callback) const {
+    visit_from<test>(0, query, [&](int place) { callback(index_[static_cast<std::size_t>(place)]); });
+  }
 
   /// Appends a pair for every query and each box that it overlaps or touches: by query, and then in the
   /// tree's order, which refit() does not change.
   void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
-    collect(queries, 0, queries.size(), pairs);
+    collect<BoxTest::exact>(queries, 0, queries.size(), pairs);
   }
   /// Of the queries [begin, end) only.
+  template <BoxTest test>
   void collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
                std::vector<BoxPair>& pairs) const;
 
-  /// Appends every pair of boxes of the tree that overlap or touch each other, query < index, in the same
-  /// order.
-  void collect_own(std::vector<BoxPair>& pairs) const { collect_own(0, boxes_.size(), pairs); }
-  /// Of those with a query in [begin, end) only.
+  /// Appends every pair of boxes of the tree that overlap or touch each other, once: by query, the one that
+  /// comes before the other in the tree's order.
+  void collect_own(std::vector<BoxPair>& pairs) const {
+    collect_own<BoxTest::exact>(0, boxes_.size(), pairs);
+  }
+  /// Of those whose query has a place in [begin, end) of the tree's order only.
+  template <BoxTest test>
   void collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const;
 
   /// Levels of nodes: 0 without boxes.
@@ -84,14 +94,18 @@ class BoxTree {
   struct Builder;
 
   static std::uint32_t overlapping(const Node& node, const Query& query);
+  /// Calls callback(place) for the boxes whose place is `first` or a later one.
+  template <BoxTest test, class Callback>
+  void visit_from(int first, const Bounds& query, Callback&& callback) const;
   Query rounded(const Bounds& bounds) const;
   void fit();
 
   // Boxes in the order of the tree; those of a node lie together.
   std::vector<Bounds> boxes_;
-  std::vector<int> index_, place_;  // the index that each was given, and where the box of an index lies
-  std::vector<Node> nodes_;         // children after their parents
-  Vec3 origin_{0, 0, 0};            // of single precision
+  std::vector<int> index_;   // that each was given
+  std::vector<Node> nodes_;  // children after their parents
+  std::vector<int> end_;     // of each node, the place after that of its last box
+  Vec3 origin_{0, 0, 0};     // of single precision
   int depth_ = 0;
 };
 
@@ -126,8 +140,8 @@ inline std::uint32_t BoxTree::overlapping(const Node& node, const Query& query) 
 #endif
 }
 
-template <class Callback>
-void BoxTree::visit(const Bounds& query, Callback&& callback) const {
+template <BoxTest test, class Callback>
+void BoxTree::visit_from(int first, const Bounds& query, Callback&& callback) const {
   if (nodes_.empty()) return;
   const Query rounded_query = rounded(query);
   std::array<int, deepest*(width - 1) + 1> waiting;
@@ -138,11 +152,13 @@ void BoxTree::visit(const Bounds& query, Callback&& callback) const {
     for (std::uint32_t hits = overlapping(node, rounded_query); hits != 0; hits &= hits - 1) {
       const int child = node.child[static_cast<std::size_t>(std::countr_zero(hits))];
       if (child >= 0) {
-        waiting[count++] = child;
+        if (end_[static_cast<std::size_t>(child)] > first) waiting[count++] = child;
         continue;
       }
-      const auto place = static_cast<std::size_t>(~child);
-      if (overlap(boxes_[place], query)) callback(index_[place]);
+      const int place = ~child;
+      if (place < first) continue;
+      if (test == BoxTest::rounded || overlap(boxes_[static_cast<std::size_t>(place)], query))
+        callback(place);
     }
   }
 }

@@ -1,6 +1,7 @@
 // Bounding boxes in single precision: a quick test that two boxes do not overlap.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #if defined(__SSE2__)
@@ -25,11 +26,21 @@ struct alignas(32) RoundedBox {
   }
 };
 
+/// The box around both.
+inline RoundedBox joined(const RoundedBox& a, const RoundedBox& b) {
+  RoundedBox both;
+  for (std::size_t k = 0; k < both.ends.size(); ++k) both.ends[k] = std::min(a.ends[k], b.ends[k]);
+  return both;
+}
+
 /// What the ends of a RoundedBox must not exceed for it to overlap `box`.
 struct alignas(32) RoundedLimits {
   std::array<float, 8> most{};
 
-  explicit RoundedLimits(const Bounds& box) : most(RoundedBox::in_order(box.upper, -box.lower)) {}
+  explicit RoundedLimits(const Bounds& box) : RoundedLimits(RoundedBox(box)) {}
+  explicit RoundedLimits(const RoundedBox& box) {
+    for (std::size_t k = 0; k < most.size(); ++k) most[k] = -box.ends[(k + 4) % 8];
+  }
 
   bool may_overlap(const RoundedBox& box) const {
 #if defined(__SSE2__)

@@ -121,8 +121,8 @@ TEST(SkinFriction, IsTheSameInThePassOfAGridAndInTheGeneralMethods) {
   for (const Scene& scene : scenes_in_wind())
     for (const std::string method : {"explicit-euler", "semi-implicit-euler", "verlet", "rk4"}) {
       DirectRun fused(scene, method), general(scene, method);
-      fused.predict_damping();
-      ASSERT_TRUE(stepper_kind(method, fused.forces, {.predicts_damping = true}).fused) << method;
+      fused.take_damping(EndVelocity::predicted);
+      ASSERT_TRUE(stepper_kind(method, fused.forces, {.end_velocity = EndVelocity::predicted}).fused) << method;
       const double h = 0.02 / guaranteed_frequency(scene);
       fused.advance(100, h);
       const std::unique_ptr<Integrator> step = general_method(method);

@@ -124,7 +124,7 @@ TEST_P(SlidersOnEveryInstructionSet, StepAsTheGeneralWayDoes) {
         const Scene scene = sheet_of(rows, columns, features);
         DirectRun whole(scene, method), general(scene, method);
         for (DirectRun* run : {&whole, &general})
-          if (features & dampers) run->predict_damping();
+          if (features & dampers) run->take_damping(EndVelocity::predicted);
         EXPECT_TRUE(whole.forces.is_swept_whole());
         make_general(general);
         whole.state = crumpled_state(whole.system, 0.002, 0.1, random);

@@ -30,7 +30,7 @@ DirectRun::DirectRun(ClothSystem made, const Scene& scene, const IntegratorChoic
     : system(std::move(made)), state(starting_state(system)), forces(scene, system), choice_(choice) {}
 
 Integrator& DirectRun::integrator() {
-  const StepperKind kind = stepper_kind(choice_.method, forces, {.predicts_damping = predicts_damping_});
+  const StepperKind kind = stepper_kind(choice_.method, forces, {.end_velocity = end_velocity_});
   if (!integrator_ || kind != kind_) integrator_ = make_stepper(choice_, kind);
   kind_ = kind;
   return *integrator_;

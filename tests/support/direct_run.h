@@ -34,8 +34,8 @@ class DirectRun {
   /// The stepper that suits the forces now.
   Integrator& integrator();
 
-  /// Verlet takes damping at predicted velocities from now on: whether the step allows it is not asked here.
-  void predict_damping() { predicts_damping_ = true; }
+  /// Verlet takes damping so from now on: whether the step allows it is not asked here.
+  void take_damping(EndVelocity end) { end_velocity_ = end; }
 
   ClothSystem system;
   ClothState state;
@@ -45,7 +45,7 @@ class DirectRun {
 
  private:
   IntegratorChoice choice_;
-  bool predicts_damping_ = false;
+  EndVelocity end_velocity_ = EndVelocity::solved;
   StepperKind kind_;
   std::unique_ptr<Integrator> integrator_;
 };

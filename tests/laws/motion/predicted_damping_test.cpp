@@ -7,6 +7,7 @@
 
 #include "integrators/fused_steppers.h"
 #include "integrators/registry.h"
+#include "measure/energy.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
 #include "scene/scene_cloth.h"
@@ -26,13 +27,13 @@ const double omega = std::sqrt(stiffness / mass);
 /// c = rate from dampers along its springs.
 class DampedOscillator {
  public:
-  DampedOscillator(double rate, double start) : run_(scene(rate), "verlet"), start_(start) {
-    run_.predict_damping();
+  DampedOscillator(EndVelocity end, double rate, double start) : run_(scene(rate), "verlet"), start_(start) {
+    run_.take_damping(end);
     for (const std::size_t i : {2u, 3u}) run_.state.position.add(i, {0, start, 0});
   }
   double x() const { return (run_.state.position[2].y() + spacing) / start_; }
   void step(double h) { run_.advance(1, h); }
-  StepperKind kind() { return stepper_kind("verlet", run_.forces, {.predicts_damping = true}); }
+  StepperKind kind(EndVelocity end) { return stepper_kind("verlet", run_.forces, {.end_velocity = end}); }
 
  private:
   static Scene scene(double rate) {
@@ -49,8 +50,9 @@ class DampedOscillator {
 TEST(PredictedDamping, MovesAnOscillatorByItsRecurrence) {
   for (const double w : {0.1, 0.7, 1.5})
     for (const double g : {0.01, 0.1, 0.4}) {
-      DampedOscillator oscillator(g * omega / w, 0.01);
-      ASSERT_EQ(oscillator.kind(), (StepperKind{.fused = true, .predicts = true}));
+      DampedOscillator oscillator(EndVelocity::predicted, g * omega / w, 0.01);
+      ASSERT_EQ(oscillator.kind(EndVelocity::predicted),
+                (StepperKind{.fused = true, .end_velocity = EndVelocity::predicted}));
       std::vector<double> x;
       for (int n = 0; n < 40; ++n) {
         x.push_back(oscillator.x());
@@ -65,8 +67,8 @@ TEST(PredictedDamping, MovesAnOscillatorByItsRecurrence) {
 }
 
 /// A thousand steps from a start of a micrometre.
-double growth(double w, double g) {
-  DampedOscillator oscillator(g * omega / w, 1e-6);
+double growth(EndVelocity end, double w, double g) {
+  DampedOscillator oscillator(end, g * omega / w, 1e-6);
   double largest = 0;
   for (int n = 0; n < 1000; ++n) {
     oscillator.step(w / omega);
@@ -77,7 +79,9 @@ double growth(double w, double g) {
 
 TEST(PredictedDamping, IsStableBelowItsLimitAndGrowsAboveIt) {
   for (const double share : {0.1, 0.3, 0.6, 0.9}) {  // of the limit that the damping takes
-    const auto at = [&](double load) { return growth(std::sqrt(4 * load * (1 - share)), load * share); };
+    const auto at = [&](double load) {
+      return growth(EndVelocity::predicted, std::sqrt(4 * load * (1 - share)), load * share);
+    };
     EXPECT_LT(at(0.98), 1e-3) << share;
     EXPECT_GT(at(1.02), 10) << share;
   }
@@ -95,16 +99,15 @@ BrushGust brush_that_touches_nothing() {
   return {.velocity = {}, .cursor = {1e6, 1e6}, .radius = 1};
 }
 
-void expect_order_two(const Scene& scene, bool fused) {
+void expect_order_two(const Scene& scene, EndVelocity end, bool fused) {
   constexpr double time = 0.4;  // s
   const auto solve = [&](const char* method, int steps) {
     DirectRun run(scene, exactly(method));
-    run.predict_damping();
+    run.take_damping(end);
     if (!fused) run.forces.set_brush(brush_that_touches_nothing());
-    const StepperKind kind = stepper_kind(method, run.forces, {.predicts_damping = true});
-    EXPECT_EQ(kind.predicts, std::string(method) == "verlet");
-    if (kind.predicts) {
-      EXPECT_EQ(kind.fused, fused);
+    const StepperKind kind = stepper_kind(method, run.forces, {.end_velocity = end});
+    if (std::string(method) == "verlet") {
+      EXPECT_EQ(kind, (StepperKind{.fused = fused, .end_velocity = end}));
     }
     run.advance(steps, time / steps);
     return run.state;
@@ -123,11 +126,63 @@ void expect_order_two(const Scene& scene, bool fused) {
 }
 
 TEST(PredictedDamping, IsOfOrderTwoWithDampersDragSkinFrictionWindAndGusts) {
-  expect_order_two(damped_scene(), true);
+  expect_order_two(damped_scene(), EndVelocity::predicted, true);
 }
 
 TEST(PredictedDamping, IsOfOrderTwoInTheGeneralMethodToo) {
-  expect_order_two(damped_scene(), false);
+  expect_order_two(damped_scene(), EndVelocity::predicted, false);
+}
+
+TEST(CorrectedDamping, MovesAnOscillatorByItsTraceAndDeterminant) {
+  for (const double w : {0.1, 0.7, 1.5, 1.9})
+    for (const double g : {0.01, 0.3, 1.0, 1.8}) {
+      DampedOscillator oscillator(EndVelocity::corrected, g * omega / w, 1e-6);
+      ASSERT_EQ(oscillator.kind(EndVelocity::corrected),
+                (StepperKind{.end_velocity = EndVelocity::corrected}));
+      std::vector<double> x;
+      for (int n = 0; n < 20; ++n) {
+        x.push_back(oscillator.x());
+        oscillator.step(w / omega);
+      }
+      const double p = 1 - g / 2, q = p + g * g / 4;
+      for (std::size_t n = 0; n + 2 < x.size(); ++n)
+        EXPECT_NEAR(x[n + 2] - (1 + p * q - 0.5 * w * w * (1 + p * p)) * x[n + 1] + p * q * x[n], 0, 1e-8)
+            << w << " " << g << " " << n;
+    }
+}
+
+/// To the limit of an undamped cloth wherever h D is at most 2 m, and beyond by no more than its formula
+/// says.
+TEST(CorrectedDamping, IsStableToTheLimitOfAnUndampedClothAndGrowsAboveItsOwn) {
+  for (const double g : {0.05, 0.3, 1.0, 1.9}) {
+    const double p = 1 - g / 2, q = p + g * g / 4, limit = 2 * std::sqrt((1 + p * q) / (1 + p * p));
+    EXPECT_GE(limit, 2);
+    EXPECT_LT(growth(EndVelocity::corrected, 1.999, g), 2) << g;
+    EXPECT_LT(growth(EndVelocity::corrected, 0.999 * limit, g), 2) << g;
+    EXPECT_GT(growth(EndVelocity::corrected, 1.02 * limit, g), 10) << g;
+  }
+}
+
+/// Springs of several stiffnesses and dampers that are equal on all of them have no common eigenvectors.
+TEST(CorrectedDamping, MakesNoEnergyInAClothAtBothOfItsBounds) {
+  Scene scene = bare_sheet(9, 9, 0.02, 0.05);
+  scene.springs = SpringMaterial{.structural = 60, .shear = 3, .flexion = 0.5, .damping = 0};
+  const double h = 1.98 / guaranteed_frequency(scene);
+  scene.springs->damping = 1;
+  scene.springs->damping = largest_corrected_load / damping_load(scene, h);
+  EXPECT_NEAR(damping_load(scene, h), largest_corrected_load, 1e-12);
+  DirectRun run(scene, "verlet");
+  run.take_damping(EndVelocity::corrected);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1e-6, 1e-6);
+  for (double& v : run.state.velocity.flat()) v = any(random);
+  const double before = kinetic_energy(run.system, run.state.velocity);
+  run.advance(3000, h);
+  EXPECT_LT(kinetic_energy(run.system, run.state.velocity), 0.1 * before);
+}
+
+TEST(CorrectedDamping, IsOfOrderTwoWithDampersDragSkinFrictionWindAndGusts) {
+  expect_order_two(damped_scene(), EndVelocity::corrected, false);
 }
 
 Scene material_in_wind() {
@@ -214,8 +269,14 @@ TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
   EXPECT_EQ(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("damping at the predicted velocity in the pass"), std::string::npos)
       << integrate_text(scene);
-  scene.springs->damping *= 100;
-  EXPECT_GT(predicted_damping_load(scene, *scene.integrator.time_step), largest_predicted_load);
+  const double h = *scene.integrator.time_step;
+  scene.springs->damping *= 0.9 / damping_load(scene, h);
+  EXPECT_GT(predicted_damping_load(scene, h), largest_predicted_load);
+  EXPECT_EQ(velocity_iterations(scene), 0);
+  EXPECT_NE(integrate_text(scene).find("damping evaluated twice"), std::string::npos)
+      << integrate_text(scene);
+  scene.springs->damping *= 10;
+  EXPECT_GT(damping_load(scene, h), largest_corrected_load);
   EXPECT_GT(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("conjugate gradients"), std::string::npos) << integrate_text(scene);
   scene.springs->damping = 0, scene.air.reset(), scene.damping = 0.001;

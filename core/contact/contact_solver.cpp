@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernels/instruction_set.h"
 
@@ -98,16 +99,6 @@ void ContactSolver::pack(const ContactConstraint& contact, const std::vector<dou
   }
 }
 
-/// All rows, in turns from several places: neighbours share particles and wait for each other, rows far apart
-/// are relaxed side by side by a processor that looks ahead.
-void ContactSolver::order_in_streams() {
-  constexpr std::size_t streams = 4;
-  const std::size_t each = (rows_.size() + streams - 1) / streams;
-  all_.clear();
-  for (std::size_t k = 0; k < each; ++k)
-    for (std::size_t r = k; r < rows_.size(); r += each) all_.push_back(static_cast<int>(r));
-}
-
 /// The rows with a particle that the last sweep has moved.
 void ContactSolver::order_moved() {
   active_.clear();
@@ -120,7 +111,8 @@ void ContactSolver::order_moved() {
 
 int ContactSolver::sweep(const SolveLimits& limits) {
   const RelaxKernels& kernels = active_kernels<RelaxKernels>();
-  order_in_streams();
+  all_.resize(rows_.size());
+  std::iota(all_.begin(), all_.end(), 0);
   before_ = values_;
   moved_.assign(values_.size(), 1);
   bool is_whole = true;

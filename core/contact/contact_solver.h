@@ -67,7 +67,7 @@ struct SolveLimits {
   double tolerance = 0;  ///< m or m/s: of no particle did a sweep change the value by more
 };
 
-/// Sweeps over the contacts, always in the same order. Contacts of the same particles hand an impulse to and
+/// Sweeps over the contacts, in their order. Contacts of the same particles hand an impulse to and
 /// fro for ever while nothing moves, so that a solve ends by what a whole sweep has changed at the particles
 /// and not by what single contacts have. A contact whose particles have no other is solved by one relaxation.
 /// Of the others, those whose particles did not move in the last sweep are left out of the next, except in
@@ -84,7 +84,6 @@ class ContactSolver {
   void pack(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
             const Vec3Field& value);
   int slot_of(int particle, const Vec3Field& value);
-  void order_in_streams();
   void order_moved();
   int sweep(const SolveLimits& limits);
   void unpack(std::span<ContactConstraint> contacts, Vec3Field& value);

@@ -196,9 +196,41 @@ TEST(BoxTree, FindsItsOwnPairsOnce) {
     std::vector<BoxPair> own, expected = all_pairs(boxes, boxes);
     std::erase_if(expected, [](const BoxPair& pair) { return pair.query >= pair.index; });
     BoxTree(boxes).collect_own(own);
+    for (BoxPair& pair : own)
+      if (pair.query > pair.index) std::swap(pair.query, pair.index);
     std::sort(own.begin(), own.end());
     EXPECT_EQ(own, expected);
   }
+}
+
+TEST(BoxTree, CollectsItsOwnPairsByPartsInItsOrder) {
+  Random random;
+  const BoxTree tree(random_boxes(700, 0.3, random));
+  std::vector<BoxPair> whole, parts;
+  tree.collect_own(whole);
+  std::size_t begin = 0;
+  for (const std::size_t end : {1u, 300u, 699u, 700u}) {
+    tree.collect_own<BoxTest::exact>(begin, end, parts);
+    begin = end;
+  }
+  EXPECT_EQ(parts, whole);
+  EXPECT_GT(whole.size(), 700u);
+}
+
+/// Far from the origin single precision has millimetres.
+TEST(BoxTree, MissesNoneByRoundingAndTakesFewMore) {
+  Random random;
+  Boxes boxes = random_boxes(700, 0.3, random);
+  for (Bounds& box : boxes) box = {box.lower + Vec3(3e4, 0, 0), box.upper + Vec3(3e4, 0, 0)};
+  boxes.push_back(bounds_of(Vec3(-3e4, 0, 0)));
+  const BoxTree tree(boxes);
+  std::vector<BoxPair> exact, rounded;
+  tree.collect<BoxTest::exact>(boxes, 0, boxes.size(), exact);
+  tree.collect<BoxTest::rounded>(boxes, 0, boxes.size(), rounded);
+  for (auto* pairs : {&exact, &rounded}) std::sort(pairs->begin(), pairs->end());
+  EXPECT_TRUE(std::includes(rounded.begin(), rounded.end(), exact.begin(), exact.end()));
+  EXPECT_GT(rounded.size(), exact.size()) << "nothing was rounded";
+  EXPECT_LT(rounded.size(), 1.1 * exact.size());
 }
 
 TEST(BoxTree, VisitsWhatItCollects) {

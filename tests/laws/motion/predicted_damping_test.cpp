@@ -175,7 +175,8 @@ TEST(CorrectedDamping, MakesNoEnergyInAClothAtBothOfItsBounds) {
   run.take_damping(EndVelocity::corrected);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1e-6, 1e-6);
-  for (double& v : run.state.velocity.flat()) v = any(random);
+  for (std::size_t i = 0; i < run.state.velocity.size(); ++i)  // across the sheet nothing damps
+    run.state.velocity.set(i, {any(random), any(random), 0});
   const double before = kinetic_energy(run.system, run.state.velocity);
   run.advance(3000, h);
   EXPECT_LT(kinetic_energy(run.system, run.state.velocity), 0.1 * before);
@@ -269,7 +270,8 @@ TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
   EXPECT_EQ(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("damping at the predicted velocity in the pass"), std::string::npos)
       << integrate_text(scene);
-  const double h = *scene.integrator.time_step;
+  const double h = 1.8 / guaranteed_frequency(scene);
+  scene.integrator.time_step = h;
   scene.springs->damping *= 0.9 / damping_load(scene, h);
   EXPECT_GT(predicted_damping_load(scene, h), largest_predicted_load);
   EXPECT_EQ(velocity_iterations(scene), 0);
@@ -285,15 +287,14 @@ TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
 }
 
 TEST(PredictedDamping, IsGivenUpWhileAHandPullsTooHardForIt) {
-  Scene scene = builtin_scene("wind");
+  Scene scene = builtin_scene("flag");
+  scene.springs->damping *= 0.949 / predicted_damping_load(scene, *scene.integrator.time_step);
   Simulation simulation(scene);
   ASSERT_FALSE(simulation.advance(20));
   const std::int64_t before = simulation.count().velocity_iterations;
   simulation.set_pull(Pull{.particle = 500, .target = {0, 0.5, 0.2}});
   ASSERT_FALSE(simulation.advance(20));
-  const bool solved = simulation.count().velocity_iterations > before;
-  const double h = simulation.time_step();
-  EXPECT_TRUE(solved || predicted_damping_load(scene, h) < 0.9);
+  EXPECT_GT(simulation.count().velocity_iterations, before);
   simulation.set_pull(std::nullopt);
   const std::int64_t then = simulation.count().velocity_iterations;
   ASSERT_FALSE(simulation.advance(20));

@@ -298,15 +298,39 @@ void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseI
     const std::size_t k = at(meeting.obstacle);
     if (meeting.obstacle != seen_from) {
       seen_from_body(bodies_[k], paths[k], cached_, swept.reach, boxes_[Feature::vertex]);
-      spread(cloth_, boxes_);
       seen_from = meeting.obstacle;
     }
-    const std::vector<Bounds>& near = boxes_[meeting.near()];
-    const BoxTree& tree = mesh_trees_[k][meeting.far()];
-    collect(near.size(), meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
-      tree.collect<BoxTest::rounded>(near, begin, end, part);
-    });
+    find_mesh_overlaps(meeting);
   }
+}
+
+/// Features of the cloth beyond a side of the mesh have none.
+void PairSearch::find_mesh_overlaps(Meeting& meeting) {
+  const BoxTree& tree = mesh_trees_[at(meeting.obstacle)][meeting.far()];
+  const std::vector<Bounds>& vertices = boxes_[Feature::vertex];
+  outcodes_.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) outcodes_[i] = outcode(vertices[i], tree.bounds());
+  const auto collect_of = [&](std::size_t count, const auto& particles_of) {
+    collect(count, meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+      for (std::size_t q = begin; q < end; ++q) {
+        unsigned common = ~0U;
+        Bounds box;
+        for (const int i : particles_of(q)) common &= outcodes_[at(i)], box.add(vertices[at(i)]);
+        if (common != 0) continue;
+        tree.visit<BoxTest::rounded>(box, [&, query = static_cast<int>(q)](int index) {
+          part.push_back({query, index});
+        });
+      }
+    });
+  };
+  if (meeting.near() == Feature::vertex)
+    collect_of(vertices.size(), [](std::size_t q) { return std::array{static_cast<int>(q)}; });
+  if (meeting.near() == Feature::edge)
+    collect_of(
+        cloth_.edges.size(), [&](std::size_t q) -> const auto& { return cloth_.edges[q]; });
+  if (meeting.near() == Feature::face)
+    collect_of(
+        cloth_.triangles.size(), [&](std::size_t q) -> const auto& { return cloth_.triangles[q]; });
 }
 
 /// Features that share a vertex are no pair.

@@ -76,6 +76,7 @@ class PairSearch {
   bool keeps_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) const;
   void find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths);
   void find_own_overlaps(double reach);
+  void find_mesh_overlaps(Meeting& meeting);
   template <class Collect>
   void collect(std::size_t queries, Meeting& meeting, const Collect& collect_part);
   void take_near(const Meeting& meeting, const OfFeatures<std::vector<RoundedBox>>& far,
@@ -91,6 +92,7 @@ class PairSearch {
   std::vector<OfFeatures<std::vector<RoundedBox>>> mesh_boxes_;  ///< of each body
   std::vector<Meeting> meetings_;
   std::vector<Bounds> particles_;                   ///< of this search
+  std::vector<unsigned> outcodes_;                  ///< of particles, scratch
   OfFeatures<std::vector<Bounds>> boxes_;           ///< scratch
   OfFeatures<std::vector<RoundedBox>> near_boxes_;  ///< scratch
   struct Part {                                     ///< of one thread

@@ -176,9 +176,9 @@ void BoxTree::refit(std::span<const Bounds> boxes) {
 }
 
 void BoxTree::fit() {
-  Bounds all;
-  for (const Bounds& box : boxes_) all.add(box);
-  origin_ = middle_of(all);
+  bounds_ = {};
+  for (const Bounds& box : boxes_) bounds_.add(box);
+  origin_ = middle_of(bounds_);
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
     const auto used = static_cast<std::size_t>(std::popcount(node.used));

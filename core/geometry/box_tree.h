@@ -38,6 +38,8 @@ class BoxTree {
   explicit BoxTree(std::span<const Bounds> boxes);
 
   int size() const { return static_cast<int>(boxes_.size()); }
+  /// Around all boxes.
+  const Bounds& bounds() const { return bounds_; }
 
   /// Replaces the boxes by as many others, in their order. Queries stay exact; they become slower where boxes
   /// that were neighbours have moved apart.
@@ -105,6 +107,7 @@ class BoxTree {
   std::vector<int> index_;   // that each was given
   std::vector<Node> nodes_;  // children after their parents
   std::vector<int> end_;     // of each node, the place after that of its last box
+  Bounds bounds_;            // of all boxes
   Vec3 origin_{0, 0, 0};     // of single precision
   int depth_ = 0;
 };

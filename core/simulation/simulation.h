@@ -107,6 +107,8 @@ class Simulation {
   /// How many threads a pass over the springs can use: 1 where the cloth is too small or no kernel supports
   /// it.
   int threads() const;
+  /// How the method steps now.
+  const StepperKind& stepper() const { return stepper_kind_; }
 
   /// The hand, from the next step on.
   void set_brush(const std::optional<BrushGust>& brush);

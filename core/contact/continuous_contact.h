@@ -105,7 +105,7 @@ class ContinuousContact : public ContactStage {
   double arrived_length() const { return 1e-3 * thickness_; }
 
   void apply_all_impulses(const ClothSystem& system, Vec3Field& velocity) const;
-  void solve_constraints(const ClothSystem& system, Vec3Field& velocity);
+  void solve_constraints(const ClothSystem& system, int sweeps, Vec3Field& velocity);
   bool find_motion(const ContactStep& step);
   void take_touches(const ContactStep& step);
   double approach_of(const Touch& touch, const ContactStep& step) const;

@@ -11,6 +11,8 @@
 namespace cloth {
 namespace {
 
+/// Where damping is evaluated at the velocities that a solve ends with, and another follows.
+constexpr int first_velocity_sweeps = 10;
 constexpr int velocity_sweeps = 100;
 constexpr double velocity_tolerance = 1e-5;  ///< m/s
 
@@ -59,8 +61,8 @@ void ContinuousContact::apply_all_impulses(const ClothSystem& system, Vec3Field&
     apply_impulses(contact, system.inverse_mass, velocity);
 }
 
-void ContinuousContact::solve_constraints(const ClothSystem& system, Vec3Field& velocity) {
-  solver_.solve(constraints_, system.inverse_mass, {velocity_sweeps, velocity_tolerance}, velocity);
+void ContinuousContact::solve_constraints(const ClothSystem& system, int sweeps, Vec3Field& velocity) {
+  solver_.solve(constraints_, system.inverse_mass, {sweeps, velocity_tolerance}, velocity);
 }
 
 /// The mean velocity of the step. A pair that began it nearer than its thickness was separated, which must
@@ -90,7 +92,7 @@ bool ContinuousContact::find_motion(const ContactStep& step) {
   for (std::size_t i = 0; i < position_.size(); ++i)
     solved.set(i, (integrated_position_[i] - step.position_before[i]) / step.times.step);
   apply_all_impulses(step.system, solved);
-  solve_constraints(step.system, solved);
+  solve_constraints(step.system, velocity_sweeps, solved);
   Islands islands(constraints_, step.system.inverse_mass);
   std::vector<std::uint8_t> recovers(position_.size(), 0);
   for (std::size_t c = 0; c < gaps.size(); ++c)
@@ -165,12 +167,13 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   take_touches(step);
   free_velocity_ = state.velocity;
   apply_all_impulses(system, state.velocity);
-  solve_constraints(system, state.velocity);
-  if (follows && step.forces.has_damping()) {
+  const bool follows_damping = follows && step.forces.has_damping();
+  solve_constraints(system, follows_damping ? first_velocity_sweeps : velocity_sweeps, state.velocity);
+  if (follows_damping) {
     step.integrator.update_velocity_for_damping(step.forces, step.times, motion_, state);
     free_velocity_ = state.velocity;
     apply_all_impulses(system, state.velocity);
-    solve_constraints(system, state.velocity);
+    solve_constraints(system, velocity_sweeps, state.velocity);
   }
   work_.assign(position_.size(), 0.0);
   if (follows) find_start_change(step);
@@ -246,7 +249,7 @@ void ContinuousContact::bounce(const ContactStep& step, bool follows, ClothState
   const std::vector<ContactConstraint> still = constraints_;
   const Vec3Field stopped = state.velocity;
   for (std::size_t c = 0; c < constraints_.size(); ++c) constraints_[c].bound = bounce_bound_[c];
-  solve_constraints(step.system, state.velocity);
+  solve_constraints(step.system, velocity_sweeps, state.velocity);
   const ClothSystem& system = step.system;
   Islands islands(constraints_, system.inverse_mass);
   std::vector<Vec3> obstacle_velocity(position_.size(), Vec3::Zero());

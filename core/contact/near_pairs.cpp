@@ -340,12 +340,13 @@ void PairSearch::find_own_overlaps(double reach) {
   for (const Bounds& box : cached_) vertices.push_back(box.grown(0.5 * reach));
   spread(cloth_, boxes_);
   for (const Feature feature : {Feature::edge, Feature::face}) own_trees_[feature].refit(boxes_[feature]);
-  collect(vertices.size(), meetings_[1], [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+  Meeting &edge_meeting = meetings_[0], &face_meeting = meetings_[1];  // as the constructor made them
+  collect(vertices.size(), face_meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
     own_trees_[Feature::face].collect<BoxTest::rounded>(vertices, begin, end, part);
     std::erase_if(
         part, [&](const BoxPair& pair) { return has_vertex(cloth_.triangles[at(pair.index)], pair.query); });
   });
-  collect(cloth_.edges.size(), meetings_[0],
+  collect(cloth_.edges.size(), edge_meeting,
           [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
             own_trees_[Feature::edge].collect_own<BoxTest::rounded>(begin, end, part);
             std::erase_if(part, [&](const BoxPair& pair) {

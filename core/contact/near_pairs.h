@@ -60,8 +60,6 @@ class PairSearch {
   void append_boxes(int body, int level, const Vec3Field& position, double reach, std::vector<Bounds>& boxes);
 
  private:
-  class Step;
-
   /// Features of the cloth and of a mesh or of the cloth itself that can be pairs of one kind.
   struct Meeting {
     int obstacle = FeaturePair::cloth_itself;

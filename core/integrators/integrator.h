@@ -109,6 +109,10 @@ class Integrator {
   /// Whether the positions of a step are x' = x + h v' with the velocity v' at its end.
   virtual bool drifts_with_end_velocity() const { return false; }
 
+  /// How the method goes through the elements of the cloth, with which its cost varies; for `explain`. Empty
+  /// where that is said by the forces.
+  virtual std::string visits_text(const ForceModel&) { return ""; }
+
   /// Tells the method that something else has changed the forces, or the state: values kept of them are
   /// invalid.
   virtual void forget(Change) {}

@@ -215,12 +215,22 @@ void Vbd::predict_again(ForceModel& forces, double end, Visits& visits, int& eva
   ++evaluations;
 }
 
+bool Vbd::suits_kernels(const NodeDamping& parts) const {
+  if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_stretch_time())) return false;
+  return parts.along_normal.each >= 0 && parts.along_normal.per_mass >= 0;  // else no real b
+}
+
+std::string Vbd::visits_text(const ForceModel& forces) {
+  prepare(forces.system());
+  return suits_kernels(forces.damping_parts()) ? "particles by vectors, colour by colour"
+                                               : "particles one by one, colour by colour";
+}
+
 /// The kernels' H^-1 is made of cofactors, which lose what is too small beside the stiffness.
 bool Vbd::is_visited_by_kernels(const Visits& visits) const {
   constexpr double largest_ratio = 1e10;
   const NodeDamping& parts = visits.parts;
-  if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_stretch_time())) return false;
-  if (parts.along_normal.each < 0 || parts.along_normal.per_mass < 0) return false;  // no real b
+  if (!suits_kernels(parts)) return false;
   double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const SpringBlock& block : visits.system.springs.blocks())
     stiffest = std::max(stiffest, block.run.stiffness);

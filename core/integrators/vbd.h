@@ -62,6 +62,7 @@ class Vbd : public Integrator {
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   bool drifts_with_end_velocity() const override { return true; }
+  std::string visits_text(const ForceModel& forces) override;
 
  private:
   /// W^-1 = mass I + along n n^T, in kg; mass 0 where pinned.
@@ -104,6 +105,7 @@ class Vbd : public Integrator {
   /// v* and W^-1 at the positions that the visits have come to.
   void predict_again(ForceModel& forces, double end, Visits& visits, int& evaluations);
   /// The iterations by the kernels, where these know all there is, or one by one.
+  bool suits_kernels(const NodeDamping& parts) const;
   bool is_visited_by_kernels(const Visits& visits) const;
   Sweep descend_by_kernels(ForceModel& forces, double end, Visits& visits, int& evaluations);
   void set_drag();

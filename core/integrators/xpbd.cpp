@@ -20,6 +20,15 @@ Xpbd::Visitor Xpbd::visitor_for(const ForceModel& forces, const NodeDamping& par
   return coloured_.are_visited_by_vectors() ? Visitor::colours : Visitor::one_by_one;
 }
 
+std::string Xpbd::visits_text(const ForceModel& forces) {
+  const Visitor visitor = visitor_for(forces, forces.damping_parts());
+  std::string text = visitor == Visitor::grid      ? "springs by vectors, row by row"
+                     : visitor == Visitor::colours ? "springs by vectors, colour by colour"
+                                                   : "springs one by one";
+  if (has_others_) text += ", other elements one by one";
+  return text;
+}
+
 void Xpbd::begin_substeps(const ForceModel& forces, const NodeDamping& parts, double h) {
   const ClothSystem& system = forces.system();
   const std::size_t count = system.mass.size();

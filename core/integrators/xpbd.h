@@ -41,6 +41,7 @@ class Xpbd : public Integrator {
   Xpbd(int substeps, int iterations) : substeps_(substeps), iterations_(iterations) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  std::string visits_text(const ForceModel& forces) override;
   /// Kept at the end of every substep.
   bool set_drift_constraint(DriftConstraint* constraint) override {
     constraint_ = constraint;

@@ -54,6 +54,11 @@ std::string evaluations_text(const MethodFacts& method) {
   return fmt::format("{} force evaluation{} a step", count, count == 1 ? "" : "s");
 }
 
+std::string visits_text(Integrator& integrator, const Scene& scene, const ClothSystem& system) {
+  const std::string text = integrator.visits_text(ForceModel(scene, system));
+  return text.empty() ? "" : ", " + text;
+}
+
 /// How Verlet takes the damping, and why.
 std::string damping_text(const Scene& scene, const ClothSystem& system, bool limited) {
   const auto step = resolved_time_step(scene);
@@ -82,7 +87,8 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
 std::vector<StageInfo> explain_stages(const Scene& scene) {
   const ClothSystem system = make_cloth(scene);
   const MethodFacts& method = facts_of(scene.integrator.method);
-  const bool limits_within = make_integrator(scene.integrator)->set_drift_constraint(nullptr);
+  const std::unique_ptr<Integrator> integrator = make_integrator(scene.integrator);
+  const bool limits_within = integrator->set_drift_constraint(nullptr);
   const bool limited = limiter_stage(scene, system).present;
   const bool moved_later = contact_stage(scene).present || scene.self_contact || (!limits_within && limited);
   std::vector<StageInfo> stages;
@@ -91,7 +97,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   stages.push_back(
       {"integrate", true,
        fmt::format("{}: order {}, {}", method.title, method.order, evaluations_text(method)) +
-           damping_text(scene, system, limited) +
+           visits_text(*integrator, scene, system) + damping_text(scene, system, limited) +
            (method.keeps_force && moved_later ? ", one more after a step that the stages below changed"
                                               : "")});
   stages.push_back(limiter_stage(scene, system));

@@ -142,5 +142,22 @@ TEST(Stages, SayOfEachWhetherItIsInAndWhy) {
       EXPECT_FALSE(info.reason.empty());
 }
 
+TEST(Stages, SayHowXpbdAndVbdGoThroughTheCloth) {
+  const auto has = [](const char* name, const char* method, const char* text) {
+    Scene scene = builtin_scene(name);
+    scene.integrator = {.method = method, .time_step = 0.01};
+    for (const StageInfo& info : explain_stages(scene))
+      if (info.name == "integrate") return info.reason.find(text) != std::string::npos;
+    return false;
+  };
+  EXPECT_TRUE(has("corners-free", "xpbd", "springs by vectors, row by row"));
+  EXPECT_TRUE(has("disc", "xpbd", "springs by vectors, colour by colour"));
+  EXPECT_TRUE(has("wind-denim", "xpbd", "other elements one by one"));
+  EXPECT_FALSE(has("corners-free", "xpbd", "one by one"));
+  EXPECT_TRUE(has("corners-free", "vbd", "particles by vectors"));
+  EXPECT_TRUE(has("disc", "vbd", "particles by vectors"));
+  EXPECT_TRUE(has("wind-denim", "vbd", "particles one by one"));
+}
+
 }  // namespace
 }  // namespace cloth::test::simulation_test

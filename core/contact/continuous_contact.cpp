@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "cloth/mesh_cloth.h"
 #include "contact/separations.h"
@@ -208,6 +209,21 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   return contact;
 }
 
+/// By the last of their particles (a counting sort), so that contacts of all kinds at one place follow each
+/// other: a sweep then carries a change further.
+void ContinuousContact::order_by_particles() {
+  const auto last_particle = [&](std::size_t pair) {
+    const Separation& s = separations_[pair];
+    return at(*std::max_element(s.particle.begin(), s.particle.begin() + s.count));
+  };
+  first_of_particle_.assign(position_.size() + 1, 0);
+  for (const std::size_t pair : constraint_pair_) ++first_of_particle_[last_particle(pair) + 1];
+  std::partial_sum(first_of_particle_.begin(), first_of_particle_.end(), first_of_particle_.begin());
+  ordered_.resize(constraint_pair_.size());
+  for (const std::size_t pair : constraint_pair_) ordered_[first_of_particle_[last_particle(pair)]++] = pair;
+  constraint_pair_.swap(ordered_);
+}
+
 void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field& from) {
   constraint_pair_.clear();
   target_position_ = free_position_;
@@ -218,6 +234,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
     }
     constraint_pair_.push_back(k);
   }
+  order_by_particles();
   constraints_.resize(constraint_pair_.size());
   in_shares(team_, constraints_.size(), least_shared, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)

@@ -84,6 +84,7 @@ class ContinuousContact : public ContactStage {
   /// Keeps of each particle only the contacts of the last substep in which it had an impulse.
   void drop_superseded_touches(const Vec3Field& from, double step);
   void separate_all();
+  void order_by_particles();
   void solve_target(const ClothSystem& system, const Vec3Field& from);
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
   double largest_violation() const;
@@ -168,6 +169,7 @@ class ContinuousContact : public ContactStage {
   std::vector<ContactConstraint> constraints_;
   ContactSolver solver_;
   std::vector<std::size_t> constraint_pair_;
+  std::vector<std::size_t> first_of_particle_, ordered_;  ///< scratch
   std::vector<Touch> touches_;
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round
   bool reached_bounds_ = false;               ///< a capsule stopped its particle in this round

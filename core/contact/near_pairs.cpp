@@ -10,7 +10,7 @@
 namespace cloth {
 namespace {
 
-/// Overlaps, and faces to be looked for in a hierarchy, that are worth a thread of their own.
+/// Overlaps, and features to be looked for in a hierarchy, that are worth a thread of their own.
 constexpr std::size_t least_share = 1000, least_queries = 200;
 
 /// m, largest distance of an arc from its chord, for a point that rotates at `radius` metres from the axis.

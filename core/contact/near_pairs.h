@@ -3,6 +3,10 @@
 // so that no pair is missed at any speed.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "contact/feature_pairs.h"
 #include "contact/regions.h"
 #include "geometry/box_tree.h"

@@ -37,7 +37,6 @@ inline RoundedBox joined(const RoundedBox& a, const RoundedBox& b) {
 struct alignas(32) RoundedLimits {
   std::array<float, 8> most{};
 
-  explicit RoundedLimits(const Bounds& box) : RoundedLimits(RoundedBox(box)) {}
   explicit RoundedLimits(const RoundedBox& box) {
     for (std::size_t k = 0; k < most.size(); ++k) most[k] = -box.ends[(k + 4) % 8];
   }

@@ -320,7 +320,7 @@ TEST(RoundedBox, OverlapsWhereTheBoxDoesAndHardlyElsewhere) {
     for (Bounds& box : boxes) box.lower.array() += far, box.upper.array() += far;
     for (const Bounds& a : boxes)
       for (const Bounds& b : boxes) {
-        const bool may = RoundedLimits(a).may_overlap(RoundedBox(b));
+        const bool may = RoundedLimits(RoundedBox(a)).may_overlap(RoundedBox(b));
         if (overlap(a, b)) {
           ASSERT_TRUE(may);
           ++overlapping;

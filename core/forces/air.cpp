@@ -120,10 +120,10 @@ class AirForce : public Force {
   /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    Vec3Field turned(position.size());
-    particle_normal_changes(system, position, direction, turned);
+    if (turned_.size() != position.size()) turned_ = Vec3Field(position.size());
+    particle_normal_changes(system, position, direction, turned_);
     for (std::size_t i = 0; i < position.size(); ++i) {
-      const Vec3 n = normal_[i], dn = turned[i];
+      const Vec3 n = normal_[i], dn = turned_[i];
       Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();
       if (brush_) {
         w += brush_falloff(*brush_, position[i]) * brush_->velocity;
@@ -152,7 +152,8 @@ class AirForce : public Force {
   std::optional<BrushGust> brush_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
-  Vec3Field brush_force_;  ///< N, sized only once a brush is used
+  mutable Vec3Field turned_;  ///< scratch
+  Vec3Field brush_force_;     ///< N, sized only once a brush is used
 };
 
 StageInfo wind_stage(const Scene& scene) {

@@ -52,10 +52,10 @@ class SkinFriction : public Force {
   /// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    Vec3Field turned(position.size());
-    particle_normal_changes(system, position, direction, turned);
+    if (turned_.size() != position.size()) turned_ = Vec3Field(position.size());
+    particle_normal_changes(system, position, direction, turned_);
     for (std::size_t i = 0; i < position.size(); ++i) {
-      const Vec3 n = normal_[i], dn = turned[i], w = wind_ - velocity[i];
+      const Vec3 n = normal_[i], dn = turned_[i], w = wind_ - velocity[i];
       product.add(i, friction(i) * (dn.dot(w) * n + n.dot(w) * dn));
     }
   }
@@ -73,6 +73,7 @@ class SkinFriction : public Force {
   const std::vector<double>* mass_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
+  mutable Vec3Field turned_;  ///< scratch
 };
 
 }  // namespace

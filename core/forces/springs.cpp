@@ -71,6 +71,30 @@ void damper_chunk(const SpringRun& run, int first, int count, const Vec3Field& p
   }
 }
 
+/// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i; its change where the ends move
+/// along `direction`, with de = (I - e e^T) dd/|d|. Here g is the opposite.
+void turning_chunk(const SpringRun& run, int first, int count, const Vec3Field& position,
+                   const Vec3Field& velocity, const Vec3Field& direction, double damping, Chunk& g) {
+  const auto difference = [to = run.offset](const double* of, int s) { return of[s + to] - of[s]; };
+  const double *x = position.x() + first, *y = position.y() + first, *z = position.z() + first;
+  const double *vx = velocity.x() + first, *vy = velocity.y() + first, *vz = velocity.z() + first;
+  const double *wx = direction.x() + first, *wy = direction.y() + first, *wz = direction.z() + first;
+  for (int s = 0; s < count; ++s) {
+    const double dx = difference(x, s), dy = difference(y, s), dz = difference(z, s);
+    const double ux = difference(vx, s), uy = difference(vy, s), uz = difference(vz, s);
+    const double ddx = difference(wx, s), ddy = difference(wy, s), ddz = difference(wz, s);
+    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double inverse = length > 0 ? 1 / length : 0;
+    const double ex = inverse * dx, ey = inverse * dy, ez = inverse * dz;
+    const double ue = ux * ex + uy * ey + uz * ez, along = ddx * ex + ddy * ey + ddz * ez;
+    const double ude = ux * ddx + uy * ddy + uz * ddz - 2 * along * ue;
+    const double scale = -damping * inverse;
+    g.x[s] = scale * (ude * ex + ue * ddx);
+    g.y[s] = scale * (ude * ey + ue * ddy);
+    g.z[s] = scale * (ude * ez + ue * ddz);
+  }
+}
+
 double run_energy(const SpringRun& run, const Vec3Field& position) {
   const double *xi = position.x() + run.first, *yi = position.y() + run.first, *zi = position.z() + run.first;
   const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
@@ -170,18 +194,12 @@ class SpringDamping : public Force {
                     });
   }
   bool has_asymmetric_part() const override { return true; }
-  /// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i, and de = (I - e e^T) dd/|d|.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    for_each_spring(system.springs, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
-      const double length = (position[j] - position[i]).norm();
-      if (!(length > 0)) return;
-      const Vec3 e = (position[j] - position[i]) / length, u = velocity[j] - velocity[i],
-                 dd = direction[j] - direction[i];
-      const Vec3 de = (dd - e.dot(dd) * e) / length;
-      const Vec3 change = of(run) * (u.dot(de) * e + u.dot(e) * de);  // of F_i
-      product.add(i, -change);
-      product.add(j, change);
+    Chunk g;
+    for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
+      turning_chunk(run, first, count, position, velocity, direction, of(run), g);
+      add_to_ends(g, first, run.offset, count, product);
     });
   }
 
@@ -251,16 +269,14 @@ ForceEntry spring_entry() {
 }
 
 ForceEntry spring_damping_entry() {
-  return {
-      .make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
-        const double damping = scene.springs ? scene.springs->damping : 0,
-                     time = scene.material ? scene.material->stretch_damping : 0;
-        if (!has_stiffness(system.springs) || !(damping + time > 0)) return nullptr;
-        return std::make_unique<SpringDamping>(system, damping, time);
-      },
-      .work = &Work::damping_loss,
-      .explain =
-          [](const Scene& scene, const ClothSystem& system) -> std::vector<StageInfo> {
+  return {.make = [](const Scene& scene, const ClothSystem& system) -> std::unique_ptr<Force> {
+            const double damping = scene.springs ? scene.springs->damping : 0,
+                         time = scene.material ? scene.material->stretch_damping : 0;
+            if (!has_stiffness(system.springs) || !(damping + time > 0)) return nullptr;
+            return std::make_unique<SpringDamping>(system, damping, time);
+          },
+          .work = &Work::damping_loss,
+          .explain = [](const Scene& scene, const ClothSystem& system) -> std::vector<StageInfo> {
             if (!system.membrane.empty()) return {};
             return std::vector{coefficient_stage(
                 "spring damping", scene, scene.material ? "material.stretch_damping" : "springs.damping")};

@@ -3,15 +3,15 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "geometry/at.h"
 #include "kernels/instruction_set.h"
+#include "sparse/block_coarsen_kernels.h"
 #include "sparse/without_denormals.h"
 
 namespace cloth {
 namespace {
-
-constexpr int most_right = 2;
 
 std::size_t in_registers(std::size_t count) {
   constexpr std::size_t lanes = BlockLevel::lanes;
@@ -19,13 +19,7 @@ std::size_t in_registers(std::size_t count) {
 }
 
 std::size_t size_of(const NaturalBlocks& blocks) {
-  return static_cast<std::size_t>(blocks.rows) * static_cast<std::size_t>(blocks.columns);
-}
-
-int coupling_of(int down, int right) {
-  for (int k = 0; k < block_couplings; ++k)
-    if (block_coupling[k].down == down && block_coupling[k].right == right) return 1 + k;
-  return 0;
+  return static_cast<std::size_t>(blocks.particles());
 }
 
 /// The inverse of a block, six numbers each `stride` apart; zero of a fixed particle's. A small part of its
@@ -47,48 +41,100 @@ void invert_block(const float* block, std::size_t stride, float* inverse, std::s
   for (std::size_t n = 0; n < 6; ++n) inverse[n * inverse_stride] = static_cast<float>(numbers[n]);
 }
 
-}  // namespace
-
-void BlockMultigrid::begin(int rows, int columns) {
-  kernels_ = &active_kernels<BlockCycleKernels>();
-  fixed_.clear();
-  if (rows != rows_ || columns != columns_) {
-    rows_ = rows, columns_ = columns;
-    levels_.clear();
-    for (;;) {
-      add_level(rows, columns);
-      if (rows <= fewest && columns <= fewest) break;
-      if (rows > fewest) rows = (rows + 1) / 2;
-      if (columns > fewest) columns = (columns + 1) / 2;
+/// sums = weighted sum of rows of `count` numbers, `stride` apart.
+void add_weighted(const LineWeights& weights, const float* rows, std::ptrdiff_t stride, std::ptrdiff_t count,
+                  float* sums) {
+  for (int k = 0; k < weights.count; ++k) {
+    const float* row = rows + (weights.first + k) * stride;
+    const float weight = weights.weight[k];
+    if (k == 0) {
+      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] = weight * row[i];
+    } else {
+      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] += weight * row[i];
     }
   }
-  Level& finest = levels_.front();
-  std::fill(finest.natural_numbers.begin(), finest.natural_numbers.end(), 0.0f);
-  std::fill(std::begin(finest.natural.used), std::end(finest.natural.used), false);
-  finest.natural.used[0] = true;
 }
 
-void BlockMultigrid::add_level(int rows, int columns) {
+float weighted(const LineWeights& weights, const float* numbers) {
+  float sum = 0;
+  for (int k = 0; k < weights.count; ++k) sum += weights.weight[k] * numbers[weights.first + k];
+  return sum;
+}
+
+}  // namespace
+
+void BlockMultigrid::begin(int rows, int columns, Interpolation interpolation) {
+  kernels_ = &active_kernels<BlockCycleKernels>();
+  fixed_.clear();
+  if (rows != rows_ || columns != columns_ || interpolation != interpolation_) {
+    rows_ = rows, columns_ = columns, interpolation_ = interpolation;
+    is_turned_ = rows > columns;
+    add_levels();
+  }
+  NaturalBlocks& finest = levels_.front().natural;
+  for (int k = 0; k <= finest.couplings(); ++k)
+    if (finest.used[k]) std::fill_n(finest.blocks_of(k), 6 * finest.particles(), 0.0f);
+  std::fill(std::begin(finest.used), std::end(finest.used), false);
+  finest.used[0] = true;
+}
+
+/// visit(k, place) for the particles first + k, k < count, with their places in the finest level.
+template <class Visit>
+void BlockMultigrid::for_each_place(std::size_t first, std::size_t count, Visit visit) const {
+  if (!is_turned_) {
+    for (std::size_t k = 0; k < count; ++k) visit(k, first + k);
+    return;
+  }
+  std::size_t row = first / at(columns_), column = first % at(columns_);
+  for (std::size_t k = 0; k < count; ++k) {
+    visit(k, column * at(rows_) + row);
+    if (++column == at(columns_)) column = 0, ++row;
+  }
+}
+
+std::size_t BlockMultigrid::place_of(std::size_t particle) const {
+  const std::size_t columns = at(columns_);
+  return is_turned_ ? particle % columns * at(rows_) + particle / columns : particle;
+}
+
+void BlockMultigrid::add_levels() {
+  levels_.clear();
+  int rows = is_turned_ ? columns_ : rows_, columns = is_turned_ ? rows_ : columns_;
+  for (;;) {
+    const bool is_finest = levels_.empty();
+    add_level(rows, columns, is_finest || interpolation_ == Interpolation::linear ? 2 : 3);
+    if (rows <= fewest && columns <= fewest) return;
+    rows = levels_.back().row_interpolation.coarse_points();
+    columns = levels_.back().column_interpolation.coarse_points();
+  }
+}
+
+void BlockMultigrid::add_level(int rows, int columns, int reach) {
   Level& level = levels_.emplace_back();
+  level.row_interpolation = {rows, rows > fewest, interpolation_};
+  level.column_interpolation = {columns, columns > fewest, interpolation_};
   level.natural.rows = level.loops.rows = rows;
   level.natural.columns = level.loops.columns = columns;
-  level.natural_numbers.assign(6 * (1 + block_couplings) * size_of(level.natural), 0.0f);
+  level.natural.reach = reach;
+  level.natural_numbers.assign(6 * at(1 + level.natural.couplings()) * size_of(level.natural), 0.0f);
   level.natural.numbers = level.natural_numbers.data();
-  std::fill(std::begin(level.natural.used), std::end(level.natural.used), true);
 
   // Behind each segment lies a zero for a neighbour beyond the border, before the first and behind the last
   // a whole register. An odd number of cache lines, so that rows do not meet in the same set of the cache.
   constexpr std::size_t lanes = BlockLevel::lanes;
-  const std::size_t segment = in_registers((static_cast<std::size_t>(columns) + 2) / 3 + 1);
-  std::size_t width = 3 * segment + 2 * lanes;
+  const std::size_t colours = at(reach) + 1;
+  const std::size_t segment = in_registers((at(columns) + colours - 1) / colours + 1);
+  std::size_t width = colours * segment + 2 * lanes;
   if (width / lanes % 2 == 0) width += lanes;
+  if (row_.size() < 2 * width) row_.resize(2 * width);
+  level.loops.colours = reach + 1;
   level.loops.segment = static_cast<std::ptrdiff_t>(segment);
   level.loops.width = static_cast<std::ptrdiff_t>(width);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c)
-    level.place.push_back(static_cast<int>(c % 3 * segment + c / 3));
+  for (std::size_t c = 0; c < at(columns); ++c)
+    level.place.push_back(static_cast<int>(c % colours * segment + c / colours));
 
-  const std::size_t field = (static_cast<std::size_t>(rows) + 2 * most_right) * 3 * width;
-  level.origin = most_right * 3 * width + lanes;
+  const std::size_t field = at(rows + 2 * reach) * 3 * width;
+  level.origin = at(reach) * 3 * width + lanes;
   level.vectors.assign(3 * field + lanes, 0.0f);
   level.loops.x = level.vectors.data() + level.origin;
   level.loops.b = level.loops.x + field;
@@ -101,40 +147,85 @@ void BlockMultigrid::add_to_diagonal(std::size_t first, std::size_t count,
                                      const std::array<const double*, 6>& blocks) {
   const NaturalBlocks& natural = levels_.front().natural;
   for (std::size_t n = 0; n < 6; ++n) {
-    float* to = natural.numbers + n * size_of(natural) + first;
-    for (std::size_t k = 0; k < count; ++k) to[k] += static_cast<float>(blocks[n][k]);
+    float* to = natural.numbers + n * size_of(natural);
+    const double* from = blocks[n];
+    for_each_place(first, count,
+                   [&](std::size_t k, std::size_t place) { to[place] += static_cast<float>(from[k]); });
   }
+}
+
+void BlockMultigrid::add_to_diagonal(std::size_t first, std::size_t count, double value) {
+  const NaturalBlocks& natural = levels_.front().natural;
+  for (const std::size_t n : {0u, 3u, 5u}) {
+    float* to = natural.numbers + n * size_of(natural);
+    for_each_place(first, count,
+                   [&](std::size_t, std::size_t place) { to[place] += static_cast<float>(value); });
+  }
+}
+
+/// The number of the coupling between the particles `first` and first + offset; `first` becomes the one that
+/// it is kept with. None where they lie too far apart.
+std::optional<int> BlockMultigrid::find_coupling(std::size_t& first, int offset) const {
+  const NaturalBlocks& natural = levels_.front().natural;
+  const int row = static_cast<int>(first) / columns_, column = static_cast<int>(first) % columns_;
+  const int end = static_cast<int>(first) + offset;
+  BlockCoupling coupling{end / columns_ - row, end % columns_ - column};
+  if (coupling.down > natural.reach || std::abs(coupling.right) > natural.reach) return std::nullopt;
+  if (is_turned_) {
+    std::swap(coupling.down, coupling.right);
+    if (coupling.down < 0) {  // the other particle is the earlier one here
+      coupling = {-coupling.down, -coupling.right};
+      first += at(offset);
+    }
+  }
+  return natural.number_of(coupling);
 }
 
 bool BlockMultigrid::add_couplings(std::size_t first, std::size_t count, int offset, double scale,
                                    const std::array<const double*, 6>& blocks) {
   NaturalBlocks& natural = levels_.front().natural;
-  const int column = static_cast<int>(first) % columns_, end = static_cast<int>(first) + offset;
-  const int down = end / columns_ - static_cast<int>(first) / columns_, right = end % columns_ - column;
-  const int coupling = coupling_of(down, right);
-  if (coupling == 0) return false;
-  natural.used[coupling] = true;
+  const std::optional<int> number = find_coupling(first, offset);
+  if (!number) return false;
+  natural.used[*number] = true;
   for (std::size_t n = 0; n < 6; ++n) {
-    float* to = natural.numbers + (6 * at(coupling) + n) * size_of(natural) + first;
-    for (std::size_t k = 0; k < count; ++k) to[k] += static_cast<float>(scale * blocks[n][k]);
+    float* to = natural.blocks_of(*number) + n * size_of(natural);
+    const double* from = blocks[n];
+    for_each_place(first, count, [&](std::size_t k, std::size_t place) {
+      to[place] += static_cast<float>(scale * from[k]);
+    });
+  }
+  return true;
+}
+
+bool BlockMultigrid::add_couplings(std::size_t first, std::size_t count, int offset, double value) {
+  NaturalBlocks& natural = levels_.front().natural;
+  const std::optional<int> number = find_coupling(first, offset);
+  if (!number) return false;
+  natural.used[*number] = true;
+  for (const std::size_t n : {0u, 3u, 5u}) {
+    float* to = natural.blocks_of(*number) + n * size_of(natural);
+    for_each_place(first, count,
+                   [&](std::size_t, std::size_t place) { to[place] += static_cast<float>(value); });
   }
   return true;
 }
 
 void BlockMultigrid::fix(std::size_t particle) {
   const NaturalBlocks& natural = levels_.front().natural;
-  const int row = static_cast<int>(particle) / columns_, column = static_cast<int>(particle) % columns_;
-  const std::size_t size = size_of(natural);
+  const std::size_t place = place_of(particle), size = size_of(natural);
+  const int row = static_cast<int>(place) / natural.columns,
+            column = static_cast<int>(place) % natural.columns;
   const auto clear = [&](int coupling, std::size_t of) {
-    for (std::size_t n = 0; n < 6; ++n) natural.numbers[(6 * at(coupling) + n) * size + of] = 0;
+    for (std::size_t n = 0; n < 6; ++n) natural.blocks_of(coupling)[n * size + of] = 0;
   };
-  clear(0, particle);
-  for (int k = 0; k < block_couplings; ++k) {
-    clear(1 + k, particle);
-    const int r = row - block_coupling[k].down, c = column - block_coupling[k].right;
-    if (r >= 0 && c >= 0 && c < columns_) clear(1 + k, at(r * columns_ + c));
+  clear(0, place);
+  for (int k = 1; k <= natural.couplings(); ++k) {
+    clear(k, place);
+    const BlockCoupling coupling = natural.coupling(k);
+    const int r = row - coupling.down, c = column - coupling.right;
+    if (r >= 0 && c >= 0 && c < natural.columns) clear(k, at(r * natural.columns + c));
   }
-  fixed_.push_back(particle);
+  fixed_.push_back(place);
 }
 
 /// Where the neighbours of a colour lie, and where the blocks of their couplings: those to later particles
@@ -142,17 +233,17 @@ void BlockMultigrid::fix(std::size_t particle) {
 void BlockMultigrid::set_neighbours(Level& level) {
   BlockLevel& l = level.loops;
   std::vector<int> kept;
-  for (int k = 0; k < block_couplings; ++k)
-    if (level.natural.used[1 + k]) kept.push_back(k);
+  for (int k = 1; k <= level.natural.couplings(); ++k)
+    if (level.natural.used[k]) kept.push_back(k);
   l.couplings = static_cast<int>(kept.size());
   const std::ptrdiff_t row_of_blocks = 6 * l.couplings * l.width;
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < l.colours; ++c) {
     std::vector<BlockNeighbour> earlier, later;
     for (std::size_t n = 0; n < kept.size(); ++n)
       for (const int sign : {1, -1}) {
-        const BlockCoupling& coupling = block_coupling[kept[n]];
+        const BlockCoupling coupling = level.natural.coupling(kept[n]);
         const int down = sign * coupling.down, column = c + sign * coupling.right;
-        const int beside = column < 0 ? -1 : column / 3, colour = column - 3 * beside;
+        const int beside = column < 0 ? -1 : column / l.colours, colour = column - l.colours * beside;
         const std::ptrdiff_t along = (colour - c) * l.segment + beside;
         const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(6 * n) * l.width;
         const BlockNeighbour neighbour{down * 3 * l.width + along,
@@ -171,20 +262,20 @@ void BlockMultigrid::arrange(Level& level) {
   set_neighbours(level);
   BlockLevel& l = level.loops;
   const std::size_t rows = at(l.rows), columns = at(l.columns), size = rows * columns;
-  const auto width = static_cast<std::size_t>(l.width);
+  const std::size_t width = static_cast<std::size_t>(l.width), reach = at(level.natural.reach);
   const std::size_t row_of_blocks = 6 * at(l.couplings) * width;
-  const std::size_t before = most_right * row_of_blocks + BlockLevel::lanes;
-  const std::size_t wanted = before + (rows + most_right) * row_of_blocks + BlockLevel::lanes;
+  const std::size_t before = reach * row_of_blocks + BlockLevel::lanes;
+  const std::size_t wanted = before + (rows + reach) * row_of_blocks + BlockLevel::lanes;
   if (level.blocks.size() != wanted) level.blocks.assign(wanted, 0.0f);
   float* blocks = level.blocks.data() + before;
   l.blocks = blocks;
   float* inverse = level.inverse.data() + BlockLevel::lanes;
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < block_couplings; ++k) {
-    if (!level.natural.used[1 + k]) continue;
+  for (int k = 1; k <= level.natural.couplings(); ++k) {
+    if (!level.natural.used[k]) continue;
     for (std::size_t n = 0; n < 6; ++n)
       for (std::size_t r = 0; r < rows; ++r) {
-        const float* from = level.natural.numbers + (6 * (1 + k) + n) * size + r * columns;
+        const float* from = level.natural.blocks_of(k) + n * size + r * columns;
         float* to = blocks + r * row_of_blocks + (6 * kept + n) * width;
         for (std::size_t c = 0; c < columns; ++c) to[level.place[c]] = from[c];
       }
@@ -197,14 +288,15 @@ void BlockMultigrid::arrange(Level& level) {
 }
 
 bool BlockMultigrid::prepare() {
+  const BlockCoarsenKernels& kernels = active_kernels<BlockCoarsenKernels>();
   for (std::size_t n = 0; n + 1 < levels_.size(); ++n) {
     Level &fine = levels_[n], &coarse = levels_[n + 1];
-    const std::size_t room = 6 * 15 * at(fine.natural.rows) * at(coarse.natural.columns);
-    if (between_.size() < room) between_.resize(room);
-    kernels_->coarsen(fine.natural, coarse.natural, between_.data());
+    const std::size_t scratch = BlockCoarsenKernels::scratch(fine.natural, coarse.natural);
+    if (scratch_.size() < scratch) scratch_.resize(scratch);
+    kernels.coarsen(fine.natural, fine.row_interpolation.line(), fine.column_interpolation.line(),
+                    coarse.natural, scratch_.data());
     arrange(fine);
   }
-  row_.resize(static_cast<std::size_t>(levels_.front().loops.width));
   return invert_coarsest();
 }
 
@@ -215,8 +307,9 @@ bool BlockMultigrid::invert_coarsest() {
   const Eigen::Index numbers = 3 * static_cast<Eigen::Index>(size);
   constexpr int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(numbers, numbers);
-  for (int k = 0; k <= block_couplings; ++k) {
-    const BlockCoupling coupling = k == 0 ? BlockCoupling{} : block_coupling[k - 1];
+  for (int k = 0; k <= level.natural.couplings(); ++k) {
+    if (!level.natural.used[k]) continue;
+    const BlockCoupling coupling = level.natural.coupling(k);
     for (int r = 0; r + coupling.down < rows; ++r)
       for (int c = std::max(0, -coupling.right); c < columns - std::max(0, coupling.right); ++c) {
         const int i = r * columns + c, j = (r + coupling.down) * columns + c + coupling.right;
@@ -246,7 +339,7 @@ void BlockMultigrid::solve_coarsest() {
   std::vector<double> b(3 * size);
   const auto number = [&](std::size_t k) {
     const std::size_t i = k / 3;
-    return i / columns * 3 * width + k % 3 * width + at(level.place[i % columns]);
+    return (3 * (i / columns) + k % 3) * width + at(level.place[i % columns]);
   };
   for (std::size_t k = 0; k < b.size(); ++k) b[k] = level.loops.b[number(k)];
   for (std::size_t k = 0; k < b.size(); ++k) {
@@ -259,55 +352,35 @@ void BlockMultigrid::solve_coarsest() {
 /// coarse.b = P^T fine.r: rows as they lie, which all have one order, then columns by their places.
 void BlockMultigrid::restrict_residual(const Level& fine, Level& coarse) {
   const BlockLevel &f = fine.loops, &c = coarse.loops;
-  const std::ptrdiff_t w = f.width;
-  const bool halves_rows = c.rows != f.rows, halves_columns = c.columns != f.columns;
-  const float last_row = f.rows % 2 == 0 ? 1.0f : 0.5f, last_column = f.columns % 2 == 0 ? 1.0f : 0.5f;
-  float* row = row_.data();
-  const int* place = fine.place.data();
-  for (int n = 0; n < 3; ++n)
+  const CoarseLine rows = fine.row_interpolation.line(), columns = fine.column_interpolation.line();
+  float *sums = row_.data(), *in_order = sums + row_.size() / 2;
+  for (std::ptrdiff_t n = 0; n < 3; ++n)
     for (int to = 0; to < c.rows; ++to) {
-      const float* middle = f.r + (halves_rows ? 2 * to : to) * 3 * w + n * w;
-      for (std::ptrdiff_t k = 0; k < 3 * f.segment; ++k) row[k] = middle[k];
-      if (halves_rows) {
-        const float weight = to + 1 == c.rows ? last_row : 0.5f;
-        const float *above = middle - 3 * w, *below = middle + 3 * w;  // zero outside of the grid
-        for (std::ptrdiff_t k = 0; k < 3 * f.segment; ++k) row[k] += 0.5f * above[k] + weight * below[k];
-      }
-      float* sums = c.b + to * 3 * c.width + n * c.width;
-      for (int column = 0; column < c.columns; ++column) {
-        float sum = row[place[halves_columns ? 2 * column : column]];
-        if (halves_columns && column > 0) sum += 0.5f * row[place[2 * column - 1]];
-        if (halves_columns && 2 * column + 1 < f.columns)
-          sum += (column + 1 == c.columns ? last_column : 0.5f) * row[place[2 * column + 1]];
-        sums[coarse.place[at(column)]] = sum;
-      }
+      const LineWeights& of_rows = rows.children[to];
+      add_weighted(of_rows, f.r + n * f.width, 3 * f.width, f.colours * f.segment, sums);
+      for (int column = 0; column < f.columns; ++column) in_order[column] = sums[fine.place[at(column)]];
+      float* wanted = c.b + (3 * to + n) * c.width;
+      for (int column = 0; column < c.columns; ++column)
+        wanted[coarse.place[at(column)]] = weighted(columns.children[column], in_order);
     }
 }
 
 /// fine.x += P coarse.x; fixed particles of the finest stay zero.
 void BlockMultigrid::add_correction(Level& fine, const Level& coarse) {
   const BlockLevel &f = fine.loops, &c = coarse.loops;
-  const bool halves_rows = c.rows != f.rows, halves_columns = c.columns != f.columns;
-  float* row = row_.data();
-  for (int n = 0; n < 3; ++n)
+  const CoarseLine rows = fine.row_interpolation.line(), columns = fine.column_interpolation.line();
+  float *sums = row_.data(), *in_order = sums + row_.size() / 2;
+  for (std::ptrdiff_t n = 0; n < 3; ++n)
     for (int to = 0; to < f.rows; ++to) {
-      const float* from = c.x + (halves_rows ? to / 2 : to) * 3 * c.width + n * c.width;
-      const bool between = halves_rows && to % 2 == 1 && to / 2 + 1 < c.rows;
-      const float* next = from + (between ? 3 * c.width : 0);
-      for (int column = 0; column < c.columns; ++column) {
-        const int place = coarse.place[at(column)];
-        row[column] = 0.5f * (from[place] + next[place]);
-      }
-      float* sums = f.x + to * 3 * f.width + n * f.width;
-      for (int column = 0; column < f.columns; ++column) {
-        const int own = halves_columns ? column / 2 : column;
-        const bool is_between = halves_columns && column % 2 == 1 && own + 1 < c.columns;
-        sums[fine.place[at(column)]] += is_between ? 0.5f * (row[own] + row[own + 1]) : row[own];
-      }
+      add_weighted(rows.parents[to], c.x + n * c.width, 3 * c.width, c.colours * c.segment, sums);
+      for (int column = 0; column < c.columns; ++column) in_order[column] = sums[coarse.place[at(column)]];
+      float* corrected = f.x + (3 * to + n) * f.width;
+      for (int column = 0; column < f.columns; ++column)
+        corrected[fine.place[at(column)]] += weighted(columns.parents[column], in_order);
     }
   if (&fine != &levels_.front()) return;
-  for (const std::size_t particle : fixed_) {
-    const std::size_t r = particle / at(columns_), place = at(fine.place[particle % at(columns_)]);
+  for (const std::size_t fixed : fixed_) {
+    const std::size_t r = fixed / at(f.columns), place = at(fine.place[fixed % at(f.columns)]);
     for (std::size_t n = 0; n < 3; ++n) f.x[(3 * r + n) * static_cast<std::size_t>(f.width) + place] = 0;
   }
 }
@@ -328,25 +401,24 @@ void BlockMultigrid::solve(const Vec3Field& residual, Vec3Field& correction) {
   const BlockLevel& l = finest.loops;
   const double* given[3] = {residual.x(), residual.y(), residual.z()};
   double* wanted[3] = {correction.x(), correction.y(), correction.z()};
-  const int* place = finest.place.data();
-  const auto row_at = [&](int n, int r) { return (3 * r + n) * l.width; };
-  for (int n = 0; n < 3; ++n)
-    for (int r = 0; r < rows_; ++r) {
-      const double* from = given[n] + r * columns_;
-      float* to = l.b + row_at(n, r);
-      for (int c = 0; c < columns_; ++c) to[place[c]] = static_cast<float>(from[c]);
+  const std::ptrdiff_t next_row = is_turned_ ? 1 : columns_, next_column = is_turned_ ? columns_ : 1;
+  for (std::ptrdiff_t n = 0; n < 3; ++n)
+    for (int r = 0; r < l.rows; ++r) {
+      const double* from = given[n] + r * next_row;
+      float* to = l.b + (3 * r + n) * l.width;
+      for (int c = 0; c < l.columns; ++c) to[finest.place[at(c)]] = static_cast<float>(from[c * next_column]);
     }
   cycle(0);
-  for (int n = 0; n < 3; ++n)
-    for (int r = 0; r < rows_; ++r) {
-      const float* from = l.x + row_at(n, r);
-      double* to = wanted[n] + r * columns_;
-      for (int c = 0; c < columns_; ++c) to[c] = from[place[c]];
+  for (std::ptrdiff_t n = 0; n < 3; ++n)
+    for (int r = 0; r < l.rows; ++r) {
+      const float* from = l.x + (3 * r + n) * l.width;
+      double* to = wanted[n] + r * next_row;
+      for (int c = 0; c < l.columns; ++c) to[c * next_column] = from[finest.place[at(c)]];
     }
 }
 
 std::size_t BlockMultigrid::memory() const {
-  std::size_t floats = between_.size();
+  std::size_t floats = scratch_.size();
   for (const Level& level : levels_)
     floats +=
         level.natural_numbers.size() + level.blocks.size() + level.inverse.size() + level.vectors.size();

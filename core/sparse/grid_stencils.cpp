@@ -5,30 +5,9 @@
 #include <cstdlib>
 
 #include "geometry/split_mix.h"
+#include "sparse/line_interpolation.h"
 
 namespace cloth {
-namespace {
-
-/// Interpolation along a line of `fine` points from `coarse` ones.
-struct LineWeights {
-  int fine = 0, coarse = 0;
-
-  bool halves() const { return coarse < fine; }
-  /// The first and the last fine point that takes from `from`.
-  int first(int from) const { return halves() ? std::max(0, 2 * from - 1) : from; }
-  int last(int from) const { return halves() ? std::min(fine - 1, 2 * from + 1) : from; }
-  /// The first and the last coarse point that `to` takes from.
-  int first_parent(int to) const { return halves() ? to / 2 : to; }
-  int last_parent(int to) const { return halves() ? std::min((to + 1) / 2, coarse - 1) : to; }
-  double weight(int to) const { return first_parent(to) == last_parent(to) ? 1 : 0.5; }
-};
-
-int halved(int points, int fewest) {
-  return points > fewest ? (points + 1) / 2 : points;
-}
-
-}  // namespace
-
 bool GridStencils::add_coupling(std::size_t i, std::size_t j, double value) {
   const int a = static_cast<int>(i), b = static_cast<int>(j);
   const int down = b / columns_ - a / columns_, right = b % columns_ - a % columns_;
@@ -74,27 +53,31 @@ double GridStencils::largest_scaled_eigenvalue() const {
 }
 
 GridStencils GridStencils::coarsened(int fewest) const {
-  GridStencils coarse(halved(rows_, fewest), halved(columns_, fewest));
-  const LineWeights down{rows_, coarse.rows_}, right{columns_, coarse.columns_};
-  const auto add_from = [&](int row, int column, int r, int c) {
+  const LineInterpolation of_rows(rows_, rows_ > fewest, Interpolation::linear);
+  const LineInterpolation of_columns(columns_, columns_ > fewest, Interpolation::linear);
+  const CoarseLine rows = of_rows.line(), columns = of_columns.line();
+  GridStencils coarse(rows.coarse, columns.coarse);
+  const auto add_from = [&](int row, int column, int r, int c, double weight) {
     const auto fine = static_cast<std::size_t>(r * columns_ + c);
     if (!is_free(fine)) return;
-    const double weight = down.weight(r) * right.weight(c);
     const auto to = static_cast<std::size_t>(row * coarse.columns_ + column);
     for (int k = 0; k < size; ++k) {
       const double value = (*this)(k, fine);
       if (value == 0) continue;
-      const int r2 = r + rows_of(k), c2 = c + columns_of(k);
-      const double product = weight * value * down.weight(r2) * right.weight(c2);
-      for (int row2 = down.first_parent(r2); row2 <= down.last_parent(r2); ++row2)
-        for (int column2 = right.first_parent(c2); column2 <= right.last_parent(c2); ++column2)
-          coarse.add(neighbour(row2 - row, column2 - column), to, product);
+      const LineWeights &above = rows.parents[r + rows_of(k)], &beside = columns.parents[c + columns_of(k)];
+      for (int i = 0; i < above.count; ++i)
+        for (int j = 0; j < beside.count; ++j)
+          coarse.add(neighbour(above.first + i - row, beside.first + j - column), to,
+                     weight * value * above.weight[i] * beside.weight[j]);
     }
   };
   for (int row = 0; row < coarse.rows_; ++row)
-    for (int column = 0; column < coarse.columns_; ++column)
-      for (int r = down.first(row); r <= down.last(row); ++r)
-        for (int c = right.first(column); c <= right.last(column); ++c) add_from(row, column, r, c);
+    for (int column = 0; column < coarse.columns_; ++column) {
+      const LineWeights &down = rows.children[row], &right = columns.children[column];
+      for (int i = 0; i < down.count; ++i)
+        for (int j = 0; j < right.count; ++j)
+          add_from(row, column, down.first + i, right.first + j, down.weight[i] * right.weight[j]);
+    }
   return coarse;
 }
 

@@ -158,7 +158,8 @@ TEST(LinearSolvers, AllFindTheSameSolution) {
   EXPECT_LE(largest_distance(back, b), 1e-10 * largest_norm(b));
   ConjugateGradients gradients;
   EXPECT_TRUE(gradients.solve(run.system, linearisation, jacobi, b, 1e-12, by_gradients).converged);
-  minimal_residuals(matrix, preconditioner, b, 1e-12, by_residuals);
+  MinimalResiduals residuals;
+  residuals.solve(matrix, preconditioner, b, 1e-12, by_residuals);
   EXPECT_LE(largest_distance(by_factors, by_gradients), 1e-9 * largest_norm(by_factors));
   EXPECT_LE(largest_distance(by_factors, by_residuals), 1e-9 * largest_norm(by_factors));
 }

@@ -50,9 +50,9 @@ double norm_of(const Vec3Field& field) {
   return std::sqrt(dot(field.flat(), field.flat()));
 }
 
-Vec3Field negative(Vec3Field field) {
-  for (double& value : field.flat()) value = -value;
-  return field;
+void set_negative(const Vec3Field& field, Vec3Field& negative) {
+  negative = field;
+  for (double& value : negative.flat()) value = -value;
 }
 
 double work_along(const Vec3Field& direction, const Vec3Field& residual) {
@@ -90,10 +90,10 @@ void ImplicitStage::choose_forcing() {
   residual_norm_ = norm;
 }
 
-bool ImplicitStage::solve_by_factors(const StageEquation& e, const Vec3Field& right_hand_side) {
+bool ImplicitStage::solve_by_factors(const StageEquation& e) {
   ++e.report.factorisations;
   if (!factors_.factorise(e.forces.system(), linearisation_)) return false;
-  factors_.solve(right_hand_side, downhill_);
+  factors_.solve(negative_residual_, downhill_);
   return true;
 }
 
@@ -107,11 +107,10 @@ void ImplicitStage::keep_escape(const KrylovReport& krylov) {
 /// conjugate gradients did not get there.
 bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method) {
   linear_method_ = method;
-  const Vec3Field right_hand_side = negative(residual_);
-  if (linear_method_ == LinearMethod::cholesky) return solve_by_factors(e, right_hand_side);
+  if (linear_method_ == LinearMethod::cholesky) return solve_by_factors(e);
   jacobi_.prepare(e.forces.system(), linearisation_);
   const KrylovReport krylov =
-      gradients_.solve(e.forces.system(), linearisation_, jacobi_, right_hand_side, forcing_, downhill_);
+      gradients_.solve(e.forces.system(), linearisation_, jacobi_, negative_residual_, forcing_, downhill_);
   e.report.linear_iterations += krylov.iterations;
   keep_escape(krylov);
   return krylov.converged;
@@ -129,10 +128,9 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     multigrid_.precondition(in, out);
   };
-  const Vec3Field right_hand_side = negative(residual_);
   const auto solve_with = [&](const Linearisation& matrix) {
     const KrylovReport krylov =
-        gradients_.solve(system, matrix, preconditioner, right_hand_side, forcing_, downhill_);
+        gradients_.solve(system, matrix, preconditioner, negative_residual_, forcing_, downhill_);
     e.report.linear_iterations += krylov.iterations;
     keep_escape(krylov);
     return krylov;
@@ -146,6 +144,7 @@ void ImplicitStage::find_direction(const StageEquation& e) {
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
   e.forces.linearise(e.position, weights, linearisation_);
   const LinearMethod method = choose_linear_method(e.forces.system(), weights).method;
+  set_negative(residual_, negative_residual_);
   escape_.fill(0);
   const bool solved = method == LinearMethod::multigrid ? solve_by_multigrid(e) : solve_symmetric(e, method);
   if (!solved || largest_component(escape_) > 0) is_indefinite_ = true;
@@ -162,15 +161,15 @@ void ImplicitStage::find_direction(const StageEquation& e) {
 
 /// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
 void ImplicitStage::correct_direction(const StageEquation& e) {
-  Vec3Field turned(e.velocity.size());
   const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
     linearisation_.multiply(e.forces.system(), in, out);
-    e.forces.asymmetric_product(e.position, e.velocity, in, turned);
-    add_scaled(e.weight * e.weight, turned, out);
+    e.forces.asymmetric_product(e.position, e.velocity, in, turned_);
+    add_scaled(e.weight * e.weight, turned_, out);
     clear_pinned(e.forces.system(), out);
   };
   e.report.linear_iterations +=
-      minimal_residuals(jacobian, preconditioner(), negative(residual_), forcing_, direction_).iterations;
+      minimal_residuals_.solve(jacobian, preconditioner(), negative_residual_, forcing_, direction_)
+          .iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
@@ -270,7 +269,8 @@ bool ImplicitStage::is_solved(const StageEquation& e, double largest_change) {
 
 void ImplicitStage::solve(const StageEquation& e) {
   const std::size_t size = e.velocity.size();
-  if (force_.size() != size) force_ = residual_ = downhill_ = direction_ = escape_ = start_ = Vec3Field(size);
+  if (force_.size() != size)
+    force_ = residual_ = downhill_ = direction_ = escape_ = start_ = turned_ = Vec3Field(size);
   evaluate(e);
 
   // Positions are rounded to eps |x|: velocities that differ by eps |x| / h are the same.

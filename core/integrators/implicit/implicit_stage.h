@@ -49,7 +49,7 @@ class ImplicitStage {
   void correct_direction(const StageEquation& e);
   void add_escape();
   bool solve_symmetric(const StageEquation& e, LinearMethod method);
-  bool solve_by_factors(const StageEquation& e, const Vec3Field& right_hand_side);
+  bool solve_by_factors(const StageEquation& e);
   bool solve_by_multigrid(const StageEquation& e);
   void keep_escape(const KrylovReport& krylov);
   double take_step(const StageEquation& e);
@@ -65,6 +65,7 @@ class ImplicitStage {
   BlockJacobi jacobi_;
   MultigridSolver multigrid_;
   ConjugateGradients gradients_;
+  MinimalResiduals minimal_residuals_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
   double residual_norm_ = 0;    ///< N s, before the last iteration of this solve; 0: there was none
   double forcing_ = 0;          ///< tolerance of iterative solves, relative to the residual
@@ -73,7 +74,7 @@ class ImplicitStage {
   int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
-  Vec3Field force_, residual_, downhill_, direction_, escape_, start_, before_;
+  Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, before_, turned_;
 };
 
 }  // namespace cloth

@@ -118,100 +118,90 @@ KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearis
   return report;
 }
 
-namespace {
-
-/// One cycle of minimal residuals: an orthonormal basis of the Krylov space by Arnoldi's process, its
-/// Hessenberg matrix turned triangular by Givens rotations as it grows.
-class ResidualCycle {
- public:
-  ResidualCycle(const LinearMap& matrix, const LinearMap& preconditioner)
-      : matrix_(matrix), preconditioner_(preconditioner) {}
-
-  /// Adds the correction for `residual` to `solution`. Returns the iterations that it took to come under
-  /// `goal`.
-  int run(const Vec3Field& residual, double goal, Vec3Field& solution) {
-    const double norm = std::sqrt(dot(residual, residual));
-    basis_.assign(1, residual);
-    scale_by(1 / norm, basis_.front());
-    rotated_.assign(1, norm);
-    columns_.clear(), cosines_.clear(), sines_.clear();
-    while (static_cast<int>(columns_.size()) < basis_size && std::abs(rotated_.back()) > goal)
-      if (!extend()) break;
-    add_correction(solution);
-    return static_cast<int>(columns_.size());
+/// One cycle: an orthonormal basis of the Krylov space by Arnoldi's process, its Hessenberg matrix turned
+/// triangular by Givens rotations as it grows. Returns the iterations that it took to come under `goal`.
+int MinimalResiduals::run_cycle(const LinearMap& matrix, const LinearMap& preconditioner, double goal,
+                                Vec3Field& solution) {
+  const double norm = std::sqrt(dot(residual_, residual_));
+  take_basis(0) = residual_;
+  scale_by(1 / norm, basis_.front());
+  rotated_.assign(1, norm);
+  columns_.clear(), cosines_.clear(), sines_.clear();
+  while (static_cast<int>(columns_.size()) < basis_size && std::abs(rotated_.back()) > goal) {
+    preconditioner(basis_[columns_.size()], conditioned_);
+    matrix(conditioned_, take_basis(columns_.size() + 1));
+    if (!extend()) break;
   }
+  add_correction(preconditioner, solution);
+  return static_cast<int>(columns_.size());
+}
 
- private:
-  bool extend() {
-    const std::size_t size = basis_.front().size();
-    Vec3Field conditioned(size), next(size);
-    preconditioner_(basis_.back(), conditioned);
-    matrix_(conditioned, next);
-    std::vector<double> column;
-    for (const Vec3Field& other : basis_) {
-      column.push_back(dot(next, other));
-      add_multiple(-column.back(), other, next);
-    }
-    const double length = std::sqrt(dot(next, next));
-    for (std::size_t k = 0; k < cosines_.size(); ++k) {
-      const double above = column[k], below = column[k + 1];
-      column[k] = cosines_[k] * above + sines_[k] * below;
-      column[k + 1] = -sines_[k] * above + cosines_[k] * below;
-    }
-    const double pivot = std::hypot(column.back(), length);
-    if (!(pivot > 0)) return false;
-    cosines_.push_back(column.back() / pivot);
-    sines_.push_back(length / pivot);
-    column.back() = pivot;
-    const double left = rotated_.back();
-    rotated_.back() = cosines_.back() * left;
-    rotated_.push_back(-sines_.back() * left);
-    columns_.push_back(std::move(column));
-    if (!(length > 0)) return false;
-    scale_by(1 / length, next);
-    basis_.push_back(std::move(next));
-    return true;
+Vec3Field& MinimalResiduals::take_basis(std::size_t number) {
+  if (basis_.size() <= number) basis_.resize(number + 1);
+  if (basis_[number].size() != residual_.size()) basis_[number] = Vec3Field(residual_.size());
+  return basis_[number];
+}
+
+bool MinimalResiduals::extend() {
+  Vec3Field& next = basis_[columns_.size() + 1];
+  std::vector<double> column;
+  for (std::size_t k = 0; k <= columns_.size(); ++k) {
+    column.push_back(dot(next, basis_[k]));
+    add_multiple(-column.back(), basis_[k], next);
   }
-
-  void add_correction(Vec3Field& solution) const {
-    std::vector<double> weights(columns_.size());
-    for (std::size_t k = weights.size(); k-- > 0;) {
-      double sum = rotated_[k];
-      for (std::size_t later = k + 1; later < weights.size(); ++later)
-        sum -= columns_[later][k] * weights[later];
-      weights[k] = sum / columns_[k][k];
-    }
-    Vec3Field combined(solution.size()), conditioned(solution.size());
-    for (std::size_t k = 0; k < weights.size(); ++k) add_multiple(weights[k], basis_[k], combined);
-    preconditioner_(combined, conditioned);
-    add_multiple(1, conditioned, solution);
+  const double length = std::sqrt(dot(next, next));
+  for (std::size_t k = 0; k < cosines_.size(); ++k) {
+    const double above = column[k], below = column[k + 1];
+    column[k] = cosines_[k] * above + sines_[k] * below;
+    column[k + 1] = -sines_[k] * above + cosines_[k] * below;
   }
+  const double pivot = std::hypot(column.back(), length);
+  if (!(pivot > 0)) return false;
+  cosines_.push_back(column.back() / pivot);
+  sines_.push_back(length / pivot);
+  column.back() = pivot;
+  const double left = rotated_.back();
+  rotated_.back() = cosines_.back() * left;
+  rotated_.push_back(-sines_.back() * left);
+  columns_.push_back(std::move(column));
+  if (!(length > 0)) return false;
+  scale_by(1 / length, next);
+  return true;
+}
 
-  const LinearMap& matrix_;
-  const LinearMap& preconditioner_;
-  std::vector<Vec3Field> basis_;
-  std::vector<std::vector<double>> columns_;
-  std::vector<double> cosines_, sines_, rotated_;
-};
+void MinimalResiduals::add_correction(const LinearMap& preconditioner, Vec3Field& solution) {
+  std::vector<double> weights(columns_.size());
+  for (std::size_t k = weights.size(); k-- > 0;) {
+    double sum = rotated_[k];
+    for (std::size_t later = k + 1; later < weights.size(); ++later)
+      sum -= columns_[later][k] * weights[later];
+    weights[k] = sum / columns_[k][k];
+  }
+  combined_.fill(0);
+  for (std::size_t k = 0; k < weights.size(); ++k) add_multiple(weights[k], basis_[k], combined_);
+  preconditioner(combined_, conditioned_);
+  add_multiple(1, conditioned_, solution);
+}
 
-}  // namespace
-
-KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& preconditioner,
-                               const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution) {
+KrylovReport MinimalResiduals::solve(const LinearMap& matrix, const LinearMap& preconditioner,
+                                     const Vec3Field& right_hand_side, double tolerance,
+                                     Vec3Field& solution) {
   constexpr int max_cycles = 5;
   KrylovReport report;
   const double goal = tolerance * std::sqrt(dot(right_hand_side, right_hand_side));
-  Vec3Field residual = right_hand_side, image(residual.size());
-  matrix(solution, image);
-  add_multiple(-1, image, residual);
-  ResidualCycle cycle(matrix, preconditioner);
-  for (int n = 0; n < max_cycles && std::sqrt(dot(residual, residual)) > goal; ++n) {
-    report.iterations += cycle.run(residual, goal, solution);
-    matrix(solution, image);
-    residual = right_hand_side;
-    add_multiple(-1, image, residual);
+  if (image_.size() != solution.size()) image_ = conditioned_ = combined_ = Vec3Field(solution.size());
+  const auto find_residual = [&] {
+    matrix(solution, image_);
+    residual_ = right_hand_side;
+    add_multiple(-1, image_, residual_);
+    return std::sqrt(dot(residual_, residual_));
+  };
+  double norm = find_residual();
+  for (int n = 0; n < max_cycles && norm > goal; ++n) {
+    report.iterations += run_cycle(matrix, preconditioner, goal, solution);
+    norm = find_residual();
   }
-  report.converged = std::sqrt(dot(residual, residual)) <= goal;
+  report.converged = norm <= goal;
   return report;
 }
 

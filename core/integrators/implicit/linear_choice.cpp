@@ -33,12 +33,9 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   // still.
   constexpr double iterations_per_root = 2, stiff = 1e6, growth = 0.25;
   const double iterations_per_edge = system.bending.empty() ? 1.7 : 4;  // a material's stiffnesses lie apart
-  double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
-  for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
-  const double stiffest_spring = stiffest;
-  for (const BendingRun& run : system.bending) stiffest = std::max(stiffest, 2 * run.stiffness);
-  for (const BendingSlider& s : system.sliders)
-    stiffest = std::max(stiffest, 8 * s.stiffness * s.area * s.coefficient[0] * s.coefficient[0]);
+  const Stiffest of_system = stiffest_of(system);
+  double stiffest = std::max(of_system.spring, of_system.bending);
+  double lightest = std::numeric_limits<double>::infinity();
   for (const MembraneTriangle& t : system.membrane)
     for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
   for (const double mass : system.mass) lightest = std::min(lightest, mass);
@@ -56,8 +53,8 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   // Single precision ends where the springs' part of A is some 1e6 times the masses'.
   constexpr double stiffest_ratio = 3e5;
   if (MultigridSolver::suits(system) && weights.position * stiffest / lightest <= stiffest_ratio) {
-    // A strip of paper takes 5 to 13 cycles a solve, sheets with springs stiffer than bending 3 to 5.
-    const double cycles = stiffest > stiffest_spring ? 7 : 4;
+    // With splines 4 to 5 cycles, which take longer; else 3 to 5.
+    const double cycles = MultigridSolver::interpolation(system) == Interpolation::cubic_splines ? 6 : 4;
     choice.multigrid = start_cost + (setup_cost + cycle_cost * cycles) * size;
     if (*choice.multigrid < std::min(choice.factors, choice.gradients))
       choice.method = LinearMethod::multigrid;

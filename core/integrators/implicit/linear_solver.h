@@ -87,9 +87,24 @@ class ConjugateGradients {
   Vec3Field residual_, conditioned_, direction_, image_;
 };
 
-/// Generalised minimal residuals with a preconditioner on the right, restarted (Saad and Schultz 1986).
-/// Starts from `solution`; `tolerance` is relative to the right-hand side.
-KrylovReport minimal_residuals(const LinearMap& matrix, const LinearMap& preconditioner,
-                               const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
+/// Generalised minimal residuals with a preconditioner on the right, restarted (Saad and Schultz 1986). Keeps
+/// its vectors from one solve to the next.
+class MinimalResiduals {
+ public:
+  /// Starts from `solution`; `tolerance` is relative to the right-hand side.
+  KrylovReport solve(const LinearMap& matrix, const LinearMap& preconditioner,
+                     const Vec3Field& right_hand_side, double tolerance, Vec3Field& solution);
+
+ private:
+  int run_cycle(const LinearMap& matrix, const LinearMap& preconditioner, double goal, Vec3Field& solution);
+  Vec3Field& take_basis(std::size_t number);
+  bool extend();
+  void add_correction(const LinearMap& preconditioner, Vec3Field& solution);
+
+  std::vector<Vec3Field> basis_;
+  std::vector<std::vector<double>> columns_;  ///< of the triangular matrix
+  std::vector<double> cosines_, sines_, rotated_;
+  Vec3Field residual_, image_, conditioned_, combined_;
+};
 
 }  // namespace cloth

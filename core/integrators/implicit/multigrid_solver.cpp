@@ -27,8 +27,24 @@ bool MultigridSolver::suits(const ClothSystem& system) {
   return !system.is_mesh() && system.membrane.empty() && system.rows > 2 && system.columns > 2;
 }
 
+Stiffest stiffest_of(const ClothSystem& system) {
+  Stiffest stiffest;
+  for (const SpringRun& run : system.springs) stiffest.spring = std::max(stiffest.spring, run.stiffness);
+  for (const BendingRun& run : system.bending)
+    stiffest.bending = std::max(stiffest.bending, 2 * run.stiffness);
+  for (const BendingSlider& s : system.sliders)
+    stiffest.bending =
+        std::max(stiffest.bending, 8 * s.stiffness * s.area * s.coefficient[0] * s.coefficient[0]);
+  return stiffest;
+}
+
+Interpolation MultigridSolver::interpolation(const ClothSystem& system) {
+  const Stiffest stiffest = stiffest_of(system);
+  return stiffest.bending > stiffest.spring ? Interpolation::cubic_splines : Interpolation::linear;
+}
+
 bool MultigridSolver::prepare(const ClothSystem& system, const Linearisation& clamped) {
-  cycle_.begin(system.rows, system.columns);
+  cycle_.begin(system.rows, system.columns, interpolation(system));
   cycle_.add_to_diagonal(0, clamped.nodes.size(), from(clamped.nodes, 0));
   std::size_t spring = 0;
   for (const SpringRun& run : system.springs) {
@@ -39,24 +55,42 @@ bool MultigridSolver::prepare(const ClothSystem& system, const Linearisation& cl
     cycle_.add_to_diagonal(first + at(run.offset), count, blocks);
     spring += count;
   }
-  add_elements(system, clamped);
+  if (!add_bending(system, clamped.bending) || !add_sliders(system, clamped)) return false;
   for (std::size_t i = 0; i < system.pinned.size(); ++i)
     if (system.pinned[i]) cycle_.fix(i);
   return cycle_.prepare();
 }
 
-void MultigridSolver::add_elements(const ClothSystem& system, const Linearisation& matrix) {
-  matrix.for_each_element_block(
+/// K of an element is k c c^T in every direction.
+bool MultigridSolver::add_bending(const ClothSystem& system, double weight) {
+  for (const BendingRun& run : system.bending)
+    for (std::size_t p = 0; p < at(run.points); ++p) {
+      const double of_point = weight * run.stiffness * run.coefficient[p];
+      cycle_.add_to_diagonal(at(run.first + run.offset[p]), at(run.count), of_point * run.coefficient[p]);
+      for (std::size_t q = p + 1; q < at(run.points); ++q) {
+        const auto [from, to] = std::minmax(run.offset[p], run.offset[q]);
+        if (!cycle_.add_couplings(at(run.first + from), at(run.count), to - from,
+                                  of_point * run.coefficient[q]))
+          return false;
+      }
+    }
+  return true;
+}
+
+bool MultigridSolver::add_sliders(const ClothSystem& system, const Linearisation& matrix) {
+  bool fits = true;
+  matrix.for_each_slider_block(
       system,
       [&](std::size_t i, std::size_t j, const Eigen::Matrix3d& block) {
         const auto numbers = numbers_of(block);
-        cycle_.add_couplings(std::min(i, j), 1, std::abs(static_cast<int>(j) - static_cast<int>(i)), 1,
-                             pointers_to(numbers));
+        const auto [from, to] = std::minmax(i, j);
+        fits &= cycle_.add_couplings(from, 1, static_cast<int>(to - from), 1, pointers_to(numbers));
       },
       [&](std::size_t i, const Eigen::Matrix3d& block) {
         const auto numbers = numbers_of(block);
         cycle_.add_to_diagonal(i, 1, pointers_to(numbers));
       });
+  return fits;
 }
 
 }  // namespace cloth

@@ -1,5 +1,6 @@
 #include "geometry/dense_decompositions.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
@@ -24,6 +25,20 @@ SymmetricModes tridiagonal_modes(const VectorXd& main, const VectorXd& beside) {
   Solver solver;
   solver.computeFromTridiagonal(main, beside);
   return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+std::optional<MatrixXd> cholesky_factor(const MatrixXd& matrix) {
+  const Eigen::LLT<MatrixXd> factors(matrix);
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  return factors.matrixL();
+}
+
+std::optional<MatrixXd> positive_inverse(const MatrixXd& matrix) {
+  const Eigen::LLT<MatrixXd> factors(matrix);
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  MatrixXd inverse = factors.solve(MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  if (!inverse.allFinite()) return std::nullopt;
+  return inverse;
 }
 
 SingularParts singular_parts(const MatrixXd& matrix) {

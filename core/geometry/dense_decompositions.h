@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace cloth {
 
@@ -18,6 +19,11 @@ SymmetricModes symmetric_modes(const Eigen::MatrixXd& matrix);
 Eigen::VectorXd symmetric_values(const Eigen::MatrixXd& matrix);
 /// Of the symmetric matrix with this main diagonal, and these numbers beside it.
 SymmetricModes tridiagonal_modes(const Eigen::VectorXd& main, const Eigen::VectorXd& beside);
+
+/// Lower triangular L with L L^T = matrix; none where the symmetric matrix is not positive definite.
+std::optional<Eigen::MatrixXd> cholesky_factor(const Eigen::MatrixXd& matrix);
+/// The inverse of a symmetric, positive definite matrix; none where it is not that, or not finite.
+std::optional<Eigen::MatrixXd> positive_inverse(const Eigen::MatrixXd& matrix);
 
 /// matrix = left diag(values) right^T; the values descend. As many columns of `left` as values; `right` is
 /// square, and its last columns are those that the matrix maps to zero.

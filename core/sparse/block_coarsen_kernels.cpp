@@ -28,6 +28,16 @@ struct HalvedColumns {
   CLOTHLAB_INLINE float* blocks_of(int number) const { return numbers + 6 * number * size(); }
 };
 
+/// The blocks of a coupling to add to, zero where it was not used before.
+template <class Blocks>
+float* sums_of(Blocks& to, int number, std::ptrdiff_t particles) {
+  float* sums = to.blocks_of(number);
+  if (!to.used[number])
+    for (std::ptrdiff_t k = 0; k < 6 * particles; ++k) sums[k] = 0;
+  to.used[number] = true;
+  return sums;
+}
+
 /// One fine column 2 J + child, its coupling by `right` columns, and one of that one's parents, J + parent.
 struct ColumnJob {
   int child, right, parent;
@@ -70,9 +80,7 @@ void halve_row(const NaturalBlocks& fine, const float* source, const CoarseLine&
       if (from_parent < -reach_of_mask || from_parent > reach_of_mask) continue;
       const float weight = line.mask[child + reach_of_mask] * line.mask[from_parent + reach_of_mask];
       if (weight == 0) continue;
-      const int number = to.number_of(down, parent);
-      to.used[number] = true;
-      float* sums = to.blocks_of(number) + row * to.columns;
+      float* sums = sums_of(to, to.number_of(down, parent), to.size()) + row * to.columns;
       for (int n = 0; n < 6; ++n)
         add_columns({child, right, parent, weight}, source + n * fine.particles() + row * fine.columns,
                     line.fine, line.coarse, regular.begin, regular.end, sums + n * to.size());
@@ -91,9 +99,7 @@ void halve_column(const NaturalBlocks& fine, const float* source, const CoarseLi
       const int parent = parents.first + k - column;
       const float weight = children.weight[child] * parents.weight[k];
       if (weight == 0 || (down == 0 && parent < 0)) continue;
-      const int number = to.number_of(down, parent);
-      to.used[number] = true;
-      float* sums = to.blocks_of(number) + column;
+      float* sums = sums_of(to, to.number_of(down, parent), to.size()) + column;
       for (int n = 0; n < 6; ++n)
         for (int row = 0; row + down < fine.rows; ++row)
           sums[n * to.size() + row * to.columns] +=
@@ -103,9 +109,7 @@ void halve_column(const NaturalBlocks& fine, const float* source, const CoarseLi
 }
 
 void halve_columns(const NaturalBlocks& fine, const CoarseLine& line, HalvedColumns& to) {
-  const int numbers = (to.reach_down + 1) * (2 * to.reach + 1);
-  for (int k = 0; k < numbers; ++k) to.used[k] = false;
-  for (std::ptrdiff_t k = 0; k < 6 * numbers * to.size(); ++k) to.numbers[k] = 0;
+  for (bool& used : to.used) used = false;
   const Columns regular = regular_columns(line, fine.reach);
   for (int down = 0; down <= fine.reach; ++down)
     for (int right = -fine.reach; right <= fine.reach; ++right) {
@@ -133,9 +137,8 @@ void add_rows(const HalvedColumns& from, const RowJob& job, int right, NaturalBl
   const int columns = coarse.columns;
   const std::ptrdiff_t first_row = opposite ? job.row + job.apart : job.row;
   const float* source = from.blocks_of(number) + first_row * columns + (opposite ? right : 0);
-  const int coupling = coarse.number_of({job.down, right});
-  coarse.used[coupling] = true;
-  float* sums = coarse.blocks_of(coupling) + static_cast<std::ptrdiff_t>(job.to) * columns;
+  float* sums = sums_of(coarse, coarse.number_of({job.down, right}), coarse.particles()) +
+                static_cast<std::ptrdiff_t>(job.to) * columns;
   const int first = right < 0 ? -right : 0, last = right > 0 ? columns - right : columns;
   for (int n = 0; n < 6; ++n) {
     const float* numbers = source + n * from.size();
@@ -145,9 +148,7 @@ void add_rows(const HalvedColumns& from, const RowJob& job, int right, NaturalBl
 }
 
 void halve_rows(const HalvedColumns& from, const CoarseLine& line, NaturalBlocks& coarse) {
-  for (int k = 0; k <= coarse.couplings(); ++k) coarse.used[k] = k == 0;
-  for (std::ptrdiff_t k = 0; k < 6 * (1 + coarse.couplings()) * coarse.particles(); ++k)
-    coarse.numbers[k] = 0;
+  for (bool& used : coarse.used) used = false;
   for (int to = 0; to < line.coarse; ++to)
     for (int child = 0; child < line.children[to].count; ++child) {
       const int row = line.children[to].first + child;

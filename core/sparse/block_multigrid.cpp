@@ -1,11 +1,11 @@
 #include "sparse/block_multigrid.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "geometry/at.h"
+#include "geometry/dense_decompositions.h"
 #include "kernels/instruction_set.h"
 #include "sparse/block_coarsen_kernels.h"
 #include "sparse/without_denormals.h"
@@ -324,11 +324,9 @@ bool BlockMultigrid::invert_coarsest() {
   if (!(largest > 0) || !std::isfinite(largest)) return false;
   for (Eigen::Index i = 0; i < numbers; ++i)  // fixed ones, and what single precision may have left out
     dense(i, i) = dense(i, i) == 0 ? largest : dense(i, i) + 1e-7 * largest;
-  const Eigen::LLT<Eigen::MatrixXd> factors(dense);
-  if (factors.info() != Eigen::Success) return false;
-  const Eigen::MatrixXd inverse = factors.solve(Eigen::MatrixXd::Identity(numbers, numbers));
-  if (!inverse.allFinite()) return false;
-  coarsest_.assign(inverse.data(), inverse.data() + inverse.size());
+  const std::optional<Eigen::MatrixXd> inverse = positive_inverse(dense);
+  if (!inverse) return false;
+  coarsest_.assign(inverse->data(), inverse->data() + inverse->size());
   return true;
 }
 

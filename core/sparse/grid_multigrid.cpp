@@ -1,11 +1,12 @@
 #include "sparse/grid_multigrid.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
+#include "geometry/dense_decompositions.h"
 #include "geometry/split_mix.h"
 #include "kernels/instruction_set.h"
 #include "kernels/vector_kernels.h"
@@ -140,10 +141,9 @@ bool GridMultigrid::invert_coarsest(const GridStencils& matrix) {
           dense(r * matrix.columns() + c,
                 (r + GridStencils::rows_of(k)) * matrix.columns() + c + GridStencils::columns_of(k)) = value;
     }
-  const Eigen::LLT<Eigen::MatrixXd> factors(dense);
-  if (factors.info() != Eigen::Success) return false;
-  const Eigen::MatrixXd inverse = factors.solve(Eigen::MatrixXd::Identity(size, size));
-  coarsest_.assign(inverse.data(), inverse.data() + inverse.size());  // symmetric
+  const std::optional<Eigen::MatrixXd> inverse = positive_inverse(dense);
+  if (!inverse) return false;
+  coarsest_.assign(inverse->data(), inverse->data() + inverse->size());  // symmetric
   return true;
 }
 

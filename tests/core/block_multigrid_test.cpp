@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "geometry/dense_decompositions.h"
@@ -103,7 +102,7 @@ void expect_a_cycle_that_reduces_every_error(const Scene& scene, double h, doubl
   const Eigen::MatrixXd b =
       matrix_of(cloth, [&](const Vec3Field& in, Vec3Field& out) { solver.precondition(in, out); });
   EXPECT_LE((b - b.transpose()).norm(), 1e-4 * b.norm());
-  const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(a).matrixL();
+  const Eigen::MatrixXd root = cholesky_factor(a).value();
   const Eigen::MatrixXd left =
       Eigen::MatrixXd::Identity(a.rows(), a.cols()) - Eigen::MatrixXd(root.transpose() * b * root);
   EXPECT_LT(spectral_norm(left), most);

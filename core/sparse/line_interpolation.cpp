@@ -1,6 +1,7 @@
 #include "sparse/line_interpolation.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 
 #include "geometry/at.h"
@@ -16,8 +17,9 @@ using Weights = std::map<int, double>;
 /// Parents of a fine point by the mask alone, which may lie beyond the ends.
 Weights by_mask(int point, const double* mask) {
   Weights weights;
-  for (int parent = (point - reach) / 2; 2 * parent <= point + reach; ++parent) {
-    const double weight = mask[point - 2 * parent + reach];
+  for (int parent = point / 2 - 1; parent <= point / 2 + 1; ++parent) {
+    const int from_parent = point - 2 * parent;
+    const double weight = std::abs(from_parent) <= reach ? mask[from_parent + reach] : 0;
     if (weight != 0) weights[parent] = weight;
   }
   return weights;

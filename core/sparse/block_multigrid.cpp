@@ -41,26 +41,6 @@ void invert_block(const float* block, std::size_t stride, float* inverse, std::s
   for (std::size_t n = 0; n < 6; ++n) inverse[n * inverse_stride] = static_cast<float>(numbers[n]);
 }
 
-/// sums = weighted sum of rows of `count` numbers, `stride` apart.
-void add_weighted(const LineWeights& weights, const float* rows, std::ptrdiff_t stride, std::ptrdiff_t count,
-                  float* sums) {
-  for (int k = 0; k < weights.count; ++k) {
-    const float* row = rows + (weights.first + k) * stride;
-    const float weight = weights.weight[k];
-    if (k == 0) {
-      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] = weight * row[i];
-    } else {
-      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] += weight * row[i];
-    }
-  }
-}
-
-float weighted(const LineWeights& weights, const float* numbers) {
-  float sum = 0;
-  for (int k = 0; k < weights.count; ++k) sum += weights.weight[k] * numbers[weights.first + k];
-  return sum;
-}
-
 }  // namespace
 
 void BlockMultigrid::begin(int rows, int columns, Interpolation interpolation) {
@@ -355,7 +335,7 @@ void BlockMultigrid::restrict_residual(const Level& fine, Level& coarse) {
   for (std::ptrdiff_t n = 0; n < 3; ++n)
     for (int to = 0; to < c.rows; ++to) {
       const LineWeights& of_rows = rows.children[to];
-      add_weighted(of_rows, f.r + n * f.width, 3 * f.width, f.colours * f.segment, sums);
+      set_weighted(of_rows, f.r + n * f.width, 3 * f.width, f.colours * f.segment, sums);
       for (int column = 0; column < f.columns; ++column) in_order[column] = sums[fine.place[at(column)]];
       float* wanted = c.b + (3 * to + n) * c.width;
       for (int column = 0; column < c.columns; ++column)
@@ -370,7 +350,7 @@ void BlockMultigrid::add_correction(Level& fine, const Level& coarse) {
   float *sums = row_.data(), *in_order = sums + row_.size() / 2;
   for (std::ptrdiff_t n = 0; n < 3; ++n)
     for (int to = 0; to < f.rows; ++to) {
-      add_weighted(rows.parents[to], c.x + n * c.width, 3 * c.width, c.colours * c.segment, sums);
+      set_weighted(rows.parents[to], c.x + n * c.width, 3 * c.width, c.colours * c.segment, sums);
       for (int column = 0; column < c.columns; ++column) in_order[column] = sums[coarse.place[at(column)]];
       float* corrected = f.x + (3 * to + n) * f.width;
       for (int column = 0; column < f.columns; ++column)

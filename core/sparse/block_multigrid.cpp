@@ -55,7 +55,7 @@ void BlockMultigrid::begin(int rows, int columns, Interpolation interpolation) {
   for (int k = 0; k <= finest.couplings(); ++k)
     if (finest.used[k]) std::fill_n(finest.blocks_of(k), 6 * finest.particles(), 0.0f);
   std::fill(std::begin(finest.used), std::end(finest.used), false);
-  finest.used[0] = true;
+  finest.used[0] = true;  // also of a matrix without anything
 }
 
 /// visit(k, place) for the particles first + k, k < count, with their places in the finest level.
@@ -123,21 +123,24 @@ void BlockMultigrid::add_level(int rows, int columns, int reach) {
   level.loops.inverse = level.inverse.data() + lanes;
 }
 
-void BlockMultigrid::add_to_diagonal(std::size_t first, std::size_t count,
-                                     const std::array<const double*, 6>& blocks) {
-  const NaturalBlocks& natural = levels_.front().natural;
+void BlockMultigrid::add_blocks(int coupling, std::size_t first, std::size_t count, double scale,
+                                const std::array<const double*, 6>& blocks) {
+  NaturalBlocks& natural = levels_.front().natural;
+  natural.used[coupling] = true;
   for (std::size_t n = 0; n < 6; ++n) {
-    float* to = natural.numbers + n * size_of(natural);
+    float* to = natural.blocks_of(coupling) + n * size_of(natural);
     const double* from = blocks[n];
-    for_each_place(first, count,
-                   [&](std::size_t k, std::size_t place) { to[place] += static_cast<float>(from[k]); });
+    for_each_place(first, count, [&](std::size_t k, std::size_t place) {
+      to[place] += static_cast<float>(scale * from[k]);
+    });
   }
 }
 
-void BlockMultigrid::add_to_diagonal(std::size_t first, std::size_t count, double value) {
-  const NaturalBlocks& natural = levels_.front().natural;
+void BlockMultigrid::add_identity(int coupling, std::size_t first, std::size_t count, double value) {
+  NaturalBlocks& natural = levels_.front().natural;
+  natural.used[coupling] = true;
   for (const std::size_t n : {0u, 3u, 5u}) {
-    float* to = natural.numbers + n * size_of(natural);
+    float* to = natural.blocks_of(coupling) + n * size_of(natural);
     for_each_place(first, count,
                    [&](std::size_t, std::size_t place) { to[place] += static_cast<float>(value); });
   }
@@ -163,31 +166,15 @@ std::optional<int> BlockMultigrid::find_coupling(std::size_t& first, int offset)
 
 bool BlockMultigrid::add_couplings(std::size_t first, std::size_t count, int offset, double scale,
                                    const std::array<const double*, 6>& blocks) {
-  NaturalBlocks& natural = levels_.front().natural;
-  const std::optional<int> number = find_coupling(first, offset);
-  if (!number) return false;
-  natural.used[*number] = true;
-  for (std::size_t n = 0; n < 6; ++n) {
-    float* to = natural.blocks_of(*number) + n * size_of(natural);
-    const double* from = blocks[n];
-    for_each_place(first, count, [&](std::size_t k, std::size_t place) {
-      to[place] += static_cast<float>(scale * from[k]);
-    });
-  }
-  return true;
+  const std::optional<int> coupling = find_coupling(first, offset);
+  if (coupling) add_blocks(*coupling, first, count, scale, blocks);
+  return coupling.has_value();
 }
 
 bool BlockMultigrid::add_couplings(std::size_t first, std::size_t count, int offset, double value) {
-  NaturalBlocks& natural = levels_.front().natural;
-  const std::optional<int> number = find_coupling(first, offset);
-  if (!number) return false;
-  natural.used[*number] = true;
-  for (const std::size_t n : {0u, 3u, 5u}) {
-    float* to = natural.blocks_of(*number) + n * size_of(natural);
-    for_each_place(first, count,
-                   [&](std::size_t, std::size_t place) { to[place] += static_cast<float>(value); });
-  }
-  return true;
+  const std::optional<int> coupling = find_coupling(first, offset);
+  if (coupling) add_identity(*coupling, first, count, value);
+  return coupling.has_value();
 }
 
 void BlockMultigrid::fix(std::size_t particle) {

@@ -30,13 +30,17 @@ class BlockMultigrid {
   void begin(int rows, int columns, Interpolation interpolation);
 
   /// xx, xy, xz, yy, yz, zz of the blocks of consecutive particles from `first` on are added.
-  void add_to_diagonal(std::size_t first, std::size_t count, const std::array<const double*, 6>& blocks);
+  void add_to_diagonal(std::size_t first, std::size_t count, const std::array<const double*, 6>& blocks) {
+    add_blocks(0, first, count, 1, blocks);
+  }
   /// The blocks of `count` couplings between particles first + k and first + k + offset, times `scale`.
   /// `offset` is positive. False, and nothing added, where they lie too far apart.
   bool add_couplings(std::size_t first, std::size_t count, int offset, double scale,
                      const std::array<const double*, 6>& blocks);
   /// The same where every block is `value` times the identity.
-  void add_to_diagonal(std::size_t first, std::size_t count, double value);
+  void add_to_diagonal(std::size_t first, std::size_t count, double value) {
+    add_identity(0, first, count, value);
+  }
   bool add_couplings(std::size_t first, std::size_t count, int offset, double value);
   /// Takes a particle out: its row and column become zero.
   void fix(std::size_t particle);
@@ -61,6 +65,9 @@ class BlockMultigrid {
     LineInterpolation row_interpolation, column_interpolation;  ///< from the next coarser one
   };
 
+  void add_blocks(int coupling, std::size_t first, std::size_t count, double scale,
+                  const std::array<const double*, 6>& blocks);
+  void add_identity(int coupling, std::size_t first, std::size_t count, double value);
   std::optional<int> find_coupling(std::size_t& first, int offset) const;
   template <class Visit>
   void for_each_place(std::size_t first, std::size_t count, Visit visit) const;

@@ -13,20 +13,16 @@
 namespace cloth::test::line_interpolation_test {
 namespace {
 
-/// P, and by the lists of children its transpose.
-Eigen::MatrixXd matrix_of(const CoarseLine& line) {
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(line.fine, line.coarse);
-  for (int i = 0; i < line.fine; ++i)
-    for (int k = 0; k < line.parents[i].count; ++k)
-      p(i, line.parents[i].first + k) = line.parents[i].weight[k];
-  return p;
+/// A row for each list of weights.
+Eigen::MatrixXd matrix_of(const LineWeights* lists, int rows, int columns) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, columns);
+  for (int i = 0; i < rows; ++i)
+    for (int k = 0; k < lists[i].count; ++k) matrix(i, lists[i].first + k) = lists[i].weight[k];
+  return matrix;
 }
-Eigen::MatrixXd transpose_by_children(const CoarseLine& line) {
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(line.coarse, line.fine);
-  for (int i = 0; i < line.coarse; ++i)
-    for (int k = 0; k < line.children[i].count; ++k)
-      p(i, line.children[i].first + k) = line.children[i].weight[k];
-  return p;
+/// P
+Eigen::MatrixXd matrix_of(const CoarseLine& line) {
+  return matrix_of(line.parents, line.fine, line.coarse);
 }
 
 class EveryInterpolation : public ::testing::TestWithParam<Interpolation> {};
@@ -40,7 +36,8 @@ TEST_P(EveryInterpolation, HasTheSameWeightsForParentsAndChildren) {
   for (int points = 6; points < 20; ++points) {
     const LineInterpolation of(points, true, GetParam());
     EXPECT_EQ(of.coarse_points(), (points + 1) / 2);
-    EXPECT_EQ(matrix_of(of.line()).transpose(), transpose_by_children(of.line())) << points;
+    const CoarseLine line = of.line();
+    EXPECT_EQ(matrix_of(line).transpose(), matrix_of(line.children, line.coarse, line.fine)) << points;
   }
 }
 
@@ -105,7 +102,7 @@ struct Blocks {
     const auto size = static_cast<Eigen::Index>(count());
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
     for (int k = 0; k <= natural.couplings(); ++k) {
-      const BlockCoupling c = k == 0 ? BlockCoupling{} : natural.coupling(k);
+      const BlockCoupling c = natural.coupling(k);
       for (int row = 0; row + c.down < natural.rows && natural.used[k]; ++row)
         for (int column = std::max(0, -c.right); column < natural.columns - std::max(0, c.right); ++column) {
           const int i = row * natural.columns + column, j = i + c.down * natural.columns + c.right;
@@ -117,7 +114,7 @@ struct Blocks {
   void fill(Random& random, const std::vector<int>& couplings) {
     for (const int k : couplings) {
       natural.used[k] = true;
-      const BlockCoupling c = k == 0 ? BlockCoupling{} : natural.coupling(k);
+      const BlockCoupling c = natural.coupling(k);
       for (int n = 0; n < 6; ++n)
         for (int row = 0; row + c.down < natural.rows; ++row)
           for (int column = std::max(0, -c.right); column < natural.columns - std::max(0, c.right); ++column)

@@ -22,6 +22,18 @@ BendingRows bending_rows(const BendingRuns& runs, std::size_t particles);
 /// result += scale * K field.
 void add_bending_product(const BendingRows& rows, double scale, const Vec3Field& field, Vec3Field& result);
 
+/// visit(i, j, -K_ij) for every pair of particles: by the rows, each once, or where there are none by the
+/// runs.
+template <class Visit>
+void for_each_bending_pair(const BendingRows& rows, const BendingRuns& runs, Visit visit) {
+  if (rows.begin.empty()) return for_each_bending_pair(runs, visit);
+  for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i)
+    for (std::size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(rows.column[k]);
+      if (j > i) visit(i, j, -rows.stiffness[k]);
+    }
+}
+
 struct ClothSystem;
 /// By the system's rows where it has some, else by its runs.
 void add_bending_product(const ClothSystem& system, double scale, const Vec3Field& field, Vec3Field& result);

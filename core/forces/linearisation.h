@@ -63,11 +63,11 @@ class SymmetricBlocks {
 };
 
 struct Linearisation {
-  SymmetricBlocks nodes;        ///< one of each particle
-  SymmetricBlocks springs;      ///< run after run, in the order of ClothSystem::springs
-  double bending = 0;           ///< s^2: what multiplies K of ClothSystem::bending
-  double membrane = 0;          ///< s^2: what multiplies J^T K J of ClothSystem::membrane
-  Vec3Field membrane_position;  ///< m, where J is; sized where there is a membrane
+  SymmetricBlocks nodes;             ///< one of each particle
+  SymmetricBlocks springs;           ///< run after run, in the order of ClothSystem::springs
+  double bending = 0;                ///< s^2: what multiplies K of ClothSystem::bending
+  double membrane = 0;               ///< s^2: what multiplies J^T K J of ClothSystem::membrane
+  Vec3Field membrane_position;       ///< m, where J is; sized where there is a membrane
   std::vector<double> slider_slope;  ///< of ClothSystem::sliders, weighted; empty: none acts
   Vec3Field slider_normal;           ///< their unit normals
   bool has_compressed = false;  ///< some spring is shorter than its rest length, so that clamping changes A
@@ -75,9 +75,9 @@ struct Linearisation {
   /// Adds `weight` J^T K J.
   void add_membrane(const Vec3Field& position, double weight);
 
-  /// Visits the blocks of bending, its sliders and the membrane between two different particles and those that they add to
-  /// each particle: off_diagonal(i, j, block), diagonal(i, block), blocks as 3x3 matrices, the one for i and j
-  /// in the row of i. Pairs may repeat; their order depends on the system alone.
+  /// Visits the blocks of bending, its sliders and the membrane between two different particles and those
+  /// that they add to each particle: off_diagonal(i, j, block), diagonal(i, block), blocks as 3x3 matrices,
+  /// the one for i and j in the row of i. Pairs may repeat; their order depends on the system alone.
   template <class OffDiagonal, class Diagonal>
   void for_each_element_block(const ClothSystem& system, OffDiagonal off_diagonal, Diagonal diagonal) const;
 
@@ -114,7 +114,8 @@ void Linearisation::for_each_slider_block(const ClothSystem& system, OffDiagonal
 /// visit(i, j) for every block off the diagonal that for_each_element_block() visits, in its order.
 template <class Visit>
 void for_each_element_pair(const ClothSystem& system, Visit visit) {
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) { visit(i, j); });
+  for_each_bending_pair(system.bending_rows, system.bending,
+                        [&](std::size_t i, std::size_t j, double) { visit(i, j); });
   for_each_slider_pair(system.sliders, [&](std::size_t i, std::size_t j, double) { visit(i, j); });
   for (const MembraneTriangle& t : system.membrane)
     for (std::size_t c = 0; c < 3; ++c) visit(at(t.corner[c]), at(t.corner[(c + 1) % 3]));
@@ -123,11 +124,12 @@ void for_each_element_pair(const ClothSystem& system, Visit visit) {
 template <class OffDiagonal, class Diagonal>
 void Linearisation::for_each_element_block(const ClothSystem& system, OffDiagonal off_diagonal,
                                            Diagonal diagonal) const {
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double stiffness) {
-    const Eigen::Matrix3d block = bending * stiffness * Eigen::Matrix3d::Identity();
-    diagonal(i, block), diagonal(j, block);
-    off_diagonal(i, j, Eigen::Matrix3d(-block));
-  });
+  for_each_bending_pair(system.bending_rows, system.bending,
+                        [&](std::size_t i, std::size_t j, double stiffness) {
+                          const Eigen::Matrix3d block = bending * stiffness * Eigen::Matrix3d::Identity();
+                          diagonal(i, block), diagonal(j, block);
+                          off_diagonal(i, j, Eigen::Matrix3d(-block));
+                        });
   for_each_slider_block(system, off_diagonal, diagonal);
   for (const MembraneTriangle& t : system.membrane) {
     std::array<Vec3, 3> d;

@@ -27,7 +27,7 @@ void ProjectiveMatrix::for_each_number(Add add, Couple couple) const {
   for_each_spring(springs_, [&](const SpringRun& run, std::size_t, std::size_t i, std::size_t j) {
     couple(i, j, h * c.spring_damping + h * (h + c.stretch_time) * run.stiffness);
   });
-  for_each_bending_pair(bending_, [&](std::size_t i, std::size_t j, double stiffness) {
+  for_each_bending_pair(bending_rows_, bending_, [&](std::size_t i, std::size_t j, double stiffness) {
     couple(i, j, h * (h + c.bending_time) * stiffness);
   });
   for_each_slider_pair(
@@ -44,6 +44,7 @@ int ProjectiveMatrix::prepare(const ClothSystem& system, const Coefficients& num
   if (is_of(system, numbers)) return 0;
   const bool same_pattern = analysed_ && has_pattern_of(system);
   coefficients_ = numbers, springs_ = system.springs, bending_ = system.bending;
+  bending_rows_ = system.bending_rows;
   membrane_ = system.membrane, sliders_ = system.sliders, mass_ = system.mass, pinned_ = system.pinned;
   const bool is_grid = !system.is_mesh() && system.rows > 1 && system.columns > 1;
   grid_rows_ = is_grid ? system.rows : 0, grid_columns_ = is_grid ? system.columns : 0;
@@ -71,7 +72,10 @@ bool ProjectiveMatrix::prepare_cycles() {
 }
 
 bool ProjectiveMatrix::factorise(bool same_pattern, const ClothSystem& system) {
-  if (!same_pattern) rows_ = analyse_free_rows(system, factors_);
+  if (!same_pattern) {
+    rows_ = free_rows(system);
+    analyse_free_rows(system, rows_, factors_);
+  }
   analysed_ = true;
   values_.resize(3 * rows_.particle.size());
   std::vector<double> diagonal(rows_.particle.size()), off_diagonal;

@@ -51,6 +51,7 @@ class ProjectiveMatrix {
   int grid_rows_ = 0, grid_columns_ = 0;  ///< 0: no grid
   SpringRuns springs_;
   BendingRuns bending_;
+  BendingRows bending_rows_;  ///< of these
   Membrane membrane_;
   BendingSliders sliders_;
   std::vector<double> mass_;

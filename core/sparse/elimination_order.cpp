@@ -26,7 +26,7 @@ template <class Visit>
 void for_each_coupling(const ClothSystem& system, Visit visit) {
   for (const SpringRun& run : system.springs)
     for (int i = run.first; i < run.first + run.count; ++i) visit(i, i + run.offset);
-  for_each_bending_pair(system.bending, [&](std::size_t i, std::size_t j, double) {
+  for_each_bending_pair(system.bending_rows, system.bending, [&](std::size_t i, std::size_t j, double) {
     visit(static_cast<int>(i), static_cast<int>(j));
   });
   for_each_slider_pair(system.sliders, [&](std::size_t i, std::size_t j, double) {

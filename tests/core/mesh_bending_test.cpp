@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "cloth/mesh_patch.h"
+#include "integrators/integrator.h"
 #include "scene/scene_cloth.h"
 #include "support/material_meshes.h"
 #include "support/materials.h"
+#include "support/states.h"
 
 namespace cloth::test::mesh_bending_test {
 namespace {

@@ -124,7 +124,7 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
   linear_method_ = LinearMethod::multigrid;
   const bool clamps = linearisation_.has_compressed;
   if (clamps) e.forces.linearise(e.position, {.position = h * h, .velocity = h, .clamped = true}, clamped_);
-  if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_)) return false;
+  if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position)) return false;
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     multigrid_.precondition(in, out);
   };

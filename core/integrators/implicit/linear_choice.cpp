@@ -20,12 +20,46 @@ const char* name_of(LinearMethod method) {
   return "";
 }
 
+namespace {
+
+/// Of a solve, s: costs that were measured once, on grids and on meshes.
+struct SolveCosts {
+  double factors = 0;
+  double preconditioner = 0, iteration = 0;  ///< of conjugate gradients with the diagonal's blocks
+  double multigrid = 0;
+};
+
+constexpr double multigrid_start = 200e-6;  // s
+
+/// Dissected factors of a grid grow as its size times its shorter side, an iteration is linear. Cycles are
+/// those of smooth states, which are most, 3 to 5, with splines 4 to 5: conjugate gradients need more
+/// iterations as well where cloth buckles.
+SolveCosts grid_costs(const ClothSystem& system) {
+  const double size = system.size(), side = std::min(system.rows, system.columns);
+  const double cycles = MultigridSolver::interpolation(system) == Interpolation::cubic_splines ? 6 : 4;
+  return {.factors = 130e-9 * size * side,
+          .preconditioner = 60e-9 * size,
+          .iteration = 25e-9 * size,
+          .multigrid = multigrid_start + (600e-9 + 140e-9 * cycles) * size};
+}
+
+/// The more particles each is coupled with, the more all of it costs: 12 with springs, some 40 where a
+/// material bends.
+SolveCosts mesh_costs(const ClothSystem& system) {
+  const double size = system.size(), side = std::sqrt(size);
+  double couplings = size + 3 * static_cast<double>(system.membrane.size()) +
+                     static_cast<double>(system.bending_rows.column.size());
+  for (const SpringRun& run : system.springs) couplings += 2 * run.count;
+  const double cycles = system.bending.empty() ? 4 : 6;
+  return {.factors = 7e-9 * couplings * side,
+          .preconditioner = 60e-9 * size,
+          .iteration = 12e-9 * size + 2e-9 * couplings,
+          .multigrid = multigrid_start + (90e-9 + 10e-9 * cycles) * couplings};
+}
+
+}  // namespace
+
 LinearChoice choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights) {
-  // s, measured: dissected factors of a grid grow as its size times its shorter side, an iteration of
-  // conjugate gradients is linear.
-  constexpr double factor_cost = 130e-9, preconditioner_cost = 60e-9, iteration_cost = 25e-9;
-  // Of smooth states, which are most: conjugate gradients need more iterations as well where cloth buckles.
-  constexpr double start_cost = 200e-6, setup_cost = 600e-9, cycle_cost = 140e-9;
   // Of Newton's method: with conjugate gradients a step is neither relaxed, nor is its last iteration spared.
   constexpr double more_iterations = 1.5;
   // Measured with the forcing of ImplicitStage: as the root of the condition, but a grid has no worse one
@@ -46,16 +80,15 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   choice.iterations =
       std::min(iterations_per_edge * std::sqrt(size), iterations_per_root * std::sqrt(condition)) *
       std::pow(std::max(1.0, condition / stiff), growth);
-  const double side = system.is_mesh() ? std::sqrt(size) : std::min(system.rows, system.columns);
-  choice.factors = factor_cost * size * side;
-  choice.gradients = more_iterations * (preconditioner_cost + iteration_cost * choice.iterations) * size;
+  const SolveCosts costs = system.is_mesh() ? mesh_costs(system) : grid_costs(system);
+  choice.factors = costs.factors;
+  choice.gradients = more_iterations * (costs.preconditioner + costs.iteration * choice.iterations);
   if (choice.gradients < choice.factors) choice.method = LinearMethod::conjugate_gradients;
-  // Single precision ends where the springs' part of A is some 1e6 times the masses'.
-  constexpr double stiffest_ratio = 3e5;
+  // Single precision ends where the springs' part of A is some 1e6 times the masses' on a grid; on meshes no
+  // end was met at 5e10.
+  const double stiffest_ratio = system.is_mesh() ? 1e9 : 3e5;
   if (MultigridSolver::suits(system) && weights.position * stiffest / lightest <= stiffest_ratio) {
-    // With splines 4 to 5 cycles, which take longer; else 3 to 5.
-    const double cycles = MultigridSolver::interpolation(system) == Interpolation::cubic_splines ? 6 : 4;
-    choice.multigrid = start_cost + (setup_cost + cycle_cost * cycles) * size;
+    choice.multigrid = costs.multigrid;
     if (*choice.multigrid < std::min(choice.factors, choice.gradients))
       choice.method = LinearMethod::multigrid;
   }

@@ -2,28 +2,16 @@
 // Jacobian A + h^2 N where a force has an asymmetric part N.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 
-#include "forces/linearisation.h"
+#include "integrators/implicit/free_blocks.h"
 #include "sparse/block_cholesky.h"
 
 namespace cloth {
 
 /// result = operator(direction). Both have one vector per particle, zero on pins.
 using LinearMap = std::function<void(const Vec3Field& direction, Vec3Field& result)>;
-
-/// The rows of a matrix with one block row for each free particle, and one block off the diagonal for each
-/// spring, and each pair of for_each_element_pair(), between two of them.
-struct FreeRows {
-  std::vector<int> row;       ///< of each particle; -1 where pinned
-  std::vector<int> particle;  ///< of each row
-  std::size_t couplings = 0;  ///< springs and pairs between free particles
-};
-
-/// Numbers the free particles and has `factors` analyse the pattern of their matrix.
-FreeRows analyse_free_rows(const ClothSystem& system, BlockCholesky& factors);
 
 /// Sparse Cholesky factors of A in 3x3 blocks. The pattern is analysed once and again only when springs or
 /// pins change.
@@ -34,17 +22,9 @@ class CholeskyFactors {
   void solve(const Vec3Field& right_hand_side, Vec3Field& solution);
 
  private:
-  bool fits(const ClothSystem& system) const;
-  void analyse(const ClothSystem& system);
-
-  std::vector<std::uint8_t> pinned_;  ///< that the pattern was made for
-  SpringRuns runs_;                   ///< of the springs that were analysed
-  BendingRuns bending_;
-  Membrane membrane_;
-  BendingSliders sliders_;
-  FreeRows rows_;
+  FreeBlocks blocks_;
   BlockCholesky factors_{3};
-  std::vector<double> diagonal_, off_diagonal_, values_;  ///< scratch
+  std::vector<double> values_;  ///< scratch
 };
 
 /// The inverses of A's 3x3 diagonal blocks: the preconditioner of iterative solves. Zero on pins.

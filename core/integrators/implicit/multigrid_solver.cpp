@@ -24,7 +24,7 @@ std::array<const double*, 6> pointers_to(const std::array<double, 6>& n) {
 }  // namespace
 
 bool MultigridSolver::suits(const ClothSystem& system) {
-  return !system.is_mesh() && system.membrane.empty() && system.rows > 2 && system.columns > 2;
+  return system.is_mesh() || (system.membrane.empty() && system.rows > 2 && system.columns > 2);
 }
 
 Stiffest stiffest_of(const ClothSystem& system) {
@@ -43,22 +43,53 @@ Interpolation MultigridSolver::interpolation(const ClothSystem& system) {
   return stiffest.bending > stiffest.spring ? Interpolation::cubic_splines : Interpolation::linear;
 }
 
-bool MultigridSolver::prepare(const ClothSystem& system, const Linearisation& clamped) {
-  cycle_.begin(system.rows, system.columns, interpolation(system));
-  cycle_.add_to_diagonal(0, clamped.nodes.size(), from(clamped.nodes, 0));
+bool MultigridSolver::prepare(const ClothSystem& system, const Linearisation& clamped,
+                              const Vec3Field& position) {
+  is_mesh_ = system.is_mesh();
+  return is_mesh_ ? prepare_mesh(system, clamped, position) : prepare_grid(system, clamped);
+}
+
+void MultigridSolver::precondition(const Vec3Field& residual, Vec3Field& correction) {
+  if (!is_mesh_) return grid_.solve(residual, correction);
+  blocks_.pack(residual, numbers_);
+  corrections_.resize(numbers_.size());
+  aggregation_.solve(numbers_, corrections_);
+  blocks_.unpack(corrections_, correction);
+}
+
+/// Springs unite neighbours, which every edge of a triangle has, also without stiffness: what a material's
+/// bending couples reaches further, and is weaker.
+bool MultigridSolver::prepare_mesh(const ClothSystem& system, const Linearisation& clamped,
+                                   const Vec3Field& position) {
+  if (blocks_.analyse(system)) {
+    const FreeRows& rows = blocks_.rows();
+    std::vector<Coupling> strong;
+    for_each_spring(system.springs, [&](const SpringRun&, std::size_t, std::size_t i, std::size_t j) {
+      if (rows.row[i] >= 0 && rows.row[j] >= 0) strong.emplace_back(rows.row[i], rows.row[j]);
+    });
+    aggregation_.analyse(static_cast<int>(rows.particle.size()), rows.couplings, strong);
+  }
+  blocks_.gather(system, clamped);
+  blocks_.pack(position, numbers_);
+  return aggregation_.prepare(blocks_.diagonal(), blocks_.off_diagonal(), numbers_);
+}
+
+bool MultigridSolver::prepare_grid(const ClothSystem& system, const Linearisation& clamped) {
+  grid_.begin(system.rows, system.columns, interpolation(system));
+  grid_.add_to_diagonal(0, clamped.nodes.size(), from(clamped.nodes, 0));
   std::size_t spring = 0;
   for (const SpringRun& run : system.springs) {
     const auto first = at(run.first), count = at(run.count);
     const auto blocks = from(clamped.springs, spring);
-    if (!cycle_.add_couplings(first, count, run.offset, -1, blocks)) return false;
-    cycle_.add_to_diagonal(first, count, blocks);
-    cycle_.add_to_diagonal(first + at(run.offset), count, blocks);
+    if (!grid_.add_couplings(first, count, run.offset, -1, blocks)) return false;
+    grid_.add_to_diagonal(first, count, blocks);
+    grid_.add_to_diagonal(first + at(run.offset), count, blocks);
     spring += count;
   }
   if (!add_bending(system, clamped.bending) || !add_sliders(system, clamped)) return false;
   for (std::size_t i = 0; i < system.pinned.size(); ++i)
-    if (system.pinned[i]) cycle_.fix(i);
-  return cycle_.prepare();
+    if (system.pinned[i]) grid_.fix(i);
+  return grid_.prepare();
 }
 
 /// K of an element is k c c^T in every direction.
@@ -66,11 +97,11 @@ bool MultigridSolver::add_bending(const ClothSystem& system, double weight) {
   for (const BendingRun& run : system.bending)
     for (std::size_t p = 0; p < at(run.points); ++p) {
       const double of_point = weight * run.stiffness * run.coefficient[p];
-      cycle_.add_to_diagonal(at(run.first + run.offset[p]), at(run.count), of_point * run.coefficient[p]);
+      grid_.add_to_diagonal(at(run.first + run.offset[p]), at(run.count), of_point * run.coefficient[p]);
       for (std::size_t q = p + 1; q < at(run.points); ++q) {
         const auto [from, to] = std::minmax(run.offset[p], run.offset[q]);
-        if (!cycle_.add_couplings(at(run.first + from), at(run.count), to - from,
-                                  of_point * run.coefficient[q]))
+        if (!grid_.add_couplings(at(run.first + from), at(run.count), to - from,
+                                 of_point * run.coefficient[q]))
           return false;
       }
     }
@@ -84,11 +115,11 @@ bool MultigridSolver::add_sliders(const ClothSystem& system, const Linearisation
       [&](std::size_t i, std::size_t j, const Eigen::Matrix3d& block) {
         const auto numbers = numbers_of(block);
         const auto [from, to] = std::minmax(i, j);
-        fits &= cycle_.add_couplings(from, 1, static_cast<int>(to - from), 1, pointers_to(numbers));
+        fits &= grid_.add_couplings(from, 1, static_cast<int>(to - from), 1, pointers_to(numbers));
       },
       [&](std::size_t i, const Eigen::Matrix3d& block) {
         const auto numbers = numbers_of(block);
-        cycle_.add_to_diagonal(i, 1, pointers_to(numbers));
+        grid_.add_to_diagonal(i, 1, pointers_to(numbers));
       });
   return fits;
 }

@@ -1,11 +1,12 @@
-// Linear systems of an implicit step on a grid by conjugate gradients with a cycle of multigrid
-// (sparse/block_multigrid.h).
+// Linear systems of an implicit step by conjugate gradients with a cycle of multigrid: on a grid by its rows
+// and columns (sparse/block_multigrid.h), on a mesh by smoothed aggregation (sparse/aggregation_multigrid.h).
 //
 // The cycle is made from the clamped matrix, which is positive definite, and serves the exact one as well,
 // also where that is not (forces/linearisation.h).
 #pragma once
 
-#include "integrators/implicit/linear_solver.h"
+#include "integrators/implicit/free_blocks.h"
+#include "sparse/aggregation_multigrid.h"
 #include "sparse/block_multigrid.h"
 
 namespace cloth {
@@ -19,21 +20,28 @@ Stiffest stiffest_of(const ClothSystem& system);
 
 class MultigridSolver {
  public:
-  /// Whether it can be prepared: a grid, whose elements reach two rows and columns at most.
+  /// Whether it can be prepared: a mesh, or a grid of three rows and columns at least.
   static bool suits(const ClothSystem& system);
-  /// Cubic splines where bending is stiffer than the springs, as in paper.
+  /// On a grid: cubic splines where bending is stiffer than the springs, as in paper.
   static Interpolation interpolation(const ClothSystem& system);
 
-  /// Makes the cycle; false where it could not be made, and nothing can be solved.
-  bool prepare(const ClothSystem& system, const Linearisation& clamped);
+  /// Makes the cycle; false where it could not be made, and nothing can be solved. `position`, m: where the
+  /// matrix was linearised.
+  bool prepare(const ClothSystem& system, const Linearisation& clamped, const Vec3Field& position);
   /// One cycle.
-  void precondition(const Vec3Field& residual, Vec3Field& correction) { cycle_.solve(residual, correction); }
+  void precondition(const Vec3Field& residual, Vec3Field& correction);
 
  private:
+  bool prepare_grid(const ClothSystem& system, const Linearisation& clamped);
+  bool prepare_mesh(const ClothSystem& system, const Linearisation& clamped, const Vec3Field& position);
   bool add_bending(const ClothSystem& system, double weight);
   bool add_sliders(const ClothSystem& system, const Linearisation& matrix);
 
-  BlockMultigrid cycle_;
+  bool is_mesh_ = false;
+  BlockMultigrid grid_;
+  FreeBlocks blocks_;  ///< of a mesh, and its cycle
+  AggregationMultigrid aggregation_;
+  std::vector<double> numbers_, corrections_;  ///< scratch
 };
 
 }  // namespace cloth

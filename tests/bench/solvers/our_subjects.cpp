@@ -50,7 +50,7 @@ class FactorsSubject : public LinearSubject {
   bool is_direct() const override { return true; }
   bool analyse() override {
     BlockCholesky factors(3);
-    analyse_free_rows(system_.system, factors);
+    analyse_free_rows(system_.system, free_rows(system_.system), factors);
     return true;
   }
   /// Gathering the blocks is part of it.

@@ -13,6 +13,7 @@
 #include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
+#include "support/material_meshes.h"
 #include "support/scenes.h"
 #include "support/states.h"
 #include "support/test_names.h"
@@ -70,21 +71,41 @@ TEST(ImplicitEuler, SolvesItsEquationWithEveryForce) {
   }
 }
 
-TEST(ImplicitEuler, SolvesItsEquationByMultigridToo) {
-  Scene scene = smooth_scene(64, 61);
-  scene.springs = SpringMaterial{.structural = 3e4, .shear = 2e4, .flexion = 5e3, .damping = 0.02};
+/// From a state so crumpled that the matrix is not positive definite.
+void expect_that_multigrid_solves_the_equation(const Scene& scene) {
   DirectRun run(scene, tight("implicit-euler"));
   ASSERT_EQ(
       choose_linear_method(run.system, {.position = long_step * long_step, .velocity = long_step}).method,
       LinearMethod::multigrid);
   Random random;
-  run.state = crumpled_state(run.system, 0.01, 0.5, random);  // so that the matrix is not positive definite
+  run.state = crumpled_state(run.system, 0.01, 0.5, random);
   for (int n = 0; n < 3; ++n) {
     const Vec3Field before = run.state.velocity;
     run.advance(1, long_step);
     const ClothState after = run.state;
     EXPECT_LE(equation_residual(run, before, long_step, after.position, after.velocity, after.time), 1e-10);
   }
+}
+
+TEST(ImplicitEuler, SolvesItsEquationByMultigridToo) {
+  Scene scene = smooth_scene(64, 61);
+  scene.springs = SpringMaterial{.structural = 3e4, .shear = 2e4, .flexion = 5e3, .damping = 0.02};
+  expect_that_multigrid_solves_the_equation(scene);
+}
+
+TEST(ImplicitEuler, SolvesItsEquationByMultigridOfAMeshToo) {
+  Random random;
+  Material material;
+  material.areal_density = 0.2, material.shear = 30;
+  material.stretch_warp = 120, material.stretch_weft = 60;
+  material.bending_warp = 2e-5, material.bending_weft = 1e-5, material.twist = 1e-5;
+  Scene scene = material_mesh_sheet(40, 40, 1, 1, 0.3, material, random);
+  scene.cloth.pins = {PinnedParticle{0, 0}, PinnedParticle{0, 39}};
+  expect_that_multigrid_solves_the_equation(scene);
+  scene.material.reset();
+  scene.cloth.mass = 0.25;
+  scene.springs = SpringMaterial{.structural = 3e4, .flexion = 5e3, .damping = 0.02};
+  expect_that_multigrid_solves_the_equation(scene);
 }
 
 TEST(ImplicitMidpoint, SolvesItsEquationWithEveryForce) {
@@ -281,6 +302,22 @@ TEST(LinearChoice, TakesTheCheapestAndMultigridOnlyWhereItsPrecisionAllows) {
       EXPECT_GE(choice.gradients, before);
       before = choice.gradients;
     }
+  }
+}
+
+TEST(LinearChoice, TakesMultigridOnFineMeshesAtEveryStiffness) {
+  Random random;
+  const auto chosen = [&](int side, double stiffness) {
+    Scene scene = material_mesh_sheet(side, side, 1, 1, 0.3, {}, random);
+    scene.material.reset();
+    scene.springs = SpringMaterial{.structural = stiffness, .flexion = 0.1 * stiffness};
+    return choose_linear_method(Simulation(scene).system(), {.position = 1.0 / 3600, .velocity = 1.0 / 60})
+        .method;
+  };
+  EXPECT_EQ(chosen(33, 1e-3), LinearMethod::conjugate_gradients);
+  for (double stiffness = 1000; stiffness <= 1e7; stiffness *= 100) {
+    EXPECT_EQ(chosen(9, stiffness), LinearMethod::cholesky);
+    EXPECT_EQ(chosen(65, stiffness), LinearMethod::multigrid);
   }
 }
 

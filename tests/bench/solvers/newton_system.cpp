@@ -7,6 +7,7 @@
 #include "forces/force_model.h"
 #include "geometry/split_mix.h"
 #include "integrators/implicit/linear_solver.h"
+#include "scene/scene_mesh.h"
 #include "simulation/simulation.h"
 
 namespace cloth::solvers {
@@ -19,6 +20,39 @@ double norm(const Vec3Field& field) {
   return std::sqrt(dot(field.flat(), field.flat()));
 }
 
+/// Of 0 to 1 from the generator's next number.
+double part(SplitMix& random) {
+  return static_cast<double>(random.bits() >> 11) * 0x1p-53;
+}
+
+/// 1 m x 1 m in the plane y = 0 from z = 0, which is pinned: points up to a quarter of a cell off, cells cut
+/// along the one or the other diagonal, always the same.
+void cut_to_triangles(ClothSheet& cloth, int size) {
+  SplitMix random(2);
+  const double cell = 1.0 / (size - 1);
+  TriangleMesh surface;
+  cloth.pins.clear();
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const bool is_inside = row > 0 && row + 1 < size && column > 0 && column + 1 < size;
+      const double off = is_inside ? 0.5 * cell : 0;
+      const double x = cell * column + off * (part(random) - 0.5),
+                   z = cell * row + off * (part(random) - 0.5);
+      surface.vertices.emplace_back(x, 0, z);
+      if (row == 0) cloth.pins.push_back(PinnedParticle{0, column});
+    }
+  for (int row = 0; row + 1 < size; ++row)
+    for (int column = 0; column + 1 < size; ++column) {
+      const int p = row * size + column, q = p + 1, s = p + size, r = s + 1;
+      const bool falls = part(random) < 0.5;
+      surface.triangles.push_back(falls ? Triangle{p, s, r} : Triangle{p, s, q});
+      surface.triangles.push_back(falls ? Triangle{p, r, q} : Triangle{q, s, r});
+    }
+  cloth.mesh = made_mesh("sheet.obj", surface);
+  cloth.rows = 1, cloth.columns = size * size;
+  cloth.origin = Vec3::Zero();
+}
+
 Scene scene_of(ClothShape shape, int size) {
   Scene scene;
   scene.cloth.rows = scene.cloth.columns = size;
@@ -26,10 +60,11 @@ Scene scene_of(ClothShape shape, int size) {
   scene.gravity = Vec3(0, -9.81, 0);
   scene.integrator.method = "implicit-euler";
   scene.integrator.time_step = step;
-  const bool is_smooth = shape == ClothShape::smooth;
+  const bool is_smooth = shape != ClothShape::buckled;
   scene.cloth.pins = is_smooth ? std::vector<Pin>{NamedPin::top_edge}
                                : std::vector<Pin>{NamedPin::top_left, NamedPin::top_right};
   scene.cloth.down = is_smooth ? Vec3(0, 0, 1) : Vec3(0, -0.95, 0.3);
+  if (shape == ClothShape::mesh) cut_to_triangles(scene.cloth, size);
   return scene;
 }
 
@@ -41,8 +76,7 @@ void squeeze(ClothSystem& system, ClothState& state) {
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     Vec3 x = state.position[i];
     x.x() *= 0.85;
-    const double part = static_cast<double>(random.bits() >> 11) * 0x1p-53;
-    if (!system.pinned[i]) x.z() += 0.02 * cell * (2 * part - 1);
+    if (const double p = part(random); !system.pinned[i]) x.z() += 0.02 * cell * (2 * p - 1);
     state.position.set(i, x);
   }
 }
@@ -67,6 +101,7 @@ class OneStep {
       if (result_.iteration == wanted_iteration || norm(residual_) < 1e-7 * first) break;
       go_along();
     }
+    result_.position = position_;
     result_.right_hand_side = residual_;
     for (double& value : result_.right_hand_side.flat()) value = -value;
   }
@@ -126,7 +161,7 @@ double NewtonSystem::relative_residual(const Vec3Field& solution) const {
 
 std::unique_ptr<NewtonSystem> newton_system(ClothShape shape, int size) {
   const Scene scene = scene_of(shape, size);
-  const bool is_smooth = shape == ClothShape::smooth;
+  const bool is_smooth = shape != ClothShape::buckled;
   Simulation simulation(scene, is_smooth ? Preparation{} : squeeze);
   simulation.advance(is_smooth ? 20 : 5);
   auto result = std::make_unique<NewtonSystem>();

@@ -1,4 +1,5 @@
-// A linear system as Newton's method meets it in a step of implicit Euler: a hanging grid of springs, 1/60 s.
+// A linear system as Newton's method meets it in a step of implicit Euler: a hanging cloth of springs, 1/60
+// s.
 #pragma once
 
 #include <memory>
@@ -10,14 +11,17 @@
 namespace cloth::solvers {
 
 /// `smooth`: a sheet pinned along its upper edge that swings down. `buckled`: one that hangs by two corners
-/// which are 15 % nearer to each other than the sheet is wide, just after it began to buckle.
-enum class ClothShape { smooth, buckled };
-inline constexpr const char* cloth_shape_names[] = {"smooth", "buckled"};
+/// which are 15 % nearer to each other than the sheet is wide, just after it began to buckle. `mesh`: the
+/// first in irregular triangles.
+enum class ClothShape { smooth, buckled, mesh };
+inline constexpr const char* cloth_shape_names[] = {"smooth", "buckled", "mesh, smooth"};
+inline constexpr ClothShape cloth_shapes[] = {ClothShape::smooth, ClothShape::buckled, ClothShape::mesh};
 
 struct NewtonSystem {
   ClothSystem system;
   Linearisation matrix;        ///< A: exact, or clamped where that is not positive definite
   Linearisation clamped;       ///< what multigrid is made from; equal to A where no spring is compressed
+  Vec3Field position;          ///< m, where it was linearised
   Vec3Field right_hand_side;   ///< N s, 0 on pins
   int iteration = 0;           ///< of Newton's method in its step
   bool is_exact = true;        ///< A is the exact Jacobian
@@ -28,7 +32,7 @@ struct NewtonSystem {
 };
 
 /// The fourth iteration's system, or the last one's where it converged before. 1000 N/m structural, 500
-/// shear, 100 flexion, 0.25 kg, 1 m x 1 m.
+/// shear (of a grid), 100 flexion, 0.25 kg, 1 m x 1 m.
 std::unique_ptr<NewtonSystem> newton_system(ClothShape shape, int size);
 
 /// All of a symmetric matrix, row by row, columns ascending; row 3 k + c is component c of free particle k.

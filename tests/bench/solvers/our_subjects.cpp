@@ -29,7 +29,12 @@ class MultigridSubject : public LinearSubject {
  public:
   explicit MultigridSubject(const NewtonSystem& system) : system_(system) {}
   std::string name() const override { return "conjugate gradients, multigrid"; }
-  bool set_up() override { return multigrid_.prepare(system_.system, system_.clamped); }
+  /// Of a mesh its pattern and aggregates, with the numbers of a first cycle.
+  bool analyse() override {
+    return system_.system.is_mesh() &&
+           MultigridSolver().prepare(system_.system, system_.clamped, system_.position);
+  }
+  bool set_up() override { return multigrid_.prepare(system_.system, system_.clamped, system_.position); }
   int solve(double tolerance, Vec3Field& solution) override {
     const LinearMap cycle = [this](const Vec3Field& in, Vec3Field& out) { multigrid_.precondition(in, out); };
     const KrylovReport report =

@@ -135,10 +135,10 @@ SolverReport study_solvers(const SolverOptions& options) {
   report.residual = options.residual;
   report.repeats = options.repeats;
   report.missing = missing_libraries();
-  const double all = 2.0 * static_cast<double>(options.sizes.size());
+  const double all = std::size(cloth_shapes) * static_cast<double>(options.sizes.size());
   double done = 0;
   for (const int size : options.sizes)
-    for (const ClothShape shape : {ClothShape::smooth, ClothShape::buckled}) {
+    for (const ClothShape shape : cloth_shapes) {
       const auto goes_on = [&](double fraction, const std::string& name) {
         return !options.progress ||
                options.progress((done + fraction) / all, std::to_string(size) + ", " + name);

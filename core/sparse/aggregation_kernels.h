@@ -20,6 +20,7 @@ struct RowIndex {
 struct AggregationLevel {
   RowIndex index;
   const int* diagonal = nullptr;  ///< entry of each row
+  int reach = 0;                  ///< the furthest column from its row
   const float *blocks = nullptr, *inverse = nullptr;
   float *x = nullptr, *b = nullptr, *r = nullptr;
 };

@@ -43,7 +43,8 @@ bool invert(const float* block, float* inverse) {
 }  // namespace
 
 AggregationLevel AggregationMultigrid::Level::loops() {
-  return {index_of(pattern), diagonal.data(), blocks.data(), inverse.data(), x.data(), b.data(), r.data()};
+  return {index_of(pattern), diagonal.data(), reach,    blocks.data(),
+          inverse.data(),    x.data(),        b.data(), r.data()};
 }
 
 AggregationTransfer AggregationMultigrid::Level::transfer(Level& coarse) {
@@ -66,6 +67,7 @@ void AggregationMultigrid::set_pattern(Level& level, SparsePattern pattern, std:
   level.block = block;
   for (int i = 0; i < level.rows(); ++i) {
     level.diagonal.push_back(static_cast<int>(level.pattern.entry(i, i)));
+    level.reach = std::max(level.reach, level.pattern.row(i).back() - i);
     for (const int j : level.pattern.row(i))
       level.mirrored.push_back(static_cast<int>(level.pattern.entry(j, i)));
   }

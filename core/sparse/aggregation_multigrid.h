@@ -42,6 +42,7 @@ class AggregationMultigrid {
     std::size_t block = 3;  ///< rows
     SparsePattern pattern;
     std::vector<int> diagonal, mirrored;
+    int reach = 0;          ///< the furthest column from its row
     Aggregates aggregates;  ///< the points of the next level; none on the coarsest
     SparsePattern prolongator, image;
     std::vector<int> place;

@@ -10,7 +10,7 @@
 
 namespace cloth {
 
-/// Conjugate gradients with the inverses of the diagonal's blocks as preconditioner, or on grids with a cycle
+/// Conjugate gradients with the inverses of the diagonal's blocks as preconditioner, or with a cycle
 /// of multigrid (multigrid_solver.h).
 enum class LinearMethod { cholesky, conjugate_gradients, multigrid };
 
@@ -24,7 +24,7 @@ struct LinearChoice {
   double factors = 0;                            ///< s
   double gradients = 0;                          ///< s
   double iterations = 0;                         ///< of conjugate gradients
-  std::optional<double> multigrid = {};  ///< s; none: not on this cloth, or too stiff for its precision
+  std::optional<double> multigrid = {};  ///< s; none: a grid that is too small, or too stiff for its precision
 };
 LinearChoice choose_linear_method(const ClothSystem& system, const LinearisationWeights& weights);
 

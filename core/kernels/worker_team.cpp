@@ -13,6 +13,15 @@ namespace {
 
 /// Longer than what lies between two parallel loops of a step: to wake a thread costs tens of microseconds.
 constexpr std::chrono::microseconds awake{1000};
+/// Where threads have to share cores, who waits holds up whom it waits for.
+constexpr std::chrono::microseconds awake_in_a_crowd{10};
+
+std::atomic<int> hired{0};  ///< threads of all teams
+
+std::chrono::microseconds time_awake() {
+  static const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return cores == 0 || hired.load(std::memory_order_relaxed) < cores ? awake : awake_in_a_crowd;
+}
 
 void relax() {
 #if defined(__x86_64__) || defined(_M_X64)
@@ -23,7 +32,7 @@ void relax() {
 /// Returns when `value` is no longer `old`: it changes soon, or it may take long.
 template <class T>
 void wait_for_change(const std::atomic<T>& value, T old) {
-  const auto until = std::chrono::steady_clock::now() + awake;
+  const auto until = std::chrono::steady_clock::now() + time_awake();
   do {
     for (int k = 0; k < 64; ++k) {
       if (value.load(std::memory_order_acquire) != old) return;
@@ -60,7 +69,10 @@ WorkerTeam::~WorkerTeam() {
 bool WorkerTeam::hire(int workers) {
   try {
     workers_.reserve(static_cast<std::size_t>(workers));
-    for (int share = 1; share <= workers; ++share) workers_.emplace_back([this, share] { work(share); });
+    for (int share = 1; share <= workers; ++share) {
+      workers_.emplace_back([this, share] { work(share); });
+      hired.fetch_add(1, std::memory_order_relaxed);
+    }
   } catch (const std::system_error&) {
     return false;
   } catch (const std::bad_alloc&) {
@@ -74,6 +86,7 @@ void WorkerTeam::dismiss() {
   job_number_.fetch_add(1, std::memory_order_release);
   job_number_.notify_all();
   for (std::thread& worker : workers_) worker.join();
+  hired.fetch_sub(static_cast<int>(workers_.size()), std::memory_order_relaxed);
   workers_.clear();
   job_number_ = 0;
   stops_ = false;

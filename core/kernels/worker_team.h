@@ -1,5 +1,6 @@
 // A team of threads for parallel loops that are repeated many times. Between two jobs the threads spin for a
-// short time, because the next step of a simulation usually follows within microseconds, and then sleep.
+// short time, because the next step of a simulation usually follows within microseconds, and then sleep: at
+// once where there are more threads than cores.
 #pragma once
 
 #include <atomic>

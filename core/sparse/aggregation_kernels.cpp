@@ -83,7 +83,8 @@ CLOTHLAB_INLINE void solve_point(const AggregationLevel& l, int i, Vector<size> 
   write(l.x + vector<size>(i), product<size>(block_of<size>(l.inverse, i), numbers));
 }
 
-/// What is left of a row's residual once the rows that it reaches are solved, lies in the cache still.
+/// A row's residual is taken as soon as the rows that it reaches are solved: its blocks lie in the cache
+/// still.
 template <int size>
 void descend(const AggregationLevel& level) {
   const AggregationLevel l = level;

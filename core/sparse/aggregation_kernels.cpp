@@ -1,5 +1,8 @@
 #include "sparse/aggregation_kernels.h"
 
+// Functions that take or return registers are inlined: how they would be passed between calls is no question.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace cloth {
 namespace {
 

@@ -23,7 +23,8 @@ RowIndex index_of(const SparsePattern& pattern) {
   return {pattern.rows(), pattern.begin.data(), pattern.column.data()};
 }
 
-/// The inverse of a positive definite block, whose rows may be zero, in place of it; false where it is not.
+/// Of a positive definite block, of which rows with their columns may be zero and stay so; false where it is
+/// not that.
 template <int size>
 bool invert(const float* block, float* inverse) {
   using Square = Eigen::Matrix<double, size, size>;
@@ -57,7 +58,7 @@ AggregationTransfer AggregationMultigrid::Level::transfer(Level& coarse) {
   return t;
 }
 
-const AggregationKernels::Loops& AggregationMultigrid::kernels(const Level& level) const {
+const AggregationKernels::Loops& AggregationMultigrid::kernels(const Level& level) {
   const AggregationKernels& all = active_kernels<AggregationKernels>();
   return level.block == 3 ? all.three : all.six;
 }
@@ -240,19 +241,6 @@ void AggregationMultigrid::solve(std::span<const double> residual, std::span<dou
   cycle(0);
   for (std::size_t i = 0; i < points; ++i)
     for (std::size_t c = 0; c < 3; ++c) correction[3 * i + c] = static_cast<double>(finest.x[width * i + c]);
-}
-
-std::size_t AggregationMultigrid::memory() const {
-  std::size_t bytes = coarsest_.size() * sizeof(double);
-  for (const Level& l : levels_) {
-    for (const auto* floats : {&l.blocks, &l.inverse, &l.x, &l.b, &l.r, &l.p, &l.row, &l.basis, &l.sums})
-      bytes += floats->size() * sizeof(float);
-    for (const SparsePattern* pattern : {&l.pattern, &l.prolongator, &l.image})
-      bytes += (pattern->begin.size() + pattern->column.size()) * sizeof(int);
-    bytes += (l.modes.size() + l.tentative.size()) * sizeof(double);
-    bytes += (l.diagonal.size() + l.mirrored.size() + l.place.size()) * sizeof(int);
-  }
-  return bytes;
 }
 
 }  // namespace cloth

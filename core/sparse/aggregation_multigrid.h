@@ -34,9 +34,6 @@ class AggregationMultigrid {
   /// One cycle from zero: correction, about A^-1 residual; three numbers for each unknown.
   void solve(std::span<const double> residual, std::span<double> correction);
 
-  int levels() const { return static_cast<int>(levels_.size()); }
-  std::size_t memory() const;  ///< bytes
-
  private:
   struct Level {
     std::size_t block = 3;  ///< rows
@@ -62,7 +59,7 @@ class AggregationMultigrid {
   bool invert_coarsest();
   void solve_coarsest();
   void cycle(std::size_t number);
-  const AggregationKernels::Loops& kernels(const Level& level) const;
+  static const AggregationKernels::Loops& kernels(const Level& level);
 
   std::vector<Level> levels_;
   std::vector<std::size_t> upper_, lower_;  ///< of each coupling, entries of the finest pattern

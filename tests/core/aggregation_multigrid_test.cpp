@@ -8,8 +8,6 @@
 #include <set>
 
 #include "geometry/at.h"
-#include "geometry/dense_decompositions.h"
-#include "integrators/implicit/linear_choice.h"
 #include "kernels/instruction_set.h"
 #include "support/linearised_cloth.h"
 #include "support/material_meshes.h"
@@ -70,7 +68,7 @@ TEST_P(MeshJacobianOfEverySet, IsSolvedAsByFactorsInFewIterations) {
   expect_the_solution_of_factors(knit_cut_round(30), 1.0 / 60, 0.003, 80);
 }
 
-/// A thousandth of a cell off the plane, as every one is.
+/// Every particle a fiftieth of a cell off its place.
 int iterations_of(const Scene& scene, int side) {
   return iterations_to_a_thousandth(scene, 1.0 / 60, 0.02 / side);
 }

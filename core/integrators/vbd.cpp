@@ -86,22 +86,22 @@ void Vbd::add_springs(const Visits& visits, std::size_t i, Local& local) const {
   }
 }
 
-/// E = 1/2 k |s|^2 is quadratic: s/c is how far the element alone would move the point.
+/// The energy is quadratic: push/own is how far bending alone would move the particle.
 void Vbd::add_bending(const Visits& visits, std::size_t i, Local& local) const {
   const double h = visits.step, time = visits.parts.bending_time;
-  for (const ElementPoint& point : elements_.bending(i)) {
-    const BendingRun& run = visits.system.bending[at(point.run)];
-    const double c = run.coefficient[at(point.point)];
-    if (c == 0) continue;
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p) {
-      const std::size_t j = at(point.element + run.offset[p]);
-      sum += run.coefficient[p] * (visits.state.position[j] + time * visits.state.velocity[j]);
-    }
-    local.push -= h * run.stiffness * c * sum;
-    local.add_isotropic(h * (h + time) * run.stiffness * c * c);
-    local.reach = std::max(local.reach, sum.norm() / std::abs(c));
+  const Vec3Field &x = visits.state.position, &v = visits.state.velocity;
+  const Vec3 here = x[i], speed = v[i];
+  Vec3 pull = Vec3::Zero();
+  double own = 0;
+  for (const BendingEntry& entry : elements_.bending(i)) {
+    const std::size_t j = at(entry.other);
+    pull -= entry.stiffness * (x[j] - here + time * (v[j] - speed));
+    own -= entry.stiffness;
   }
+  if (!(own > 0)) return;
+  local.push += h * pull;
+  local.add_isotropic(h * (h + time) * own);
+  local.reach = std::max(local.reach, pull.norm() / own);
 }
 
 /// With the stiffness of a slider that does not yield, which is never too little.
@@ -216,7 +216,7 @@ void Vbd::predict_again(ForceModel& forces, double end, Visits& visits, int& eva
 }
 
 bool Vbd::suits_kernels(const NodeDamping& parts) const {
-  if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_stretch_time())) return false;
+  if (!descent_ || (parts.stretch_time > 0 && !descent_->takes_elements())) return false;
   return parts.along_normal.each >= 0 && parts.along_normal.per_mass >= 0;  // else no real b
 }
 
@@ -231,13 +231,15 @@ bool Vbd::is_visited_by_kernels(const Visits& visits) const {
   constexpr double largest_ratio = 1e10;
   const NodeDamping& parts = visits.parts;
   if (!suits_kernels(parts)) return false;
-  double stiffest = 0, lightest = std::numeric_limits<double>::infinity();
-  for (const SpringBlock& block : visits.system.springs.blocks())
-    stiffest = std::max(stiffest, block.run.stiffness);
+  double lightest = std::numeric_limits<double>::infinity();
   for (const Inertia& inertia : inertia_)
     if (inertia.mass > 0) lightest = std::min(lightest, inertia.mass);
   const double h = visits.step;
-  return h * ((h + parts.stretch_time) * stiffest + parts.along_springs) < largest_ratio * lightest;
+  const double stiffest =
+      std::max({h * ((h + parts.stretch_time) * stiffest_.spring + parts.along_springs),
+                h * (h + parts.bending_time) * stiffest_.bending,
+                h * (h + parts.membrane_time) * stiffest_.edge, h * h * stiffest_.slider});
+  return stiffest < largest_ratio * lightest;
 }
 
 void Vbd::set_drag() {
@@ -255,6 +257,9 @@ Vbd::Sweep Vbd::descend_by_kernels(ForceModel& forces, double end, Visits& visit
                    .mass = mass_,
                    .spring_damping = visits.parts.along_springs,
                    .stretch_time = visits.parts.stretch_time,
+                   .bending_time = visits.parts.bending_time,
+                   .membrane_time = visits.parts.membrane_time,
+                   .sliders = visits.parts.sliders,
                    .position = start_position_,
                    .predicted = predicted_,
                    .extrapolates = accelerated_,
@@ -295,17 +300,36 @@ Vbd::Sweep Vbd::descend(ForceModel& forces, double end, Visits& visits, int& eva
   });
 }
 
+/// Precondition: `elements` are listed, or there is no bending.
+Vbd::Stiffest Vbd::stiffest_of(const ClothSystem& system, const ParticleElements& elements) {
+  Stiffest most;
+  for (const SpringBlock& block : system.springs.blocks())
+    most.spring = std::max(most.spring, block.run.stiffness);
+  for (std::size_t i = 0; i < system.mass.size() && !system.bending.empty(); ++i) {
+    double own = 0;
+    for (const BendingEntry& entry : elements.bending(i)) own -= entry.stiffness;
+    most.bending = std::max(most.bending, own);
+  }
+  for (const MembraneTriangle& t : system.membrane)
+    for (const double edge : edge_bounds(t)) most.edge = std::max(most.edge, edge);
+  for (const BendingSlider& s : system.sliders)
+    for (const double c : s.coefficient) most.slider = std::max(most.slider, s.area * s.stiffness * c * c);
+  return most;
+}
+
 void Vbd::prepare(const ClothSystem& system) {
   if (elements_.describe(system)) return;
   elements_ = ParticleElements(system);
   descent_.reset();
-  if (!system.bending.empty() || !system.sliders.empty() || !system.membrane.empty()) return;
-  if (const auto grid = grid_springs(system)) {
-    if (GridDescent::suits(*grid)) descent_ = std::make_unique<GridDescent>(*grid);
-  } else if (MeshDescent::suits(system.springs)) {
+  const bool has_springs_alone = system.bending.empty() && system.sliders.empty() && system.membrane.empty();
+  const auto grid = has_springs_alone ? grid_springs(system) : std::nullopt;
+  if (grid && GridDescent::suits(*grid)) {
+    descent_ = std::make_unique<GridDescent>(*grid);
+  } else if (!grid && MeshDescent::suits(system.springs)) {
     elements_.list();
-    descent_ = std::make_unique<MeshDescent>(system.springs, elements_.colours(), system.mass.size());
+    descent_ = std::make_unique<MeshDescent>(system, elements_);
   }
+  if (descent_) stiffest_ = stiffest_of(system, elements_);
 }
 
 IntegratorReport Vbd::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {

@@ -19,8 +19,9 @@
 // K is clamped: of a spring k [n n^T + max(1 - L/l, 0) (I - n n^T)], likewise of a triangle's edges, so that
 // A is positive definite whatever the shape. A spring without length has k I and no force. No visit moves its
 // particle further than where any element, or its inertia, alone would have it: the reach of a clamped matrix
-// is too long where a cloth is crushed. The particles are visited colour by colour (particle_elements.h); of
-// a cloth of springs alone the kernels visit many of a colour at a time (kernels/particle_descent.h).
+// is too long where a cloth is crushed. All of bending, which is quadratic, is one element in that. The
+// particles are visited colour by colour (cloth/particle_elements.h), many of a colour at a time
+// (kernels/particle_descent.h).
 //
 // Chebyshev's semi-iteration (Wang 2015; Chen et al., section 3.8) extrapolates after every iteration but the
 // last: x <- omega (x - x_before) + x_before, x_before the iterate that the last one began from was made of.
@@ -37,8 +38,8 @@
 
 #include <memory>
 
+#include "cloth/particle_elements.h"
 #include "integrators/integrator.h"
-#include "integrators/particle_elements.h"
 #include "kernels/particle_descent.h"
 
 namespace cloth {
@@ -97,6 +98,12 @@ class Vbd : public Integrator {
     int failed = -1;     ///< a particle whose equation had no finite solution; it has stayed
   };
 
+  /// N/m: what a cloth's elements bring to the matrix of a particle at most, about.
+  struct Stiffest {
+    double spring = 0, bending = 0, edge = 0, slider = 0;
+  };
+  static Stiffest stiffest_of(const ClothSystem& system, const ParticleElements& elements);
+
   void prepare(const ClothSystem& system);
   void predict(const ForceModel& forces, const Vec3Field& reference, Visits& visits);
   /// The iterations, each sweep(k) and between two of them extrapolate(weight); returns the last sweep.
@@ -121,7 +128,8 @@ class Vbd : public Integrator {
   int iterations_;
   bool accelerated_;
   ParticleElements elements_;
-  std::unique_ptr<ParticleDescent> descent_;  ///< null where there are other elements than springs
+  Stiffest stiffest_;                         ///< where there is a descent_
+  std::unique_ptr<ParticleDescent> descent_;  ///< null where a spring is rigid
   std::vector<double> mass_;                  ///< kg, of W^-1 for the kernels
   Vec3Field drag_;                            ///< kg^1/2, likewise: b b^T = along n n^T
   std::vector<Inertia> inertia_;

@@ -17,16 +17,17 @@ Xpbd::Visitor Xpbd::visitor_for(const ForceModel& forces, const NodeDamping& par
   const bool has_negative_part = parts.along_normal.each < 0 || parts.along_normal.per_mass < 0;
   if (has_negative_part) return Visitor::one_by_one;  // less drag along the normal than across it
   if (!coloured_.describe(system)) coloured_ = ColouredSprings(system);
-  return coloured_.are_visited_by_vectors() ? Visitor::colours : Visitor::one_by_one;
+  if (!elements_.describe(system)) elements_ = ProjectedElements(system);
+  return coloured_.are_visited_by_vectors() && elements_.suits_kernels() ? Visitor::colours
+                                                                         : Visitor::one_by_one;
 }
 
 std::string Xpbd::visits_text(const ForceModel& forces) {
   const Visitor visitor = visitor_for(forces, forces.damping_parts());
-  std::string text = visitor == Visitor::grid      ? "springs by vectors, row by row"
-                     : visitor == Visitor::colours ? "springs by vectors, colour by colour"
-                                                   : "springs one by one";
-  if (has_others_) text += ", other elements one by one";
-  return text;
+  const std::string what = has_others_ ? "springs and other elements" : "springs";
+  return what + (visitor == Visitor::grid      ? " by vectors, row by row"
+                 : visitor == Visitor::colours ? " by vectors, colour by colour"
+                                               : " one by one");
 }
 
 void Xpbd::begin_substeps(const ForceModel& forces, const NodeDamping& parts, double h) {
@@ -48,7 +49,9 @@ void Xpbd::begin_substeps(const ForceModel& forces, const NodeDamping& parts, do
   bending_time_ = parts.bending_time, membrane_time_ = parts.membrane_time;
   sliders_ = parts.sliders;
   if (visitor_ == Visitor::grid) forces.sweep()->begin_projections(isotropic_);
-  if (visitor_ == Visitor::colours) coloured_.begin(h, {parts.along_springs, parts.stretch_time}, isotropic_);
+  if (visitor_ != Visitor::colours) return;
+  coloured_.begin(h, {parts.along_springs, parts.stretch_time}, isotropic_);
+  if (has_others_) elements_.begin({parts.bending_time, parts.membrane_time}, isotropic_);
 }
 
 /// v* and b. Inverted after Sherman and Morrison (1950): n is of length one or zero.
@@ -141,7 +144,7 @@ double Xpbd::visit_springs(const ClothSystem& system, const Vec3Field& start, do
 
 double Xpbd::visit_others(const ClothSystem& system, const Vec3Field& start, double h, Vec3Field& velocity) {
   double largest = 0;
-  std::size_t element = first_of_others(system);
+  std::size_t element = system.springs.spring_count();
   for (const BendingRun& run : system.bending)
     for (int e = run.first; e < run.first + run.count; ++e, ++element)
       largest = std::max(largest, visit(run, e, start, h, impulse_[element], velocity));
@@ -161,10 +164,8 @@ double Xpbd::pass(const ClothSystem& system, const Vec3Field& start, double h, b
     return std::max(visit_springs(system, start, h, velocity), visit_others(system, start, h, velocity));
   const double by_springs = coloured_.visit(measured);
   if (!has_others_) return by_springs;
-  coloured_.give(velocity);
-  const double by_others = visit_others(system, start, h, velocity);
-  coloured_.take(velocity);
-  return std::max(by_springs, by_others);
+  elements_.visit(coloured_.particles());
+  return std::max(by_springs, coloured_.particles().largest_change);
 }
 
 /// The impulse P on kappa is linear in P where the slider does not yield: P = -h A K (kappa' - slip), kappa'
@@ -264,12 +265,8 @@ double Xpbd::visit(const BendingRun& run, int first, const Vec3Field& start, dou
   return largest;
 }
 
-std::size_t Xpbd::first_of_others(const ClothSystem& system) const {
-  return visitor_ == Visitor::one_by_one ? system.springs.spring_count() : 0;
-}
-
-std::size_t Xpbd::impulse_count(const ClothSystem& system) const {
-  std::size_t count = first_of_others(system);
+std::size_t Xpbd::impulse_count(const ClothSystem& system) {
+  std::size_t count = system.springs.spring_count();
   for (const BendingRun& run : system.bending) count += static_cast<std::size_t>(run.count);
   return count + system.sliders.size() + 3 * system.membrane.size();
 }
@@ -280,8 +277,11 @@ double Xpbd::substep(const ForceModel& forces, const NodeDamping& parts, double 
   if (visitor_ == Visitor::grid) return forces.sweep()->project(h, parts.along_springs, position, velocity);
   if (visitor_ == Visitor::colours)
     coloured_.begin_substep(position, velocity, parts.normal ? &drag_ : nullptr, iterations_ > 1);
-  if (visitor_ == Visitor::one_by_one || has_others_) note_mobilities(parts);
-  impulse_.assign(impulse_count(forces.system()), Vec3::Zero());
+  if (visitor_ == Visitor::colours && has_others_) elements_.begin_step(parts.sliders);
+  if (visitor_ == Visitor::one_by_one) {
+    note_mobilities(parts);
+    impulse_.assign(impulse_count(forces.system()), Vec3::Zero());
+  }
   double changed = 0;
   for (int k = 0; k < iterations_; ++k)
     changed = pass(forces.system(), position, h, measured && k + 1 == iterations_, velocity);

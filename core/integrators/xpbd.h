@@ -26,13 +26,15 @@
 // together: lambda = -h K (q' + t dq'/dt), with q' to first order in the change of a visit.
 // A slider of hysteresis (cloth/bending_sliders.h) has an impulse along its normal, bounded by its yield.
 //
-// The kernels visit the springs of a colour many at a time (kernels/coloured_visits.h). On a grid of springs
-// alone, without drag and with one iteration, where a visit begins without an impulse, they do so in an order
-// of the grid's own, without lists of springs (kernels/grid_projection.h).
+// The kernels visit the springs of a colour many at a time (kernels/coloured_visits.h), and the other
+// elements (kernels/projected_elements.h). On a grid of springs alone, without drag and with one iteration,
+// where a visit begins without an impulse, they do so in an order of the grid's own, without lists of springs
+// (kernels/grid_projection.h).
 #pragma once
 
 #include "integrators/integrator.h"
 #include "kernels/coloured_springs.h"
+#include "kernels/projected_elements.h"
 
 namespace cloth {
 
@@ -85,21 +87,21 @@ class Xpbd : public Integrator {
                Vec3Field& velocity) const;
   double visit(const BendingSlider& slider, std::size_t number, const Vec3Field& start, double h,
                Vec3& impulse, Vec3Field& velocity) const;
-  /// Where in impulse_ those of the other elements begin, and how many it holds.
-  std::size_t first_of_others(const ClothSystem& system) const;
-  std::size_t impulse_count(const ClothSystem& system) const;
+  static std::size_t impulse_count(const ClothSystem& system);
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
   Visitor visitor_ = Visitor::one_by_one;
   bool has_others_ = false;  ///< elements beside springs
   ColouredSprings coloured_;
+  ProjectedElements elements_;
   // w (1/kg, 0 where pinned); v* = (I - along n n^T) (kept v + pushed p), b b^T = w along n n^T.
   std::vector<double> isotropic_, kept_, pushed_, along_;
-  Vec3Field drag_;                  ///< b, kg^-1/2: W = w I - b b^T
-  std::vector<Mobility> mobility_;  ///< only where elements are visited one by one
-  /// N s, of every spring that is visited one by one, run after run, then of every bending element, then of
-  /// every slider (its first number), then of every triangle's corners.
+  Vec3Field drag_;  ///< b, kg^-1/2: W = w I - b b^T
+  // Only where elements are visited one by one.
+  std::vector<Mobility> mobility_;
+  /// N s, of every spring, run after run, then of every bending element, then of every slider (its first
+  /// number), then of every triangle's corners.
   std::vector<Vec3> impulse_;
   const SliderState* sliders_ = nullptr;
   double spring_damping_ = 0;                                       ///< N s/m

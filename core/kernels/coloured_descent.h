@@ -1,10 +1,9 @@
-// VBD's visits of the particles of any cloth of springs (integrators/vbd.h), many at a time: the visit of
-// grid_visits.h, with the springs of each particle in slots. The particles of a slice (mesh_descent.h) are of
-// one colour and share no spring; slice follows slice.
+// VBD's visits of the particles of any cloth (integrators/vbd.h), many at a time: the visit of grid_visits.h,
+// with the springs of each particle in slots, and the elements of a material (descent_elements.h). The
+// particles of a slice (mesh_descent.h) are of one colour and share no element; slice follows slice.
 #pragma once
 
-#include "kernels/local_pass.h"
-#include "kernels/particle_equation.h"
+#include "kernels/descent_elements.h"
 
 namespace cloth::kernels {
 namespace {
@@ -33,6 +32,7 @@ class ColouredParticles {
     const int end = descent_.slot_begin[slice + 1] * widest_vector + part;
     for (int at = descent_.slot_begin[slice] * widest_vector + part; at < end; at += widest_vector)
       add_spring(at, here, start, sums);
+    add_elements(slice, part, here, start, sums);
     if constexpr (dragged) add_drag(read_lanes(descent_.drag, place), shift, sums);
     const Vector change = move_of(sums, Lanes::load(descent_.free + place), shift), next = here + change;
     note_move(change, largest_, squares_);
@@ -62,6 +62,21 @@ class ColouredParticles {
     const V along = Lanes::mul(Lanes::sub(stiffness, across), square);
     const V reach = Lanes::where_positive(k, Lanes::fma(s, inverse, rest_length));
     add_element(d, tension, across, along, reach, sums);
+  }
+
+  CLOTHLAB_INLINE void add_elements(int slice, int part, const Vector& here, const Vector& start,
+                                    VisitSums& sums) {
+    const BendingSlots& bending = descent_.bending;
+    const TriangleSlots& triangles = descent_.triangles;
+    const SliderSlots& sliders = descent_.sliders;
+    if (bending.begin) add_bending(bending, slice, part, descent_.vectors, here, sums);
+    if (triangles.begin)
+      for (int slot = triangles.begin[slice]; slot < triangles.begin[slice + 1]; ++slot)
+        add_triangle<damped>(triangles, slot, part, descent_.vectors, descent_.start_vectors, here, start,
+                             sums);
+    if (sliders.begin)
+      for (int slot = sliders.begin[slice]; slot < sliders.begin[slice + 1]; ++slot)
+        add_slider(sliders, slot, part, descent_.vectors, sums);
   }
 
   ColouredDescent& descent_;

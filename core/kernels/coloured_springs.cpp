@@ -57,7 +57,7 @@ SpringOrder order_by_colours(const ClothSystem& system) {
 ColouredSprings::ColouredSprings(const ClothSystem& system)
     : springs_(system.springs), kernels_(&active_kernels<kernels::LocalKernels>()) {
   const SpringOrder order = order_by_colours(system);
-  by_vectors_ = order.fills_vectors;
+  by_vectors_ = order.fills_vectors || order.springs.empty();
   if (!by_vectors_) return;
   std::vector<int> place(system.springs.spring_count(), -1);
   int count = 0;
@@ -113,11 +113,6 @@ void ColouredSprings::store(const Vec3Field& field, AlignedDoubles& vectors) con
   kernels_->to_vectors(field.x(), field.y(), field.z(), vectors.data(), static_cast<int>(field.size()));
 }
 
-void ColouredSprings::take(const Vec3Field& velocity) {
-  store(velocity, velocity_);
-  pass_.velocity = velocity_.data();
-}
-
 void ColouredSprings::give(Vec3Field& velocity) const {
   kernels_->from_vectors(velocity_.data(), velocity.x(), velocity.y(), velocity.z(),
                          static_cast<int>(velocity.size()));
@@ -126,7 +121,8 @@ void ColouredSprings::give(Vec3Field& velocity) const {
 void ColouredSprings::begin_substep(const Vec3Field& position, const Vec3Field& velocity,
                                     const Vec3Field* drag, bool keeps_impulses) {
   store(position, position_);
-  take(velocity);
+  store(velocity, velocity_);
+  pass_.velocity = velocity_.data();
   if (drag) store(*drag, drag_);
   pass_.position = position_.data();
   pass_.drag = drag ? drag_.data() : nullptr;

@@ -31,6 +31,7 @@ class ColouredSprings {
   explicit ColouredSprings(const ClothSystem& system);
   /// Whether these are the springs of `system`, as it is now.
   bool describe(const ClothSystem& system) const { return springs_ == system.springs; }
+  /// Whether vectors would be filled, or there is no spring.
   bool are_visited_by_vectors() const { return by_vectors_; }
 
   /// Dampers along springs: `each` (N s/m), and a damping time times the stiffness.
@@ -47,8 +48,9 @@ class ColouredSprings {
   /// Visits every spring once. Returns, where it is `measured`, the largest squared change of a particle's
   /// velocity by a visit.
   double visit(bool measured);
-  /// To and from the velocities that the visits change.
-  void take(const Vec3Field& velocity);
+  /// What the visits move, for those of other elements (kernels/projected_elements.h).
+  kernels::ProjectedParticles& particles() { return pass_; }
+  /// The velocities that the visits have changed.
   void give(Vec3Field& velocity) const;
 
  private:

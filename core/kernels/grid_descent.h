@@ -13,7 +13,7 @@ class GridDescent : public ParticleDescent {
   /// Precondition: suits(grid).
   explicit GridDescent(const kernels::Grid& grid);
   static bool suits(const kernels::Grid& grid);
-  bool takes_stretch_time() const override { return false; }
+  bool takes_elements() const override { return false; }
 
  private:
   void begin_visits(const Start&) override {}

@@ -44,7 +44,8 @@ void ParticleDescent::begin(const Start& start) {
   const auto from = start.predicted.flat();
   for (std::size_t k = 0; k < to.size(); ++k) to[k] += step_ * from[k];
   store(inertial, position_);
-  const bool is_damped = start.spring_damping > 0 || start.stretch_time > 0;
+  const bool is_damped =
+      start.spring_damping > 0 || start.stretch_time > 0 || start.bending_time > 0 || start.membrane_time > 0;
   fields_->damper = start.spring_damping / step_;
   if (is_damped) store(start.position, start_);
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // The storage of VBD's visits by the kernels, and what calls them, on a grid of springs (grid_descent.h) or
-// on any cloth of springs (mesh_descent.h). A step is
+// on any cloth (mesh_descent.h). A step is
 //
 //     descent.begin(...); sweep(), and extrapolate() between two sweeps, as often as wanted;
 //     descent.end(velocity)
@@ -27,13 +27,16 @@ class ParticleDescent {
     double step = 0;                  ///< s
     const std::vector<double>& mass;  ///< kg, m of W^-1 = m I + b b^T (integrators/vbd.h); 0 where pinned
     double spring_damping = 0;        ///< N s/m, of every spring
-    double stretch_time = 0;     ///< s, damping of a spring over its stiffness; only if takes_stretch_time()
-    const Vec3Field& position;   ///< m
-    const Vec3Field& predicted;  ///< m/s, v*: the velocities where the visits begin
-    bool extrapolates = false;   ///< whether extrapolate() may be called
-    bool has_drag = false;       ///< whether set_drag() may be called
+    /// s, damping of springs, bending and triangles over their stiffness; only if takes_elements().
+    double stretch_time = 0, bending_time = 0, membrane_time = 0;
+    const SliderState* sliders = nullptr;  ///< of the cloth's, only if takes_elements()
+    const Vec3Field& position;             ///< m
+    const Vec3Field& predicted;            ///< m/s, v*: the velocities where the visits begin
+    bool extrapolates = false;             ///< whether extrapolate() may be called
+    bool has_drag = false;                 ///< whether set_drag() may be called
   };
-  virtual bool takes_stretch_time() const = 0;
+  /// Whether springs may have damping of their own and there may be other elements.
+  virtual bool takes_elements() const = 0;
   void begin(const Start& start);
   /// b of W^-1, in kg^1/2, and v* with it; positions stay where they are.
   void set_drag(const Vec3Field& drag, const Vec3Field& predicted);

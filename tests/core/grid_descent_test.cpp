@@ -1,6 +1,6 @@
 // VBD's visits of particles by the kernels, of a grid and of any cloth of springs, in every instruction set
 // that this machine has, against particles visited one by one in the order that kernels/grid_visits.h and
-// integrators/particle_elements.h promise.
+// cloth/particle_elements.h promise.
 #include "kernels/grid_descent.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "cloth/grid.h"
+#include "cloth/particle_elements.h"
 #include "geometry/at.h"
-#include "integrators/particle_elements.h"
 #include "kernels/grid_layout.h"
 #include "kernels/instruction_set.h"
 #include "kernels/mesh_descent.h"
@@ -222,7 +222,7 @@ int compare_on_mesh(const ClothSystem& system, const Dampers& dampers, const std
   ParticleElements elements(system);
   elements.list();
   EXPECT_TRUE(MeshDescent::suits(system.springs));
-  MeshDescent descent(system.springs, elements.colours(), mass.size());
+  MeshDescent descent(system, elements);
   return compare(system, descent, elements.colours(), dampers, mass, random, of);
 }
 
@@ -285,7 +285,7 @@ std::unique_ptr<ParticleDescent> on_grid(const ClothSystem& system) {
 std::unique_ptr<ParticleDescent> on_mesh(const ClothSystem& system) {
   ParticleElements elements(system);
   elements.list();
-  return std::make_unique<MeshDescent>(system.springs, elements.colours(), system.mass.size());
+  return std::make_unique<MeshDescent>(system, elements);
 }
 
 TEST_P(DescentOfEverySet, LeavesSpringsWithoutLengthAlone) {

@@ -21,9 +21,15 @@ struct SpringEnd {
   double rest_length = 0, stiffness = 0;  ///< m, N/m
 };
 
-/// A point of a bending element (of the run and the element numbered so), a slider or a triangle.
+/// What bending couples a particle with: an entry of its row (cloth/bending_rows.h).
+struct BendingEntry {
+  int other = 0;
+  double stiffness = 0;  ///< K_ij, N/m
+};
+
+/// A point of a slider or a triangle, of the element numbered so.
 struct ElementPoint {
-  int run = 0, element = 0, point = 0;
+  int element = 0, point = 0;
 };
 
 /// A list for each particle, one after the other.
@@ -63,7 +69,7 @@ class ParticleElements {
   void list();
 
   std::span<const SpringEnd> springs(std::size_t particle) const { return spring_ends_.of(particle); }
-  std::span<const ElementPoint> bending(std::size_t particle) const { return bending_points_.of(particle); }
+  std::span<const BendingEntry> bending(std::size_t particle) const { return bending_entries_.of(particle); }
   std::span<const ElementPoint> sliders(std::size_t particle) const { return slider_points_.of(particle); }
   std::span<const ElementPoint> triangles(std::size_t particle) const { return corners_.of(particle); }
 
@@ -87,7 +93,8 @@ class ParticleElements {
   bool is_mesh_ = false, is_listed_ = false;
   std::size_t size_ = 0;
   ListsOfParticles<SpringEnd> spring_ends_;
-  ListsOfParticles<ElementPoint> bending_points_, slider_points_, corners_;
+  ListsOfParticles<BendingEntry> bending_entries_;
+  ListsOfParticles<ElementPoint> slider_points_, corners_;
   std::vector<std::vector<int>> colours_;
 };
 

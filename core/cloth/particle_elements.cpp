@@ -1,7 +1,8 @@
-#include "integrators/particle_elements.h"
+#include "cloth/particle_elements.h"
 
 #include <algorithm>
 
+#include "cloth/bending_rows.h"
 #include "geometry/at.h"
 
 namespace cloth {
@@ -47,22 +48,20 @@ void ParticleElements::list_springs() {
 }
 
 void ParticleElements::list_points() {
-  bending_points_.assign(size_, [&](const auto& add) {
-    for (std::size_t r = 0; r < bending_.size(); ++r) {
-      const BendingRun& run = bending_[r];
-      for (int e = run.first; e < run.first + run.count; ++e)
-        for (int p = 0; p < run.points; ++p)
-          add(e + run.offset[at(p)], ElementPoint{static_cast<int>(r), e, p});
-    }
+  const BendingRows rows = bending_rows(bending_, bending_.empty() ? 0 : size_);
+  bending_entries_.assign(size_, [&](const auto& add) {
+    for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i)
+      for (std::size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
+        add(static_cast<int>(i), BendingEntry{rows.column[k], rows.stiffness[k]});
   });
   slider_points_.assign(size_, [&](const auto& add) {
     for (std::size_t k = 0; k < sliders_.size(); ++k)
       for (int p = 0; p < sliders_[k].points; ++p)
-        add(sliders_[k].particle[at(p)], ElementPoint{0, static_cast<int>(k), p});
+        add(sliders_[k].particle[at(p)], ElementPoint{static_cast<int>(k), p});
   });
   corners_.assign(size_, [&](const auto& add) {
     for (std::size_t t = 0; t < membrane_.size(); ++t)
-      for (int c = 0; c < 3; ++c) add(membrane_[t].corner[at(c)], ElementPoint{0, static_cast<int>(t), c});
+      for (int c = 0; c < 3; ++c) add(membrane_[t].corner[at(c)], ElementPoint{static_cast<int>(t), c});
   });
 }
 
@@ -78,10 +77,7 @@ std::vector<int> ParticleElements::colours_of_grid() const {
 template <class Visit>
 void ParticleElements::for_each_neighbour(std::size_t particle, const Visit& visit) const {
   for (const SpringEnd& end : springs(particle)) visit(at(end.other));
-  for (const ElementPoint& p : bending(particle)) {
-    const BendingRun& run = bending_[at(p.run)];
-    for (int q = 0; q < run.points; ++q) visit(at(p.element + run.offset[at(q)]));
-  }
+  for (const BendingEntry& entry : bending(particle)) visit(at(entry.other));
   for (const ElementPoint& p : sliders(particle)) {
     const BendingSlider& slider = sliders_[at(p.element)];
     for (int q = 0; q < slider.points; ++q) visit(at(slider.particle[at(q)]));

@@ -152,11 +152,11 @@ TEST(Stages, SayHowXpbdAndVbdGoThroughTheCloth) {
   };
   EXPECT_TRUE(has("corners-free", "xpbd", "springs by vectors, row by row"));
   EXPECT_TRUE(has("disc", "xpbd", "springs by vectors, colour by colour"));
-  EXPECT_TRUE(has("wind-denim", "xpbd", "other elements one by one"));
+  EXPECT_TRUE(has("wind-denim", "xpbd", "springs and other elements by vectors, colour by colour"));
   EXPECT_FALSE(has("corners-free", "xpbd", "one by one"));
   EXPECT_TRUE(has("corners-free", "vbd", "particles by vectors"));
   EXPECT_TRUE(has("disc", "vbd", "particles by vectors"));
-  EXPECT_TRUE(has("wind-denim", "vbd", "particles one by one"));
+  EXPECT_TRUE(has("wind-denim", "vbd", "particles by vectors"));
 }
 
 }  // namespace

@@ -58,4 +58,20 @@ Vec3Field DirectRun::acceleration() {
   return result;
 }
 
+double left_of_the_step_equations(DirectRun& run, double h) {
+  const ClothState start = run.state;
+  run.advance(1, h);
+  Vec3Field force(start.position.size());
+  run.forces.update(run.state.position, h);
+  run.forces.force(run.state.position, run.state.velocity, force);
+  double left = 0, gained = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (run.system.pinned[i]) continue;
+    const Vec3 momentum = run.system.mass[i] * (run.state.velocity[i] - start.velocity[i]);
+    left = std::max(left, (momentum - h * force[i]).norm());
+    gained = std::max(gained, momentum.norm());
+  }
+  return left / gained;
+}
+
 }  // namespace cloth::test

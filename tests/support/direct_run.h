@@ -50,4 +50,8 @@ class DirectRun {
   std::unique_ptr<Integrator> integrator_;
 };
 
+/// Takes a step of `h` seconds: the largest m (v' - v) - h f of a free particle that it leaves, f the forces
+/// at its end, over the largest m (v' - v).
+double left_of_the_step_equations(DirectRun& run, double h);
+
 }  // namespace cloth::test

@@ -2,8 +2,6 @@
 
 #include <map>
 
-#include "cloth/cloth_system.h"
-
 namespace cloth {
 
 BendingRows bending_rows(const BendingRuns& runs, std::size_t particles) {
@@ -22,26 +20,6 @@ BendingRows bending_rows(const BendingRuns& runs, std::size_t particles) {
     rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return rows;
-}
-
-void add_bending_product(const BendingRows& rows, double scale, const Vec3Field& field, Vec3Field& result) {
-  const double *x = field.x(), *y = field.y(), *z = field.z();
-  for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
-    double along_x = 0, along_y = 0, along_z = 0;
-    for (std::uint32_t e = rows.begin[i]; e < rows.begin[i + 1]; ++e) {
-      const std::int32_t j = rows.column[e];
-      const double k = rows.stiffness[e];
-      along_x += k * (x[j] - x[i]), along_y += k * (y[j] - y[i]), along_z += k * (z[j] - z[i]);
-    }
-    result.x()[i] += scale * along_x, result.y()[i] += scale * along_y, result.z()[i] += scale * along_z;
-  }
-}
-
-void add_bending_product(const ClothSystem& system, double scale, const Vec3Field& field, Vec3Field& result) {
-  if (system.bending_rows.begin.empty())
-    add_bending_product(system.bending, scale, field, result);
-  else
-    add_bending_product(system.bending_rows, scale, field, result);
 }
 
 }  // namespace cloth

@@ -19,9 +19,6 @@ struct BendingRows {
 
 BendingRows bending_rows(const BendingRuns& runs, std::size_t particles);
 
-/// result += scale * K field.
-void add_bending_product(const BendingRows& rows, double scale, const Vec3Field& field, Vec3Field& result);
-
 /// visit(i, j, -K_ij) for every pair of particles: by the rows, each once, or where there are none by the
 /// runs.
 template <class Visit>
@@ -33,9 +30,5 @@ void for_each_bending_pair(const BendingRows& rows, const BendingRuns& runs, Vis
       if (j > i) visit(i, j, -rows.stiffness[k]);
     }
 }
-
-struct ClothSystem;
-/// By the system's rows where it has some, else by its runs.
-void add_bending_product(const ClothSystem& system, double scale, const Vec3Field& field, Vec3Field& result);
 
 }  // namespace cloth

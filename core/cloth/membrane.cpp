@@ -62,24 +62,6 @@ void add_membrane_force(const Membrane& membrane, const Vec3Field& position, Vec
   }
 }
 
-void add_membrane_product(const Membrane& membrane, double scale, const Vec3Field& position,
-                          const Vec3Field& direction, Vec3Field& product) {
-  for (const MembraneTriangle& t : membrane) {
-    const std::array<double, 3> share = times_k(t, rates(t, position, direction));
-    for (std::size_t e = 0; e < 3; ++e)
-      add_to_ends(t, e, 2 * scale * share[e] * edge_of(t, e, position), product);
-  }
-}
-
-double membrane_square(const Membrane& membrane, const Vec3Field& position, const Vec3Field& direction) {
-  double sum = 0;
-  for (const MembraneTriangle& t : membrane) {
-    const std::array<double, 3> rate = rates(t, position, direction), share = times_k(t, rate);
-    sum += rate[0] * share[0] + rate[1] * share[1] + rate[2] * share[2];
-  }
-  return sum;
-}
-
 void add_membrane_turning(const Membrane& membrane, double scale, const Vec3Field& position,
                           const Vec3Field& velocity, const Vec3Field& direction, Vec3Field& product) {
   for (const MembraneTriangle& t : membrane) {

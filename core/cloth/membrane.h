@@ -47,14 +47,6 @@ void add_membrane_force(const Membrane& membrane, const Vec3Field& position, Vec
 template <class Visit>
 void for_each_edge_tension(const Membrane& membrane, const Vec3Field& position, Visit visit);
 
-/// product += scale J^T K J direction with J = dq/dx at `position`: with damping's time as `scale` its force
-/// at a velocity, with 1 the part of the second derivative of E that is never negative.
-void add_membrane_product(const Membrane& membrane, double scale, const Vec3Field& position,
-                          const Vec3Field& direction, Vec3Field& product);
-
-/// direction J^T K J direction.
-double membrane_square(const Membrane& membrane, const Vec3Field& position, const Vec3Field& direction);
-
 /// product += scale times how J^T K J velocity changes, J alone, when the positions move by `direction`.
 void add_membrane_turning(const Membrane& membrane, double scale, const Vec3Field& position,
                           const Vec3Field& velocity, const Vec3Field& direction, Vec3Field& product);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "forces/registry.h"
+#include "kernels/mesh_products.h"
 
 namespace cloth {
 namespace {
@@ -42,7 +43,7 @@ class BendingDamping : public Force {
     return false;
   }
   void add_power(const Vec3Field&, const Vec3Field& velocity, Work& power) const override {
-    power.damping_loss += time_ * bending_square(system_->bending, velocity);
+    power.damping_loss += time_ * bending_square(*system_, velocity);
   }
   void add_linearisation(const ClothSystem&, const Vec3Field&, const LinearisationWeights& weights,
                          Linearisation& to) const override {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernels/instruction_set.h"
+#include "kernels/mesh_products.h"
 #include "kernels/vector_kernels.h"
 
 namespace cloth {

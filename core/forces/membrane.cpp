@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "forces/registry.h"
+#include "kernels/mesh_products.h"
 
 namespace cloth {
 namespace {

@@ -12,25 +12,13 @@
 // lanes for what needs roots and divisions.
 #pragma once
 
+#include "kernels/four.h"
 #include "kernels/kernel_table.h"
 #include "kernels/lane_vectors.h"
 #include "kernels/local_pass.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // every function that takes a vector is inlined
-
 namespace cloth::kernels {
 namespace {
-
-using Four [[gnu::vector_size(32)]] = double;
-
-CLOTHLAB_INLINE Four load_four(const double* from) {
-  Four v;
-  __builtin_memcpy(&v, __builtin_assume_aligned(from, sizeof v), sizeof v);
-  return v;
-}
-CLOTHLAB_INLINE void store_four(double* to, const Four& v) {
-  __builtin_memcpy(__builtin_assume_aligned(to, sizeof v), &v, sizeof v);
-}
 
 constexpr int one_by_one[] = {0, 4, 8, 12, 16, 20, 24, 28};
 

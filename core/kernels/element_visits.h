@@ -18,11 +18,6 @@
 namespace cloth::kernels {
 namespace {
 
-CLOTHLAB_INLINE double product(const Four& a, const Four& b) {
-  const Four c = a * b;
-  return c[0] + c[1] + c[2];
-}
-
 /// A symmetric matrix of 3 x 3.
 template <class Number>
 struct Symmetric3 {

@@ -1,5 +1,6 @@
 #include "kernels/vector_kernels.h"
 
+#include "kernels/four.h"
 #include "kernels/kernel_loops.h"
 
 namespace cloth {
@@ -45,7 +46,61 @@ double dot(const double* a, const double* b, std::size_t count) {
   return kernels::dot_product(a, b, count);
 }
 
-constexpr VectorKernels table{multiply_blocks, add_springs, dot, add_multiple, scale_and_add};
+using kernels::Four, kernels::load_four, kernels::store_four;
+
+void to_vectors(ConstVectorRows field, double* vectors, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    store_four(vectors + 4 * i, Four{field.x[i], field.y[i], field.z[i], 0});
+}
+
+void add_vectors(const double* vectors, VectorRows field, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Four v = load_four(vectors + 4 * i);
+    field.x[i] += v[0], field.y[i] += v[1], field.z[i] += v[2];
+  }
+}
+
+/// Two sums side by side, so that an addition need not wait for the one before.
+void multiply_rows(DifferenceRows rows, double scale, const double* direction, double* product) {
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    const Four here = load_four(direction + 4 * i);
+    Four even{}, odd{};
+    const std::uint32_t end = rows.begin[i + 1];
+    std::uint32_t e = rows.begin[i];
+    for (; e + 2 <= end; e += 2) {
+      even += rows.number[e] * (load_four(direction + 4 * rows.column[e]) - here);
+      odd += rows.number[e + 1] * (load_four(direction + 4 * rows.column[e + 1]) - here);
+    }
+    if (e < end) even += rows.number[e] * (load_four(direction + 4 * rows.column[e]) - here);
+    store_four(product + 4 * i, scale * (even + odd));
+  }
+}
+
+void add_triangles(TriangleRows triangles, double scale, const double* position, const double* direction,
+                   double* product) {
+  const double four_times = 4 * scale;
+  for (std::size_t t = 0; t < triangles.count; ++t) {
+    const int* corner = triangles.corner + t * triangles.corner_stride;
+    const double* k = triangles.k + t * triangles.k_stride;
+    Four edge[3];
+    double rate[3];
+    for (int e = 0; e < 3; ++e) {
+      const int from = 4 * corner[e], to = 4 * corner[(e + 1) % 3];
+      edge[e] = load_four(position + to) - load_four(position + from);
+      rate[e] =
+          four_times * kernels::product(edge[e], load_four(direction + to) - load_four(direction + from));
+    }
+    for (int e = 0; e < 3; ++e)
+      edge[e] = (k[3 * e] * rate[0] + k[3 * e + 1] * rate[1] + k[3 * e + 2] * rate[2]) * edge[e];
+    for (int c = 0; c < 3; ++c) {
+      double* to = product + 4 * corner[c];
+      store_four(to, load_four(to) + (edge[(c + 2) % 3] - edge[c]));
+    }
+  }
+}
+
+constexpr VectorKernels table{multiply_blocks, add_springs, to_vectors,   add_vectors,  multiply_rows,
+                              add_triangles,   dot,         add_multiple, scale_and_add};
 
 }  // namespace
 

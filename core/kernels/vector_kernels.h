@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "kernels/kernel_table.h"
 
@@ -19,6 +20,22 @@ struct ConstVectorRows {
   const double *x, *y, *z;
 };
 
+/// Rows of a symmetric matrix that is 0 on what is alike everywhere (cloth/bending_rows.h).
+struct DifferenceRows {
+  std::size_t count;
+  const std::uint32_t* begin;
+  const std::int32_t* column;
+  const double* number;
+};
+/// Triangles (cloth/membrane.h): of number t the corners stand at corner + t * corner_stride, K at k + t *
+/// k_stride.
+struct TriangleRows {
+  std::size_t count;
+  const int* corner;
+  const double* k;
+  std::size_t corner_stride, k_stride;
+};
+
 struct VectorKernels {
   /// Springs that add_springs() takes at once, at most.
   static constexpr int max_springs = 128;
@@ -29,6 +46,16 @@ struct VectorKernels {
   /// product of the first end and subtracts it from that of the second.
   void (*add_springs)(BlockRows blocks, ConstVectorRows direction, VectorRows product, std::ptrdiff_t offset,
                       int count);
+  // A particle's x, y, z and 0 stand one after the other in `vectors`, `position` and the like, 64-byte
+  // aligned.
+  void (*to_vectors)(ConstVectorRows field, double* vectors, std::size_t count);
+  /// field += vectors
+  void (*add_vectors)(const double* vectors, VectorRows field, std::size_t count);
+  /// product = scale sum_j K_ij (d_j - d_i)
+  void (*multiply_rows)(DifferenceRows rows, double scale, const double* direction, double* product);
+  /// product += scale J^T K J d with J = dq/dx at `position`
+  void (*add_triangles)(TriangleRows triangles, double scale, const double* position, const double* direction,
+                        double* product);
   double (*dot)(const double* a, const double* b, std::size_t count);
   /// to += scale from
   void (*add_multiple)(double scale, const double* from, double* to, std::size_t count);

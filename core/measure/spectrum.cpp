@@ -5,6 +5,7 @@
 
 #include "geometry/dense_decompositions.h"
 #include "geometry/split_mix.h"
+#include "kernels/mesh_products.h"
 
 namespace cloth {
 namespace {
@@ -66,7 +67,7 @@ class ScaledStiffness {
         product[Index(k + j)] -= force;
       }
     };
-    for_each_bending_pair(system_.bending, add);
+    for_each_bending_pair(system_.bending_rows, system_.bending, add);
     for_each_slider_pair(system_.sliders, add);
   }
 

@@ -81,6 +81,6 @@ add_library(clothlab_solvers STATIC EXCLUDE_FROM_ALL
   ${clothlab_solver_sources})
 target_include_directories(clothlab_solvers SYSTEM PRIVATE ${clothlab_solver_includes})
 target_compile_definitions(clothlab_solvers PRIVATE ${clothlab_solver_definitions})
-target_link_libraries(clothlab_solvers PUBLIC clothlab_speed
-  PRIVATE nlohmann_json::nlohmann_json fmt::fmt ${clothlab_solver_libraries})
+target_link_libraries(clothlab_solvers PUBLIC clothlab_speed PRIVATE clothlab_test_support ${clothlab_solver_libraries})
+target_precompile_headers(clothlab_solvers REUSE_FROM clothlab_test_support)
 clothlab_target(clothlab_solvers)

@@ -115,7 +115,7 @@ TEST(TheMidpointRule, DivergesOnAStiffClothThatSwings) {
 }
 
 TEST(LocalMethods, GainEnergyOrStopOnAStiffClothThatSwings) {
-  for (const char* method : {"projective", "xpbd"}) {
+  for (const char* method : {"projective", "xpbd", "vbd"}) {
     EXPECT_EQ(run_extreme(case_named("stiffness-1e3"), method).status, ExtremeStatus::stable) << method;
     const ExtremeStatus stiff = run_extreme(case_named("stiffness-1e8"), method).status;
     EXPECT_TRUE(stiff == ExtremeStatus::energy_growth || stiff == ExtremeStatus::diverged) << name_of(stiff);

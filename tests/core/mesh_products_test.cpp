@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "cloth/sums.h"
 #include "geometry/at.h"
 #include "kernels/instruction_set.h"
 #include "scene/scene_cloth.h"

@@ -96,6 +96,11 @@ void turning_chunk(const SpringRun& run, int first, int count, const Vec3Field& 
 }
 
 double run_energy(const SpringRun& run, const Vec3Field& position) {
+  if (run.count == 1) {
+    const auto i = static_cast<std::size_t>(run.first), j = static_cast<std::size_t>(run.first + run.offset);
+    const double elongation = (position[j] - position[i]).norm() - run.rest_length;
+    return 0.5 * run.stiffness * (elongation * elongation);
+  }
   const double *xi = position.x() + run.first, *yi = position.y() + run.first, *zi = position.z() + run.first;
   const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
   const double sum =

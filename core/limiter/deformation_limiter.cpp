@@ -26,6 +26,14 @@ double shorten_pinned(const SpringBatch& batch, double relaxation, Points p) {
   return longest;
 }
 
+/// As SweepKernels::longest, of a piece that is one spring, as all of a mesh are.
+double length_of_one(const SpringBatch& piece, ConstPoints p) {
+  const int i = piece.row.first, j = i + piece.row.offset;
+  const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i];
+  const double squared = dx * dx + dy * dy + dz * dz;
+  return squared > piece.limit * piece.limit ? squared : 0;
+}
+
 double excess_of(const SpringBatch& batch, double squared_length) {
   return (std::sqrt(squared_length) - batch.limit) / batch.rest_length;
 }
@@ -82,7 +90,8 @@ double DeformationLimiter::excess(const Vec3Field& position) const {
   const ConstPoints points{position.x(), position.y(), position.z()};
   double largest = 0;
   for (const SpringBatch& piece : pieces_) {
-    const double squared = kernels_->longest(piece.row, piece.limit, points);
+    const double squared = piece.row.count == 1 ? length_of_one(piece, points)
+                                                : kernels_->longest(piece.row, piece.limit, points);
     if (squared > 0) largest = std::max(largest, excess_of(piece, squared));
   }
   return largest;

@@ -243,9 +243,10 @@ TEST_P(ElementsOfEverySet, AreVisitedInThePromisedOrder) {
           const Vec3Field& expected = reference.velocity();
           EXPECT_LE(largest_distance(velocity, expected), 1e-10 * largest_distance(expected, state.velocity))
               << n;
-          if (n != 1)
+          if (particles.particles().measures) {
             EXPECT_NEAR(particles.particles().largest_change, reference.largest(),
                         1e-8 * reference.largest());
+          }
         }
         EXPECT_GT(largest_distance(reference.velocity(), state.velocity), 0.01) << "nothing moved";
       }

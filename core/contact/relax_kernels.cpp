@@ -1,51 +1,39 @@
 #include "contact/relax_kernels.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // every function that takes a vector is inlined
+#include "kernels/four.h"
 
 namespace cloth {
 namespace {
 
-using Vector [[gnu::vector_size(32)]] = double;
-
-CLOTHLAB_INLINE Vector load(const double* four) {
-  Vector v;
-  __builtin_memcpy(&v, __builtin_assume_aligned(four, sizeof v), sizeof v);
-  return v;
-}
-CLOTHLAB_INLINE void store(double* four, Vector v) {
-  __builtin_memcpy(__builtin_assume_aligned(four, sizeof v), &v, sizeof v);
-}
-CLOTHLAB_INLINE double dot(Vector a, Vector b) {
-  const Vector products = a * b;
-  return (products[0] + products[1]) + products[2];
-}
+using kernels::load_four, kernels::product, kernels::store_four;
+using Vector = kernels::Four;
 
 /// The friction impulse that stops the slip, or as much of it as friction times the normal impulse allows.
 CLOTHLAB_INLINE Vector friction_for(const ContactRow& row, Vector friction_impulse, Vector across) {
   const Vector wanted = friction_impulse - row.inverse_mobility * across;
-  const double most = row.friction * row.normal_impulse, square = dot(wanted, wanted);
+  const double most = row.friction * row.normal_impulse, square = product(wanted, wanted);
   return square > most * most ? most / __builtin_sqrt(square) * wanted : wanted;
 }
 
 CLOTHLAB_INLINE void relax_one(ContactRow& row, ContactValue* values) {
   double* const value[4] = {values[row.slot[0]].of, values[row.slot[1]].of, values[row.slot[2]].of,
                             values[row.slot[3]].of};
-  const Vector point = (row.weight[0] * load(value[0]) + row.weight[1] * load(value[1])) +
-                       (row.weight[2] * load(value[2]) + row.weight[3] * load(value[3]));
-  const Vector normal = load(row.normal);
-  const double level = dot(normal, point);
+  const Vector point = (row.weight[0] * load_four(value[0]) + row.weight[1] * load_four(value[1])) +
+                       (row.weight[2] * load_four(value[2]) + row.weight[3] * load_four(value[3]));
+  const Vector normal = load_four(row.normal);
+  const double level = product(normal, point);
   const double wanted = row.normal_impulse + (row.bound - level) * row.inverse_mobility;
   const double change = (wanted > 0 ? wanted : 0) - row.normal_impulse;
   if (change == 0 && row.normal_impulse == 0) return;
   row.normal_impulse += change;
   Vector total = change * normal;
   if (row.friction > 0) {
-    const Vector across = point - load(row.rest) - (level - row.rest_level) * normal;
-    const Vector before = load(row.friction_impulse), now = friction_for(row, before, across);
-    store(row.friction_impulse, now);
+    const Vector across = point - load_four(row.rest) - (level - row.rest_level) * normal;
+    const Vector before = load_four(row.friction_impulse), now = friction_for(row, before, across);
+    store_four(row.friction_impulse, now);
     total += now - before;
   }
-  for (int k = 0; k < 4; ++k) store(value[k], load(value[k]) + row.response[k] * total);
+  for (int k = 0; k < 4; ++k) store_four(value[k], load_four(value[k]) + row.response[k] * total);
 }
 
 void relax(ContactRow* rows, const int* order, int count, ContactValue* values) {
@@ -56,9 +44,9 @@ bool note_moved(const ContactValue* values, ContactValue* before, unsigned char*
                 double squared_tolerance) {
   bool any = false;
   for (int k = 0; k < count; ++k) {
-    const Vector now = load(values[k].of), change = now - load(before[k].of);
-    store(before[k].of, now);
-    moved[k] = dot(change, change) > squared_tolerance;
+    const Vector now = load_four(values[k].of), change = now - load_four(before[k].of);
+    store_four(before[k].of, now);
+    moved[k] = product(change, change) > squared_tolerance;
     any = any || moved[k];
   }
   return any;

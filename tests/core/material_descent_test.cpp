@@ -168,10 +168,8 @@ class OneByOne {
 };
 
 std::vector<Scene> scenes(Random& random) {
-  Material heavy = any_material();
-  heavy.hysteresis_warp = heavy.hysteresis_weft = 0.02;
   std::vector<Scene> all;
-  for (const Material& material : {any_material(), heavy}) {
+  for (const Material& material : {any_material(), material_with_hysteresis()}) {
     all.push_back(material_sheet(9, 13, 0.02, 0.03, material));
     all.push_back(material_mesh_sheet(8, 11, 0.2, 0.3, 0.2, material, random));
   }

@@ -164,11 +164,10 @@ TEST(LocalMethods, SolveTheStepEquationsWithEveryForceAndTheHand) {
 
 TEST(Xpbd, SolvesTheStepEquationsOfAMaterialByTheKernelsAndOneByOne) {
   Random random;
-  Material heavy = any_material();
-  heavy.hysteresis_warp = heavy.hysteresis_weft = 0.02;
-  Scene mesh = material_mesh_sheet(9, 7, 0.3, 0.2, 0.15, heavy, random), grid = complete_material_scene();
+  const Material lagging = material_with_hysteresis();
+  Scene mesh = material_mesh_sheet(9, 7, 0.3, 0.2, 0.15, lagging, random), grid = complete_material_scene();
   mesh.cloth.pins = {PinnedParticle{0, 0}};
-  grid.material = heavy;
+  grid.material = lagging;
   for (Scene scene : {mesh, grid})
     for (const double friction : {0.0, 1e-9}) {  // with more friction than drag: one by one
       scene.air = Air{.gust = std::nullopt};

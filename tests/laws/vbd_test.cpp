@@ -46,19 +46,13 @@ double left_of_the_equations(DirectRun& run, double h, double crumple) {
 
 // ---- every kind of element ----
 
-Material heavy_material() {
-  Material m = any_material();
-  m.hysteresis_warp = m.hysteresis_weft = 0.02;
-  return m;
-}
-
 TEST(Vbd, SolvesTheStepEquationsOfAMaterialsGridWithDampingAirAndHysteresis) {
   Scene scene = complete_material_scene();
   DirectRun plain(scene, vbd(4000, "none")), accelerated(scene, vbd(2000));
   EXPECT_FALSE(plain.system.bending.empty());
   EXPECT_LE(left_of_the_equations(plain, 2e-3, 1e-3), 1e-8);
   EXPECT_LE(left_of_the_equations(accelerated, 2e-3, 1e-3), 1e-8);
-  scene.material = heavy_material();
+  scene.material = material_with_hysteresis();
   DirectRun lagging(scene, vbd(2000));
   EXPECT_FALSE(lagging.system.sliders.empty());
   EXPECT_LE(left_of_the_equations(lagging, 2e-3, 1e-3), 1e-8);
@@ -66,7 +60,7 @@ TEST(Vbd, SolvesTheStepEquationsOfAMaterialsGridWithDampingAirAndHysteresis) {
 
 TEST(Vbd, SolvesTheStepEquationsOfAMaterialsMesh) {
   Random random;
-  for (const Material& material : {any_material(), heavy_material()}) {
+  for (const Material& material : {any_material(), material_with_hysteresis()}) {
     Scene scene = material_mesh_sheet(9, 7, 0.3, 0.2, 0.15, material, random);
     scene.gravity = Vec3(0, 0, -9.81);
     scene.cloth.pins = {PinnedParticle{0, 0}};
@@ -134,7 +128,8 @@ TEST(Colours, ArePassedOnceByEachParticleAndSharedByNoTwoOfAnElement) {
   expect_colours(shuffled_grid(9, 8, random), 13);
   expect_colours(irregular_triangulation(9, 8, 10, false, random), 24);
   expect_colours(
-      DirectRun(material_mesh_sheet(9, 7, 0.3, 0.2, 0.15, heavy_material(), random), vbd(1)).system, 60);
+      DirectRun(material_mesh_sheet(9, 7, 0.3, 0.2, 0.15, material_with_hysteresis(), random), vbd(1)).system,
+      60);
 }
 
 TEST(Colours, OfAGridAreThoseOfItsRowsAndColumns) {

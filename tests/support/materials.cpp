@@ -22,6 +22,12 @@ Material any_material() {
           .twist = 1.5e-3};
 }
 
+Material material_with_hysteresis() {
+  Material m = any_material();
+  m.hysteresis_warp = m.hysteresis_weft = 0.02;
+  return m;
+}
+
 Scene material_sheet(int rows, int columns, double across, double down, const Material& material) {
   Scene scene = bare_sheet(rows, columns);
   scene.cloth.width = across * (columns - 1);

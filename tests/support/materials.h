@@ -11,6 +11,8 @@ namespace cloth::test {
 
 /// Every constant another one, springs that fit cells up to twice as long as wide.
 Material any_material();
+/// The same with friction between its threads.
+Material material_with_hysteresis();
 
 /// A sheet in the plane z = 0 of cells `across` by `down` metres, hanging from the origin, without physics
 /// but the material's own.

@@ -21,18 +21,11 @@ ForceEntry air_entry();
 ForceEntry skin_friction_entry();
 
 const std::vector<ForceEntry>& force_registry() {
-  static const std::vector<ForceEntry> entries{spring_entry(),
-                                               membrane_entry(),
-                                               bending_entry(),
-                                               hysteresis_entry(),
-                                               spring_damping_entry(),
-                                               membrane_damping_entry(),
-                                               bending_damping_entry(),
-                                               viscous_damping_entry(),
-                                               mass_damping_entry(),
-                                               gravity_entry(),
-                                               air_entry(),
-                                               skin_friction_entry()};
+  static const std::vector<ForceEntry> entries{
+      spring_entry(),         membrane_entry(),         bending_entry(),
+      hysteresis_entry(),     spring_damping_entry(),   membrane_damping_entry(),
+      bending_damping_entry(), viscous_damping_entry(), mass_damping_entry(),
+      gravity_entry(),        air_entry(),              skin_friction_entry()};
   return entries;
 }
 

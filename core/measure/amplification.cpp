@@ -89,15 +89,21 @@ std::array<Complex, 2> eigenvalues_of(const Matrix2d& m) {
   return roots(1, -m.trace(), m.determinant());
 }
 
-std::vector<Complex> eigenvalues(const OscillatorStep& formula, const Motion& z) {
+/// At most four, without memory of its own: limits are scanned through millions of them.
+using Eigenvalues = Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, 4, 1>;
+
+Eigenvalues eigenvalues(const OscillatorStep& formula, const Motion& z) {
   std::array<Complex, 2> r{};
   switch (formula.family) {
-    case OscillatorStep::Family::runge_kutta:
-      return {stability_function(formula, z.fast), stability_function(formula, z.slow)};
+    case OscillatorStep::Family::runge_kutta: {
+      const Complex fast = stability_function(formula, z.fast);
+      return Eigenvalues{
+          {fast, z.slow == std::conj(z.fast) ? std::conj(fast) : stability_function(formula, z.slow)}};
+    }
     case OscillatorStep::Family::bdf2: {
       r = roots(3.0 - 2.0 * z.fast, -4, 1);
       const auto slow = roots(3.0 - 2.0 * z.slow, -4, 1);
-      return {r[0], r[1], slow[0], slow[1]};
+      return Eigenvalues{{r[0], r[1], slow[0], slow[1]}};
     }
     case OscillatorStep::Family::semi_implicit_euler:
       r = eigenvalues_of(semi_implicit_euler_matrix(z.stiffness(), z.damping()));
@@ -106,7 +112,7 @@ std::vector<Complex> eigenvalues(const OscillatorStep& formula, const Motion& z)
       r = eigenvalues_of(verlet_matrix(z.stiffness(), z.damping()));
       break;
   }
-  return {r[0], r[1]};
+  return Eigenvalues{{r[0], r[1]}};
 }
 
 double spectral_radius(const OscillatorStep& formula, const Motion& z) {
@@ -142,7 +148,7 @@ double amplification(const std::string& method, double w, double zeta) {
 OscillatorError oscillator_error(const std::string& method, double w, double zeta) {
   const Motion z = motion_of(w * w, 2 * zeta * w);
   const Complex exact = std::exp(z.fast);
-  const auto r = eigenvalues(facts_of(method).oscillator, z);
+  const Eigenvalues r = eigenvalues(facts_of(method).oscillator, z);
   const Complex principal = *std::min_element(r.begin(), r.end(), [&](const Complex& a, const Complex& b) {
     return std::abs(a - exact) < std::abs(b - exact);
   });
@@ -150,7 +156,7 @@ OscillatorError oscillator_error(const std::string& method, double w, double zet
   return {.frequency = drift.imag() / z.fast.imag(), .damping = -drift.real() / w};
 }
 
-double scanned_limit(const std::string& method, double omega, double c) {
+double scanned_limit(const std::string& method, double omega, double c, double at_most) {
   constexpr double resolution = 0.01;         // in |z|, up to `fine`; relative beyond
   constexpr double fine = 4, farthest = 1e6;  // every explicit limit that is not a ratio lies before
   // Eigenvalues of modulus 1 come out within a few roundings of 1, and on the imaginary axis Runge-Kutta
@@ -166,8 +172,9 @@ double scanned_limit(const std::string& method, double omega, double c) {
   const auto stable = [&](double modulus) {
     return spectral_radius(formula, scaled(modulus, unit)) <= threshold;
   };
+  const double end = at_most * modulus_of_motion;
   double low = 0, high = 0;
-  for (double modulus = resolution; modulus < farthest;
+  for (double modulus = resolution; low <= end && modulus < farthest;
        modulus = modulus < fine ? modulus + resolution : modulus * (1 + resolution)) {
     if (!stable(modulus)) {
       high = modulus;

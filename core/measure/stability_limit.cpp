@@ -359,11 +359,11 @@ bool stable_at_every_step(const std::string& method) {
   return facts_of(method).a_stable;
 }
 
-double oscillator_limit(const std::string& method, double omega, double c) {
+double oscillator_limit(const std::string& method, double omega, double c, double at_most) {
   if (omega == 0 && c == 0) return infinity;
   const MethodFacts& facts = facts_of(method);
   if (facts.a_stable) return infinity;
-  return facts.limit ? facts.limit(omega, c) : scanned_limit(method, omega, c);
+  return facts.limit ? facts.limit(omega, c) : scanned_limit(method, omega, c, at_most);
 }
 
 std::optional<double> stable_step(const std::string& method, double largest_omega,
@@ -373,7 +373,7 @@ std::optional<double> stable_step(const std::string& method, double largest_omeg
   const auto consider = [&](double omega) {
     for (int k = 0; k <= (rates.most > rates.least ? scanned_rates : 0); ++k) {
       const double c = rates.least + (rates.most - rates.least) * k / scanned_rates;
-      limit = std::min(limit, oscillator_limit(method, omega, c));
+      limit = std::min(limit, oscillator_limit(method, omega, c, limit));
     }
   };
   consider(0);

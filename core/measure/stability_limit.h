@@ -5,6 +5,7 @@
 // frequency of a cloth from the first towards the second.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -51,8 +52,10 @@ bool stable_at_every_step(const std::string& method);
 
 /// The largest stable step in s of `method` for the one oscillator x'' = -omega^2 x - c x'; 0 if none is
 /// stable, infinity if all are. Closed forms (Jury's test on the matrices of amplification.h) for Verlet,
-/// semi-implicit and explicit Euler; scanned_limit() for Runge-Kutta 4 and Dormand-Prince.
-double oscillator_limit(const std::string& method, double omega, double c);
+/// semi-implicit and explicit Euler; scanned_limit() for Runge-Kutta 4 and Dormand-Prince, whose scan ends at
+/// `at_most`, in s: a limit that is longer may come out as infinity.
+double oscillator_limit(const std::string& method, double omega, double c,
+                        double at_most = std::numeric_limits<double>::infinity());
 
 /// The largest step in s at which `method` is stable for x'' = -omega^2 x - c x' for every omega in [0,
 /// largest] and c in `rates`. nullopt: no step is stable (explicit Euler without damping of every motion).

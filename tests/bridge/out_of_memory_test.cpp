@@ -125,6 +125,7 @@ TEST(OutOfMemory, AStudy) {
   const ScratchFolder folder;
   StudyOrder order;
   order.scene = scene_of_this_size();
+  order.scene.deformation.reset();
   cloth::StabilityOptions options;
   options.methods = {"verlet"};
   options.x = cloth::default_time_axis(order.scene, options.methods);

@@ -97,6 +97,21 @@ TEST(OscillatorLimit, IsWhereTheScanMeetsTheClosedForm) {
     }
 }
 
+TEST(OscillatorLimit, OfAScanThatEndsEarlyIsTheSameUpToItsEnd) {
+  for (const char* method : {"rk4", "dormand-prince"})
+    for (const double zeta : {0.0, 0.01, 0.7, 1.3, 5.0}) {
+      const double limit = oscillator_limit(method, 3, 6 * zeta);
+      for (const double end : {1e-9, 0.5, 0.99, 1.0, 1.01, 2.0, 1e3}) {
+        const double scanned = oscillator_limit(method, 3, 6 * zeta, end * limit);
+        if (end >= 1) {
+          EXPECT_EQ(scanned, limit) << method << " " << zeta << " " << end;
+        } else {
+          EXPECT_EQ(std::min(scanned, end * limit), end * limit) << method << " " << zeta << " " << end;
+        }
+      }
+    }
+}
+
 TEST(OscillatorLimit, OfRungeKuttaMethodsHasClosedForms) {
   EXPECT_NEAR(oscillator_limit("rk4", 1, 0), 2 * std::numbers::sqrt2, 1e-9);
   for (const double zeta : {1.0, 1.5, 2.0, 5.0}) {

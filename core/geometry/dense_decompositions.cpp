@@ -21,10 +21,10 @@ VectorXd symmetric_values(const MatrixXd& matrix) {
   return Solver(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-SymmetricModes tridiagonal_modes(const VectorXd& main, const VectorXd& beside) {
+VectorXd tridiagonal_values(const VectorXd& main, const VectorXd& beside) {
   Solver solver;
-  solver.computeFromTridiagonal(main, beside);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  solver.computeFromTridiagonal(main, beside, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
 }
 
 std::optional<MatrixXd> cholesky_factor(const MatrixXd& matrix) {

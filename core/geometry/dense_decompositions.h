@@ -17,8 +17,8 @@ struct SymmetricModes {
 SymmetricModes symmetric_modes(const Eigen::MatrixXd& matrix);
 /// The values alone, in a fraction of the time.
 Eigen::VectorXd symmetric_values(const Eigen::MatrixXd& matrix);
-/// Of the symmetric matrix with this main diagonal, and these numbers beside it.
-SymmetricModes tridiagonal_modes(const Eigen::VectorXd& main, const Eigen::VectorXd& beside);
+/// The values of the symmetric matrix with this main diagonal, and these numbers beside it.
+Eigen::VectorXd tridiagonal_values(const Eigen::VectorXd& main, const Eigen::VectorXd& beside);
 
 /// Lower triangular L with L L^T = matrix; none where the symmetric matrix is not positive definite.
 std::optional<Eigen::MatrixXd> cholesky_factor(const Eigen::MatrixXd& matrix);

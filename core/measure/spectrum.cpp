@@ -101,18 +101,44 @@ VectorXd start_vector(const VectorXd& scale) {
   return (scale.array() > 0).select(start, 0);
 }
 
+/// The last component of the eigenvector of length one, in modulus, of the tridiagonal matrix with this
+/// diagonal and these numbers beside it. From the entry at which elimination from above and elimination from
+/// below leave least, which is accurate however small the last component is (Fernando 1997).
+double last_component(const VectorXd& diagonal, const VectorXd& beside, double eigenvalue) {
+  const Index n = diagonal.size();
+  const double tiny = 1e-300 + 1e-18 * std::abs(eigenvalue);  // in place of a pivot that is 0
+  const auto pivot = [&](double value) { return std::abs(value) < tiny ? tiny : value; };
+  const VectorXd shifted = diagonal.array() - eigenvalue;
+  VectorXd above = shifted, below = shifted;  // pivots of elimination from above and from below
+  for (Index i = 1; i < n; ++i) above[i] -= beside[i - 1] * beside[i - 1] / pivot(above[i - 1]);
+  for (Index i = n - 1; i-- > 0;) below[i] -= beside[i] * beside[i] / pivot(below[i + 1]);
+  Index twist = 0;
+  (above + below - shifted).cwiseAbs().minCoeff(&twist);
+  double square = 1, component = 1;
+  for (Index i = twist; i-- > 0;) {
+    component *= beside[i] / pivot(above[i]);
+    square += component * component;
+  }
+  component = 1;
+  for (Index i = twist + 1; i < n; ++i) {
+    component *= beside[i - 1] / pivot(below[i]);
+    square += component * component;
+  }
+  return std::abs(component) / std::sqrt(square);
+}
+
 }  // namespace
 
 Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<double>& coupling,
                        double next) {
   const auto size = static_cast<Index>(diagonal.size());
-  const Eigen::Map<const VectorXd> main(diagonal.data(), size), beside(coupling.data(), size - 1);
-  const auto [values, vectors] = tridiagonal_modes(main, beside);
+  const VectorXd main = VectorXd::Map(diagonal.data(), size), beside = VectorXd::Map(coupling.data(), size - 1);
+  const VectorXd values = tridiagonal_values(main, beside);
   Spectrum spectrum;
   spectrum.largest = values[size - 1];
   spectrum.smallest = values[0];
-  spectrum.largest_residual = next * std::abs(vectors(size - 1, size - 1));
-  spectrum.smallest_residual = next * std::abs(vectors(size - 1, 0));
+  spectrum.largest_residual = next * last_component(main, beside, spectrum.largest);
+  spectrum.smallest_residual = next * last_component(main, beside, spectrum.smallest);
   spectrum.iterations = static_cast<int>(size);
   return spectrum;
 }

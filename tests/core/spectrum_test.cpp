@@ -252,5 +252,37 @@ TEST(GuaranteedFrequency, CountsSpringsToPinsOnce) {
   EXPECT_DOUBLE_EQ(guaranteed_frequency(system), std::sqrt(4 * 2.0));
 }
 
+/// A tridiagonal matrix of twos and ones has vectors of sines.
+TEST(RitzExtremes, HaveTheResidualsOfTheirVectors) {
+  for (const int n : {1, 2, 3, 10, 57, 160}) {
+    const std::vector<double> twos(std::size_t(n), 2.0), ones(std::size_t(n) - 1, 1.0);
+    const Spectrum found = ritz_extremes(twos, ones, 3);
+    const double angle = std::numbers::pi / (n + 1);
+    const double last = std::sqrt(2.0 / (n + 1)) * std::sin(angle);
+    EXPECT_NEAR(found.largest, 2 + 2 * std::cos(angle), 1e-13);
+    EXPECT_NEAR(found.smallest, 2 - 2 * std::cos(angle), 1e-13);
+    EXPECT_NEAR(found.largest_residual, 3 * last, 1e-9 * last) << n;
+    EXPECT_NEAR(found.smallest_residual, 3 * last, 1e-9 * last) << n;
+  }
+}
+
+/// Of a value that has converged the vector falls from entry to entry by r, b (1/r + r) = value.
+TEST(RitzExtremes, HaveAResidualThatIsRightHoweverSmall) {
+  const double first = 10, b = 0.5;
+  for (const int n : {5, 10, 20, 40}) {
+    std::vector<double> diagonal(std::size_t(n), 0.0);
+    diagonal[0] = first;
+    const Spectrum found = ritz_extremes(diagonal, std::vector<double>(std::size_t(n) - 1, b), 1);
+    const double root = std::sqrt(found.largest * found.largest - 4 * b * b);
+    const double falling = (found.largest - root) / (2 * b);
+    // The n + 1st entry is 0, so that a growing part is there too: v_k = r^k - r^(2 n + 2 - k).
+    double square = 0;
+    const auto entry = [&](int k) { return std::pow(falling, k) - std::pow(falling, 2 * n + 2 - k); };
+    for (int k = 1; k <= n; ++k) square += entry(k) * entry(k);
+    const double last = entry(n) / std::sqrt(square);
+    EXPECT_NEAR(found.largest_residual, last, 1e-6 * last) << n;
+  }
+}
+
 }  // namespace
 }  // namespace cloth::test::spectrum_test

@@ -104,14 +104,12 @@ Eigen::MatrixXd bending_hessian(const ClothSystem& system) {
   const Eigen::Index size = 3 * system.size();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   for (const BendingRun& run : system.bending)
-    for (int e = run.first; e < run.first + run.count; ++e) {
-      Eigen::VectorXd sum = Eigen::VectorXd::Zero(system.size());
+    for (int e = run.first; e < run.first + run.count; ++e)
       for (std::size_t p = 0; p < static_cast<std::size_t>(run.points); ++p)
-        sum[e + run.offset[p]] = run.coefficient[p];
-      for (int axis = 0; axis < 3; ++axis)
-        hessian(Eigen::seqN(axis, system.size(), 3), Eigen::seqN(axis, system.size(), 3)) +=
-            run.stiffness * sum * sum.transpose();
-    }
+        for (std::size_t q = 0; q < static_cast<std::size_t>(run.points); ++q)
+          for (int axis = 0; axis < 3; ++axis)
+            hessian(3 * (e + run.offset[p]) + axis, 3 * (e + run.offset[q]) + axis) +=
+                run.stiffness * run.coefficient[p] * run.coefficient[q];
   return hessian;
 }
 

@@ -20,7 +20,7 @@ struct SceneSpeed {
   int particles = 0;
   double time_step = 0;    ///< s
   double duration = 0;     ///< s, of the scene
-  double simulated = 0;    ///< s
+  double simulated = 0;    ///< s, of what is timed
   double seconds = 0;      ///< of stepping alone: processor time of one thread, wall time of several
   double nanoseconds = 0;  ///< per particle and step
   double bare = 0;         ///< the same of the bare Verlet step: springs in six directions and gravity
@@ -36,7 +36,7 @@ struct SceneSpeed {
 std::optional<Scene> refined(const Scene& scene, int size, std::string& why);
 
 /// Steps from the start to the scene's end or until `longest` seconds of stepping have passed, in turns of a
-/// few milliseconds with the bare step, of which the median of all turns is taken.
+/// few milliseconds with the bare step, of which the median of all turns is taken. The first step is not timed.
 SceneSpeed measure_scene(const std::string& name, const Scene& scene, double longest, int threads);
 
 /// How the time of a step grows with the number of particles.

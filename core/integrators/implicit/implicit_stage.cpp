@@ -81,12 +81,8 @@ void ImplicitStage::evaluate(const StageEquation& e) {
 void ImplicitStage::choose_forcing() {
   constexpr double weight = 0.9;
   const double norm = norm_of(residual_);
-  if (residual_norm_ > 0) {
-    const double ratio = norm / residual_norm_;
-    forcing_ = std::clamp(weight * ratio * ratio, tightest_forcing, loosest_forcing);
-  } else {
-    forcing_ = loosest_forcing;
-  }
+  fall_ = residual_norm_ > 0 ? norm / residual_norm_ : 1;
+  forcing_ = std::clamp(weight * fall_ * fall_, tightest_forcing, loosest_forcing);
   residual_norm_ = norm;
 }
 
@@ -117,14 +113,22 @@ bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method)
 }
 
 /// The same by conjugate gradients with a cycle of multigrid of the clamped matrix: with the exact matrix,
-/// and where that is not positive definite with the clamped one.
+/// and where that is not positive definite with the clamped one. Where the last iteration's whole step made
+/// the residual fall far, the matrix has changed little, and its cycle serves once more.
 bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
+  constexpr double far = 0.1;
   const double h = e.weight;
   const ClothSystem& system = e.forces.system();
+  const bool clamps = linearisation_.has_compressed, keeps_cycle = has_cycle_ && length_ == 1 && fall_ <= far;
+  const auto clamp = [&] {
+    if (clamps) e.forces.linearise(e.position, {.position = h * h, .velocity = h, .clamped = true}, clamped_);
+  };
   linear_method_ = LinearMethod::multigrid;
-  const bool clamps = linearisation_.has_compressed;
-  if (clamps) e.forces.linearise(e.position, {.position = h * h, .velocity = h, .clamped = true}, clamped_);
-  if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position)) return false;
+  has_cycle_ = false;
+  if (!keeps_cycle) {
+    clamp();
+    if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position)) return false;
+  }
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     multigrid_.precondition(in, out);
   };
@@ -136,7 +140,10 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
     return krylov;
   };
   const KrylovReport exact = solve_with(linearisation_);
-  return exact.indefinite && clamps ? solve_with(clamped_).converged : exact.converged;
+  has_cycle_ = exact.converged;
+  if (!exact.indefinite || !clamps) return exact.converged;
+  if (keeps_cycle) clamp();
+  return solve_with(clamped_).converged;
 }
 
 void ImplicitStage::find_direction(const StageEquation& e) {
@@ -279,7 +286,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   double scale = std::max(largest_component(e.velocity), largest_component(e.start_velocity));
   double relative = 0;
   residual_norm_ = 0;
-  is_indefinite_ = false;
+  has_cycle_ = is_indefinite_ = false;
   futile_ = 0;
   memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {

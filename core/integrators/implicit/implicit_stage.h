@@ -68,9 +68,11 @@ class ImplicitStage {
   MinimalResiduals minimal_residuals_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
   double residual_norm_ = 0;    ///< N s, before the last iteration of this solve; 0: there was none
+  double fall_ = 1;             ///< of the residual in the last iteration, as a ratio; 1: there was none
   double forcing_ = 0;          ///< tolerance of iterative solves, relative to the residual
   double length_ = 1;           ///< of the last step along its direction
   bool is_indefinite_ = false;  ///< the exact matrix was, in an iteration of this solve
+  bool has_cycle_ = false;      ///< of multigrid, from an iteration of this solve
   int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;

@@ -34,7 +34,8 @@ OscillatorError oscillator_error(const std::string& method, double w, double zet
 /// both 0), found by scanning outwards and halving the interval of the first crossing: what lies beyond a
 /// first unstable interval is not counted. Infinity if none does up to |lambda h| = 1e6. Where the growth
 /// begins as a power of h the threshold shows: explicit Euler undamped gives some 1e-7 / omega instead of 0.
-/// The scan ends at `at_most`, in s, and gives infinity where the limit is longer by more than its resolution.
+/// The scan ends at `at_most`, in s, and gives infinity where the limit is longer by more than its
+/// resolution.
 double scanned_limit(const std::string& method, double omega, double c,
                      double at_most = std::numeric_limits<double>::infinity());
 

@@ -132,7 +132,8 @@ double last_component(const VectorXd& diagonal, const VectorXd& beside, double e
 Spectrum ritz_extremes(const std::vector<double>& diagonal, const std::vector<double>& coupling,
                        double next) {
   const auto size = static_cast<Index>(diagonal.size());
-  const VectorXd main = VectorXd::Map(diagonal.data(), size), beside = VectorXd::Map(coupling.data(), size - 1);
+  const VectorXd main = VectorXd::Map(diagonal.data(), size),
+                 beside = VectorXd::Map(coupling.data(), size - 1);
   const VectorXd values = tridiagonal_values(main, beside);
   Spectrum spectrum;
   spectrum.largest = values[size - 1];

@@ -114,21 +114,18 @@ bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method)
 
 /// The same by conjugate gradients with a cycle of multigrid of the clamped matrix: with the exact matrix,
 /// and where that is not positive definite with the clamped one. Where the last iteration's whole step made
-/// the residual fall far, the matrix has changed little, and its cycle serves once more.
+/// the residual fall far, the matrix has changed little, and its cycle serves once more, unless it does not
+/// solve.
 bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
   constexpr double far = 0.1;
-  const double h = e.weight;
   const ClothSystem& system = e.forces.system();
-  const bool clamps = linearisation_.has_compressed, keeps_cycle = has_cycle_ && length_ == 1 && fall_ <= far;
-  const auto clamp = [&] {
-    if (clamps) e.forces.linearise(e.position, {.position = h * h, .velocity = h, .clamped = true}, clamped_);
+  const bool clamps = linearisation_.has_compressed;
+  const auto make_cycle = [&] {
+    const LinearisationWeights weights{
+        .position = e.weight * e.weight, .velocity = e.weight, .clamped = true};
+    if (clamps) e.forces.linearise(e.position, weights, clamped_);
+    return multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position);
   };
-  linear_method_ = LinearMethod::multigrid;
-  has_cycle_ = false;
-  if (!keeps_cycle) {
-    clamp();
-    if (!multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position)) return false;
-  }
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     multigrid_.precondition(in, out);
   };
@@ -139,11 +136,13 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
     keep_escape(krylov);
     return krylov;
   };
+  linear_method_ = LinearMethod::multigrid;
+  if (has_cycle_ && length_ == 1 && fall_ <= far && solve_with(linearisation_).converged) return true;
+  has_cycle_ = false;
+  if (!make_cycle()) return false;
   const KrylovReport exact = solve_with(linearisation_);
   has_cycle_ = exact.converged;
-  if (!exact.indefinite || !clamps) return exact.converged;
-  if (keeps_cycle) clamp();
-  return solve_with(clamped_).converged;
+  return exact.indefinite && clamps ? solve_with(clamped_).converged : exact.converged;
 }
 
 void ImplicitStage::find_direction(const StageEquation& e) {

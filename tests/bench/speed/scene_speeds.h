@@ -36,7 +36,8 @@ struct SceneSpeed {
 std::optional<Scene> refined(const Scene& scene, int size, std::string& why);
 
 /// Steps from the start to the scene's end or until `longest` seconds of stepping have passed, in turns of a
-/// few milliseconds with the bare step, of which the median of all turns is taken. The first step is not timed.
+/// few milliseconds with the bare step, of which the median of all turns is taken. The first step is not
+/// timed.
 SceneSpeed measure_scene(const std::string& name, const Scene& scene, double longest, int threads);
 
 /// How the time of a step grows with the number of particles.

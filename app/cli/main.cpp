@@ -6,7 +6,7 @@ namespace clothlab::cli {
 namespace {
 
 const char* const footer =
-    "CLOTHLAB_INSTRUCTION_SET=portable, sse2, avx2 or avx512 in the environment makes the kernels use that "
+    "CLOTHLAB_INSTRUCTION_SET=portable, avx2 or avx512 in the environment makes the kernels use that "
     "instruction set instead of the processor's best.\n"
     "Exit codes: 0 done; 1 a defect of the program; 2 bad input or usage; 3 the run diverged (everything up "
     "to the last good state is "

@@ -11,13 +11,12 @@
 namespace cloth {
 namespace {
 
-constexpr std::array set_names{"portable", "sse2", "avx2", "avx512"};  // in the order of InstructionSet
+constexpr std::array set_names{"portable", "avx2", "avx512"};  // in the order of InstructionSet
 constexpr int no_override = -1;
 std::atomic<int> override_value = no_override;
 
 bool has(InstructionSet set) {
 #ifdef CLOTHLAB_X86_KERNELS
-  if (set == InstructionSet::sse2) return true;  // part of x86-64
   if (set == InstructionSet::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (set == InstructionSet::avx512)
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&

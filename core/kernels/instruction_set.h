@@ -2,7 +2,7 @@
 // run time: the best that the processor has, or what CLOTHLAB_INSTRUCTION_SET or a caller asks for.
 //
 // Two runs on the same set agree to the last bit, on whatever machine and with any number of threads. Sets
-// differ by rounding: `portable` and `sse2` round every product and sum, `avx2` and `avx512` fuse them.
+// differ by rounding: `portable` rounds every product and sum, `avx2` and `avx512` fuse them.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace cloth {
 
-enum class InstructionSet { portable, sse2, avx2, avx512 };
+enum class InstructionSet { portable, avx2, avx512 };  // portable: SSE2 on x86-64
 
 inline constexpr const char* instruction_set_variable = "CLOTHLAB_INSTRUCTION_SET";
 
@@ -39,8 +39,6 @@ template <class Kernels>
 const Kernels& active_kernels() {
   switch (active_instruction_set()) {
 #ifdef CLOTHLAB_X86_KERNELS
-    case InstructionSet::sse2:
-      return Kernels::sse2();
     case InstructionSet::avx2:
       return Kernels::avx2();
     case InstructionSet::avx512:

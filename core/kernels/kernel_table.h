@@ -19,7 +19,6 @@
 
 #define CLOTHLAB_KERNEL_TABLE(Kernels) \
   static const Kernels& portable();    \
-  static const Kernels& sse2();        \
   static const Kernels& avx2();        \
   static const Kernels& avx512();
 

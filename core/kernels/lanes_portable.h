@@ -1,5 +1,5 @@
-// Two lanes with the vector types of GCC and Clang, for any processor. This is the reference for the other
-// Lanes types, which have the same functions:
+// Two lanes with the vector types of GCC and Clang, for any processor: registers of SSE2 on x86-64. This is
+// the reference for the other Lanes types, which have the same functions:
 //
 // load(p, count, otherwise): lanes from `count` on come from `otherwise`, and memory beyond the first `count`
 // is not read. shift_one(before, now): every lane moves one column to the right, and the first lane is the
@@ -30,8 +30,9 @@ struct Lanes {
   static constexpr unsigned divided =
       63;  ///< bits of the directions whose roots are computed by division: all
   typedef double V __attribute__((vector_size(16)));
+  typedef long long Mask __attribute__((vector_size(16)));  ///< of a lane all bits, or none
   struct Spring {
-    double stiffness, rest_tension;
+    V stiffness, rest_tension;
   };
 
   static V set(double a) { return V{a, a}; }
@@ -52,9 +53,13 @@ struct Lanes {
   static V fma(V a, V b, V c) { return a * b + c; }
   static V fnma(V a, V b, V c) { return c - a * b; }
   static V div(V a, V b) { return a / b; }
-  static V min(V a, V b) { return V{a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1]}; }
-  static V max(V a, V b) { return V{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]}; }
-  static bool any_positive(V a) { return a[0] > 0 || a[1] > 0; }
+  static V min(V a, V b) { return a < b ? a : b; }
+  static V max(V a, V b) { return a > b ? a : b; }
+  static V root(V a) { return V{__builtin_sqrt(a[0]), __builtin_sqrt(a[1])}; }
+  /// a where the mask is set, and 0 elsewhere.
+  static V where(Mask mask, V a) { return (V)(mask & (Mask)a); }
+  static bool any(Mask mask) { return (mask[0] | mask[1]) != 0; }
+  static bool any_positive(V a) { return any(a > zero()); }
   static void pairs_one(V a, V b, V& first, V& second) { first = V{a[0], b[0]}, second = V{a[1], b[1]}; }
   static void unpair_one(V first, V second, V& a, V& b) { pairs_one(first, second, a, b); }
   static void pairs_two(V a, V b, V& first, V& second) { first = a, second = b; }
@@ -62,31 +67,24 @@ struct Lanes {
   static V shift_one(V before, V now) { return V{before[1], now[0]}; }
   static V shift_two(V before, V) { return before; }
   static double sum(V a) { return a[0] + a[1]; }
-  static Spring spring(double stiffness, double rest_tension) { return {stiffness, rest_tension}; }
-  static double scale_of(double s, const Spring& spring) {
-    const double part = spring.rest_tension / __builtin_sqrt(s);
-    return spring.stiffness - (s == 0 ? 0 : part);
-  }
+  static Spring spring(double stiffness, double rest_tension) { return {set(stiffness), set(rest_tension)}; }
   template <bool Divide>
   static V spring_scale(V s, const Spring& spring) {
-    return V{scale_of(s[0], spring), scale_of(s[1], spring)};
+    return spring.stiffness - where(s != zero(), spring.rest_tension / root(s));
   }
 
-  static double inverse_root_of(double s) { return s == 0 ? 0 : 1 / __builtin_sqrt(s); }
   template <bool Divide>
   static V inverse_root(V s) {
-    return V{inverse_root_of(s[0]), inverse_root_of(s[1])};
+    return where(s != zero(), set(1) / root(s));
   }
   static V scale_at(V inverse_root, const Spring& spring) {
-    return fnma(set(spring.rest_tension), inverse_root, set(spring.stiffness));
+    return fnma(spring.rest_tension, inverse_root, spring.stiffness);
   }
 
-  static V where_positive(V k, V value) { return V{k[0] > 0 ? value[0] : 0, k[1] > 0 ? value[1] : 0}; }
-  static V exact_scale(V s, V stiffness, V tension) {
-    return V{scale_of(s[0], {stiffness[0], tension[0]}), scale_of(s[1], {stiffness[1], tension[1]})};
-  }
-  static V scale(V s, V stiffness, V tension) { return exact_scale(s, stiffness, tension); }
-  static bool is_in_doubt(V force) { return force[0] != force[0] || force[1] != force[1]; }
+  static V where_positive(V k, V value) { return where(k > zero(), value); }
+  static V scale(V s, V stiffness, V tension) { return stiffness - tension / root(s); }
+  static V exact_scale(V s, V stiffness, V tension) { return spring_scale<true>(s, {stiffness, tension}); }
+  static bool is_in_doubt(V force) { return any(force != force); }
   using Table = const double*;
   using Kinds = const unsigned char*;
   static Table table(const double* eight) { return eight; }

@@ -54,7 +54,7 @@ signal_one() {
   [ -z "$victim" ] || kill "-$1" "$victim" 2>/dev/null || :
 }
 
-write_plan 20 2
+write_plan 20 1
 run_whole
 # 13 shards in arrays of at most 5.
 "$cli" sweep emit "$place/parts" --plan "$place/p.sweep.json" --for slurm --shards 13 --at-once 6 >/dev/null

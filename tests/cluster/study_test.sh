@@ -32,9 +32,9 @@ wait_for_queue() {
 # Finished cells of all parts.
 cells() { cat "$place"/parts/shards/*/stability.csv 2>/dev/null | grep -vc '^method,' || :; }
 
-study="stability corners-free --methods verlet,rk4 --periods 2000 --most-steps 100000 --x integrator.time_step=5e-4:4e-3:12:log \
-  --y springs.*=20:500:12:log"
-all=288
+study="stability corners-free --methods verlet,rk4 --periods 2000 --most-steps 100000 --x integrator.time_step=5e-4:4e-3:8:log \
+  --y springs.*=20:500:8:log"
+all=128
 
 cat >"$place/map.sh" <<END
 #!/bin/sh

@@ -35,8 +35,8 @@ TEST_P(EveryScene, RunsAtTheAutomaticStepOrIsToldThatThereIsNone) {
   }
   if (!whole_scenes) {
     // Steps that iterate are dear on stiff, limited scenes.
-    constexpr double iterated_duration = 0.2;
-    constexpr int max_evaluations = 2'500, evaluations_of_a_chosen_step = 6;
+    constexpr double iterated_duration = 0.1;
+    constexpr int max_evaluations = 1'500, evaluations_of_a_chosen_step = 6;
     const MethodFacts& facts = facts_of(method);
     if (facts.settings != MethodSettings::none) scene.duration = std::min(scene.duration, iterated_duration);
     const int evaluations =
@@ -44,7 +44,7 @@ TEST_P(EveryScene, RunsAtTheAutomaticStepOrIsToldThatThereIsNone) {
     const double max_steps = max_evaluations / evaluations;
     scene.duration = std::min(scene.duration, max_steps * *resolved_time_step(scene));
     // Scenes of continuous contact are run on elsewhere, with the checker of crossings.
-    constexpr double steps_of_contact = 300, seconds_of_contact = 0.1;
+    constexpr double steps_of_contact = 150, seconds_of_contact = 0.1;
     if (has_continuous_contact(scene))
       scene.duration =
           std::min({scene.duration, seconds_of_contact, steps_of_contact * *resolved_time_step(scene)});

@@ -115,7 +115,7 @@ TEST(ShardFiles, ReadBackToTheSameBits) {
   std::vector<PointRow> rows;
   std::string text = line_of(Attempt{.plan = "p",
                                      .version = "v",
-                                     .instruction_set = "sse2",
+                                     .instruction_set = "avx2",
                                      .processor = "any",
                                      .host = "here",
                                      .shard = {3, 7}}) +
@@ -124,7 +124,7 @@ TEST(ShardFiles, ReadBackToTheSameBits) {
   const ShardFile file = parse_shard_file("a", text, 7);
   EXPECT_EQ(file.damaged, 0);
   EXPECT_EQ(file.attempt.shard, (Shard{3, 7}));
-  EXPECT_EQ(file.attempt.maker(), "here (any, sse2)");
+  EXPECT_EQ(file.attempt.maker(), "here (any, avx2)");
   ASSERT_EQ(file.rows.size(), rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(file.rows[k].point, rows[k].point);

@@ -39,7 +39,9 @@ TEST_P(SystemOfNewton, IsTheSameEveryTimeAndHasARightHandSideOnFreeParticlesAlon
   EXPECT_EQ(once->right_hand_side, again->right_hand_side);
   EXPECT_EQ(once->relative_residual(Vec3Field(81)), 1);
   for (std::size_t i = 0; i < 81; ++i)
-    if (once->system.pinned[i]) EXPECT_EQ(once->right_hand_side[i].norm(), 0);
+    if (once->system.pinned[i]) {
+      EXPECT_EQ(once->right_hand_side[i].norm(), 0);
+    }
   EXPECT_GT(once->compressed_part, 0.1) << "a matrix with clamped springs is another one";
 }
 

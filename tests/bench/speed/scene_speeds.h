@@ -14,7 +14,7 @@
 namespace cloth::speed {
 
 struct SceneSpeed {
-  std::string name, method;
+  std::string name{}, method{};
   int size = 0;               ///< particles along the longer side that were asked for; 0: the scene's own
   int rows = 0, columns = 0;  ///< 0 of a mesh
   int particles = 0;
@@ -24,7 +24,7 @@ struct SceneSpeed {
   double seconds = 0;      ///< of stepping alone: processor time of one thread, wall time of several
   double nanoseconds = 0;  ///< per particle and step
   double bare = 0;         ///< the same of the bare Verlet step: springs in six directions and gravity
-  std::string remark;      ///< how it diverged, or why it was not run
+  std::string remark{};    ///< how it diverged, or why it was not run
 
   double speed() const { return seconds > 0 ? simulated / seconds : 0; }
   double to_bare() const { return bare > 0 ? nanoseconds / bare : 0; }

@@ -35,8 +35,8 @@ TEST_P(EveryScene, RunsAtTheAutomaticStepOrIsToldThatThereIsNone) {
   }
   if (!whole_scenes) {
     // Steps that iterate are dear on stiff, limited scenes.
-    constexpr double iterated_duration = 0.1;
-    constexpr int max_evaluations = 1'500, evaluations_of_a_chosen_step = 6;
+    constexpr double iterated_duration = 0.2;
+    constexpr int max_evaluations = 2'500, evaluations_of_a_chosen_step = 6;
     const MethodFacts& facts = facts_of(method);
     if (facts.settings != MethodSettings::none) scene.duration = std::min(scene.duration, iterated_duration);
     const int evaluations =

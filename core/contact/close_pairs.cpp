@@ -10,7 +10,7 @@
 namespace cloth {
 namespace {
 
-constexpr std::size_t least_kept = 500;  ///< pairs that are worth a thread of their own
+constexpr std::size_t least_kept = 100;  ///< pairs that are worth a thread of their own
 /// Candidates are found for this many more displacements like the present one.
 constexpr double ways_ahead = 6;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
@@ -33,7 +33,7 @@ bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
 void ClosePairs::set_team(WorkerTeam* team) {
   team_ = team;
   search_.set_team(team);
-  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
+  parts_.resize(std::max(parts_.size(), team ? static_cast<std::size_t>(team->size()) : 1));
 }
 
 void ClosePairs::measure(const PairQuery& now) {

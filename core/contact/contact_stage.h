@@ -27,6 +27,7 @@
 #include "contact/obstacle_transition.h"
 #include "geometry/bounds.h"
 #include "integrators/integrator.h"
+#include "kernels/thread_choice.h"
 
 namespace cloth {
 
@@ -59,7 +60,7 @@ class ContactStage {
 
   // Only continuous contact has what follows.
   /// Null: one thread. Results do not depend on the team.
-  virtual void set_team(WorkerTeam*) {}
+  virtual void set_team(WorkerTeam*, ThreadUse) {}
   /// Called several times within a step; when it returns true, the step ends with `interrupted`.
   virtual void set_stop_test(const std::function<bool()>&) {}
   /// The obstacles' poses at the beginning of the next step; empty: those of the scene.

@@ -99,7 +99,14 @@ bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state
 }
 
 ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& state) {
-  if (!is_near(step, state)) return {};
+  team_ = job_.begin();
+  close_pairs_.set_team(team_);
+  const ContactReport report = is_near(step, state) ? resolve_near(step, state) : ContactReport{};
+  job_.end();
+  return report;
+}
+
+ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothState& state) {
   ContactReport report;
   const double duration = step.times.step;
   RoundsEnd end = RoundsEnd::arrived;

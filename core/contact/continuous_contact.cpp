@@ -15,7 +15,7 @@ namespace {
 
 /// Radius of a capsule as a part of the thickness, or of the displacement if that gives more.
 constexpr double margin_part = 0.1, aside_part = 0.1;
-constexpr std::size_t least_shared = 500;  ///< pairs that are worth a thread of their own
+constexpr std::size_t least_shared = 100;  ///< pairs that are worth a thread of their own
 constexpr double skin_part = 0.35;         ///< of a mean edge, see PairSearch
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;

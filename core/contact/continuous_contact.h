@@ -13,6 +13,7 @@
 #include "contact/close_pairs.h"
 #include "contact/contact_solver.h"
 #include "contact/contact_stage.h"
+#include "kernels/shared_job.h"
 
 namespace cloth {
 
@@ -39,7 +40,7 @@ class ContinuousContact : public ContactStage {
   ContactReport resolve(const ContactStep& step, ClothState& state) override;
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override;
   bool is_continuous() const override { return true; }
-  void set_team(WorkerTeam* team) override { team_ = team, close_pairs_.set_team(team); }
+  void set_team(WorkerTeam* team, ThreadUse use) override { job_.set_team(team, use); }
   void set_stop_test(const std::function<bool()>& test) override { stop_test_ = test; }
   const std::vector<Pose>& poses() const override { return starts_; }
   void restore(const std::vector<Pose>& poses, const ObstacleTransitions& transitions,
@@ -72,6 +73,7 @@ class ContinuousContact : public ContactStage {
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
   bool is_near(const ContactStep& step, const ClothState& state);
+  ContactReport resolve_near(const ContactStep& step, ClothState& state);
   void begin(const StepTimes& times);
   bool note_still();
   void set_thickness(double time);
@@ -129,7 +131,8 @@ class ContinuousContact : public ContactStage {
   ObstacleTransitions transitions_;
   ClosePairs close_pairs_;
   PlacedBodies placed_;
-  WorkerTeam* team_ = nullptr;
+  SharedJob job_;               ///< a step near obstacles or itself
+  WorkerTeam* team_ = nullptr;  ///< of this step
   std::function<bool()> stop_test_;
   double mean_edge_ = 0;       ///< m, of the cloth at its start
   bool is_staggered_ = false;  ///< see stagger.h

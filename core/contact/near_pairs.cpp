@@ -11,7 +11,7 @@ namespace cloth {
 namespace {
 
 /// Overlaps, and features to be looked for in a hierarchy, that are worth a thread of their own.
-constexpr std::size_t least_share = 1000, least_queries = 200;
+constexpr std::size_t least_share = 250, least_queries = 64;
 
 /// m, largest distance of an arc from its chord, for a point that rotates at `radius` metres from the axis.
 double bulge(const PoseInterpolation& path, double radius) {
@@ -266,7 +266,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
 
 void PairSearch::set_team(WorkerTeam* team) {
   team_ = team;
-  parts_.resize(team ? static_cast<std::size_t>(team->size()) : 1);
+  parts_.resize(std::max(parts_.size(), team ? static_cast<std::size_t>(team->size()) : 1));
 }
 
 /// The overlaps that the trees have found are reused while every particle stays in its grown box and no mesh

@@ -144,7 +144,7 @@ class SpringSweep {
   static constexpr std::size_t pass_kinds = 9;
   static PassKind kind_of(std::size_t steps) { return steps == 1 ? PassKind::step : PassKind::several_steps; }
   /// Smallest number of particles per thread. With fewer, waking the threads takes as long as the pass.
-  static constexpr int fewest_particles = 1000;
+  static constexpr int fewest_particles = 250;
 
   /// Calls job(first, count, threads) until `passes` passes are done; each call does the passes first to
   /// first + count - 1, as many as ThreadChoice::at_once() allows.

@@ -95,18 +95,21 @@ void WorkerTeam::dismiss() {
 void WorkerTeam::start(int shares, Function function, const void* context) {
   assert(shares <= size());
   shares_ = shares;
-  if (shares > 1) {
-    function_ = function;
-    context_ = context;
-    at_work_.store(static_cast<int>(workers_.size()), std::memory_order_relaxed);
-    job_number_.fetch_add(1, std::memory_order_release);
-    job_number_.notify_all();
-  }
-  if (shares > 0) function(context, 0);
-  if (shares <= 1) return;
+  if (shares == 1) return function(context, 0);
+  if (shares < 1) return;
+  function_ = function;
+  context_ = context;
+  at_work_.store(static_cast<int>(workers_.size()), std::memory_order_relaxed);
+  job_number_.fetch_add(1, std::memory_order_release);
+  job_number_.notify_all();
+  const auto begun = std::chrono::steady_clock::now();
+  function(context, 0);
+  const auto waited = std::chrono::steady_clock::now();
   for (int left = at_work_.load(std::memory_order_acquire); left != 0;
        left = at_work_.load(std::memory_order_acquire))
     wait_for_change(at_work_, left);
+  spent_.working += std::chrono::duration<double>(waited - begun).count();
+  spent_.waiting += std::chrono::duration<double>(std::chrono::steady_clock::now() - waited).count();
 }
 
 void WorkerTeam::work(int share) {

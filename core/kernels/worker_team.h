@@ -36,6 +36,13 @@ class WorkerTeam {
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
 
+  /// s, of the caller in all jobs of several shares so far.
+  struct Spent {
+    double working = 0;  ///< on its own shares
+    double waiting = 0;  ///< for those of the others
+  };
+  const Spent& spent() const { return spent_; }
+
   /// Calls job(share) for each share in [0, shares), each on its own thread, and returns when all are done.
   /// Preconditions: shares <= size(); only one thread calls it at a time; job does not throw.
   template <class Job>
@@ -55,6 +62,7 @@ class WorkerTeam {
   const void* context_ = nullptr;
   int shares_ = 0;
   bool stops_ = false;
+  Spent spent_;
   alignas(64) std::atomic<std::uint32_t> job_number_{0};
   alignas(64) std::atomic<int> at_work_{0};
   std::vector<std::thread> workers_;

@@ -328,7 +328,7 @@ void Simulation::set_threads(int threads, ThreadUse use) {
 /// Among the threads of the team, if there is one.
 void Simulation::share_work() {
   if (forces_->sweep()) forces_->sweep()->set_team(team_.get(), thread_use_);
-  if (contact_) contact_->set_team(team_.get());
+  if (contact_) contact_->set_team(team_.get(), thread_use_);
 }
 
 int Simulation::threads() const {

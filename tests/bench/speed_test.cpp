@@ -39,6 +39,15 @@ TEST(Growth, OfAPowerOfTheParticlesIsThatPower) {
   EXPECT_EQ(growth[1].largest, 256);
 }
 
+TEST(Growth, IsThatOfAnInnerStepWhereAStepTakesSeveral) {
+  std::vector<StepCost> rows;
+  for (const int size : {32, 64, 128}) {
+    rows.push_back(row_of(size, "dormand-prince", 10.0 * size));
+    rows.back().inner_steps = size;
+  }
+  EXPECT_NEAR(fit_growth(rows).at(0).exponent.value, 1, 1e-12);
+}
+
 TEST(Growth, NeedsTwoSizesThatWereTimed) {
   StepCost left_out = row_of(64, "verlet", 0);
   left_out.samples = 0;

@@ -22,7 +22,7 @@ std::vector<Growth> fit_growth(const std::vector<StepCost>& rows) {
     for (const StepCost& row : rows) {
       if (!belongs(growth, row) || row.samples == 0) continue;
       const double particles = static_cast<double>(row.size) * row.size;
-      points.push_back({particles, particles * row.time.low});
+      points.push_back({particles, particles * row.time.low / row.inner_steps});
       growth.smallest = growth.smallest == 0 ? row.size : std::min(growth.smallest, row.size);
       growth.largest = std::max(growth.largest, row.size);
     }

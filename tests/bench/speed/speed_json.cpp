@@ -65,6 +65,7 @@ json row_json(const StepCost& row) {
               {"ratio_to_divider_floor", positive(row.to_divider)},
               {"ratio_to_memory_floor", positive(row.to_memory)},
               {"force_evaluations_per_step", positive(row.evaluations)}};
+  if (row.inner_steps > 1) object["inner_steps_per_step"] = row.inner_steps;
   if (row.sweeps > 0) object["limiter_sweeps_per_step"] = row.sweeps;
   if (row.velocity_iterations > 0) object["velocity_iterations_per_step"] = row.velocity_iterations;
   if (row.linear_iterations > 0) object["linear_iterations_per_step"] = row.linear_iterations;

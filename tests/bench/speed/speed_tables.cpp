@@ -35,6 +35,7 @@ std::string count_text(double each_step) {
 std::string solver_text(const StepCost& row) {
   if (row.sweeps > 0) return count_text(row.sweeps) + " sweeps";
   if (row.velocity_iterations > 0) return count_text(row.velocity_iterations) + " velocity iterations";
+  if (row.inner_steps > 1) return count_text(row.inner_steps) + " inner steps";
   if (row.linear_iterations > 0) return count_text(row.linear_iterations) + " linear iterations";
   return "";
 }
@@ -218,8 +219,8 @@ void add_steps(Page& page, const SpeedReport& report) {
   }
   page.heading("Growth");
   page.paragraph(
-      "The power of the number of particles by which the time of a step grows: least squares over the lower "
-      "quartiles.");
+      "The power of the number of particles by which the time of a step, or of an inner step where a method "
+      "takes several, grows: least squares over the lower quartiles.");
   page.table(growth_table(report.growth));
 }
 

@@ -75,6 +75,7 @@ StepCost cost_of(const Variant& variant, const Subject& subject, const Yardstick
                .samples = static_cast<int>(subject.samples.size()),
                .time = spread_of(subject),
                .evaluations = each_step(count.force_evaluations),
+               .inner_steps = std::max(1.0, each_step(count.inner_steps + count.rejected_steps)),
                .sweeps = each_step(count.limiter_sweeps),
                .velocity_iterations = each_step(count.velocity_iterations),
                .linear_iterations = each_step(count.linear_iterations)};

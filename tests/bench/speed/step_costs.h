@@ -23,6 +23,7 @@ struct StepCost {
   Spread to_reference = {}, to_bare = {};  ///< ratios, sample by sample
   double to_divider = 0, to_memory = 0;    ///< ratios to divider_floor and memory_floor
   double evaluations = 0;                  ///< of the force, per step
+  double inner_steps = 1;                  ///< per step, those that were rejected included
   double sweeps = 0, velocity_iterations = 0, linear_iterations = 0;  ///< per step
   std::string remark = {};
 

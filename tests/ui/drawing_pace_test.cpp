@@ -1,15 +1,19 @@
 // Where drawing takes long it gives way: fewer pictures, of fewer pixels, and all of them again at rest.
 #include "viewport/drawing_pace.h"
 
+#include <QElapsedTimer>
 #include <QOpenGLContext>
 #include <QOpenGLFunctions>
 #include <QTest>
 #include <QThread>
 #include <array>
+#include <limits>
 
+#include "bridge/worker_status.h"
 #include "listed_test.h"
 #include "patience.h"
 #include "theme/theme.h"
+#include "viewport/drawing_turns.h"
 #include "viewport/gl/gl_probe.h"
 #include "viewport/gl_canvas.h"
 
@@ -25,9 +29,11 @@ class SlowCanvas {
     bool quick;
     double fineness;
     QSize viewport;
+    qint64 begun;  // ms
   };
 
   explicit SlowCanvas(int milliseconds) : milliseconds_(milliseconds) {
+    clock_.start();
     canvas_ =
         make_memory_canvas(&window_, {.initialise = [] {},
                                       .resized = [](int, int) {},
@@ -52,13 +58,14 @@ class SlowCanvas {
     std::array<int, 4> area{};
     QOpenGLFunctions* gl = QOpenGLContext::currentContext()->functions();
     gl->glGetIntegerv(GL_VIEWPORT, area.data());
-    drawings_.push_back({quick, fineness, {area[2], area[3]}});
+    drawings_.push_back({quick, fineness, {area[2], area[3]}, clock_.elapsed()});
     gl->glClearColor(0.2F, 0.4F, 0.6F, 1);
     gl->glClear(GL_COLOR_BUFFER_BIT);
     QThread::msleep(static_cast<unsigned long>(milliseconds_));
   }
 
   int milliseconds_;
+  QElapsedTimer clock_;
   bool moving_ = false;
   QWidget window_;
   std::unique_ptr<GlCanvas> canvas_;
@@ -76,13 +83,46 @@ class DrawingPaceTest : public QObject {
   void long_drawings_leave_two_thirds_of_the_time_free() {
     DrawingPace pace;
     pace.drew(0.9 * long_ms);
-    QCOMPARE(pace.pause(), 0.0);
+    QCOMPARE(pace.pause(false), 0.0);
     pace.drew(2 * long_ms);
-    QCOMPARE(pace.pause(), 4 * long_ms);
+    QCOMPARE(pace.pause(false), 4 * long_ms);
     pace.drew(100 * long_ms);
-    QVERIFY2(pace.pause() <= 200, "what held up one drawing does not hold up the next for long");
+    QVERIFY2(pace.pause(false) <= 200, "what held up one drawing does not hold up the next for long");
     pace.drew(0.9 * long_ms);
-    QCOMPARE(pace.pause(), 0.0);
+    QCOMPARE(pace.pause(false), 0.0);
+  }
+
+  void a_run_that_is_behind_the_clock_has_two_thirds_of_the_time_beside_short_drawings_too() {
+    DrawingPace pace;
+    pace.drew(0.3 * long_ms);
+    QCOMPARE(pace.pause(false), 0.0);
+    QCOMPARE(pace.pause(true), 0.6 * long_ms);
+    WorkerStatus status;
+    status.playing = true, status.speed = 1, status.real_time_factor = 0.12;
+    QVERIFY(status.is_behind());
+    status.speed = 0.1;
+    QVERIFY2(!status.is_behind(), "slow motion that is kept");
+    status.speed = std::numeric_limits<double>::infinity();
+    QVERIFY(status.is_behind());
+    status.real_time_factor = 3;
+    QVERIFY2(!status.is_behind(), "as fast as possible, and faster than life");
+    status.real_time_factor = 0;
+    QVERIFY2(!status.is_behind(), "not measured yet");
+    status.real_time_factor = 0.12, status.playing = false;
+    QVERIFY(!status.is_behind());
+  }
+
+  void drawings_of_a_run_that_is_behind_lie_apart() {
+    if (!gl_abilities().usable || !gl_abilities().software) QSKIP("the processor does not draw here");
+    constexpr int taken = 8;  // ms
+    DrawingTurns::ofTheApplication().setRunIsBehind(true);
+    SlowCanvas canvas(taken);
+    canvas.setMoving(true);
+    QTRY_VERIFY_WITH_TIMEOUT(canvas.drawings().size() > 5, patience);
+    canvas.setMoving(false);
+    DrawingTurns::ofTheApplication().setRunIsBehind(false);
+    for (std::size_t k = 1; k < 5; ++k)
+      QVERIFY(canvas.drawings()[k].begun - canvas.drawings()[k - 1].begun >= 3 * taken - 2);  // whole ms
   }
 
   void several_long_drawings_make_the_picture_coarser_and_short_ones_finer() {

@@ -1,6 +1,7 @@
 // The worker's state that the window shows besides frames and samples.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -78,6 +79,10 @@ struct WorkerStatus {
   std::int64_t starts = 0;               ///< how often a run began
   std::int64_t new_starts = 0;           ///< how often an edit made the run start again
 
+  /// Whether it plays more slowly than asked for, and than real time.
+  bool is_behind() const {
+    return playing && real_time_factor > 0 && real_time_factor < 0.9 * std::min(speed, 1.0);
+  }
   bool is_comparison() const { return comparison && comparison->panes.size() > 1; }
 };
 

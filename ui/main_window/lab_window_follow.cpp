@@ -9,6 +9,7 @@
 #include "main_window/lab_files.h"
 #include "main_window/lab_window.h"
 #include "theme/theme.h"
+#include "viewport/drawing_turns.h"
 #include "widgets/numbers.h"
 
 namespace clothlab {
@@ -46,6 +47,7 @@ void show_state(QAction& action, bool on, const QString& text, const char* icon_
 }  // namespace
 
 void LabWindow::followStatus(const WorkerStatus& status) {
+  DrawingTurns::ofTheApplication().setRunIsBehind(status.is_behind());
   transport_->showStatus(status);
   timeline_->showStatus(status, link_.isUpToDate());
   show_state(*play_, status.playing, status.playing ? tr("Pause") : tr("Play"),

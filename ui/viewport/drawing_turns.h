@@ -32,6 +32,10 @@ class DrawingTurns : public QObject {
   /// No turn begins for so long: other events go first.
   void leaveFree(double milliseconds);
 
+  /// Whether what the views show is computed slower than it is to be shown, see DrawingPace.
+  bool runIsBehind() const { return run_is_behind_; }
+  void setRunIsBehind(bool on) { run_is_behind_ = on; }
+
  private:
   explicit DrawingTurns(QObject* parent);
   void next();
@@ -39,6 +43,7 @@ class DrawingTurns : public QObject {
 
   std::deque<Drawer*> waiting_;
   QDeadlineTimer free_until_;
+  bool run_is_behind_ = false;
   QTimer timer_;  ///< runs only while a drawer is queued
 };
 

@@ -194,7 +194,8 @@ void MemoryCanvas::fetchPicture() {
   if (!stale_ && smooth_at_rest_) rest_timer_.start();
   const double taken = 1e-6 * static_cast<double>(drawing_time_.nsecsElapsed());
   pace_.drew(taken);
-  DrawingTurns::ofTheApplication().leaveFree(pace_.pause());
+  DrawingTurns& turns = DrawingTurns::ofTheApplication();
+  turns.leaveFree(pace_.pause(turns.runIsBehind()));
   callbacks_.shown(taken);
 }
 

@@ -44,6 +44,15 @@ class Bench {
   QLabel* source() { return row()->findChild<QLabel*>("materialSource"); }
   QLabel* rule() { return row()->findChild<QLabel*>("rule"); }
 
+  void enter(const char* parameter, const char* text) {
+    auto* field = qobject_cast<QLineEdit*>(bench().editor(parameter, "field"));
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClicks(field, text);
+    QTest::keyClick(field, Qt::Key_Return);
+    bench().settle();
+  }
+
   /// Opens the list of presets and clicks on the one of this name.
   void choose(const char* name) {
     const QString title = QString::fromStdString(cloth::builtin_material(name).title).section(':', 0, 0);
@@ -132,19 +141,11 @@ class MaterialFormTest : public QObject {
   void a_changed_value_makes_it_a_material_of_its_own_and_one_that_does_not_fit_is_refused() {
     Bench b;
     b.open();
-    auto* shear = qobject_cast<QLineEdit*>(b.bench().editor("material.shear", "field"));
-    const auto type = [&](const char* text) {
-      shear->setFocus();
-      shear->selectAll();
-      QTest::keyClicks(shear, text);
-      QTest::keyClick(shear, Qt::Key_Return);
-      b.bench().settle();
-    };
-    type("0.4 gf/(cm deg)");
+    b.enter("material.shear", "0.4 gf/(cm deg)");
     QVERIFY(std::abs(b.material()->shear - 0.4 * 56.188) < 0.001);
     QCOMPARE(b.presets()->currentIndex(), 0);
     QVERIFY(!b.source()->isVisible());
-    type("34");
+    b.enter("material.shear", "34");
     QVERIFY(std::abs(b.material()->shear - 0.4 * 56.188) < 0.001);
     b.document().undoStack().undo();
     QVERIFY(b.presets()->currentIndex() > 0);

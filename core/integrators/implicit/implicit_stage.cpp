@@ -77,12 +77,13 @@ void ImplicitStage::evaluate(const StageEquation& e) {
 
 /// How far an iterative solve goes within an iteration of Newton's method: no further than the linear model
 /// is worth, which the last fall of the residual tells (Eisenstat and Walker 1996, choice 2). Convergence
-/// stays superlinear, and becomes quadratic where the tightest value is reached.
+/// stays superlinear, and becomes quadratic where the tightest value is reached. A whole step that made the
+/// residual fall far has changed the matrix little, and its cycle serves once more.
 void ImplicitStage::choose_forcing() {
-  constexpr double weight = 0.9;
-  const double norm = norm_of(residual_);
-  fall_ = residual_norm_ > 0 ? norm / residual_norm_ : 1;
-  forcing_ = std::clamp(weight * fall_ * fall_, tightest_forcing, loosest_forcing);
+  constexpr double weight = 0.9, far = 0.1;
+  const double norm = norm_of(residual_), fall = residual_norm_ > 0 ? norm / residual_norm_ : 1;
+  forcing_ = std::clamp(weight * fall * fall, tightest_forcing, loosest_forcing);
+  if (residual_norm_ > 0 && !(length_ == 1 && fall <= far)) has_cycle_ = false;
   residual_norm_ = norm;
 }
 
@@ -112,20 +113,19 @@ bool ImplicitStage::solve_symmetric(const StageEquation& e, LinearMethod method)
   return krylov.converged;
 }
 
+/// A cycle of multigrid of the clamped matrix where the cloth is now; false where there is none.
+bool ImplicitStage::make_cycle(const StageEquation& e) {
+  const LinearisationWeights weights{.position = e.weight * e.weight, .velocity = e.weight, .clamped = true};
+  e.forces.linearise(e.position, weights, clamped_);
+  return multigrid_.prepare(e.forces.system(), clamped_, e.position);
+}
+
 /// The same by conjugate gradients with a cycle of multigrid of the clamped matrix: with the exact matrix,
-/// and where that is not positive definite with the clamped one. Where the last iteration's whole step made
-/// the residual fall far, the matrix has changed little, and its cycle serves once more, unless it does not
-/// solve.
+/// and where that is not positive definite with the clamped one. A cycle that is at hand serves, unless it
+/// does not solve.
 bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
-  constexpr double far = 0.1;
   const ClothSystem& system = e.forces.system();
   const bool clamps = linearisation_.has_compressed;
-  const auto make_cycle = [&] {
-    const LinearisationWeights weights{
-        .position = e.weight * e.weight, .velocity = e.weight, .clamped = true};
-    if (clamps) e.forces.linearise(e.position, weights, clamped_);
-    return multigrid_.prepare(system, clamps ? clamped_ : linearisation_, e.position);
-  };
   const LinearMap preconditioner = [&](const Vec3Field& in, Vec3Field& out) {
     multigrid_.precondition(in, out);
   };
@@ -137,9 +137,9 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
     return krylov;
   };
   linear_method_ = LinearMethod::multigrid;
-  if (has_cycle_ && length_ == 1 && fall_ <= far && solve_with(linearisation_).converged) return true;
+  if (has_cycle_ && solve_with(linearisation_).converged) return true;
   has_cycle_ = false;
-  if (!make_cycle()) return false;
+  if (clamps ? !make_cycle(e) : !multigrid_.prepare(system, linearisation_, e.position)) return false;
   const KrylovReport exact = solve_with(linearisation_);
   has_cycle_ = exact.converged;
   return exact.indefinite && clamps ? solve_with(clamped_).converged : exact.converged;
@@ -237,13 +237,17 @@ LinearMap ImplicitStage::preconditioner() {
 
 /// Lowers the residual by limited memory until its work along the direction is a millionth of the first. The
 /// preconditioner knows nothing of how much longer a spring gets by turning, and its steps are mostly too
-/// long at first: so a loose condition ends each line search.
+/// long at first: so a loose condition ends each line search. A cycle of multigrid follows the cloth.
 void ImplicitStage::relax(const StageEquation& e) {
-  constexpr int most_steps = 200;
-  constexpr double fall = 1e-6, accepted = 0.9, little = 0.1;
+  constexpr int most_steps = 200, steps_of_cycle = 15;
+  constexpr double fall = 1e-8, accepted = 0.9, little = 0.1;
   const LinearMap inverse = preconditioner();
   double first = 0, last = 0;
   for (int n = 0; n < most_steps; ++n) {
+    if (linear_method_ == LinearMethod::multigrid && n % steps_of_cycle == 0) {
+      has_cycle_ = make_cycle(e);
+      if (!has_cycle_) break;
+    }
     memory_.direction(residual_, inverse, direction_);
     ++e.report.linear_iterations;
     last = -work_along(direction_, residual_);
@@ -262,6 +266,7 @@ void ImplicitStage::relax(const StageEquation& e) {
     memory_.add(std::move(change), std::move(growth));
   }
   if (!(last < little * first)) ++futile_;
+  residual_norm_ = 0;  // no iteration of Newton's method made it fall
 }
 
 /// Whether a further iteration would change no velocity by more than `largest_change`, by what the last one's
@@ -305,7 +310,8 @@ void ImplicitStage::solve(const StageEquation& e) {
       return;
     }
     if (!has_preconditioner()) continue;
-    if (length_ < 1 && is_indefinite_ && futile_ < most_futile) relax(e);
+    const bool turns_far = largest_component(escape_) > 0 || (length_ < 1 && is_indefinite_);
+    if (turns_far && futile_ < most_futile) relax(e);
     const bool is_near = change <= nearly_solved * scale;
     if (is_near && is_solved(e, estimate_part * tolerance_ * scale + rounding)) return;
   }

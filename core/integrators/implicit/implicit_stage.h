@@ -9,10 +9,11 @@
 // iteration does not end at a saddle point. The line search uses the work of the residual along the direction
 // (Matthies and Strang 1979); it needs no energy, since drag and dampers have none.
 //
-// Where the exact Jacobian was indefinite and a step had to be shortened, the linear model holds only nearby:
-// springs that turn get longer by the square of the turning. The residual is then relaxed by a quasi-Newton
-// method that evaluates forces instead of multiplying with the matrix, and has the last iteration's solver as
-// preconditioner: it goes much further for the cost of one linear solve.
+// Where the exact Jacobian has a direction of negative curvature, and where it had one and a step had to be
+// shortened, the linear model holds only nearby: springs that turn get longer by the square of the turning.
+// The residual is then relaxed by a quasi-Newton method that evaluates forces instead of multiplying with the
+// matrix, and has factors, or a cycle of multigrid that is made anew on the way, as preconditioner: it goes
+// much further for the cost of one linear solve.
 #pragma once
 
 #include "integrators/implicit/limited_memory.h"
@@ -50,6 +51,7 @@ class ImplicitStage {
   void add_escape();
   bool solve_symmetric(const StageEquation& e, LinearMethod method);
   bool solve_by_factors(const StageEquation& e);
+  bool make_cycle(const StageEquation& e);
   bool solve_by_multigrid(const StageEquation& e);
   void keep_escape(const KrylovReport& krylov);
   double take_step(const StageEquation& e);
@@ -67,12 +69,11 @@ class ImplicitStage {
   ConjugateGradients gradients_;
   MinimalResiduals minimal_residuals_;
   LinearMethod linear_method_ = LinearMethod::cholesky;
-  double residual_norm_ = 0;    ///< N s, before the last iteration of this solve; 0: there was none
-  double fall_ = 1;             ///< of the residual in the last iteration, as a ratio; 1: there was none
+  double residual_norm_ = 0;    ///< N s, before the last iteration; 0: none, or a relaxation came after it
   double forcing_ = 0;          ///< tolerance of iterative solves, relative to the residual
   double length_ = 1;           ///< of the last step along its direction
   bool is_indefinite_ = false;  ///< the exact matrix was, in an iteration of this solve
-  bool has_cycle_ = false;      ///< of multigrid, from an iteration of this solve
+  bool has_cycle_ = false;      ///< of multigrid, that serves the matrix of the next iteration
   int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;

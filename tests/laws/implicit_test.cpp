@@ -249,16 +249,25 @@ TEST(LimitedMemory, MapsTheLastGrowthToItsChangeAndGoesDownhill) {
   LimitedMemory memory;
   Vec3Field direction(size);
   for (int n = 0; n < 12; ++n) {
-    const Vec3Field change = random.field(size, 1);
-    Vec3Field growth = random.field(size, 0.4);
-    add_scaled(2, change, growth);
-    memory.add(change, growth);
-    memory.direction(growth, inverse, direction);
-    EXPECT_LE(largest_distance(direction, combination(-1, change, 0, change)), 1e-11);
-    const Vec3Field residual = random.field(size, 1);
-    memory.direction(residual, inverse, direction);
-    EXPECT_LT(dot(direction.flat(), residual.flat()), 0);
-    memory.add(change, combination(-1, growth, 0, growth));  // falls along the change: not kept
+    const auto go = [&](double length,
+                        double stiffness) {  // from a random residual; returns change and growth
+      const Vec3Field residual = random.field(size, 1);
+      memory.next(residual, 0, inverse, direction);
+      EXPECT_LT(dot(direction.flat(), residual.flat()), 0);
+      const Vec3Field change = combination(length, direction, 0, direction);
+      Vec3Field growth = random.field(size, 0.4);
+      add_scaled(stiffness, change, growth);
+      memory.next(combination(1, residual, 1, growth), length, inverse, direction);
+      return std::pair(change, growth);
+    };
+    const auto [change, growth] = go(0.7, 2);
+    const auto expect_its_change = [&] {
+      memory.next(growth, 0, inverse, direction);
+      EXPECT_LE(largest_distance(direction, combination(-1, change, 0, change)), 1e-11);
+    };
+    expect_its_change();
+    go(0.7, -2);  // falls along the change: not kept
+    expect_its_change();
   }
 }
 

@@ -242,28 +242,24 @@ void ImplicitStage::relax(const StageEquation& e) {
   constexpr int most_steps = 200, steps_of_cycle = 15;
   constexpr double fall = 1e-8, accepted = 0.9, little = 0.1;
   const LinearMap inverse = preconditioner();
-  double first = 0, last = 0;
+  double first = 0, last = 0, length = 0;
   for (int n = 0; n < most_steps; ++n) {
     if (linear_method_ == LinearMethod::multigrid && n % steps_of_cycle == 0) {
       has_cycle_ = make_cycle(e);
       if (!has_cycle_) break;
     }
-    memory_.direction(residual_, inverse, direction_);
+    memory_.next(residual_, length, inverse, direction_);
     ++e.report.linear_iterations;
     last = -work_along(direction_, residual_);
     if (n == 0) first = last;
     if (!(last > fall * first)) break;
-    before_ = residual_;
     if (!find_length(e, accepted)) {
       e.velocity = start_;
       evaluate(e);
       memory_.forget();
       break;
     }
-    Vec3Field change = direction_, growth = residual_;
-    for (double& value : change.flat()) value *= length_;
-    add_scaled(-1, before_, growth);
-    memory_.add(std::move(change), std::move(growth));
+    length = length_;
   }
   if (!(last < little * first)) ++futile_;
   residual_norm_ = 0;  // no iteration of Newton's method made it fall

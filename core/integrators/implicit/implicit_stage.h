@@ -77,7 +77,7 @@ class ImplicitStage {
   int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
-  Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, before_, turned_;
+  Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, turned_;
 };
 
 }  // namespace cloth

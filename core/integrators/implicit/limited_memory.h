@@ -2,12 +2,16 @@
 // with a preconditioner where the textbook has a multiple of the identity.
 //
 //     LimitedMemory memory;
-//     memory.forget();
-//     memory.direction(residual, preconditioner, direction);   // about -(dr/dv)^-1 r
-//     memory.add(change of v, change of r);
+//     memory.next(residual, 0, preconditioner, direction);         // about -(dr/dv)^-1 r
+//     v += length * direction;                                     // and the residual there
+//     memory.next(residual, length, preconditioner, direction);
+//
+// The textbook's two loops go through the fields of all pairs one after the other. Here each of four passes
+// over the fields takes all pairs at once, and the loops run over products, which are numbers.
 #pragma once
 
-#include <deque>
+#include <array>
+#include <cstddef>
 
 #include "integrators/implicit/linear_solver.h"
 
@@ -16,26 +20,31 @@ namespace cloth {
 class LimitedMemory {
  public:
   /// Drops all pairs.
-  void forget() { pairs_.clear(); }
-
-  /// Keeps the pair in place of the oldest where the residual has grown along the change: only then does the
-  /// estimate stay positive definite.
-  void add(Vec3Field change, Vec3Field growth);
+  void forget() { count_ = 0; }
 
   /// direction = -H residual. H is symmetric and positive definite if the preconditioner is, and maps the
-  /// last pair's growth to its change.
-  void direction(const Vec3Field& residual, const LinearMap& preconditioner, Vec3Field& direction);
+  /// last pair's growth to its change. `length`: how far the last direction, which `direction` still holds,
+  /// led from the last residual to this one. They become a pair, in place of the oldest, where the residual
+  /// has grown along that direction: only then does H stay positive definite. 0: the last direction did not
+  /// lead here.
+  void next(const Vec3Field& residual, double length, const LinearMap& preconditioner, Vec3Field& direction);
 
  private:
   static constexpr std::size_t most = 8;
+  using Products = std::array<double, most + 1>;
   struct Pair {
     Vec3Field change, growth;
-    double product = 0;  ///< change . growth
-    double weight = 0;   ///< scratch
+    double product = 0;   ///< change . growth
+    Products of_older{};  ///< older pairs' changes . growth, in their order
   };
 
-  std::deque<Pair> pairs_;  ///< oldest first
-  Vec3Field rest_;
+  void project(const Vec3Field& residual);
+  void add_pair(const Vec3Field& residual, double length, const Vec3Field& direction);
+
+  std::array<Pair, most + 1> pairs_;  ///< oldest first; the one after the last is being made
+  std::size_t count_ = 0;
+  Products projections_{};  ///< of the last residual: changes . residual
+  Vec3Field last_, rest_;   ///< the last residual; scratch
 };
 
 }  // namespace cloth

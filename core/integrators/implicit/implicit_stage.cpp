@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "cloth/sums.h"
 
@@ -55,6 +56,14 @@ void set_negative(const Vec3Field& field, Vec3Field& negative) {
   for (double& value : negative.flat()) value = -value;
 }
 
+/// sum = from + scale * along
+void set_sum(const Vec3Field& from, double scale, const Vec3Field& along, Vec3Field& sum) {
+  if (sum.size() != from.size()) sum = Vec3Field(from.size());
+  const std::span<const double> a = from.flat(), b = along.flat();
+  const std::span<double> c = sum.flat();
+  for (std::size_t k = 0; k < c.size(); ++k) c[k] = a[k] + scale * b[k];
+}
+
 double work_along(const Vec3Field& direction, const Vec3Field& residual) {
   return dot(direction.flat(), residual.flat());
 }
@@ -62,16 +71,16 @@ double work_along(const Vec3Field& direction, const Vec3Field& residual) {
 }  // namespace
 
 void ImplicitStage::evaluate(const StageEquation& e) {
-  e.position = e.start_position;
-  add_scaled(e.weight, e.velocity, e.position);
+  set_sum(e.start_position, e.weight, e.velocity, e.position);
   e.forces.update(e.position, e.time);
   e.forces.force(e.position, e.velocity, force_);
   ++e.report.force_evaluations;
+  const std::vector<double>& mass = e.forces.system().mass;
   const std::span<const double> v = e.velocity.flat(), v0 = e.start_velocity.flat(), f = force_.flat();
-  const auto r = residual_.flat();
-  const std::size_t size = e.velocity.size();
-  for (std::size_t k = 0; k < r.size(); ++k)
-    r[k] = e.forces.system().mass[k % size] * (v[k] - v0[k]) - e.weight * f[k];
+  const std::span<double> r = residual_.flat();
+  for (std::size_t axis = 0; axis < r.size(); axis += mass.size())
+    for (std::size_t i = 0, k = axis; i < mass.size(); ++i, ++k)
+      r[k] = mass[i] * (v[k] - v0[k]) - e.weight * f[k];
   clear_pinned(e.forces.system(), residual_);
 }
 
@@ -201,8 +210,7 @@ bool ImplicitStage::find_length(const StageEquation& e, double accepted) {
   double far_work = 0;
   length_ = 1;
   for (int trial = 1;; ++trial) {
-    e.velocity = start_;
-    add_scaled(length_, direction_, e.velocity);
+    set_sum(start_, length_, direction_, e.velocity);
     evaluate(e);
     const double after = work_along(direction_, residual_);
     if (std::abs(after) <= accepted * std::abs(before) || trial == max_trials) return std::isfinite(after);

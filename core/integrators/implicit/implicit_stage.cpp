@@ -247,7 +247,7 @@ LinearMap ImplicitStage::preconditioner() {
 /// preconditioner knows nothing of how much longer a spring gets by turning, and its steps are mostly too
 /// long at first: so a loose condition ends each line search. A cycle of multigrid follows the cloth.
 void ImplicitStage::relax(const StageEquation& e) {
-  constexpr int most_steps = 200, steps_of_cycle = 15;
+  constexpr int most_steps = 300, steps_of_cycle = 15;
   constexpr double fall = 1e-8, accepted = 0.9, little = 0.1;
   const LinearMap inverse = preconditioner();
   double first = 0, last = 0, length = 0;

@@ -17,6 +17,7 @@ constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
 constexpr int most_futile = 100;        // relaxations, before a step does without
+constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
 constexpr double good_enough = 1e-3;    // relative change after the last iteration that is still taken
@@ -154,6 +155,8 @@ bool ImplicitStage::solve_by_multigrid(const StageEquation& e) {
   return exact.indefinite && clamps ? solve_with(clamped_).converged : exact.converged;
 }
 
+/// Factors of an indefinite matrix show no direction that curves downwards. Conjugate gradients do, and are
+/// tried with a cycle, as long as that solves.
 void ImplicitStage::find_direction(const StageEquation& e) {
   const double h = e.weight;
   LinearisationWeights weights{.position = h * h, .velocity = h, .clamped = false};
@@ -161,8 +164,10 @@ void ImplicitStage::find_direction(const StageEquation& e) {
   const LinearMethod method = choose_linear_method(e.forces.system(), weights).method;
   set_negative(residual_, negative_residual_);
   escape_.fill(0);
-  const bool solved = method == LinearMethod::multigrid ? solve_by_multigrid(e) : solve_symmetric(e, method);
+  bool solved = method == LinearMethod::multigrid ? solve_by_multigrid(e) : solve_symmetric(e, method);
   if (!solved || largest_component(escape_) > 0) is_indefinite_ = true;
+  if (!solved && method == LinearMethod::cholesky && cycles_solve_)
+    solved = cycles_solve_ = solve_by_multigrid(e);
   if (!solved) {
     weights.clamped = true;
     e.forces.linearise(e.position, weights, linearisation_);
@@ -183,7 +188,8 @@ void ImplicitStage::correct_direction(const StageEquation& e) {
     clear_pinned(e.forces.system(), out);
   };
   e.report.linear_iterations +=
-      minimal_residuals_.solve(jacobian, preconditioner(), negative_residual_, forcing_, direction_)
+      minimal_residuals_
+          .solve(jacobian, preconditioner(linear_method_), negative_residual_, forcing_, direction_)
           .iterations;
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
@@ -234,25 +240,28 @@ double ImplicitStage::take_step(const StageEquation& e) {
   return length_ * largest_component(direction_);
 }
 
-/// About the inverse of the matrix that was solved with last.
-LinearMap ImplicitStage::preconditioner() {
-  return [this](const Vec3Field& in, Vec3Field& out) {
-    if (linear_method_ == LinearMethod::cholesky) return factors_.solve(in, out);
-    if (linear_method_ == LinearMethod::multigrid) return multigrid_.precondition(in, out);
+/// About the inverse of the matrix that the method solved with last.
+LinearMap ImplicitStage::preconditioner(LinearMethod method) {
+  return [this, method](const Vec3Field& in, Vec3Field& out) {
+    if (method == LinearMethod::cholesky) return factors_.solve(in, out);
+    if (method == LinearMethod::multigrid) return multigrid_.precondition(in, out);
     jacobi_.solve(in, out);
   };
 }
 
-/// Lowers the residual by limited memory until its work along the direction is a millionth of the first. The
-/// preconditioner knows nothing of how much longer a spring gets by turning, and its steps are mostly too
-/// long at first: so a loose condition ends each line search. A cycle of multigrid follows the cloth.
+/// Lowers the residual by limited memory until its work along the direction is a 1e8th of the first. The
+/// preconditioner is a cycle of multigrid, made anew as the cloth moves, or the last iteration's factors. It
+/// knows nothing of how much longer a spring gets by turning, and its steps are mostly too long at first: so
+/// a loose condition ends each line search.
 void ImplicitStage::relax(const StageEquation& e) {
   constexpr int most_steps = 300, steps_of_cycle = 15;
   constexpr double fall = 1e-8, accepted = 0.9, little = 0.1;
-  const LinearMap inverse = preconditioner();
+  const bool has_cycles = MultigridSolver::suits(e.forces.system());
+  if (!has_cycles && !has_preconditioner()) return;
+  const LinearMap inverse = preconditioner(has_cycles ? LinearMethod::multigrid : linear_method_);
   double first = 0, last = 0, length = 0;
   for (int n = 0; n < most_steps; ++n) {
-    if (linear_method_ == LinearMethod::multigrid && n % steps_of_cycle == 0) {
+    if (has_cycles && n % steps_of_cycle == 0) {
       has_cycle_ = make_cycle(e);
       if (!has_cycle_) break;
     }
@@ -277,7 +286,7 @@ void ImplicitStage::relax(const StageEquation& e) {
 /// solver makes of the residual that is left. A step that was shortened says nothing.
 bool ImplicitStage::is_solved(const StageEquation& e, double largest_change) {
   if (length_ != 1) return false;
-  preconditioner()(residual_, downhill_);
+  preconditioner(linear_method_)(residual_, downhill_);
   ++e.report.linear_iterations;
   return largest_component(downhill_) <= largest_change;
 }
@@ -295,6 +304,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   double relative = 0;
   residual_norm_ = 0;
   has_cycle_ = is_indefinite_ = false;
+  cycles_solve_ = MultigridSolver::suits(e.forces.system());
   futile_ = 0;
   memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {
@@ -313,11 +323,12 @@ void ImplicitStage::solve(const StageEquation& e) {
       e.report.residual = std::max(e.report.residual, relative);
       return;
     }
-    if (!has_preconditioner()) continue;
     const bool turns_far = largest_component(escape_) > 0 || (length_ < 1 && is_indefinite_);
-    if (turns_far && futile_ < most_futile) relax(e);
     const bool is_near = change <= nearly_solved * scale;
-    if (is_near && is_solved(e, estimate_part * tolerance_ * scale + rounding)) return;
+    const bool is_slow = n + 1 >= slow && !is_near;
+    if ((turns_far || is_slow) && futile_ < most_futile) relax(e);
+    if (is_near && has_preconditioner() && is_solved(e, estimate_part * tolerance_ * scale + rounding))
+      return;
   }
   e.report.residual = std::max(e.report.residual, relative);
   if (relative <= good_enough) return;

@@ -9,8 +9,9 @@
 // iteration does not end at a saddle point. The line search uses the work of the residual along the direction
 // (Matthies and Strang 1979); it needs no energy, since drag and dampers have none.
 //
-// Where the exact Jacobian has a direction of negative curvature, and where it had one and a step had to be
-// shortened, the linear model holds only nearby: springs that turn get longer by the square of the turning.
+// Where the exact Jacobian has a direction of negative curvature, where it had one and a step had to be
+// shortened, and where five iterations did not come near the solution, the linear model holds only nearby:
+// springs that turn get longer by the square of the turning.
 // The residual is then relaxed by a quasi-Newton method that evaluates forces instead of multiplying with the
 // matrix, and has factors, or a cycle of multigrid that is made anew on the way, as preconditioner: it goes
 // much further for the cost of one linear solve.
@@ -56,8 +57,9 @@ class ImplicitStage {
   void keep_escape(const KrylovReport& krylov);
   double take_step(const StageEquation& e);
   bool find_length(const StageEquation& e, double accepted);
+  /// Not one that is worth more than an iteration of conjugate gradients.
   bool has_preconditioner() const { return linear_method_ != LinearMethod::conjugate_gradients; }
-  LinearMap preconditioner();
+  LinearMap preconditioner(LinearMethod method);
   void relax(const StageEquation& e);
   bool is_solved(const StageEquation& e, double largest_change);
 
@@ -74,6 +76,7 @@ class ImplicitStage {
   double length_ = 1;           ///< of the last step along its direction
   bool is_indefinite_ = false;  ///< the exact matrix was, in an iteration of this solve
   bool has_cycle_ = false;      ///< of multigrid, that serves the matrix of the next iteration
+  bool cycles_solve_ = false;   ///< conjugate gradients with a cycle, where factors do not
   int futile_ = 0;              ///< relaxations of this solve that gained little
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;

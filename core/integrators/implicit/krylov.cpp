@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-constexpr int max_iterations = 2000;
+constexpr int max_iterations = 2000, max_cycles = 400;
 constexpr int basis_size = 40;  // of minimal residuals, before a restart
 
 double inner_product(std::span<const double> a, std::span<const double> b) {
@@ -97,7 +97,7 @@ KrylovReport ConjugateGradients::solve(const ClothSystem& system, const Linearis
   direction_ = conditioned_;
   double slope = dot(residual_, conditioned_);
   const double goal = tolerance * tolerance * slope;
-  while (slope > goal && report.iterations < max_iterations) {
+  while (slope > goal && report.iterations < max_cycles) {
     matrix.multiply(system, direction_, image_);
     const double curvature = dot(direction_, image_);
     if (!(curvature > 0)) {

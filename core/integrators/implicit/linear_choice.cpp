@@ -92,9 +92,9 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   choice.factors = costs.factors;
   choice.gradients = more_iterations * (costs.preconditioner + costs.iteration * choice.iterations);
   if (choice.gradients < choice.factors) choice.method = LinearMethod::conjugate_gradients;
-  // Single precision ends where the springs' part of A is some 1e6 times the masses' on a grid; on meshes no
+  // Single precision ends where the springs' part of A is some 1e7 times the masses' on a grid; on meshes no
   // end was met at 5e10.
-  const double stiffest_ratio = system.is_mesh() ? 1e9 : 3e5;
+  const double stiffest_ratio = system.is_mesh() ? 1e9 : 2e6;
   if (MultigridSolver::suits(system) && weights.position * stiffest / lightest <= stiffest_ratio) {
     choice.multigrid = costs.multigrid;
     if (*choice.multigrid < std::min(choice.factors, choice.gradients))

@@ -17,6 +17,7 @@ constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
 constexpr int most_futile = 100;        // relaxations, before a step does without
+constexpr int patience = 6;             // iterations, before the residual's norm is lowered
 constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
@@ -179,8 +180,8 @@ void ImplicitStage::find_direction(const StageEquation& e) {
   add_escape();
 }
 
-/// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
-void ImplicitStage::correct_direction(const StageEquation& e) {
+/// direction -= J^-1 (J direction + residual) with the whole Jacobian, to `tolerance` times the residual.
+void ImplicitStage::solve_whole(const StageEquation& e, LinearMethod method, double tolerance) {
   const LinearMap jacobian = [&](const Vec3Field& in, Vec3Field& out) {
     linearisation_.multiply(e.forces.system(), in, out);
     e.forces.asymmetric_product(e.position, e.velocity, in, turned_);
@@ -188,9 +189,13 @@ void ImplicitStage::correct_direction(const StageEquation& e) {
     clear_pinned(e.forces.system(), out);
   };
   e.report.linear_iterations +=
-      minimal_residuals_
-          .solve(jacobian, preconditioner(linear_method_), negative_residual_, forcing_, direction_)
+      minimal_residuals_.solve(jacobian, preconditioner(method), negative_residual_, tolerance, direction_)
           .iterations;
+}
+
+/// From the direction of the symmetric part to that of the whole Jacobian, unless that goes uphill.
+void ImplicitStage::correct_direction(const StageEquation& e) {
+  solve_whole(e, linear_method_, forcing_);
   if (!(work_along(direction_, residual_) < 0)) direction_ = downhill_;
 }
 
@@ -282,6 +287,38 @@ void ImplicitStage::relax(const StageEquation& e) {
   residual_norm_ = 0;  // no iteration of Newton's method made it fall
 }
 
+/// Newton's method with the whole Jacobian, each step gone as far as the residual's norm falls (Eisenstat and
+/// Walker 1994). Wind and dampers have no potential, and the symmetric part of the Jacobian may be indefinite
+/// at the solution: what goes downhill, or along negative curvature, then leads away from there, and around.
+/// True where a step changes no velocity by more than `smallest_change`.
+bool ImplicitStage::lower_norm(const StageEquation& e, double smallest_change) {
+  constexpr int most_steps = 30;
+  constexpr double tolerance = 1e-3, least_fall = 1e-3, shortest = 1e-3;
+  const LinearisationWeights weights{.position = e.weight * e.weight, .velocity = e.weight, .clamped = false};
+  has_cycle_ = false;
+  residual_norm_ = 0;
+  for (int n = 0; n < most_steps; ++n) {
+    if (!make_cycle(e)) return false;
+    e.forces.linearise(e.position, weights, linearisation_);
+    set_negative(residual_, negative_residual_);
+    direction_.fill(0);
+    solve_whole(e, LinearMethod::multigrid, tolerance);
+    ++e.report.iterations;
+    const double norm = norm_of(residual_);
+    const bool is_last = largest_component(direction_) <= smallest_change;
+    start_ = e.velocity;
+    for (length_ = 1;; length_ *= 0.5) {
+      if (length_ < shortest) length_ = 0;
+      set_sum(start_, length_, direction_, e.velocity);
+      evaluate(e);
+      if (is_last) return true;
+      if (length_ == 0) return false;
+      if (norm_of(residual_) <= (1 - least_fall * length_) * norm) break;
+    }
+  }
+  return false;
+}
+
 /// Whether a further iteration would change no velocity by more than `largest_change`, by what the last one's
 /// solver makes of the residual that is left. A step that was shortened says nothing.
 bool ImplicitStage::is_solved(const StageEquation& e, double largest_change) {
@@ -327,6 +364,10 @@ void ImplicitStage::solve(const StageEquation& e) {
     const bool is_near = change <= nearly_solved * scale;
     const bool is_slow = n + 1 >= slow && !is_near;
     if ((turns_far || is_slow) && futile_ < most_futile) relax(e);
+    if ((n + 1) % patience == 0 && !is_near && e.forces.has_asymmetric_part() &&
+        MultigridSolver::suits(e.forces.system())) {
+      if (lower_norm(e, tolerance_ * scale + rounding)) return;
+    }
     if (is_near && has_preconditioner() && is_solved(e, estimate_part * tolerance_ * scale + rounding))
       return;
   }

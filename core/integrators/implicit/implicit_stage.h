@@ -15,6 +15,9 @@
 // The residual is then relaxed by a quasi-Newton method that evaluates forces instead of multiplying with the
 // matrix, and has factors, or a cycle of multigrid that is made anew on the way, as preconditioner: it goes
 // much further for the cost of one linear solve.
+//
+// Where that does not lead to the solution and forces have no potential, the residual's norm is lowered
+// instead, along directions of the whole Jacobian.
 #pragma once
 
 #include "integrators/implicit/limited_memory.h"
@@ -48,6 +51,7 @@ class ImplicitStage {
   void evaluate(const StageEquation& e);
   void find_direction(const StageEquation& e);
   void choose_forcing();
+  void solve_whole(const StageEquation& e, LinearMethod method, double tolerance);
   void correct_direction(const StageEquation& e);
   void add_escape();
   bool solve_symmetric(const StageEquation& e, LinearMethod method);
@@ -61,6 +65,7 @@ class ImplicitStage {
   bool has_preconditioner() const { return linear_method_ != LinearMethod::conjugate_gradients; }
   LinearMap preconditioner(LinearMethod method);
   void relax(const StageEquation& e);
+  bool lower_norm(const StageEquation& e, double smallest_change);
   bool is_solved(const StageEquation& e, double largest_change);
 
   double tolerance_;

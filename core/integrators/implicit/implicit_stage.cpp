@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cloth/sums.h"
@@ -16,8 +17,7 @@ namespace {
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
-constexpr int most_futile = 100;        // relaxations, before a step does without
-constexpr int patience = 6;             // iterations, before the residual's norm is lowered
+constexpr int most_futile = 30;         // relaxations, before a step does without
 constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
@@ -292,19 +292,21 @@ void ImplicitStage::relax(const StageEquation& e) {
 /// at the solution: what goes downhill, or along negative curvature, then leads away from there, and around.
 /// True where a step changes no velocity by more than `smallest_change`.
 bool ImplicitStage::lower_norm(const StageEquation& e, double smallest_change) {
-  constexpr int most_steps = 30;
-  constexpr double tolerance = 1e-3, least_fall = 1e-3, shortest = 1e-3;
+  constexpr int most_steps = 100, stretch = 10;
+  constexpr double tolerance = 1e-3, least_fall = 1e-3, shortest = 1e-3, least_fall_of_stretch = 0.1;
   const LinearisationWeights weights{.position = e.weight * e.weight, .velocity = e.weight, .clamped = false};
   has_cycle_ = false;
   residual_norm_ = 0;
-  for (int n = 0; n < most_steps; ++n) {
+  double norm = norm_of(residual_), norm_of_stretch = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < most_steps; ++n, norm = norm_of(residual_)) {
+    if (n % stretch == 0 && !(norm <= (1 - least_fall_of_stretch) * std::exchange(norm_of_stretch, norm)))
+      return false;
     if (!make_cycle(e)) return false;
     e.forces.linearise(e.position, weights, linearisation_);
     set_negative(residual_, negative_residual_);
     direction_.fill(0);
     solve_whole(e, LinearMethod::multigrid, tolerance);
     ++e.report.iterations;
-    const double norm = norm_of(residual_);
     const bool is_last = largest_component(direction_) <= smallest_change;
     start_ = e.velocity;
     for (length_ = 1;; length_ *= 0.5) {
@@ -343,6 +345,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   has_cycle_ = is_indefinite_ = false;
   cycles_solve_ = MultigridSolver::suits(e.forces.system());
   futile_ = 0;
+  int patience = 6;  // iterations, before the residual's norm is lowered
   memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {
     choose_forcing();
@@ -364,9 +367,10 @@ void ImplicitStage::solve(const StageEquation& e) {
     const bool is_near = change <= nearly_solved * scale;
     const bool is_slow = n + 1 >= slow && !is_near;
     if ((turns_far || is_slow) && futile_ < most_futile) relax(e);
-    if ((n + 1) % patience == 0 && !is_near && e.forces.has_asymmetric_part() &&
+    if (n + 1 == patience && !is_near && e.forces.has_asymmetric_part() &&
         MultigridSolver::suits(e.forces.system())) {
       if (lower_norm(e, tolerance_ * scale + rounding)) return;
+      patience *= 2;
     }
     if (is_near && has_preconditioner() && is_solved(e, estimate_part * tolerance_ * scale + rounding))
       return;

@@ -18,6 +18,7 @@ constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
 constexpr int most_futile = 30;         // relaxations, before a step does without
+constexpr int most_patience = 24;       // iterations, before the residual's norm is lowered a last time
 constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
 constexpr double estimate_part = 0.1;   // of the tolerance, where the change is only estimated
@@ -367,7 +368,7 @@ void ImplicitStage::solve(const StageEquation& e) {
     const bool is_near = change <= nearly_solved * scale;
     const bool is_slow = n + 1 >= slow && !is_near;
     if ((turns_far || is_slow) && futile_ < most_futile) relax(e);
-    if (n + 1 == patience && !is_near && e.forces.has_asymmetric_part() &&
+    if (n + 1 == patience && patience <= most_patience && !is_near && e.forces.has_asymmetric_part() &&
         MultigridSolver::suits(e.forces.system())) {
       if (lower_norm(e, tolerance_ * scale + rounding)) return;
       patience *= 2;

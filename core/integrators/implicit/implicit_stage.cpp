@@ -17,7 +17,6 @@ namespace {
 constexpr double tightest_forcing = 1e-4, loosest_forcing = 0.1;
 constexpr double accepted_work = 0.5;   // of the residual along a step that is long enough
 constexpr int max_trials = 13;          // of a length
-constexpr int most_futile = 30;         // relaxations, before a step does without
 constexpr int most_patience = 24;       // iterations, before the residual's norm is lowered a last time
 constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
@@ -260,13 +259,15 @@ LinearMap ImplicitStage::preconditioner(LinearMethod method) {
 /// knows nothing of how much longer a spring gets by turning, and its steps are mostly too long at first: so
 /// a loose condition ends each line search.
 void ImplicitStage::relax(const StageEquation& e) {
-  constexpr int most_steps = 300, steps_of_cycle = 15;
+  constexpr int steps_of_cycle = 15;
   constexpr double fall = 1e-8, accepted = 0.9, little = 0.1;
   const bool has_cycles = MultigridSolver::suits(e.forces.system());
   if (!has_cycles && !has_preconditioner()) return;
   const LinearMap inverse = preconditioner(has_cycles ? LinearMethod::multigrid : linear_method_);
+  const int most_steps = std::min(3000, futile_left_);
   double first = 0, last = 0, length = 0;
-  for (int n = 0; n < most_steps; ++n) {
+  int n = 0;
+  for (; n < most_steps; ++n) {
     if (has_cycles && n % steps_of_cycle == 0) {
       has_cycle_ = make_cycle(e);
       if (!has_cycle_) break;
@@ -284,7 +285,7 @@ void ImplicitStage::relax(const StageEquation& e) {
     }
     length = length_;
   }
-  if (!(last < little * first)) ++futile_;
+  if (!(last < little * first)) futile_left_ -= n + 1;
   residual_norm_ = 0;  // no iteration of Newton's method made it fall
 }
 
@@ -345,7 +346,7 @@ void ImplicitStage::solve(const StageEquation& e) {
   residual_norm_ = 0;
   has_cycle_ = is_indefinite_ = false;
   cycles_solve_ = MultigridSolver::suits(e.forces.system());
-  futile_ = 0;
+  futile_left_ = e.forces.has_asymmetric_part() ? 2000 : 4000;  // wind has no potential to fall in
   int patience = 6;  // iterations, before the residual's norm is lowered
   memory_.forget();
   for (int n = 0; n < max_iterations_; ++n) {
@@ -367,7 +368,7 @@ void ImplicitStage::solve(const StageEquation& e) {
     const bool turns_far = largest_component(escape_) > 0 || (length_ < 1 && is_indefinite_);
     const bool is_near = change <= nearly_solved * scale;
     const bool is_slow = n + 1 >= slow && !is_near;
-    if ((turns_far || is_slow) && futile_ < most_futile) relax(e);
+    if ((turns_far || is_slow) && futile_left_ > 0) relax(e);
     if (n + 1 == patience && patience <= most_patience && !is_near && e.forces.has_asymmetric_part() &&
         MultigridSolver::suits(e.forces.system())) {
       if (lower_norm(e, tolerance_ * scale + rounding)) return;

@@ -82,7 +82,7 @@ class ImplicitStage {
   bool is_indefinite_ = false;  ///< the exact matrix was, in an iteration of this solve
   bool has_cycle_ = false;      ///< of multigrid, that serves the matrix of the next iteration
   bool cycles_solve_ = false;   ///< conjugate gradients with a cycle, where factors do not
-  int futile_ = 0;              ///< relaxations of this solve that gained little
+  int futile_left_ = 0;         ///< steps of relaxations that may still gain little in this solve
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
   Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, turned_;

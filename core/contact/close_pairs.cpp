@@ -10,7 +10,6 @@
 namespace cloth {
 namespace {
 
-constexpr std::size_t least_kept = 100;  ///< pairs that are worth a thread of their own
 /// Candidates are found for this many more displacements like the present one.
 constexpr double ways_ahead = 6;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
@@ -80,7 +79,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
   search_.find(around, now.paths, cached_);
   cached_room_.resize(cached_.size()), cached_sides_.resize(cached_.size());
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
-  in_shares(team_, cached_.size(), least_kept, [&](int, std::size_t begin, std::size_t end) {
+  in_shares(team_, cached_.size(), least_pairs, [&](int, std::size_t begin, std::size_t end) {
     PairBatch(setting).find_distances(std::span(cached_).subspan(begin, end - begin),
                                       cached_room_.data() + begin);
     for (std::size_t k = begin; k < end; ++k) {
@@ -219,7 +218,7 @@ template <class Motion>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
                               const Motion& motion) {
   const int shares =
-      in_shares(team_, candidates.size(), least_kept, [&](int share, std::size_t begin, std::size_t end) {
+      in_shares(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
         part.pairs.clear(), part.clear.clear();
         for (std::size_t k = begin; k < end; ++k) {

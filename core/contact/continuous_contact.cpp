@@ -15,8 +15,7 @@ namespace {
 
 /// Radius of a capsule as a part of the thickness, or of the displacement if that gives more.
 constexpr double margin_part = 0.1, aside_part = 0.1;
-constexpr std::size_t least_shared = 100;  ///< pairs that are worth a thread of their own
-constexpr double skin_part = 0.35;         ///< of a mean edge, see PairSearch
+constexpr double skin_part = 0.35;  ///< of a mean edge, see PairSearch
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
@@ -170,7 +169,7 @@ void ContinuousContact::separate_all() {
     PairBatch(setting).separate(std::span(pairs_).subspan(begin, end - begin), within,
                                 separations_.data() + begin);
   };
-  in_shares(team_, pairs_.size(), least_shared, separate_share);
+  in_shares(team_, pairs_.size(), least_pairs, separate_share);
 }
 
 /// The constraint at the end of the step, with the plane moved along with the obstacle.
@@ -236,7 +235,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   }
   order_by_particles();
   constraints_.resize(constraint_pair_.size());
-  in_shares(team_, constraints_.size(), least_shared, [&](int, std::size_t begin, std::size_t end) {
+  in_shares(team_, constraints_.size(), least_pairs, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       constraints_[c] = constraint_of(constraint_pair_[c], system, from);
   });

@@ -1,41 +1,79 @@
-// The loops of multigrid for matrices of symmetric 3x3 blocks on a grid (sparse/block_multigrid.h), in single
-// precision. The columns of a row are parted into segments, one for each colour: their remainder modulo one
-// more than the columns that couplings reach. So the particles of a segment are independent, and every
-// neighbour of a segment is a run of another one. Around the segments lie zeros.
+// The sweeps of multigrid for matrices of symmetric 3x3 blocks on a grid (sparse/block_multigrid.h), in
+// single precision. What they take is bytes from beyond the first cache, not arithmetic. So a sweep reads
+// every block once, in the order in which it goes: a coupling is kept with the particle that the forward
+// sweep solves later, and used there in both directions.
+//
+// The columns of a row are cut into eight pieces, one for each lane: a group has one particle of each piece,
+// and its neighbours are groups of the same lanes. Where a piece ends, its neighbour is the first of the next
+// lane's: copies moved by a lane lie before and behind the groups of a row.
 #pragma once
 
 #include <cstddef>
 
 #include "sparse/block_grid.h"
+#include "sparse/coarse_line.h"
 
 namespace cloth {
 
-/// Where a neighbour's vector, and the block of the coupling, lie from those of a particle.
-struct BlockNeighbour {
-  std::ptrdiff_t vector = 0, block = 0;
+/// Column c of a row is particle c / groups of group c % groups. Group g of row r has its vector at r *
+/// vector_row + g * vector_group, number n of lane l at 8 n + l.
+struct BlockLevel {
+  static constexpr int lanes = 8;
+  static constexpr std::ptrdiff_t vector_group = 3 * lanes, block = 6 * lanes;
+  int rows = 0, columns = 0, reach = 0;
+  int groups = 0;  ///< of a row, more than `reach`, so that those of a group are not neighbours
+  std::ptrdiff_t vector_row = 0, block_row = 0;
+  const float* blocks =
+      nullptr;  ///< of each group the diagonal's inverse (xx, xy, xz, yy, yz, zz), couplings
+  float *x = nullptr, *b = nullptr, *r = nullptr;
+  /// Groups that have their neighbours alike: each of the first and last `reach` of a row, and those between.
+  struct Kind {
+    std::ptrdiff_t first = 0;  ///< where the first such group of a row has its blocks
+    int couplings = 0;         ///< with what a forward sweep solves before
+    std::ptrdiff_t neighbour[most_couplings + most_reach] = {};  ///< where it has its vector
+  };
+  Kind kind[2 * most_reach + 1];
+
+  CLOTHLAB_INLINE int kind_of(int group) const {
+    const int from_last = groups - 1 - group;
+    return group < reach ? group : from_last < reach ? 2 * reach - from_last : reach;
+  }
+  /// Where a group has its blocks, from those of its row.
+  CLOTHLAB_INLINE std::ptrdiff_t place_of_blocks(int group) const {
+    const Kind& k = kind[kind_of(group)];
+    const bool is_between = group >= reach && group < groups - reach;
+    return k.first + (is_between ? (group - reach) * (1 + k.couplings) * block : 0);
+  }
 };
 
-/// The particles in column colours t + colour of row r have their numbers at r * (numbers of a row) + number
-/// * width + colour * segment + t: three of a vector, six of a block (xx, xy, xz, yy, yz, zz), six for each
-/// coupling that there is.
-struct BlockLevel {
-  static constexpr int lanes = 16;
-  int rows = 0, columns = 0, couplings = 0, colours = 0;
-  std::ptrdiff_t segment = 0, width = 0;
-  const float *blocks = nullptr, *inverse = nullptr;  ///< couplings; inverses of the diagonal's blocks
-  float *x = nullptr, *b = nullptr, *r = nullptr;
-  struct Colour {
-    int earlier = 0, all = 0;  ///< neighbours: first those before a particle, row by row, colour by colour
-    BlockNeighbour neighbour[2 * most_couplings];
-  };
-  Colour colour[most_reach + 1];
+/// Interpolation P between a grid and the next coarser one.
+struct BlockTransfer {
+  CoarseLine rows, columns;
+  float* scratch = nullptr;
+
+  static std::size_t scratch_size(const BlockLevel& fine) {
+    return static_cast<std::size_t>(9 * fine.groups * BlockLevel::lanes + 2);
+  }
+};
+
+/// How far apart the numbers of a field on the grid lie.
+struct BlockField {
+  std::ptrdiff_t next_row = 0, next_column = 0;
 };
 
 struct BlockCycleKernels {
+  /// b, zero where a lane has no particle, of the three numbers of each particle.
+  void (*set_right_side)(const BlockLevel& level, const BlockField& field, const double* const* of);
+  /// x
+  void (*get_solution)(const BlockLevel& level, const BlockField& field, double* const* to);
   /// A forward sweep of Gauss-Seidel for A x = b from x = 0, and r = b - A x.
   void (*descend)(const BlockLevel& level);
-  /// A backward sweep from x.
+  /// A backward sweep from x, whose copies beside the rows stand. Uses up b.
   void (*ascend)(const BlockLevel& level);
+  /// coarse.b = P^T fine.r
+  void (*restrict_residual)(const BlockLevel& fine, const BlockLevel& coarse, const BlockTransfer& transfer);
+  /// fine.x += P coarse.x, with its copies.
+  void (*add_correction)(const BlockLevel& fine, const BlockLevel& coarse, const BlockTransfer& transfer);
 
   CLOTHLAB_KERNEL_TABLE(BlockCycleKernels)
 };

@@ -13,10 +13,7 @@
 namespace cloth {
 namespace {
 
-std::size_t in_registers(std::size_t count) {
-  constexpr std::size_t lanes = BlockLevel::lanes;
-  return (count + lanes - 1) / lanes * lanes;
-}
+constexpr std::size_t lanes = BlockLevel::lanes;
 
 std::size_t size_of(const NaturalBlocks& blocks) {
   return static_cast<std::size_t>(blocks.particles());
@@ -41,11 +38,43 @@ void invert_block(const float* block, std::size_t stride, float* inverse, std::s
   for (std::size_t n = 0; n < 6; ++n) inverse[n * inverse_stride] = static_cast<float>(numbers[n]);
 }
 
+std::size_t place_in_row(const BlockLevel& l, std::size_t column) {
+  return column % at(l.groups) * at(BlockLevel::vector_group) + column / at(l.groups);
+}
+
+/// The inverses of a group's diagonal, zero where a lane has no particle.
+void write_inverses(const BlockLevel& l, const NaturalBlocks& natural, int row, int group, float* to) {
+  const float* from = natural.blocks_of(0) + row * l.columns;
+  std::fill_n(to, BlockLevel::block, 0.0f);
+  int column = group;
+  for (int lane = 0; lane < BlockLevel::lanes && column < l.columns; ++lane, column += l.groups)
+    invert_block(from + column, size_of(natural), to + lane, lanes);
+}
+
+/// A group's couplings with what lies `coupling` away; zero where the grid ends.
+void write_couplings(const BlockLevel& l, const NaturalBlocks& natural, int row, int group,
+                     BlockCoupling coupling, float* to) {
+  const bool is_kept_there = coupling.down < 0 || coupling.right < 0;
+  const int row_kept = is_kept_there ? row + coupling.down : row;
+  if (row_kept < 0) {
+    std::fill_n(to, BlockLevel::block, 0.0f);
+    return;
+  }
+  const BlockCoupling kept = is_kept_there ? BlockCoupling{-coupling.down, -coupling.right} : coupling;
+  const std::ptrdiff_t size = natural.particles(), shift = is_kept_there ? coupling.right : 0;
+  const float* from = natural.blocks_of(natural.number_of(kept)) + row_kept * l.columns;
+  for (int n = 0; n < 6; ++n, from += size, to += BlockLevel::lanes)
+    for (int lane = 0; lane < BlockLevel::lanes; ++lane) {
+      const int column = group + lane * l.groups, end = column + coupling.right;
+      const bool is_there = column < l.columns && end >= 0 && end < l.columns;
+      to[lane] = is_there ? from[column + shift] : 0.0f;
+    }
+}
+
 }  // namespace
 
 void BlockMultigrid::begin(int rows, int columns, Interpolation interpolation) {
   kernels_ = &active_kernels<BlockCycleKernels>();
-  fixed_.clear();
   if (rows != rows_ || columns != columns_ || interpolation != interpolation_) {
     rows_ = rows, columns_ = columns, interpolation_ = interpolation;
     is_turned_ = rows > columns;
@@ -99,28 +128,17 @@ void BlockMultigrid::add_level(int rows, int columns, int reach) {
   level.natural_numbers.assign(6 * at(1 + level.natural.couplings()) * size_of(level.natural), 0.0f);
   level.natural.numbers = level.natural_numbers.data();
 
-  // Behind each segment lies a zero for a neighbour beyond the border, before the first and behind the last
-  // a whole register. An odd number of cache lines, so that rows do not meet in the same set of the cache.
-  constexpr std::size_t lanes = BlockLevel::lanes;
-  const std::size_t colours = at(reach) + 1;
-  const std::size_t segment = in_registers((at(columns) + colours - 1) / colours + 1);
-  std::size_t width = colours * segment + 2 * lanes;
-  if (width / lanes % 2 == 0) width += lanes;
-  if (row_.size() < 2 * width) row_.resize(2 * width);
-  level.loops.colours = reach + 1;
-  level.loops.segment = static_cast<std::ptrdiff_t>(segment);
-  level.loops.width = static_cast<std::ptrdiff_t>(width);
-  for (std::size_t c = 0; c < at(columns); ++c)
-    level.place.push_back(static_cast<int>(c % colours * segment + c / colours));
-
-  const std::size_t field = at(rows + 2 * reach) * 3 * width;
-  level.origin = at(reach) * 3 * width + lanes;
-  level.vectors.assign(3 * field + lanes, 0.0f);
-  level.loops.x = level.vectors.data() + level.origin;
-  level.loops.b = level.loops.x + field;
-  level.loops.r = level.loops.b + field;
-  level.inverse.assign(static_cast<std::size_t>(rows) * 6 * width + lanes, 0.0f);
-  level.loops.inverse = level.inverse.data() + lanes;
+  BlockLevel& l = level.loops;
+  l.reach = reach;
+  l.groups = std::max((columns + BlockLevel::lanes - 1) / BlockLevel::lanes, reach + 1);
+  const std::size_t groups = at(l.groups), with_copies = groups + 2 * at(reach);
+  l.vector_row = static_cast<std::ptrdiff_t>(with_copies) * BlockLevel::vector_group;
+  if (row_.size() < BlockTransfer::scratch_size(l)) row_.resize(BlockTransfer::scratch_size(l));
+  const std::size_t row = at(l.vector_row), field = at(rows + 2 * reach) * row;
+  level.vectors.assign(3 * field, 0.0f);
+  l.x = level.vectors.data() + at(reach) * (row + at(BlockLevel::vector_group));
+  l.b = l.x + field;
+  l.r = l.b + field;
 }
 
 void BlockMultigrid::add_blocks(int coupling, std::size_t first, std::size_t count, double scale,
@@ -192,66 +210,53 @@ void BlockMultigrid::fix(std::size_t particle) {
     const int r = row - coupling.down, c = column - coupling.right;
     if (r >= 0 && c >= 0 && c < natural.columns) clear(k, at(r * natural.columns + c));
   }
-  fixed_.push_back(place);
 }
 
-/// Where the neighbours of a colour lie, and where the blocks of their couplings: those to later particles
-/// with the particle itself, the others with the neighbour.
-void BlockMultigrid::set_neighbours(Level& level) {
+/// The couplings of each kind of group: with what is solved before, in the rows above or in the same row.
+/// What lies before a row's first group, in the lane before, is solved later, and has the coupling.
+void BlockMultigrid::set_couplings(Level& level) {
   BlockLevel& l = level.loops;
-  std::vector<int> kept;
-  for (int k = 1; k <= level.natural.couplings(); ++k)
-    if (level.natural.used[k]) kept.push_back(k);
-  l.couplings = static_cast<int>(kept.size());
-  const std::ptrdiff_t row_of_blocks = 6 * l.couplings * l.width;
-  for (int c = 0; c < l.colours; ++c) {
-    std::vector<BlockNeighbour> earlier, later;
-    for (std::size_t n = 0; n < kept.size(); ++n)
-      for (const int sign : {1, -1}) {
-        const BlockCoupling coupling = level.natural.coupling(kept[n]);
-        const int down = sign * coupling.down, column = c + sign * coupling.right;
-        const int beside = column < 0 ? -1 : column / l.colours, colour = column - l.colours * beside;
-        const std::ptrdiff_t along = (colour - c) * l.segment + beside;
-        const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(6 * n) * l.width;
-        const BlockNeighbour neighbour{down * 3 * l.width + along,
-                                       sign > 0 ? own : own + down * row_of_blocks + along};
-        const bool is_later = down > 0 || (down == 0 && colour > c);
-        (is_later ? later : earlier).push_back(neighbour);
-      }
-    BlockLevel::Colour& to = l.colour[c];
-    to.earlier = static_cast<int>(earlier.size()), to.all = static_cast<int>(earlier.size() + later.size());
-    std::copy(later.begin(), later.end(), std::copy(earlier.begin(), earlier.end(), to.neighbour));
+  const NaturalBlocks& natural = level.natural;
+  level.couplings.assign(at(l.groups), {});
+  std::ptrdiff_t place = 0;
+  for (int group = 0; group < l.groups; ++group) {
+    std::vector<BlockCoupling>& couplings = level.couplings[at(group)];
+    for (int k = 1; k <= natural.couplings(); ++k) {
+      if (!natural.used[k]) continue;
+      const BlockCoupling coupling = natural.coupling(k);
+      if (coupling.down > 0 || group >= coupling.right)
+        couplings.push_back({-coupling.down, -coupling.right});
+      if (coupling.down == 0 && group + coupling.right >= l.groups) couplings.push_back(coupling);
+    }
+    BlockLevel::Kind& kind = l.kind[l.kind_of(group)];
+    if (group <= l.reach || group >= l.groups - l.reach) kind.first = place;
+    kind.couplings = static_cast<int>(couplings.size());
+    std::ranges::transform(couplings, kind.neighbour, [&](const BlockCoupling& c) {
+      return c.down * l.vector_row + c.right * BlockLevel::vector_group;
+    });
+    place += (1 + kind.couplings) * BlockLevel::block;
   }
+  l.block_row = place;
 }
 
-/// From the order of particles into segments.
+/// From the order of particles into groups.
 void BlockMultigrid::arrange(Level& level) {
-  set_neighbours(level);
+  set_couplings(level);
   BlockLevel& l = level.loops;
-  const std::size_t rows = at(l.rows), columns = at(l.columns), size = rows * columns;
-  const std::size_t width = static_cast<std::size_t>(l.width), reach = at(level.natural.reach);
-  const std::size_t row_of_blocks = 6 * at(l.couplings) * width;
-  const std::size_t before = reach * row_of_blocks + BlockLevel::lanes;
-  const std::size_t wanted = before + (rows + reach) * row_of_blocks + BlockLevel::lanes;
+  const NaturalBlocks& natural = level.natural;
+  const std::size_t wanted = at(l.rows) * at(l.block_row);
   if (level.blocks.size() != wanted) level.blocks.assign(wanted, 0.0f);
-  float* blocks = level.blocks.data() + before;
-  l.blocks = blocks;
-  float* inverse = level.inverse.data() + BlockLevel::lanes;
-  std::size_t kept = 0;
-  for (int k = 1; k <= level.natural.couplings(); ++k) {
-    if (!level.natural.used[k]) continue;
-    for (std::size_t n = 0; n < 6; ++n)
-      for (std::size_t r = 0; r < rows; ++r) {
-        const float* from = level.natural.blocks_of(k) + n * size + r * columns;
-        float* to = blocks + r * row_of_blocks + (6 * kept + n) * width;
-        for (std::size_t c = 0; c < columns; ++c) to[level.place[c]] = from[c];
+  l.blocks = level.blocks.data();
+  float* to = level.blocks.data();
+  for (int row = 0; row < l.rows; ++row)
+    for (int group = 0; group < l.groups; ++group) {
+      write_inverses(l, natural, row, group, to);
+      to += BlockLevel::block;
+      for (const BlockCoupling& coupling : level.couplings[at(group)]) {
+        write_couplings(l, natural, row, group, coupling, to);
+        to += BlockLevel::block;
       }
-    ++kept;
-  }
-  for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t c = 0; c < columns; ++c)
-      invert_block(level.natural.numbers + r * columns + c, size,
-                   inverse + r * 6 * width + at(level.place[c]), width);
+    }
 }
 
 bool BlockMultigrid::prepare() {
@@ -299,64 +304,28 @@ bool BlockMultigrid::invert_coarsest() {
 
 void BlockMultigrid::solve_coarsest() {
   const Level& level = levels_.back();
-  const std::size_t size = size_of(level.natural), columns = at(level.natural.columns);
-  const auto width = static_cast<std::size_t>(level.loops.width);
-  std::vector<double> b(3 * size);
+  const BlockLevel& l = level.loops;
+  const std::size_t size = size_of(level.natural), columns = at(l.columns);
+  std::vector<double> b(3 * size), x(b.size());
   const auto number = [&](std::size_t k) {
     const std::size_t i = k / 3;
-    return (3 * (i / columns) + k % 3) * width + at(level.place[i % columns]);
+    return i / columns * at(l.vector_row) + place_in_row(l, i % columns) + k % 3 * lanes;
   };
-  for (std::size_t k = 0; k < b.size(); ++k) b[k] = level.loops.b[number(k)];
-  for (std::size_t k = 0; k < b.size(); ++k) {
-    double sum = 0;
-    for (std::size_t j = 0; j < b.size(); ++j) sum += coarsest_[k * b.size() + j] * b[j];
-    level.loops.x[number(k)] = static_cast<float>(sum);
-  }
-}
-
-/// coarse.b = P^T fine.r: rows as they lie, which all have one order, then columns by their places.
-void BlockMultigrid::restrict_residual(const Level& fine, Level& coarse) {
-  const BlockLevel &f = fine.loops, &c = coarse.loops;
-  const CoarseLine rows = fine.row_interpolation.line(), columns = fine.column_interpolation.line();
-  float *sums = row_.data(), *in_order = sums + row_.size() / 2;
-  for (std::ptrdiff_t n = 0; n < 3; ++n)
-    for (int to = 0; to < c.rows; ++to) {
-      const LineWeights& of_rows = rows.children[to];
-      set_weighted(of_rows, f.r + n * f.width, 3 * f.width, f.colours * f.segment, sums);
-      for (int column = 0; column < f.columns; ++column) in_order[column] = sums[fine.place[at(column)]];
-      float* wanted = c.b + (3 * to + n) * c.width;
-      for (int column = 0; column < c.columns; ++column)
-        wanted[coarse.place[at(column)]] = weighted(columns.children[column], in_order);
-    }
-}
-
-/// fine.x += P coarse.x; fixed particles of the finest stay zero.
-void BlockMultigrid::add_correction(Level& fine, const Level& coarse) {
-  const BlockLevel &f = fine.loops, &c = coarse.loops;
-  const CoarseLine rows = fine.row_interpolation.line(), columns = fine.column_interpolation.line();
-  float *sums = row_.data(), *in_order = sums + row_.size() / 2;
-  for (std::ptrdiff_t n = 0; n < 3; ++n)
-    for (int to = 0; to < f.rows; ++to) {
-      set_weighted(rows.parents[to], c.x + n * c.width, 3 * c.width, c.colours * c.segment, sums);
-      for (int column = 0; column < c.columns; ++column) in_order[column] = sums[coarse.place[at(column)]];
-      float* corrected = f.x + (3 * to + n) * f.width;
-      for (int column = 0; column < f.columns; ++column)
-        corrected[fine.place[at(column)]] += weighted(columns.parents[column], in_order);
-    }
-  if (&fine != &levels_.front()) return;
-  for (const std::size_t fixed : fixed_) {
-    const std::size_t r = fixed / at(f.columns), place = at(fine.place[fixed % at(f.columns)]);
-    for (std::size_t n = 0; n < 3; ++n) f.x[(3 * r + n) * static_cast<std::size_t>(f.width) + place] = 0;
-  }
+  for (std::size_t k = 0; k < b.size(); ++k) b[k] = l.b[number(k)];
+  for (std::size_t j = 0; j < b.size(); ++j)
+    for (std::size_t k = 0; k < b.size(); ++k) x[k] += coarsest_[j * b.size() + k] * b[j];
+  for (std::size_t k = 0; k < b.size(); ++k) l.x[number(k)] = static_cast<float>(x[k]);
 }
 
 void BlockMultigrid::cycle(std::size_t number) {
   if (number + 1 == levels_.size()) return solve_coarsest();
   Level &level = levels_[number], &coarse = levels_[number + 1];
+  const BlockTransfer transfer{level.row_interpolation.line(), level.column_interpolation.line(),
+                               row_.data()};
   kernels_->descend(level.loops);
-  restrict_residual(level, coarse);
+  kernels_->restrict_residual(level.loops, coarse.loops, transfer);
   cycle(number + 1);
-  add_correction(level, coarse);
+  kernels_->add_correction(level.loops, coarse.loops, transfer);
   kernels_->ascend(level.loops);
 }
 
@@ -366,27 +335,16 @@ void BlockMultigrid::solve(const Vec3Field& residual, Vec3Field& correction) {
   const BlockLevel& l = finest.loops;
   const double* given[3] = {residual.x(), residual.y(), residual.z()};
   double* wanted[3] = {correction.x(), correction.y(), correction.z()};
-  const std::ptrdiff_t next_row = is_turned_ ? 1 : columns_, next_column = is_turned_ ? columns_ : 1;
-  for (std::ptrdiff_t n = 0; n < 3; ++n)
-    for (int r = 0; r < l.rows; ++r) {
-      const double* from = given[n] + r * next_row;
-      float* to = l.b + (3 * r + n) * l.width;
-      for (int c = 0; c < l.columns; ++c) to[finest.place[at(c)]] = static_cast<float>(from[c * next_column]);
-    }
+  const BlockField field{is_turned_ ? 1 : columns_, is_turned_ ? columns_ : 1};
+  kernels_->set_right_side(l, field, given);
   cycle(0);
-  for (std::ptrdiff_t n = 0; n < 3; ++n)
-    for (int r = 0; r < l.rows; ++r) {
-      const float* from = l.x + (3 * r + n) * l.width;
-      double* to = wanted[n] + r * next_row;
-      for (int c = 0; c < l.columns; ++c) to[c * next_column] = from[finest.place[at(c)]];
-    }
+  kernels_->get_solution(l, field, wanted);
 }
 
 std::size_t BlockMultigrid::memory() const {
   std::size_t floats = scratch_.size();
   for (const Level& level : levels_)
-    floats +=
-        level.natural_numbers.size() + level.blocks.size() + level.inverse.size() + level.vectors.size();
+    floats += level.natural_numbers.size() + level.blocks.size() + level.vectors.size();
   return floats * sizeof(float) + coarsest_.size() * sizeof(double);
 }
 

@@ -3,9 +3,9 @@
 // forward sweep of block Gauss-Seidel before and a backward one after the correction of the coarser grid, so
 // that the cycle is symmetric; interpolation from every second row and column, Galerkin's matrices, whose
 // blocks are symmetric as well, and the inverse of the coarsest (Trottenberg, Oosterlee and Schueller 2001).
-// Rows are in order, the columns of a row in colours by their remainder modulo 3; on coarser grids modulo 4
-// with cubic splines, whose matrices reach three rows and columns there. A grid with more rows than columns
-// is turned, since the loops go along the columns of a row.
+// Rows are in order, the columns of a row in eight pieces at once, one for each lane of a group, each piece
+// in order (sparse/block_cycle_kernels.h). A grid with more rows than columns is turned, since the loops go
+// along the columns of a row.
 //
 //     BlockMultigrid multigrid;
 //     multigrid.begin(rows, columns, Interpolation::linear);
@@ -59,9 +59,8 @@ class BlockMultigrid {
   struct Level {
     BlockLevel loops;
     NaturalBlocks natural;
-    AlignedFloats natural_numbers, blocks, inverse, vectors;
-    std::vector<int> place;                                     ///< of each column in a row of one number
-    std::size_t origin = 0;                                     ///< of x in `vectors`
+    AlignedFloats natural_numbers, blocks, vectors;
+    std::vector<std::vector<BlockCoupling>> couplings;          ///< of each group of a row
     LineInterpolation row_interpolation, column_interpolation;  ///< from the next coarser one
   };
 
@@ -74,21 +73,18 @@ class BlockMultigrid {
   std::size_t place_of(std::size_t particle) const;
   void add_levels();
   void add_level(int rows, int columns, int reach);
-  void set_neighbours(Level& level);
+  void set_couplings(Level& level);
   void arrange(Level& level);
   bool invert_coarsest();
   void cycle(std::size_t number);
   void solve_coarsest();
-  void restrict_residual(const Level& fine, Level& coarse);
-  void add_correction(Level& fine, const Level& coarse);
 
   int rows_ = 0, columns_ = 0;  ///< as given; the finest level has them exchanged where the grid is turned
   bool is_turned_ = false;
   Interpolation interpolation_ = Interpolation::linear;
   const BlockCycleKernels* kernels_ = nullptr;
   std::vector<Level> levels_;
-  std::vector<std::size_t> fixed_;  ///< places in the finest level
-  std::vector<double> coarsest_;    ///< its inverse, row by row
+  std::vector<double> coarsest_;  ///< its inverse, row by row
   AlignedFloats scratch_, row_;
 };
 

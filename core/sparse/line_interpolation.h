@@ -39,25 +39,4 @@ class LineInterpolation {
   int regular_begin_ = 0, regular_end_ = 0;
 };
 
-/// sums = the weighted sum of rows of `count` numbers, which lie `stride` apart.
-inline void set_weighted(const LineWeights& weights, const float* rows, std::ptrdiff_t stride,
-                         std::ptrdiff_t count, float* sums) {
-  for (int k = 0; k < weights.count; ++k) {
-    const float* row = rows + (weights.first + k) * stride;
-    const float weight = weights.weight[k];
-    if (k == 0) {
-      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] = weight * row[i];
-    } else {
-      for (std::ptrdiff_t i = 0; i < count; ++i) sums[i] += weight * row[i];
-    }
-  }
-}
-
-/// The weighted sum of single numbers.
-inline float weighted(const LineWeights& weights, const float* numbers) {
-  float sum = 0;
-  for (int k = 0; k < weights.count; ++k) sum += weights.weight[k] * numbers[weights.first + k];
-  return sum;
-}
-
 }  // namespace cloth

@@ -4,7 +4,6 @@
 
 #include "kernels/instruction_set.h"
 #include "kernels/mesh_products.h"
-#include "kernels/vector_kernels.h"
 
 namespace cloth {
 namespace {
@@ -48,6 +47,12 @@ void SymmetricBlocks::set(std::size_t i, const SymmetricBlock& block) {
 void SymmetricBlocks::add(std::size_t i, const SymmetricBlock& block) {
   runs_[0][i] += block.xx, runs_[1][i] += block.xy, runs_[2][i] += block.xz;
   runs_[3][i] += block.yy, runs_[4][i] += block.yz, runs_[5][i] += block.zz;
+}
+
+BlockSums SymmetricBlocks::sums(std::size_t first) {
+  auto& r = runs_;
+  return {r[0].data() + first, r[1].data() + first, r[2].data() + first,
+          r[3].data() + first, r[4].data() + first, r[5].data() + first};
 }
 
 void multiply_blocks(const SymmetricBlocks& blocks, std::size_t begin, std::size_t end,

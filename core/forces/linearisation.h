@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cloth/cloth_system.h"
+#include "kernels/vector_kernels.h"
 
 namespace cloth {
 
@@ -55,6 +56,8 @@ class SymmetricBlocks {
   }
   void set(std::size_t i, const SymmetricBlock& block);
   void add(std::size_t i, const SymmetricBlock& block);
+  /// The blocks from `first` on, to add to.
+  BlockSums sums(std::size_t first);
   /// xx, xy, xz, yy, yz, zz of all blocks.
   const std::array<std::vector<double>, 6>& runs() const { return runs_; }
 

@@ -8,6 +8,8 @@
 #include "cloth/grid.h"
 #include "cloth/sums.h"
 #include "forces/registry.h"
+#include "kernels/instruction_set.h"
+#include "kernels/vector_kernels.h"
 #include "scene/scene_cloth.h"
 
 namespace cloth {
@@ -140,19 +142,17 @@ class SpringForce : public Force {
   /// of its own; k I bounds it.
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override {
-    for_each_spring(system.springs,
-                    [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t j) {
-                      const double k = weights.position * run.stiffness;
-                      const Vec3 d = position[j] - position[i];
-                      const double length = d.norm();
-                      if (!(length > 0)) return to.springs.add(spring, {k, 0, 0, k, 0, k});
-                      double transverse = 1 - run.rest_length / length;
-                      if (transverse < 0) {
-                        to.has_compressed = true;
-                        if (weights.clamped) transverse = 0;
-                      }
-                      to.springs.add(spring, block_along(k * transverse, k * (1 - transverse), d / length));
-                    });
+    const auto& kernels = active_kernels<VectorKernels>();
+    std::size_t spring = 0;
+    for (const SpringRun& run : system.springs) {
+      const auto first = static_cast<std::size_t>(run.first);
+      const bool is_compressed = kernels.add_spring_slopes(
+          {weights.position * run.stiffness, run.rest_length, run.offset, weights.clamped},
+          {position.x() + first, position.y() + first, position.z() + first}, to.springs.sums(spring),
+          run.count);
+      to.has_compressed = to.has_compressed || is_compressed;
+      spring += static_cast<std::size_t>(run.count);
+    }
   }
 };
 

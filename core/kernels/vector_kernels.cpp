@@ -1,5 +1,8 @@
 #include "kernels/vector_kernels.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "kernels/four.h"
 #include "kernels/kernel_loops.h"
 
@@ -32,6 +35,38 @@ void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, std::ptrdiff_t of
   for (int s = 0; s < count; ++s) qx[s] -= gx[s];
   for (int s = 0; s < count; ++s) qy[s] -= gy[s];
   for (int s = 0; s < count; ++s) qz[s] -= gz[s];
+}
+
+bool add_spring_slopes(SpringSlopes springs, ConstVectorRows p, BlockSums sums, int count) {
+  constexpr int most = VectorKernels::max_springs;
+  alignas(64) double ax[most], ay[most], az[most], across[most], along[most];
+  const double k = springs.stiffness, L = springs.rest_length;
+  bool is_compressed = false;
+  for (int begin = 0; begin < count; begin += most) {
+    const int part = std::min(most, count - begin);
+    const double *x = p.x + begin, *y = p.y + begin, *z = p.z + begin;
+    const double *xj = x + springs.offset, *yj = y + springs.offset, *zj = z + springs.offset;
+    for (int s = 0; s < part; ++s) {
+      const double dx = xj[s] - x[s], dy = yj[s] - y[s], dz = zj[s] - z[s];
+      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double inverse = length > 0 ? 1 / length : 0;
+      ax[s] = inverse * dx, ay[s] = inverse * dy, az[s] = inverse * dz;
+      across[s] = length > 0 ? k * (1 - L * inverse) : k;
+    }
+    for (int s = 0; s < part; ++s) is_compressed |= across[s] < 0;
+    if (springs.clamped)
+      for (int s = 0; s < part; ++s) across[s] = across[s] < 0 ? 0 : across[s];
+    for (int s = 0; s < part; ++s) along[s] = k - across[s];
+    const auto add = [&](const double* a, const double* b, double* sum) {
+      for (int s = 0; s < part; ++s) sum[begin + s] += along[s] * a[s] * b[s];
+    };
+    const auto add_to_diagonal = [&](const double* a, double* sum) {
+      for (int s = 0; s < part; ++s) sum[begin + s] += across[s] + along[s] * a[s] * a[s];
+    };
+    add_to_diagonal(ax, sums.xx), add_to_diagonal(ay, sums.yy), add_to_diagonal(az, sums.zz);
+    add(ax, ay, sums.xy), add(ax, az, sums.xz), add(ay, az, sums.yz);
+  }
+  return is_compressed;
 }
 
 void add_multiple(double scale, const double* __restrict from, double* __restrict to, std::size_t count) {
@@ -99,8 +134,9 @@ void add_triangles(TriangleRows triangles, double scale, const double* position,
   }
 }
 
-constexpr VectorKernels table{multiply_blocks, add_springs, to_vectors,   add_vectors,  multiply_rows,
-                              add_triangles,   dot,         add_multiple, scale_and_add};
+constexpr VectorKernels table{multiply_blocks, add_springs,   add_spring_slopes, to_vectors,
+                              add_vectors,     multiply_rows, add_triangles,     dot,
+                              add_multiple,    scale_and_add};
 
 }  // namespace
 

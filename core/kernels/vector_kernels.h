@@ -13,6 +13,9 @@ namespace cloth {
 struct BlockRows {
   const double *xx, *xy, *xz, *yy, *yz, *zz;
 };
+struct BlockSums {
+  double *xx, *xy, *xz, *yy, *yz, *zz;
+};
 struct VectorRows {
   double *x, *y, *z;
 };
@@ -36,6 +39,13 @@ struct TriangleRows {
   std::size_t corner_stride, k_stride;
 };
 
+/// Springs that are alike, from particle s to particle s + offset.
+struct SpringSlopes {
+  double stiffness, rest_length;
+  std::ptrdiff_t offset;
+  bool clamped;  ///< without the transverse part where it is negative
+};
+
 struct VectorKernels {
   /// Springs that add_springs() takes at once, at most.
   static constexpr int max_springs = 128;
@@ -46,6 +56,9 @@ struct VectorKernels {
   /// product of the first end and subtracts it from that of the second.
   void (*add_springs)(BlockRows blocks, ConstVectorRows direction, VectorRows product, std::ptrdiff_t offset,
                       int count);
+  /// blocks += stiffness (a a^T + t (I - a a^T)), a = d/|d|, t = 1 - rest_length/|d|, or stiffness I where d
+  /// is 0. True if one is shorter than its rest length.
+  bool (*add_spring_slopes)(SpringSlopes springs, ConstVectorRows position, BlockSums blocks, int count);
   // A particle's x, y, z and 0 stand one after the other in `vectors`, `position` and the like, 64-byte
   // aligned.
   void (*to_vectors)(ConstVectorRows field, double* vectors, std::size_t count);

@@ -127,6 +127,18 @@ double squared_rates(const SpringRun& run, const Vec3Field& position, const Vec3
   });
 }
 
+/// What VectorKernels::add_spring_slopes() does, to the same bits, for a run of one: a mesh's, for which a
+/// kernel's loops are too long. True if the transverse stiffness is negative.
+bool add_slope(double stiffness, double rest_length, bool clamped, const Vec3& d, std::size_t spring,
+               SymmetricBlocks& blocks) {
+  const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  const double inverse = length > 0 ? 1 / length : 0;
+  const double exact = length > 0 ? stiffness * (1 - rest_length * inverse) : stiffness;
+  const double across = clamped && exact < 0 ? 0 : exact;
+  blocks.add(spring, block_along(across, stiffness - across, inverse * d));
+  return exact < 0;
+}
+
 class SpringForce : public Force {
  public:
   KernelCoverage join(SweepTerms&) const override { return KernelCoverage::every_pass; }
@@ -145,12 +157,15 @@ class SpringForce : public Force {
     const auto& kernels = active_kernels<VectorKernels>();
     std::size_t spring = 0;
     for (const SpringRun& run : system.springs) {
-      const auto first = static_cast<std::size_t>(run.first);
-      const bool is_compressed = kernels.add_spring_slopes(
-          {weights.position * run.stiffness, run.rest_length, run.offset, weights.clamped},
-          {position.x() + first, position.y() + first, position.z() + first}, to.springs.sums(spring),
-          run.count);
-      to.has_compressed = to.has_compressed || is_compressed;
+      const auto i = static_cast<std::size_t>(run.first),
+                 j = static_cast<std::size_t>(run.first + run.offset);
+      const double k = weights.position * run.stiffness, L = run.rest_length;
+      const bool has_negative =
+          run.count == 1 ? add_slope(k, L, weights.clamped, position[j] - position[i], spring, to.springs)
+                         : kernels.add_spring_slopes({k, L, run.offset, weights.clamped},
+                                                     {position.x() + i, position.y() + i, position.z() + i},
+                                                     to.springs.sums(spring), run.count);
+      to.has_compressed = to.has_compressed || has_negative;
       spring += static_cast<std::size_t>(run.count);
     }
   }

@@ -1,8 +1,5 @@
 #include "kernels/vector_kernels.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "kernels/four.h"
 #include "kernels/kernel_loops.h"
 
@@ -43,12 +40,12 @@ bool add_spring_slopes(SpringSlopes springs, ConstVectorRows p, BlockSums sums, 
   const double k = springs.stiffness, L = springs.rest_length;
   bool is_compressed = false;
   for (int begin = 0; begin < count; begin += most) {
-    const int part = std::min(most, count - begin);
+    const int part = count - begin < most ? count - begin : most;
     const double *x = p.x + begin, *y = p.y + begin, *z = p.z + begin;
     const double *xj = x + springs.offset, *yj = y + springs.offset, *zj = z + springs.offset;
     for (int s = 0; s < part; ++s) {
       const double dx = xj[s] - x[s], dy = yj[s] - y[s], dz = zj[s] - z[s];
-      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double length = __builtin_sqrt(dx * dx + dy * dy + dz * dz);
       const double inverse = length > 0 ? 1 / length : 0;
       ax[s] = inverse * dx, ay[s] = inverse * dy, az[s] = inverse * dz;
       across[s] = length > 0 ? k * (1 - L * inverse) : k;

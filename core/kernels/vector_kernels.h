@@ -57,7 +57,7 @@ struct VectorKernels {
   void (*add_springs)(BlockRows blocks, ConstVectorRows direction, VectorRows product, std::ptrdiff_t offset,
                       int count);
   /// blocks += stiffness (a a^T + t (I - a a^T)), a = d/|d|, t = 1 - rest_length/|d|, or stiffness I where d
-  /// is 0. True if one is shorter than its rest length.
+  /// is 0. True if stiffness * t is negative for one.
   bool (*add_spring_slopes)(SpringSlopes springs, ConstVectorRows position, BlockSums blocks, int count);
   // A particle's x, y, z and 0 stand one after the other in `vectors`, `position` and the like, 64-byte
   // aligned.

@@ -39,7 +39,7 @@ CLOTHLAB_INLINE ThreeFloats product(const float* block, const ThreeFloats& v) {
   return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
 }
 
-/// Of lane l in lane l + 1, and of lane l in lane l - 1; none comes in at the end.
+/// Each lane's number moves to the next lane, or to the one before; the lane that is left gets 0.
 CLOTHLAB_INLINE Eight to_next(Eight v) {
   return __builtin_shufflevector(v, Eight{}, 8, 0, 1, 2, 3, 4, 5, 6);
 }
@@ -76,7 +76,7 @@ CLOTHLAB_INLINE void gather_copies(const BlockLevel& l, int group, float* place)
 template <bool forward>
 CLOTHLAB_INLINE ThreeFloats solve_group(const BlockLevel::Kind& kind, const float* blocks, const float* x,
                                         const float* b, float* rest) {
-  constexpr std::ptrdiff_t ahead = forward ? 704 : -704;
+  constexpr std::ptrdiff_t ahead = (forward ? 15 : -15) * BlockLevel::block;  // what was fastest with AVX2
   ThreeFloats left = read_vector(b);
   const float* coupling = blocks + BlockLevel::block;
   for (int n = 0; n < kind.couplings; ++n, coupling += BlockLevel::block) {

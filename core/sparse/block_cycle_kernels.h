@@ -1,11 +1,12 @@
 // The sweeps of multigrid for matrices of symmetric 3x3 blocks on a grid (sparse/block_multigrid.h), in
-// single precision. What they take is bytes from beyond the first cache, not arithmetic. So a sweep reads
-// every block once, in the order in which it goes: a coupling is kept with the particle that the forward
-// sweep solves later, and used there in both directions.
+// single precision. Their time goes into reading blocks from beyond the first cache, not into arithmetic. So
+// a sweep reads every block once, in the order in which it goes: a coupling is kept with the particle that
+// the forward sweep solves later, and used there in both directions.
 //
-// The columns of a row are cut into eight pieces, one for each lane: a group has one particle of each piece,
-// and its neighbours are groups of the same lanes. Where a piece ends, its neighbour is the first of the next
-// lane's: copies moved by a lane lie before and behind the groups of a row.
+// Each row is cut into eight pieces of `groups` consecutive columns. Group g is column g of every piece, one
+// in each lane of a register, and its neighbours are groups of the same lanes. The neighbour of a piece's
+// last column is the next piece's first, in another lane: so the first and last `reach` groups are copied,
+// moved by one lane, behind and before the row.
 #pragma once
 
 #include <cstddef>
@@ -21,18 +22,19 @@ struct BlockLevel {
   static constexpr int lanes = 8;
   static constexpr std::ptrdiff_t vector_group = 3 * lanes, block = 6 * lanes;
   int rows = 0, columns = 0, reach = 0;
-  int groups = 0;  ///< of a row, more than `reach`, so that those of a group are not neighbours
+  int groups = 0;  ///< per row; more than `reach`, so that no two particles of one group are coupled
   std::ptrdiff_t vector_row = 0, block_row = 0;
   const float* blocks =
       nullptr;  ///< of each group the diagonal's inverse (xx, xy, xz, yy, yz, zz), couplings
   float *x = nullptr, *b = nullptr, *r = nullptr;
-  /// Groups that have their neighbours alike: each of the first and last `reach` of a row, and those between.
+  /// Groups whose couplings lie alike: each of the first and last `reach` of a row, and those between.
   struct Kind {
-    std::ptrdiff_t first = 0;  ///< where the first such group of a row has its blocks
-    int couplings = 0;         ///< with what a forward sweep solves before
-    std::ptrdiff_t neighbour[most_couplings + most_reach] = {};  ///< where it has its vector
+    std::ptrdiff_t first = 0;  ///< from a row's blocks to those of the first such group
+    int couplings = 0;         ///< all with groups that the forward sweep solves earlier
+    std::ptrdiff_t neighbour[most_couplings + most_reach] = {};  ///< from a group's vector to theirs
   };
-  Kind kind[2 * most_reach + 1];
+  static constexpr int kinds = 2 * most_reach + 1;
+  Kind kind[kinds];
 
   CLOTHLAB_INLINE int kind_of(int group) const {
     const int from_last = groups - 1 - group;
@@ -51,8 +53,9 @@ struct BlockTransfer {
   CoarseLine rows, columns;
   float* scratch = nullptr;
 
-  static std::size_t scratch_size(const BlockLevel& fine) {
-    return static_cast<std::size_t>(9 * fine.groups * BlockLevel::lanes + 2);
+  static std::size_t scratch_size(const BlockLevel& fine, const BlockLevel& coarse) {
+    const int groups = fine.groups > coarse.groups ? fine.groups : coarse.groups;
+    return static_cast<std::size_t>(9 * groups * BlockLevel::lanes + 2);
   }
 };
 
@@ -66,9 +69,11 @@ struct BlockCycleKernels {
   void (*set_right_side)(const BlockLevel& level, const BlockField& field, const double* const* of);
   /// x
   void (*get_solution)(const BlockLevel& level, const BlockField& field, double* const* to);
-  /// A forward sweep of Gauss-Seidel for A x = b from x = 0, and r = b - A x.
+  /// A forward sweep of Gauss-Seidel for A x = b from x = 0, and r = b - A x: each group that is solved takes
+  /// A_ij x_i from r of those before.
   void (*descend)(const BlockLevel& level);
-  /// A backward sweep from x, whose copies beside the rows stand. Uses up b.
+  /// A backward sweep from x, whose copies must be up to date and are not kept so: each group that is solved
+  /// takes A_ij x_i from b of those before in the forward order. Uses up b.
   void (*ascend)(const BlockLevel& level);
   /// coarse.b = P^T fine.r
   void (*restrict_residual)(const BlockLevel& fine, const BlockLevel& coarse, const BlockTransfer& transfer);

@@ -11,8 +11,9 @@ namespace cloth {
 
 inline constexpr int most_reach = 3, most_couplings = 2 * most_reach * (most_reach + 1);
 
+/// Where the other particle lies. NaturalBlocks keep those with down > 0, or down = 0 and right > 0.
 struct BlockCoupling {
-  int down = 0, right = 0;  ///< down > 0, or down = 0 and right > 0
+  int down = 0, right = 0;
 };
 
 /// Number n of coupling c (0: the diagonal, xx, xy, xz, yy, yz, zz) of particle p lies at

@@ -38,6 +38,10 @@ void invert_block(const float* block, std::size_t stride, float* inverse, std::s
   for (std::size_t n = 0; n < 6; ++n) inverse[n * inverse_stride] = static_cast<float>(numbers[n]);
 }
 
+void enlarge(AlignedFloats& scratch, std::size_t size) {
+  if (scratch.size() < size) scratch.resize(size);
+}
+
 std::size_t place_in_row(const BlockLevel& l, std::size_t column) {
   return column % at(l.groups) * at(BlockLevel::vector_group) + column / at(l.groups);
 }
@@ -131,10 +135,8 @@ void BlockMultigrid::add_level(int rows, int columns, int reach) {
   BlockLevel& l = level.loops;
   l.reach = reach;
   l.groups = std::max((columns + BlockLevel::lanes - 1) / BlockLevel::lanes, reach + 1);
-  const std::size_t groups = at(l.groups), with_copies = groups + 2 * at(reach);
-  l.vector_row = static_cast<std::ptrdiff_t>(with_copies) * BlockLevel::vector_group;
-  if (row_.size() < BlockTransfer::scratch_size(l)) row_.resize(BlockTransfer::scratch_size(l));
-  const std::size_t row = at(l.vector_row), field = at(rows + 2 * reach) * row;
+  l.vector_row = (l.groups + 2 * reach) * BlockLevel::vector_group;
+  const std::size_t row = at(l.vector_row), field = at(rows + reach) * row;
   level.vectors.assign(3 * field, 0.0f);
   l.x = level.vectors.data() + at(reach) * (row + at(BlockLevel::vector_group));
   l.b = l.x + field;
@@ -217,10 +219,10 @@ void BlockMultigrid::fix(std::size_t particle) {
 void BlockMultigrid::set_couplings(Level& level) {
   BlockLevel& l = level.loops;
   const NaturalBlocks& natural = level.natural;
-  level.couplings.assign(at(l.groups), {});
   std::ptrdiff_t place = 0;
   for (int group = 0; group < l.groups; ++group) {
-    std::vector<BlockCoupling>& couplings = level.couplings[at(group)];
+    std::vector<BlockCoupling>& couplings = level.couplings[l.kind_of(group)];
+    couplings.clear();
     for (int k = 1; k <= natural.couplings(); ++k) {
       if (!natural.used[k]) continue;
       const BlockCoupling coupling = natural.coupling(k);
@@ -252,7 +254,7 @@ void BlockMultigrid::arrange(Level& level) {
     for (int group = 0; group < l.groups; ++group) {
       write_inverses(l, natural, row, group, to);
       to += BlockLevel::block;
-      for (const BlockCoupling& coupling : level.couplings[at(group)]) {
+      for (const BlockCoupling& coupling : level.couplings[l.kind_of(group)]) {
         write_couplings(l, natural, row, group, coupling, to);
         to += BlockLevel::block;
       }
@@ -263,10 +265,10 @@ bool BlockMultigrid::prepare() {
   const BlockCoarsenKernels& kernels = active_kernels<BlockCoarsenKernels>();
   for (std::size_t n = 0; n + 1 < levels_.size(); ++n) {
     Level &fine = levels_[n], &coarse = levels_[n + 1];
-    const std::size_t scratch = BlockCoarsenKernels::scratch(fine.natural, coarse.natural);
-    if (scratch_.size() < scratch) scratch_.resize(scratch);
+    enlarge(coarsening_scratch_, BlockCoarsenKernels::scratch(fine.natural, coarse.natural));
+    enlarge(transfer_scratch_, BlockTransfer::scratch_size(fine.loops, coarse.loops));
     kernels.coarsen(fine.natural, fine.row_interpolation.line(), fine.column_interpolation.line(),
-                    coarse.natural, scratch_.data());
+                    coarse.natural, coarsening_scratch_.data());
     arrange(fine);
   }
   return invert_coarsest();
@@ -321,7 +323,7 @@ void BlockMultigrid::cycle(std::size_t number) {
   if (number + 1 == levels_.size()) return solve_coarsest();
   Level &level = levels_[number], &coarse = levels_[number + 1];
   const BlockTransfer transfer{level.row_interpolation.line(), level.column_interpolation.line(),
-                               row_.data()};
+                               transfer_scratch_.data()};
   kernels_->descend(level.loops);
   kernels_->restrict_residual(level.loops, coarse.loops, transfer);
   cycle(number + 1);
@@ -342,7 +344,7 @@ void BlockMultigrid::solve(const Vec3Field& residual, Vec3Field& correction) {
 }
 
 std::size_t BlockMultigrid::memory() const {
-  std::size_t floats = scratch_.size();
+  std::size_t floats = coarsening_scratch_.size();
   for (const Level& level : levels_)
     floats += level.natural_numbers.size() + level.blocks.size() + level.vectors.size();
   return floats * sizeof(float) + coarsest_.size() * sizeof(double);

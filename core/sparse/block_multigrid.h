@@ -48,7 +48,7 @@ class BlockMultigrid {
   /// Makes the coarser matrices. False where the coarsest is not positive definite, or not finite.
   bool prepare();
 
-  /// correction = one cycle from zero for A x = residual. Zero on fixed particles.
+  /// correction = one cycle from zero for A x = residual. Zero on fixed particles where the residual is.
   void solve(const Vec3Field& residual, Vec3Field& correction);
 
   std::size_t memory() const;  ///< bytes held
@@ -60,7 +60,7 @@ class BlockMultigrid {
     BlockLevel loops;
     NaturalBlocks natural;
     AlignedFloats natural_numbers, blocks, vectors;
-    std::vector<std::vector<BlockCoupling>> couplings;          ///< of each group of a row
+    std::vector<BlockCoupling> couplings[BlockLevel::kinds];    ///< of each kind of group
     LineInterpolation row_interpolation, column_interpolation;  ///< from the next coarser one
   };
 
@@ -85,7 +85,7 @@ class BlockMultigrid {
   const BlockCycleKernels* kernels_ = nullptr;
   std::vector<Level> levels_;
   std::vector<double> coarsest_;  ///< its inverse, row by row
-  AlignedFloats scratch_, row_;
+  AlignedFloats coarsening_scratch_, transfer_scratch_;
 };
 
 }  // namespace cloth

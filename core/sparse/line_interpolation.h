@@ -13,7 +13,6 @@
 // on. Splines have 4 + 4.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "sparse/coarse_line.h"

@@ -62,6 +62,11 @@ TEST_P(JacobianOfEverySet, HasSuchACycleWhereBendingIsStifferThanSprings) {
   }
 }
 
+// Of a strip of paper that is not halved across, less than a hundredth of the worst error at times.
+TEST_P(JacobianOfEverySet, HasSuchACycleOnALongStrip) {
+  expect_a_cycle_that_reduces_every_error(paper(3, 67), 0.001, 1e-5, 1);
+}
+
 TEST_P(JacobianOfEverySet, IsSolvedAsByFactorsInFewIterations) {
   for (const auto& [rows, columns] : {std::pair(33, 33), {40, 29}, {26, 64}})
     expect_the_solution_of_factors(sheet(rows, columns), 0.02, 0.003, 60);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrators/implicit/linear_solver.h"
+#include "kernels/instruction_set.h"
 #include "support/direct_run.h"
 #include "support/random.h"
 #include "support/scenes.h"
@@ -128,6 +129,27 @@ TEST(Jacobian, WithClampedCompressionIsPositiveDefiniteWhereTheExactOneIsNot) {
   EXPECT_FALSE(factors.factorise(run.system, linearisation));
   run.forces.linearise(run.state.position, {.position = 1, .velocity = 1, .clamped = true}, linearisation);
   EXPECT_TRUE(factors.factorise(run.system, linearisation));
+}
+
+// A run of a row is longer than what a kernel takes at once.
+TEST(Jacobian, OfSpringsHasTheSameBitsOnEveryInstructionSetAndAStiffnessWhereASpringHasNoDirection) {
+  Scene scene = bare_sheet(3, 150);
+  scene.springs = SpringMaterial{.structural = 80, .shear = 40, .flexion = 20};
+  DirectRun run(scene, "verlet");
+  Random random;
+  Vec3Field position = moved(run.state.position, 0.002, random.field(run.state.position.size(), 1));
+  position.set(1, position[0]);
+  for (const bool clamped : {false, true}) {
+    std::vector<Linearisation> of_sets;
+    for (const InstructionSet set : supported_instruction_sets()) {
+      set_instruction_set(set);
+      run.forces.linearise(position, {.position = 0.5, .velocity = 1, .clamped = clamped},
+                           of_sets.emplace_back());
+      EXPECT_EQ(of_sets.back().springs.runs(), of_sets.front().springs.runs()) << name_of(set);
+    }
+    set_instruction_set(std::nullopt);
+    EXPECT_EQ(of_sets.front().springs[0].matrix(), 0.5 * 80 * Eigen::Matrix3d::Identity());
+  }
 }
 
 TEST(LinearSolvers, AllFindTheSameSolution) {

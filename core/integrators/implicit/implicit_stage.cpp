@@ -20,7 +20,7 @@ constexpr int max_trials = 13;          // of a length
 constexpr int most_patience = 24;       // iterations, before the residual's norm is lowered a last time
 constexpr int slow = 5;                 // iterations that are many
 constexpr double nearly_solved = 0.01;  // relative change from which on another iteration may be spared
-constexpr double estimate_part = 0.01;  // of the tolerance, where the change is estimated: a hundredfold too low at times
+constexpr double estimate_part = 0.01;  // of the tolerance: what is estimated is up to a hundredfold too low
 constexpr double good_enough = 1e-3;    // relative change after the last iteration that is still taken
 
 double largest_component(const Vec3Field& field) {

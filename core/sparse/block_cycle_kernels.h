@@ -24,8 +24,9 @@ struct BlockLevel {
   int rows = 0, columns = 0, reach = 0;
   int groups = 0;  ///< per row; more than `reach`, so that no two particles of one group are coupled
   std::ptrdiff_t vector_row = 0, block_row = 0;
-  const float* blocks =
-      nullptr;  ///< of each group the diagonal's inverse (xx, xy, xz, yy, yz, zz), couplings
+  /// Of each group the inverse of the diagonal's block, then those of its couplings: xx, xy, xz, yy, yz, zz,
+  /// eight lanes each.
+  const float* blocks = nullptr;
   float *x = nullptr, *b = nullptr, *r = nullptr;
   /// Groups whose couplings lie alike: each of the first and last `reach` of a row, and those between.
   struct Kind {

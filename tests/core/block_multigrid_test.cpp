@@ -62,7 +62,7 @@ TEST_P(JacobianOfEverySet, HasSuchACycleWhereBendingIsStifferThanSprings) {
   }
 }
 
-// Of a strip of paper that is not halved across, less than a hundredth of the worst error at times.
+// A strip of paper is not halved across, and a cycle takes less than a hundredth off its worst error.
 TEST_P(JacobianOfEverySet, HasSuchACycleOnALongStrip) {
   expect_a_cycle_that_reduces_every_error(paper(3, 67), 0.001, 1e-5, 1);
 }

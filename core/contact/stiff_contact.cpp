@@ -20,23 +20,44 @@ constexpr double on_surface = 1e-9;    // m, above rounding
 
 }  // namespace
 
+void StiffContact::begin_solve(std::span<const Obstacle> obstacles, const Vec3Field& begin,
+                               std::size_t particles) {
+  begin_ = begin;
+  obstacles_ = obstacles;
+  reached_.clear();
+  for (const Obstacle& obstacle : obstacles) reached_.push_back(grown(obstacle, on_surface));
+  sides_.assign(particles * obstacles.size(), {});
+}
+
+/// The point of the surface that the particle is inside of or on, or that it is held on; it stays on the side
+/// that it met first, which is continued beyond its edges.
+std::optional<SurfacePoint> StiffContact::place_on(std::size_t obstacle, const Side& side, const Vec3& begin,
+                                                   const Vec3& point) const {
+  const Obstacle& body = obstacles_[obstacle];
+  if (side.is_met) {
+    const auto on = shape_of(body).along(body, side.normal, point);
+    if (!on || side.is_active || on->normal.dot(point - on->point) <= on_surface) return on;
+    return std::nullopt;
+  }
+  if (const auto out = shape_of(body).entry(body, begin, point)) return out;
+  if (const auto on = penetration(reached_[obstacle], point)) return SurfacePoint{point, on->normal};
+  return std::nullopt;
+}
+
 /// Moves particles out of the obstacles, and the active ones back to the surface along which they have moved;
 /// lists the particles on a surface.
-void StiffContact::hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position) {
-  for (const HeldParticle& held : active_)
-    if (const Obstacle& obstacle = obstacles[held.obstacle];
-        const auto back = shape_of(obstacle).along(obstacle, held.normal, position[held.particle]))
-      position.set(held.particle, *back);
+void StiffContact::hold(const ClothSystem& system, Vec3Field& position) {
   held_.clear();
   for (std::size_t i = 0; i < position.size(); ++i) {
     if (system.pinned[i]) continue;
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      if (const auto out = shape_of(obstacles[k]).entry(obstacles[k], begin_[i], position[i])) {
-        position.set(i, out->point);
-        held_.push_back({i, k, out->normal, 0});
-      } else if (const auto on = penetration(grown(obstacles[k], on_surface), position[i])) {
-        held_.push_back({i, k, on->normal, 0});
-      }
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      Side& side = side_of(i, k);
+      const auto place = place_on(k, side, begin_[i], position[i]);
+      if (!place) continue;
+      position.set(i, place->point);
+      side.normal = place->normal;
+      side.is_met = true;
+      held_.push_back({i, k, place->normal, 0});
     }
   }
 }
@@ -58,7 +79,8 @@ void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, 
 /// Releases the particles that are pulled away from their surface.
 void StiffContact::release() {
   std::erase_if(held_, [](const HeldParticle& held) { return !(held.normal_load > 0); });
-  active_ = held_;
+  for (Side& side : sides_) side.is_active = false;
+  for (const HeldParticle& held : held_) side_of(held.particle, held.obstacle).is_active = true;
 }
 
 void StiffContact::keep_along_surfaces(Vec3Field& field) const {
@@ -99,12 +121,11 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
                                               const Vec3Field& begin, Vec3Field& position) {
   if (residual_.size() != position.size())
     residual_ = direction_ = start_ = along_ = Vec3Field(position.size());
-  begin_ = begin;
+  begin_solve(obstacles, begin, position.size());
   integrated_position_ = position;
   forces.update(integrated_position_, time);
   integrated_force_ = forces.position_force();
-  active_.clear();
-  hold(system, obstacles, position);
+  hold(system, position);
   find_residual(system, forces, weight, time, position);
   double first = 0;  // J, negative
   for (int n = 0; n < max_iterations; ++n) {
@@ -118,7 +139,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
     for (int trial = 1;; ++trial) {
       position = start_;
       add_scaled(length, direction_, position);
-      hold(system, obstacles, position);
+      hold(system, position);
       find_residual(system, forces, weight, time, position);
       const double after = dot(direction_.flat(), residual_.flat());
       if (trial == max_trials || after <= -accepted_work * before) break;

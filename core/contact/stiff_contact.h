@@ -31,7 +31,19 @@ class StiffContact {
                                   const Vec3Field& begin, Vec3Field& position);
 
  private:
-  void hold(const ClothSystem& system, std::span<const Obstacle> obstacles, Vec3Field& position);
+  /// Of a particle and an obstacle, in one solve.
+  struct Side {
+    Vec3 normal{0, 0, 0};  ///< outward, where the surface was met
+    bool is_met = false;
+    bool is_active = false;  ///< the particle moves along the surface: its normal force is > 0
+  };
+  void begin_solve(std::span<const Obstacle> obstacles, const Vec3Field& begin, std::size_t particles);
+  Side& side_of(std::size_t particle, std::size_t obstacle) {
+    return sides_[particle * obstacles_.size() + obstacle];
+  }
+  std::optional<SurfacePoint> place_on(std::size_t obstacle, const Side& side, const Vec3& begin,
+                                       const Vec3& point) const;
+  void hold(const ClothSystem& system, Vec3Field& position);
   void find_residual(const ClothSystem& system, ForceModel& forces, double weight, double time,
                      const Vec3Field& position);
   void release();
@@ -41,7 +53,10 @@ class StiffContact {
 
   Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
   Vec3Field residual_, direction_, start_, along_;
-  std::vector<HeldParticle> held_, active_;  ///< on a surface; those with a normal force > 0
+  std::vector<HeldParticle> held_;  ///< on a surface; after release() with a normal force > 0
+  std::span<const Obstacle> obstacles_;
+  std::vector<Obstacle> reached_;  ///< grown by what is rounding
+  std::vector<Side> sides_;        ///< of each particle, one after the other for each obstacle
   Linearisation linearisation_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;

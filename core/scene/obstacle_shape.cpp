@@ -21,7 +21,7 @@ std::optional<SurfacePoint> ObstacleShape::entry(const Obstacle& obstacle, const
   return penetration(obstacle, point);
 }
 
-std::optional<Vec3> ObstacleShape::along(const Obstacle&, const Vec3&, const Vec3&) const {
+std::optional<SurfacePoint> ObstacleShape::along(const Obstacle&, const Vec3&, const Vec3&) const {
   return std::nullopt;
 }
 

@@ -81,9 +81,9 @@ class ObstacleShape : public ShapeFacts {
   virtual std::optional<SurfacePoint> entry(const Obstacle& obstacle, const Vec3& from,
                                             const Vec3& point) const;
 
-  /// For a particle that has slid along the surface from a point with this normal: the surface point nearest
-  /// to `point`, or nullopt if that is beyond an edge.
-  virtual std::optional<Vec3> along(const Obstacle&, const Vec3& normal, const Vec3& point) const;
+  /// Of the side of the surface that has this normal: the point of it nearest to `point`, which may be on
+  /// either side. Sides are continued beyond their edges. nullopt for BodyKind::surface.
+  virtual std::optional<SurfacePoint> along(const Obstacle&, const Vec3& normal, const Vec3& point) const;
 
   /// Moves the surface outward by `length` in m.
   virtual void grow(Obstacle&, double length) const;

@@ -150,6 +150,17 @@ TEST_P(LongSteps, OfContactParticleByParticleMakeNoEnergy) {
     }
 }
 
+TEST_P(LongSteps, SolvedToTheirEndGainLessThanAHundredthOnTheWholeScene) {
+  for (const char* method : {"implicit-euler", "bdf2"})
+    for (const double step : {0.01, 1.0 / 60}) {
+      Scene scene = builtin_scene(GetParam());
+      scene.integrator = {.method = method, .time_step = step};
+      const ContactLedger ledger = ledger_of(scene, {}, 0.6);
+      EXPECT_LT(ledger.gain, 0.01 * ledger.account.exchanged()) << method << " at " << step;
+      EXPECT_LT(ledger.work, 0) << method << " at " << step;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LongSteps, ::testing::Values("ball", "cube", "rectangle", "tablecloth"),
                          [](const auto& tested) { return tested.param; });
 

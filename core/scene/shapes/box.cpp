@@ -83,12 +83,10 @@ class BoxShape final : public ObstacleShape {
     }
     return axis < 0 ? inside : on_face(box, axis, from[axis] < box.center[axis] ? -1 : 1, point);
   }
-  std::optional<Vec3> along(const Obstacle& box, const Vec3& normal, const Vec3& point) const override {
+  std::optional<SurfacePoint> along(const Obstacle& box, const Vec3& normal,
+                                    const Vec3& point) const override {
     const Vec3 out = 0.5 * box.size.cwiseProduct(normal);
-    const Vec3 back = point - normal.dot(point - box.center - out) * normal;
-    const Vec3 beyond = (back - box.center).cwiseAbs() - 0.5 * box.size;
-    if (beyond.maxCoeff() > on_surface) return std::nullopt;
-    return back;
+    return SurfacePoint{point - normal.dot(point - box.center - out) * normal, normal};
   }
   void grow(Obstacle& box, double length) const override { box.size += Vec3::Constant(2 * length); }
   bool touches(const Obstacle& box, const Pose& pose, const Corners& triangle) const override {

@@ -49,8 +49,9 @@ class PlaneShape final : public ObstacleShape {
     if (!(height < 0)) return std::nullopt;
     return SurfacePoint{point - height * normal, normal};
   }
-  std::optional<Vec3> along(const Obstacle& plane, const Vec3& normal, const Vec3& point) const override {
-    return Vec3(point - normal.dot(point - plane.point) * normal);
+  std::optional<SurfacePoint> along(const Obstacle& plane, const Vec3& normal,
+                                    const Vec3& point) const override {
+    return SurfacePoint{point - normal.dot(point - plane.point) * normal, normal};
   }
   void grow(Obstacle& plane, double length) const override {
     plane.point += length * plane.normal.normalized();

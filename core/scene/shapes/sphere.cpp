@@ -42,9 +42,12 @@ class SphereShape final : public ObstacleShape {
     const Vec3 normal = squared > 0 ? Vec3(out / std::sqrt(squared)) : Vec3(0, 1, 0);
     return SurfacePoint{sphere.center + sphere.radius * normal, normal};
   }
-  std::optional<Vec3> along(const Obstacle& sphere, const Vec3&, const Vec3& point) const override {
+  std::optional<SurfacePoint> along(const Obstacle& sphere, const Vec3& normal,
+                                    const Vec3& point) const override {
     const Vec3 out = point - sphere.center;
-    return Vec3(sphere.center + sphere.radius * out.normalized());
+    const double distance = out.norm();
+    const Vec3 up = distance > 0 ? Vec3(out / distance) : normal;
+    return SurfacePoint{sphere.center + sphere.radius * up, up};
   }
   void grow(Obstacle& sphere, double length) const override { sphere.radius += length; }
   bool touches(const Obstacle& sphere, const Pose& pose, const Corners& t) const override {

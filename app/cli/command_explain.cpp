@@ -149,7 +149,7 @@ std::string to_text(const Explanation& e) {
                         step_text(method.guaranteed_step), step_text(method.auto_step));
   if (!e.linear_solves.empty())
     text +=
-        fmt::format("\nLinear solves of implicit methods (estimated cost of one; the cheaper is taken)\n");
+        fmt::format("\nLinear solves of implicit methods (estimated cost of one; the cheapest is taken)\n");
   for (const LinearSolve& solve : e.linear_solves) {
     text +=
         fmt::format("  {:<22} {:<20} factors {:.3g} ms, conjugate gradients {:.3g} ms in {:.0f} iterations",

@@ -29,18 +29,16 @@ struct SolveCosts {
   double multigrid = 0;
 };
 
-constexpr double multigrid_start = 200e-6;  // s
-
 /// Dissected factors of a grid grow as its size times its shorter side, an iteration is linear. Cycles are
-/// those of smooth states, which are most, 3 to 5, with splines 4 to 5: conjugate gradients need more
-/// iterations as well where cloth buckles.
+/// those of smooth states, which are most, 3 to 5, with splines 4 to 5 and on narrow strips up to 20:
+/// conjugate gradients need more iterations as well where cloth buckles.
 SolveCosts grid_costs(const ClothSystem& system) {
   const double size = system.size(), side = std::min(system.rows, system.columns);
-  const double cycles = MultigridSolver::interpolation(system) == Interpolation::cubic_splines ? 6 : 4;
+  const double cycles = MultigridSolver::interpolation(system) == Interpolation::cubic_splines ? 12 : 4;
   return {.factors = 130e-9 * size * side,
           .preconditioner = 60e-9 * size,
           .iteration = 25e-9 * size,
-          .multigrid = multigrid_start + (600e-9 + 140e-9 * cycles) * size};
+          .multigrid = 60e-6 + (400e-9 + 75e-9 * cycles) * size};
 }
 
 /// The matrix's blocks in the rows of free particles, about: with springs 12 to 13 each, where a material
@@ -62,7 +60,7 @@ SolveCosts mesh_costs(const ClothSystem& system) {
   return {.factors = 7e-9 * blocks * std::max(side - 8, 0.25 * side),
           .preconditioner = 60e-9 * free,
           .iteration = 12e-9 * free + 2e-9 * blocks,
-          .multigrid = multigrid_start + (80e-9 + 8e-9 * cycles) * blocks};
+          .multigrid = 200e-6 + (80e-9 + 8e-9 * cycles) * blocks};
 }
 
 }  // namespace

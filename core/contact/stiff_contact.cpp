@@ -5,7 +5,6 @@
 
 #include "cloth/sums.h"
 #include "geometry/at.h"
-#include "integrators/implicit/linear_choice.h"
 #include "integrators/integrator.h"
 #include "scene/obstacle_shape.h"
 
@@ -92,7 +91,6 @@ void StiffContact::keep_along_surfaces(Vec3Field& field) const {
 bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                                   const Vec3Field& position) {
   constexpr double holding = 1e6;
-  constexpr double forcing = 0.01;
   const LinearisationWeights weights{.position = weight * weight, .velocity = 0, .clamped = true};
   forces.linearise(position, weights, linearisation_);
   for (const HeldParticle& held : held_) {
@@ -103,17 +101,25 @@ bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces,
   along_ = residual_;
   keep_along_surfaces(along_);
   for (double& value : along_.flat()) value *= -weight * weight;
-  bool solved = false;
-  const LinearChoice costs = choose_linear_method(system, weights);
-  if (costs.factors <= costs.gradients) {
-    solved = factors_.factorise(system, linearisation_);
-    if (solved) factors_.solve(along_, direction_);
-  } else {
-    jacobi_.prepare(system, linearisation_);
-    solved = gradients_.solve(system, linearisation_, jacobi_, along_, forcing, direction_).converged;
-  }
+  const bool solved = solve_along(system, position, choose_linear_method(system, weights).method);
   keep_along_surfaces(direction_);
   return solved;
+}
+
+/// direction = A^-1 along; false where that was not found.
+bool StiffContact::solve_along(const ClothSystem& system, const Vec3Field& position, LinearMethod method) {
+  constexpr double forcing = 0.01;
+  if (method == LinearMethod::cholesky) {
+    if (!factors_.factorise(system, linearisation_)) return false;
+    factors_.solve(along_, direction_);
+    return true;
+  }
+  if (method == LinearMethod::multigrid && multigrid_.prepare(system, linearisation_, position)) {
+    const LinearMap cycle = [this](const Vec3Field& in, Vec3Field& out) { multigrid_.precondition(in, out); };
+    if (gradients_.solve(system, linearisation_, cycle, along_, forcing, direction_).converged) return true;
+  }
+  jacobi_.prepare(system, linearisation_);
+  return gradients_.solve(system, linearisation_, jacobi_, along_, forcing, direction_).converged;
 }
 
 std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceModel& forces,

@@ -18,7 +18,9 @@
 
 #include "contact/obstacle_contact.h"
 #include "forces/force_model.h"
+#include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
+#include "integrators/implicit/multigrid_solver.h"
 
 namespace cloth {
 
@@ -50,6 +52,7 @@ class StiffContact {
   void keep_along_surfaces(Vec3Field& field) const;
   bool find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                       const Vec3Field& position);
+  bool solve_along(const ClothSystem& system, const Vec3Field& position, LinearMethod method);
 
   Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
   Vec3Field residual_, direction_, start_, along_;
@@ -60,6 +63,7 @@ class StiffContact {
   Linearisation linearisation_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;
+  MultigridSolver multigrid_;
   ConjugateGradients gradients_;
 };
 

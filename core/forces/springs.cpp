@@ -19,7 +19,7 @@ namespace {
 
 /// Springs are taken in chunks: the forces of a chunk are computed side by side, then added to its two ends,
 /// so that a run whose ends overlap (offset 1) vectorises as well.
-constexpr int chunk_length = 128;
+constexpr int chunk_length = VectorKernels::max_springs;
 
 struct Chunk {
   std::array<double, chunk_length> x, y, z;
@@ -51,12 +51,6 @@ void spring_chunk(const SpringRun& run, int first, int count, const Vec3Field& p
   }
 }
 
-/// d/|d|, or nothing
-Vec3 direction(const Vec3& d) {
-  const double length = d.norm();
-  return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
-}
-
 void damper_chunk(const SpringRun& run, int first, int count, const Vec3Field& position,
                   const Vec3Field& velocity, double damping, Chunk& g) {
   const double *xi = position.x() + first, *yi = position.y() + first, *zi = position.z() + first;
@@ -70,30 +64,6 @@ void damper_chunk(const SpringRun& run, int first, int count, const Vec3Field& p
     const double ex = inverse * dx, ey = inverse * dy, ez = inverse * dz;
     const double closing = (vxi[s] - vxj[s]) * ex + (vyi[s] - vyj[s]) * ey + (vzi[s] - vzj[s]) * ez;
     g.x[s] = damping * closing * ex, g.y[s] = damping * closing * ey, g.z[s] = damping * closing * ez;
-  }
-}
-
-/// A damper that turns: F_i = k_d (u . e) e with e = d/|d|, u = v_j - v_i; its change where the ends move
-/// along `direction`, with de = (I - e e^T) dd/|d|. Here g is the opposite.
-void turning_chunk(const SpringRun& run, int first, int count, const Vec3Field& position,
-                   const Vec3Field& velocity, const Vec3Field& direction, double damping, Chunk& g) {
-  const auto difference = [to = run.offset](const double* of, int s) { return of[s + to] - of[s]; };
-  const double *x = position.x() + first, *y = position.y() + first, *z = position.z() + first;
-  const double *vx = velocity.x() + first, *vy = velocity.y() + first, *vz = velocity.z() + first;
-  const double *wx = direction.x() + first, *wy = direction.y() + first, *wz = direction.z() + first;
-  for (int s = 0; s < count; ++s) {
-    const double dx = difference(x, s), dy = difference(y, s), dz = difference(z, s);
-    const double ux = difference(vx, s), uy = difference(vy, s), uz = difference(vz, s);
-    const double ddx = difference(wx, s), ddy = difference(wy, s), ddz = difference(wz, s);
-    const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
-    const double inverse = length > 0 ? 1 / length : 0;
-    const double ex = inverse * dx, ey = inverse * dy, ez = inverse * dz;
-    const double ue = ux * ex + uy * ey + uz * ez, along = ddx * ex + ddy * ey + ddz * ez;
-    const double ude = ux * ddx + uy * ddy + uz * ddz - 2 * along * ue;
-    const double scale = -damping * inverse;
-    g.x[s] = scale * (ude * ex + ue * ddx);
-    g.y[s] = scale * (ude * ey + ue * ddy);
-    g.z[s] = scale * (ude * ez + ue * ddz);
   }
 }
 
@@ -128,15 +98,35 @@ double squared_rates(const SpringRun& run, const Vec3Field& position, const Vec3
 }
 
 /// What VectorKernels::add_spring_slopes() does, to the same bits, for a run of one: a mesh's, for which a
-/// kernel's loops are too long. True if the transverse stiffness is negative.
-bool add_slope(double stiffness, double rest_length, bool clamped, const Vec3& d, std::size_t spring,
-               SymmetricBlocks& blocks) {
+/// kernel's loops are too long.
+bool add_slope(const SpringSlopes& of, const Vec3& d, std::size_t spring, SymmetricBlocks& blocks) {
   const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
   const double inverse = length > 0 ? 1 / length : 0;
-  const double exact = length > 0 ? stiffness * (1 - rest_length * inverse) : stiffness;
-  const double across = clamped && exact < 0 ? 0 : exact;
-  blocks.add(spring, block_along(across, stiffness - across, inverse * d));
+  const double exact = length > 0 ? of.stiffness * (1 - of.rest_length * inverse) : of.stiffness;
+  const double across = of.clamped && exact < 0 ? 0 : exact;
+  blocks.add(spring, block_along(across, of.stiffness + of.damping - across, inverse * d));
   return exact < 0;
+}
+
+ConstVectorRows rows_at(const Vec3Field& field, int first) {
+  return {field.x() + first, field.y() + first, field.z() + first};
+}
+
+/// True if the transverse stiffness of a spring is negative.
+template <class Slopes>  // SpringSlopes slopes(run)
+bool add_slopes(const ClothSystem& system, const Vec3Field& position, Slopes slopes, Linearisation& to) {
+  const auto& kernels = active_kernels<VectorKernels>();
+  std::size_t spring = 0;
+  bool has_negative = false;
+  for (const SpringRun& run : system.springs) {
+    const auto i = static_cast<std::size_t>(run.first), j = static_cast<std::size_t>(run.first + run.offset);
+    const SpringSlopes of = slopes(run);
+    has_negative |= run.count == 1 ? add_slope(of, position[j] - position[i], spring, to.springs)
+                                   : kernels.add_spring_slopes(of, rows_at(position, run.first),
+                                                               to.springs.sums(spring), run.count);
+    spring += static_cast<std::size_t>(run.count);
+  }
+  return has_negative;
 }
 
 class SpringForce : public Force {
@@ -154,20 +144,16 @@ class SpringForce : public Force {
   /// of its own; k I bounds it.
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override {
-    const auto& kernels = active_kernels<VectorKernels>();
-    std::size_t spring = 0;
-    for (const SpringRun& run : system.springs) {
-      const auto i = static_cast<std::size_t>(run.first),
-                 j = static_cast<std::size_t>(run.first + run.offset);
-      const double k = weights.position * run.stiffness, L = run.rest_length;
-      const bool has_negative =
-          run.count == 1 ? add_slope(k, L, weights.clamped, position[j] - position[i], spring, to.springs)
-                         : kernels.add_spring_slopes({k, L, run.offset, weights.clamped},
-                                                     {position.x() + i, position.y() + i, position.z() + i},
-                                                     to.springs.sums(spring), run.count);
-      to.has_compressed = to.has_compressed || has_negative;
-      spring += static_cast<std::size_t>(run.count);
-    }
+    const bool has_negative = add_slopes(
+        system, position,
+        [&](const SpringRun& run) {
+          return SpringSlopes{.stiffness = weights.position * run.stiffness,
+                              .rest_length = run.rest_length,
+                              .offset = run.offset,
+                              .clamped = weights.clamped};
+        },
+        to);
+    to.has_compressed = to.has_compressed || has_negative;
   }
 };
 
@@ -207,19 +193,27 @@ class SpringDamping : public Force {
   }
   void add_linearisation(const ClothSystem& system, const Vec3Field& position,
                          const LinearisationWeights& weights, Linearisation& to) const override {
-    for_each_spring(system.springs,
-                    [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t j) {
-                      const double along = weights.velocity * of(run);
-                      to.springs.add(spring, block_along(0, along, direction(position[j] - position[i])));
-                    });
+    add_slopes(
+        system, position,
+        [&](const SpringRun& run) {
+          return SpringSlopes{.stiffness = 0,
+                              .rest_length = 0,
+                              .offset = run.offset,
+                              .clamped = false,
+                              .damping = weights.velocity * of(run)};
+        },
+        to);
   }
   bool has_asymmetric_part() const override { return true; }
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    Chunk g;
+    const auto& kernels = active_kernels<VectorKernels>();
     for_each_chunk(system, [&](const SpringRun& run, int first, int count) {
-      turning_chunk(run, first, count, position, velocity, direction, of(run), g);
-      add_to_ends(g, first, run.offset, count, product);
+      const MovingRows particles{rows_at(position, first), rows_at(velocity, first),
+                                 rows_at(direction, first)};
+      kernels.add_damper_turns(of(run), particles,
+                               {product.x() + first, product.y() + first, product.z() + first}, run.offset,
+                               count);
     });
   }
 

@@ -16,6 +16,13 @@ void multiply_blocks(BlockRows b, ConstVectorRows d, VectorRows p, std::size_t c
   }
 }
 
+/// Of springs from s to s + offset; the ends of one may be those of another.
+void add_to_ends(const double* g, double* to, std::ptrdiff_t offset, int count) {
+  for (int s = 0; s < count; ++s) to[s] += g[s];
+  to += offset;
+  for (int s = 0; s < count; ++s) to[s] -= g[s];
+}
+
 void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, std::ptrdiff_t offset, int count) {
   alignas(64) double gx[VectorKernels::max_springs], gy[VectorKernels::max_springs],
       gz[VectorKernels::max_springs];
@@ -25,13 +32,36 @@ void add_springs(BlockRows b, ConstVectorRows d, VectorRows p, std::ptrdiff_t of
     gy[s] = b.xy[s] * dx + b.yy[s] * dy + b.yz[s] * dz;
     gz[s] = b.xz[s] * dx + b.yz[s] * dy + b.zz[s] * dz;
   }
-  for (int s = 0; s < count; ++s) p.x[s] += gx[s];
-  for (int s = 0; s < count; ++s) p.y[s] += gy[s];
-  for (int s = 0; s < count; ++s) p.z[s] += gz[s];
-  double *qx = p.x + offset, *qy = p.y + offset, *qz = p.z + offset;
-  for (int s = 0; s < count; ++s) qx[s] -= gx[s];
-  for (int s = 0; s < count; ++s) qy[s] -= gy[s];
-  for (int s = 0; s < count; ++s) qz[s] -= gz[s];
+  add_to_ends(gx, p.x, offset, count);
+  add_to_ends(gy, p.y, offset, count);
+  add_to_ends(gz, p.z, offset, count);
+}
+
+/// With de = (I - a a^T) dd/|d| the change of u . a is u . de, and g the opposite of the force's change.
+void add_damper_turns(double damping, MovingRows m, VectorRows product, std::ptrdiff_t offset, int count) {
+  constexpr int most = VectorKernels::max_springs;
+  alignas(64) double gx[most], gy[most], gz[most];
+  const double *x = m.position.x, *y = m.position.y, *z = m.position.z;
+  const double *vx = m.velocity.x, *vy = m.velocity.y, *vz = m.velocity.z;
+  const double *wx = m.direction.x, *wy = m.direction.y, *wz = m.direction.z;
+  for (int s = 0; s < count; ++s) {
+    const std::ptrdiff_t j = s + offset;
+    const double dx = x[j] - x[s], dy = y[j] - y[s], dz = z[j] - z[s];
+    const double ux = vx[j] - vx[s], uy = vy[j] - vy[s], uz = vz[j] - vz[s];
+    const double ddx = wx[j] - wx[s], ddy = wy[j] - wy[s], ddz = wz[j] - wz[s];
+    const double length = __builtin_sqrt(dx * dx + dy * dy + dz * dz);
+    const double inverse = length > 0 ? 1 / length : 0;
+    const double ax = inverse * dx, ay = inverse * dy, az = inverse * dz;
+    const double ua = ux * ax + uy * ay + uz * az, along = ddx * ax + ddy * ay + ddz * az;
+    const double turn = ux * ddx + uy * ddy + uz * ddz - 2 * along * ua;
+    const double scale = -damping * inverse;
+    gx[s] = scale * (turn * ax + ua * ddx);
+    gy[s] = scale * (turn * ay + ua * ddy);
+    gz[s] = scale * (turn * az + ua * ddz);
+  }
+  add_to_ends(gx, product.x, offset, count);
+  add_to_ends(gy, product.y, offset, count);
+  add_to_ends(gz, product.z, offset, count);
 }
 
 bool add_spring_slopes(SpringSlopes springs, ConstVectorRows p, BlockSums sums, int count) {
@@ -53,7 +83,7 @@ bool add_spring_slopes(SpringSlopes springs, ConstVectorRows p, BlockSums sums, 
     for (int s = 0; s < part; ++s) is_compressed |= across[s] < 0;
     if (springs.clamped)
       for (int s = 0; s < part; ++s) across[s] = across[s] < 0 ? 0 : across[s];
-    for (int s = 0; s < part; ++s) along[s] = k - across[s];
+    for (int s = 0; s < part; ++s) along[s] = k + springs.damping - across[s];
     const auto add = [&](const double* a, const double* b, double* sum) {
       for (int s = 0; s < part; ++s) sum[begin + s] += along[s] * a[s] * b[s];
     };
@@ -131,9 +161,9 @@ void add_triangles(TriangleRows triangles, double scale, const double* position,
   }
 }
 
-constexpr VectorKernels table{multiply_blocks, add_springs,   add_spring_slopes, to_vectors,
-                              add_vectors,     multiply_rows, add_triangles,     dot,
-                              add_multiple,    scale_and_add};
+constexpr VectorKernels table{
+    multiply_blocks, add_springs, add_spring_slopes, add_damper_turns, to_vectors, add_vectors, multiply_rows,
+    add_triangles,   dot,         add_multiple,      scale_and_add};
 
 }  // namespace
 

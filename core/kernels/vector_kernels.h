@@ -43,7 +43,13 @@ struct TriangleRows {
 struct SpringSlopes {
   double stiffness, rest_length;
   std::ptrdiff_t offset;
-  bool clamped;  ///< without the transverse part where it is negative
+  bool clamped;        ///< without the transverse part where it is negative
+  double damping = 0;  ///< what resists along the springs alone, in the unit of `stiffness`
+};
+
+/// Particles that springs join, at their first ends.
+struct MovingRows {
+  ConstVectorRows position, velocity, direction;
 };
 
 struct VectorKernels {
@@ -56,9 +62,14 @@ struct VectorKernels {
   /// product of the first end and subtracts it from that of the second.
   void (*add_springs)(BlockRows blocks, ConstVectorRows direction, VectorRows product, std::ptrdiff_t offset,
                       int count);
-  /// blocks += stiffness (a a^T + t (I - a a^T)), a = d/|d|, t = 1 - rest_length/|d|, or stiffness I where d
-  /// is 0. True if stiffness * t is negative for one.
+  /// blocks += stiffness (a a^T + t (I - a a^T)) + damping a a^T, a = d/|d|, t = 1 - rest_length/|d|, or
+  /// stiffness I where d is 0. True if stiffness * t is negative for one.
   bool (*add_spring_slopes)(SpringSlopes springs, ConstVectorRows position, BlockSums blocks, int count);
+  /// Dampers c (u . a) a with u = v_j - v_i turn as their ends move along `direction`: subtracts what that
+  /// adds to the force on the first end from its product, and adds it to that of the second. At most
+  /// max_springs.
+  void (*add_damper_turns)(double damping, MovingRows particles, VectorRows product, std::ptrdiff_t offset,
+                           int count);
   // A particle's x, y, z and 0 stand one after the other in `vectors`, `position` and the like, 64-byte
   // aligned.
   void (*to_vectors)(ConstVectorRows field, double* vectors, std::size_t count);

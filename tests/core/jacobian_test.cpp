@@ -152,6 +152,31 @@ TEST(Jacobian, OfSpringsHasTheSameBitsOnEveryInstructionSetAndAStiffnessWhereASp
   }
 }
 
+TEST(Jacobian, OfDampersHasTheSameBitsOnEveryInstructionSetAndNoneWhereASpringHasNoDirection) {
+  Scene scene = bare_sheet(3, 150);
+  scene.springs = SpringMaterial{.structural = 1e-9, .damping = 0.6};
+  DirectRun run(scene, "verlet");
+  Random random;
+  const std::size_t size = run.state.position.size();
+  Vec3Field position = moved(run.state.position, 0.002, random.field(size, 1));
+  position.set(1, position[0]);
+  const Vec3Field velocity = random.field(size, 1), u = random.field(size, 1);
+  std::vector<Linearisation> of_sets;
+  std::vector<Vec3Field> products;
+  for (const InstructionSet set : supported_instruction_sets()) {
+    set_instruction_set(set);
+    run.forces.update(position, 0);
+    run.forces.linearise(position, {.position = 0, .velocity = 1, .clamped = false}, of_sets.emplace_back());
+    run.forces.asymmetric_product(position, velocity, u, products.emplace_back(size));
+    EXPECT_EQ(of_sets.back().springs.runs(), of_sets.front().springs.runs()) << name_of(set);
+    EXPECT_TRUE(products.back() == products.front()) << name_of(set);
+  }
+  set_instruction_set(std::nullopt);
+  EXPECT_EQ(of_sets.front().springs[0].matrix(), Eigen::Matrix3d::Zero());
+  EXPECT_NEAR(of_sets.front().springs[5].matrix().trace(), 0.6, 1e-15);
+  EXPECT_GT(largest_norm(products.front()), 0.1);
+}
+
 TEST(LinearSolvers, AllFindTheSameSolution) {
   Random random;
   Scene scene = pinned_sheet();

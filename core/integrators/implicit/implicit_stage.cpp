@@ -176,7 +176,8 @@ void ImplicitStage::find_direction(const StageEquation& e) {
     if (!again) solve_symmetric(e, LinearMethod::cholesky);
   }
   direction_ = downhill_;
-  if (e.forces.has_asymmetric_part()) correct_direction(e);
+  const bool relaxes = largest_component(escape_) > 0 && futile_left_ > 0;  // which needs no exact direction
+  if (e.forces.has_asymmetric_part() && !relaxes) correct_direction(e);
   add_escape();
 }
 

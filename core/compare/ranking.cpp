@@ -46,6 +46,8 @@ PaneResult result_of(const LockStep& lockstep, std::size_t pane) {
                     .rms = {},
                     .largest = {},
                     .rms_over_time = lockstep.rms_over_time(pane)};
+  if (const std::string of_steps = describe(result.count); !of_steps.empty())
+    result.notice += (result.notice.empty() ? "" : "; ") + of_steps;
   if (const Difference* difference = lockstep.difference(pane)) {
     result.rms = difference->rms;
     result.largest = difference->largest;

@@ -62,6 +62,8 @@ class AirForce : public Force {
       : air_(air), drag_(drag), mass_(&system.mass) {}
 
   void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
+  bool has_normals() const override { return true; }
+  void hold_normals(bool hold) override { holds_normals_ = hold; }
   KernelCoverage join(SweepTerms& terms) const override {
     if (brush_ || (drag_.per_mass > 0) != terms.has_shares) return KernelCoverage::none;
     terms.air = &air_;
@@ -70,7 +72,7 @@ class AirForce : public Force {
   }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-    particle_normals(system, position, normal_);
+    if (!holds_normals_) particle_normals(system, position, normal_);
     wind_ = wind_at(air_, time);
 
     const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
@@ -121,7 +123,10 @@ class AirForce : public Force {
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
     if (turned_.size() != position.size()) turned_ = Vec3Field(position.size());
-    particle_normal_changes(system, position, direction, turned_);
+    if (holds_normals_)
+      turned_.fill(0);
+    else
+      particle_normal_changes(system, position, direction, turned_);
     for (std::size_t i = 0; i < position.size(); ++i) {
       const Vec3 n = normal_[i], dn = turned_[i];
       Vec3 w = wind_ - velocity[i], dw = Vec3::Zero();
@@ -152,6 +157,7 @@ class AirForce : public Force {
   std::optional<BrushGust> brush_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
+  bool holds_normals_ = false;
   mutable Vec3Field turned_;  ///< scratch
   Vec3Field brush_force_;     ///< N, sized only once a brush is used
 };

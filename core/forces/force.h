@@ -103,6 +103,11 @@ class Force {
   /// Sets the wind brush, or removes it; only air drag uses it.
   virtual void set_brush(const std::optional<BrushGust>&) {}
 
+  /// Whether this force acts along normals of the cloth, as air does; and holds them as the last update found
+  /// them for those that follow, or no longer. Held ones do not turn with the positions.
+  virtual bool has_normals() const { return false; }
+  virtual void hold_normals(bool) {}
+
   /// Adds p at (position, time) to `force`, in N. All calls below refer to this position and time until the
   /// next update; where they take `position`, the caller passes the same field again, so that forces need no
   /// copy.

@@ -260,6 +260,14 @@ void ForceModel::asymmetric_product(const Vec3Field& position, const Vec3Field& 
       force->add_asymmetric_product(*system_, position, velocity, direction, product);
 }
 
+bool ForceModel::has_normals() const {
+  return std::any_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->has_normals(); });
+}
+
+void ForceModel::hold_normals(bool hold) {
+  for (const auto& force : forces_) force->hold_normals(hold);
+}
+
 void ForceModel::set_brush(const std::optional<BrushGust>& brush) {
   for (const auto& force : forces_) force->set_brush(brush);
   sort_forces();

@@ -83,6 +83,10 @@ class ForceModel {
   void asymmetric_product(const Vec3Field& position, const Vec3Field& velocity, const Vec3Field& direction,
                           Vec3Field& product) const;
 
+  /// Of the forces that act along normals of the cloth (Force::hold_normals).
+  bool has_normals() const;
+  void hold_normals(bool hold);
+
   /// Sets or removes the wind brush and the pull (forces/hand.h). A brush without air drag and a pull on a
   /// pinned particle have no effect. `stiffness` in N/m, `damping` in N s/m.
   void set_brush(const std::optional<BrushGust>& brush);

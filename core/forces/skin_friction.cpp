@@ -21,9 +21,11 @@ class SkinFriction : public Force {
     terms.air_friction = friction_.of(terms.mass);
     return KernelCoverage::whole_steps;
   }
+  bool has_normals() const override { return true; }
+  void hold_normals(bool hold) override { holds_normals_ = hold; }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-    particle_normals(system, position, normal_);
+    if (!holds_normals_) particle_normals(system, position, normal_);
     wind_ = wind_at(air_, time);
     if (wind_.squaredNorm() > 0)
       for (std::size_t i = 0; i < position.size(); ++i) force.add(i, across(i, wind_));
@@ -52,6 +54,7 @@ class SkinFriction : public Force {
   /// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
+    if (holds_normals_) return;
     if (turned_.size() != position.size()) turned_ = Vec3Field(position.size());
     particle_normal_changes(system, position, direction, turned_);
     for (std::size_t i = 0; i < position.size(); ++i) {
@@ -73,6 +76,7 @@ class SkinFriction : public Force {
   const std::vector<double>* mass_;
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
+  bool holds_normals_ = false;
   mutable Vec3Field turned_;  ///< scratch
 };
 

@@ -33,6 +33,7 @@ struct IntegratorReport {
       0;  ///< of Newton's method; of projective dynamics and VBD; passes of XPBD over the springs
   int linear_iterations = 0;  ///< of conjugate gradients, and steps of relaxation
   int factorisations = 0;     ///< of sparse matrices
+  int held_normals = 0;       ///< equations solved with air along the normals of the step's beginning
   /// The largest change of a particle's speed by the last iteration, divided by the largest speed.
   double residual = 0;
   std::optional<SolverFailure> failure = {};

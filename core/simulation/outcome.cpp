@@ -21,7 +21,16 @@ StepCount StepCount::since(const StepCount& earlier) const {
           .iterations = iterations - earlier.iterations,
           .linear_iterations = linear_iterations - earlier.linear_iterations,
           .factorisations = factorisations - earlier.factorisations,
+          .held_normals = held_normals - earlier.held_normals,
           .largest_residual = largest_residual};
+}
+
+std::string describe(const StepCount& count) {
+  if (count.held_normals == 0) return "";
+  return fmt::format(
+      "in {} of {} steps air acted along the cloth's normals at the step's beginning, because the equations "
+      "with those at its end were not solved; a shorter step makes them easier",
+      count.held_normals, count.steps);
 }
 
 std::string describe(const Divergence& d) {

@@ -236,6 +236,7 @@ class Run {
     summary.status = summary.divergence              ? Status::diverged
                      : !ended_ || !problems_.empty() ? Status::stopped
                                                      : Status::finished;
+    note(describe(summary.count));
     if (!summary.divergence) note(describe(summary.energy));
     if (!summary.divergence)
       note(locking_text(scene_,

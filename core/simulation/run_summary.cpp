@@ -43,6 +43,7 @@ json solver_json(const StepCount& count) {
   note("iterations", count.iterations);
   note("linear_iterations", count.linear_iterations);
   note("factorisations", count.factorisations);
+  note("steps_with_held_normals", count.held_normals);
   note("velocity_iterations", count.velocity_iterations);
   note("limiter_sweeps", count.limiter_sweeps);
   if (count.iterations > 0) solver["largest_residual"] = finite_or_word(count.largest_residual);

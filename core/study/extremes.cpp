@@ -126,6 +126,8 @@ class CellRun {
     if (count.inner_steps > count.steps || count.rejected_steps > 0)
       facts.push_back(
           fmt::format("{:.3g} inner steps a step", static_cast<double>(count.inner_steps) / steps));
+    if (count.held_normals > 0)
+      facts.push_back(fmt::format("air along the normals of the beginning in {} steps", count.held_normals));
     if (count.largest_residual > 1e-3)
       facts.push_back(fmt::format("residual up to {:.2g}", count.largest_residual));
   }

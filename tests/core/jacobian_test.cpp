@@ -114,6 +114,24 @@ TEST(Jacobian, OfAirWithWindAndBrushIsItsForcesSlope) {
   expect_exact(scene, "brush", brush);
 }
 
+TEST(Jacobian, OfAirAlongHeldNormalsIsItsForcesSlope) {
+  Random random;
+  Scene scene = pinned_sheet();
+  scene.air = Air{.drag = 0.4, .skin_friction = 0.1, .wind = {1, -0.5, 3}};
+  DirectRun run(scene, "verlet");
+  run.state = crumpled_state(run.system, 0.03, 0.8, random);
+  run.forces.update(run.state.position, 0);
+  run.forces.hold_normals(true);
+  run.state.position = moved(run.state.position, 0.02, random.field(run.state.position.size(), 1));
+  Vec3Field u = random.field(run.state.position.size(), 1);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (run.system.pinned[i]) u.set(i, Vec3::Zero());
+  const Vec3Field held = exact_product(run, u), expected = difference_product(run, u);
+  EXPECT_LE(largest_distance(held, expected), 2e-7 * largest_norm(expected));
+  run.forces.hold_normals(false);
+  EXPECT_GT(largest_distance(exact_product(run, u), held), 1e-3 * largest_norm(held));
+}
+
 TEST(Jacobian, WithClampedCompressionIsPositiveDefiniteWhereTheExactOneIsNot) {
   Random random;
   Scene scene = pinned_sheet();

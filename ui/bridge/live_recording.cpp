@@ -77,10 +77,13 @@ std::optional<cloth::IoError> LiveRecording::end(const cloth::Simulation& simula
   summary.max_strain = max_strain_;
   summary.limiter_excess = limiter_excess_;
   summary.energy = energy_;
-  if (!divergence) summary.notice = describe(energy_);
+  const auto note = [&](const std::string& sentence) {
+    if (!sentence.empty()) summary.notice += (summary.notice.empty() ? "" : "; ") + sentence;
+  };
+  note(describe(summary.count));
+  if (!divergence) note(describe(energy_));
   summary.rate_breach = simulation.rate_breach();
-  if (summary.rate_breach)
-    summary.notice += (summary.notice.empty() ? "" : "; ") + describe(*summary.rate_breach);
+  if (summary.rate_breach) note(describe(*summary.rate_breach));
   summary.divergence = divergence;
   summary.step_changes = simulation.step_changes();
   summary.status = divergence ? cloth::Status::diverged : cloth::Status::stopped;

@@ -334,6 +334,19 @@ bool ImplicitStage::is_solved(const StageEquation& e, double largest_change) {
 }
 
 void ImplicitStage::solve(const StageEquation& e) {
+  guess_ = e.velocity;
+  if (iterate(e, e.forces.has_normals())) return;
+  ++e.report.held_normals;
+  e.velocity = guess_;
+  e.forces.update(e.start_position, e.time);
+  e.forces.hold_normals(true);
+  iterate(e, false);
+  e.forces.hold_normals(false);
+}
+
+/// Iterations of Newton's method, until the equation is solved or has failed, which the report says. False:
+/// neither, but nothing has led to a solution; only if it `may_give_up`.
+bool ImplicitStage::iterate(const StageEquation& e, bool may_give_up) {
   const std::size_t size = e.velocity.size();
   if (force_.size() != size)
     force_ = residual_ = downhill_ = direction_ = escape_ = start_ = turned_ = Vec3Field(size);
@@ -358,33 +371,36 @@ void ImplicitStage::solve(const StageEquation& e) {
     if (!std::isfinite(change) || !std::isfinite(largest_component(residual_))) {
       e.report.failure = {place_of_largest(residual_),
                           "the forces of an iteration of Newton's method are not finite"};
-      return;
+      return true;
     }
     scale = std::max(scale, largest_component(e.velocity));
     relative = change > 0 ? change / scale : 0;
     if (change <= tolerance_ * scale + rounding) {
       e.report.residual = std::max(e.report.residual, relative);
-      return;
+      return true;
     }
     const bool turns_far = largest_component(escape_) > 0 || (length_ < 1 && is_indefinite_);
     const bool is_near = change <= nearly_solved * scale;
     const bool is_slow = n + 1 >= slow && !is_near;
     if ((turns_far || is_slow) && futile_left_ > 0) relax(e);
-    if (n + 1 == patience && patience <= most_patience && !is_near && e.forces.has_asymmetric_part() &&
+    if (n + 1 >= patience && patience <= most_patience && !is_near && e.forces.has_asymmetric_part() &&
         MultigridSolver::suits(e.forces.system())) {
-      if (lower_norm(e, tolerance_ * scale + rounding)) return;
+      if (lower_norm(e, tolerance_ * scale + rounding)) return true;
       patience *= 2;
     }
+    if (may_give_up && n + 1 >= most_patience && !is_near) return false;
     if (is_near && has_preconditioner() && is_solved(e, estimate_part * tolerance_ * scale + rounding))
-      return;
+      return true;
   }
+  if (may_give_up && !(relative <= good_enough)) return false;
   e.report.residual = std::max(e.report.residual, relative);
-  if (relative <= good_enough) return;
+  if (relative <= good_enough) return true;
   e.report.failure = {
       place_of_largest(residual_),
       fmt::format("Newton's method did not converge: after {} iterations the velocities still "
                   "change by {:.2g} of the largest",
                   max_iterations_, relative)};
+  return true;
 }
 
 }  // namespace cloth

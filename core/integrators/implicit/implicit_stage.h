@@ -17,7 +17,9 @@
 // much further for the cost of one linear solve.
 //
 // Where that does not lead to the solution and forces have no potential, the residual's norm is lowered
-// instead, along directions of the whole Jacobian.
+// instead, along directions of the whole Jacobian. Where that fails too and air acts along normals of the
+// cloth, these are held as they are at x0, and the step begins anew: air is then a damper whose Jacobian is
+// symmetric, and the step's error is of order one. The report counts such solves.
 #pragma once
 
 #include "integrators/implicit/limited_memory.h"
@@ -48,6 +50,7 @@ class ImplicitStage {
   void solve(const StageEquation& equation);
 
  private:
+  bool iterate(const StageEquation& e, bool may_give_up);
   void evaluate(const StageEquation& e);
   void find_direction(const StageEquation& e);
   void choose_forcing();
@@ -85,7 +88,7 @@ class ImplicitStage {
   int futile_left_ = 0;         ///< steps of relaxations that may still gain little in this solve
   LimitedMemory memory_;
   Linearisation linearisation_, clamped_;
-  Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, turned_;
+  Vec3Field force_, residual_, negative_residual_, downhill_, direction_, escape_, start_, turned_, guess_;
 };
 
 }  // namespace cloth

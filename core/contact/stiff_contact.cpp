@@ -138,12 +138,14 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
     release();
     if (!find_direction(system, forces, weight, position)) break;
     start_ = position;
+    sides_at_start_ = sides_;
     const double before = dot(direction_.flat(), residual_.flat());
     if (n == 0) first = before;
     if (before >= least_work * first) break;
     double length = 1;
     for (int trial = 1;; ++trial) {
       position = start_;
+      sides_ = sides_at_start_;
       add_scaled(length, direction_, position);
       hold(system, position);
       find_residual(system, forces, weight, time, position);

@@ -13,6 +13,7 @@
 // Witkin 1998) while the normal component of g is positive. Friction acts on velocities afterwards.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,8 +59,8 @@ class StiffContact {
   Vec3Field residual_, direction_, start_, along_;
   std::vector<HeldParticle> held_;  ///< on a surface; after release() with a normal force > 0
   std::span<const Obstacle> obstacles_;
-  std::vector<Obstacle> reached_;  ///< grown by what is rounding
-  std::vector<Side> sides_;        ///< of each particle, one after the other for each obstacle
+  std::vector<Obstacle> reached_;             ///< grown by what is rounding
+  std::vector<Side> sides_, sides_at_start_;  ///< of each particle, one after the other for each obstacle
   Linearisation linearisation_;
   CholeskyFactors factors_;
   BlockJacobi jacobi_;

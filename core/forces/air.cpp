@@ -118,7 +118,7 @@ class AirForce : public Force {
     for (std::size_t i = 0; i < to.nodes.size(); ++i)
       to.nodes.add(i, block_along(0, weights.velocity * drag(i), normal_[i]));
   }
-  bool has_asymmetric_part() const override { return true; }
+  bool has_asymmetric_part() const override { return !holds_normals_ || brush_.has_value(); }
   /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {

@@ -50,11 +50,10 @@ class SkinFriction : public Force {
       to.nodes.add(i, block_along(c, -c, normal_[i]));
     }
   }
-  bool has_asymmetric_part() const override { return true; }
+  bool has_asymmetric_part() const override { return !holds_normals_; }
   /// F = c_t (w - (n . w) n) with w = u - v: the normal turns with the positions.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
-    if (holds_normals_) return;
     if (turned_.size() != position.size()) turned_ = Vec3Field(position.size());
     particle_normal_changes(system, position, direction, turned_);
     for (std::size_t i = 0; i < position.size(); ++i) {

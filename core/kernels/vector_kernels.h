@@ -53,7 +53,7 @@ struct MovingRows {
 };
 
 struct VectorKernels {
-  /// Springs that add_springs() takes at once, at most.
+  /// Springs that add_springs() and add_damper_turns() take at once, at most.
   static constexpr int max_springs = 128;
 
   /// product = B direction, block by block

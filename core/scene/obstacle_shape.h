@@ -81,8 +81,8 @@ class ObstacleShape : public ShapeFacts {
   virtual std::optional<SurfacePoint> entry(const Obstacle& obstacle, const Vec3& from,
                                             const Vec3& point) const;
 
-  /// Of the side of the surface that has this normal: the point of it nearest to `point`, which may be on
-  /// either side. Sides are continued beyond their edges. nullopt for BodyKind::surface.
+  /// The point nearest to `point`, which may be inside or outside, of the face that has this normal, continued
+  /// beyond its edges; of a sphere, of the whole surface. nullopt for BodyKind::surface.
   virtual std::optional<SurfacePoint> along(const Obstacle&, const Vec3& normal, const Vec3& point) const;
 
   /// Moves the surface outward by `length` in m.

@@ -27,10 +27,11 @@ StepCount StepCount::since(const StepCount& earlier) const {
 
 std::string describe(const StepCount& count) {
   if (count.held_normals == 0) return "";
+  const bool once = count.held_normals == 1;
   return fmt::format(
-      "in {} of {} steps air acted along the cloth's normals at the step's beginning, because the equations "
-      "with those at its end were not solved; a shorter step makes them easier",
-      count.held_normals, count.steps);
+      "in {} step{}, which nothing else solved, air acted along the cloth's normals at {} beginning; shorter "
+      "steps are easier to solve",
+      count.held_normals, once ? "" : "s", once ? "its" : "their");
 }
 
 std::string describe(const Divergence& d) {

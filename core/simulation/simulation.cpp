@@ -268,7 +268,7 @@ void Simulation::count_step(const IntegratorReport& report) {
   run_.count.iterations += report.iterations;
   run_.count.linear_iterations += report.linear_iterations;
   run_.count.factorisations += report.factorisations;
-  if (report.held_normals > 0) ++run_.count.held_normals;
+  if (report.held_normals > 0 && !report.failure) ++run_.count.held_normals;
   run_.count.largest_residual = std::max(run_.count.largest_residual, report.residual);
 }
 

@@ -190,6 +190,7 @@ TEST(NewtonsMethod, FindsTheLongStepsOfAFlagInWindWhichAreNoMinimum) {
       const auto stop = simulation.step();
       ASSERT_FALSE(stop) << method << ": " << describe(*stop);
     }
+    EXPECT_EQ(simulation.count().held_normals, 0) << method;
   }
 }
 

@@ -238,7 +238,7 @@ std::string SceneRun::notice() const {
     breach->steps = 1;  // a notice that does not change with every step
     notice += cloth::describe(*breach) + '\n';
   }
-  if (const std::string of_steps = describe(simulation_->count()); !of_steps.empty())
+  if (const std::string of_steps = cloth::describe(simulation_->count()); !of_steps.empty())
     notice += of_steps + '\n';
   notice += energy_.notice();
   if (notice.ends_with('\n')) notice.pop_back();

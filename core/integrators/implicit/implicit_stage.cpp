@@ -176,7 +176,9 @@ void ImplicitStage::find_direction(const StageEquation& e) {
     if (!again) solve_symmetric(e, LinearMethod::cholesky);
   }
   direction_ = downhill_;
-  const bool relaxes = largest_component(escape_) > 0 && futile_left_ > 0;  // which needs no exact direction
+  const bool can_relax =
+      futile_left_ > 0 && (MultigridSolver::suits(e.forces.system()) || has_preconditioner());
+  const bool relaxes = can_relax && largest_component(escape_) > 0;  // which needs no exact direction
   if (e.forces.has_asymmetric_part() && !relaxes) correct_direction(e);
   add_escape();
 }
@@ -345,7 +347,8 @@ void ImplicitStage::solve(const StageEquation& e) {
 }
 
 /// Iterations of Newton's method, until the equation is solved or has failed, which the report says. False:
-/// neither, but nothing has led to a solution; only if it `may_give_up`.
+/// neither, but nothing has led to a solution; only if it `may_give_up`. Forces that are not finite have
+/// failed: they would be so with other normals too.
 bool ImplicitStage::iterate(const StageEquation& e, bool may_give_up) {
   const std::size_t size = e.velocity.size();
   if (force_.size() != size)
@@ -386,9 +389,9 @@ bool ImplicitStage::iterate(const StageEquation& e, bool may_give_up) {
     if (n + 1 >= patience && patience <= most_patience && !is_near && e.forces.has_asymmetric_part() &&
         MultigridSolver::suits(e.forces.system())) {
       if (lower_norm(e, tolerance_ * scale + rounding)) return true;
-      patience *= 2;
+      while (patience <= n + 1) patience *= 2;
     }
-    if (may_give_up && n + 1 >= most_patience && !is_near) return false;
+    if (may_give_up && patience > most_patience && n + 1 >= most_patience && !is_near) return false;
     if (is_near && has_preconditioner() && is_solved(e, estimate_part * tolerance_ * scale + rounding))
       return true;
   }

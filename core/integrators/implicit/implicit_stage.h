@@ -18,8 +18,9 @@
 //
 // Where that does not lead to the solution and forces have no potential, the residual's norm is lowered
 // instead, along directions of the whole Jacobian. Where that fails too and air acts along normals of the
-// cloth, these are held as they are at x0, and the step begins anew: air is then a damper whose Jacobian is
-// symmetric, and the step's error is of order one. The report counts such solves.
+// cloth, these are held as they are at x0 (with BDF2 ahead of the step's beginning, by as much as its x0),
+// and the step begins anew: air alone, without a brush, is then a damper whose Jacobian is symmetric, and the
+// step's error is of order one. The report counts such solves.
 #pragma once
 
 #include "integrators/implicit/limited_memory.h"

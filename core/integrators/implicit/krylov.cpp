@@ -199,8 +199,7 @@ KrylovReport MinimalResiduals::solve(const LinearMap& matrix, const LinearMap& p
   double norm = find_residual();
   for (int n = 0; n < max_cycles && norm > goal; ++n) {
     report.iterations += run_cycle(matrix, preconditioner, goal, solution);
-    norm = std::abs(rotated_.back());
-    if (norm > goal) norm = find_residual();
+    norm = find_residual();
   }
   report.converged = norm <= goal;
   return report;

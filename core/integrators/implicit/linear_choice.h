@@ -20,7 +20,7 @@ const char* name_of(LinearMethod method);
 /// Estimates of one solve of A x = b, from the costs of the machine that was measured on; that of conjugate
 /// gradients half as much again, since Newton's method takes more iterations with them.
 struct LinearChoice {
-  LinearMethod method = LinearMethod::cholesky;  ///< the cheaper one
+  LinearMethod method = LinearMethod::cholesky;  ///< the cheapest one
   double factors = 0;                            ///< s
   double gradients = 0;                          ///< s
   double iterations = 0;                         ///< of conjugate gradients

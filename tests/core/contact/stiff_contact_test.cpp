@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "integrators/implicit_methods.h"
@@ -19,7 +20,7 @@ constexpr double above = 1e-9;       // m, of a place on a surface: rounding
 struct Solved {
   double residual = 0;  ///< of the forces that remain, as a part of those on the surfaces
   double deepest = 0;   ///< m, inside of an obstacle
-  double pull = 0;      ///< N s, the most that a surface pulls
+  double pull = 0;      ///< N, the most that a surface pulls
 };
 
 /// A step of implicit Euler of a sheet that is just above the obstacle, `aside` metres to the side, and falls

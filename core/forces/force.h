@@ -103,9 +103,9 @@ class Force {
   /// Sets the wind brush, or removes it; only air drag uses it.
   virtual void set_brush(const std::optional<BrushGust>&) {}
 
-  /// Whether this force acts along normals of the cloth, as air does; and holds them as the last update found
-  /// them for those that follow, or no longer. Held ones do not turn with the positions.
+  /// Whether this force acts along normals of the cloth, as air does.
   virtual bool has_normals() const { return false; }
+  /// true: later updates keep the normals of the last one. false: each update finds its own.
   virtual void hold_normals(bool) {}
 
   /// Adds p at (position, time) to `force`, in N. All calls below refer to this position and time until the

@@ -15,7 +15,7 @@ struct StepCount {
   std::int64_t steps = 0, force_evaluations = 0, velocity_iterations = 0, limiter_sweeps = 0;
   std::int64_t inner_steps = 0, rejected_steps = 0;
   std::int64_t iterations = 0, linear_iterations = 0, factorisations = 0;  ///< of implicit methods
-  std::int64_t held_normals = 0;  ///< steps of them in which air acted along the normals of the beginning
+  std::int64_t held_normals = 0;  ///< steps in which air acted along the normals of their beginning
   double largest_residual = 0;    ///< of a step's last iteration, see IntegratorReport
 
   /// What was added since `earlier`; the largest residual remains that of the whole run.

@@ -10,9 +10,9 @@
 //
 // so that the cloth around a contact deforms within the step, and l w is the normal impulse. Solved by
 // Newton's method with an active set: particles are constrained in the normal direction (as in Baraff and
-// Witkin 1998) while the normal component of g is positive. Until the solve ends a particle is kept outside of
-// the side that it met first, beyond its edges too: let go there, it may come back under the edge in the next
-// iteration, and so for ever. Friction acts on velocities afterwards.
+// Witkin 1998) while the normal component of g is positive. Until the solve ends a particle is kept outside
+// of the side that it met first, beyond its edges too: let go there, it may come back under the edge in the
+// next iteration, and so for ever. Friction acts on velocities afterwards.
 #pragma once
 
 #include <optional>

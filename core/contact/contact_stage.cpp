@@ -1,6 +1,7 @@
 #include "contact/contact_stage.h"
 
 #include "contact/continuous_contact.h"
+#include "contact/inner_contact.h"
 #include "contact/obstacle_contact.h"
 #include "contact/stiff_contact.h"
 
@@ -30,6 +31,11 @@ class ParticleContact : public ContactStage {
     return report;
   }
 
+  InnerStepContact* within_steps(const ClothSystem& system, ContactMemory& memory) override {
+    return &inner_.emplace(contact_, system, memory);
+  }
+  ContactReport take_inner_report() override { return inner_->take_report(); }
+
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override {
     contact_.append_marks(position, marks);
   }
@@ -37,6 +43,7 @@ class ParticleContact : public ContactStage {
  private:
   ObstacleContact contact_;
   StiffContact stiff_contact_;
+  std::optional<InnerContact> inner_;
   bool long_steps_;
 };
 

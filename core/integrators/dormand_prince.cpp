@@ -104,13 +104,24 @@ void DormandPrince::attempt(ForceModel& forces, const ClothState& from, const St
   }
 }
 
-void DormandPrince::accept(double step, ClothState& state, Work& work) {
-  for (int s = 0; s < last; ++s) work += step * coupling[last][s] * power_[s];
+/// The first stage, where the last step did not leave it.
+void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState& state,
+                               IntegratorReport& report) {
+  position_ = state.position;
+  speed_[0] = state.velocity;
+  evaluate(forces, 0, time, report);
+}
+
+void DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
+                           IntegratorReport& report) {
+  if (contact_) contact_->begin(state);
+  for (int s = 0; s < last; ++s) work += inner.step * coupling[last][s] * power_[s];
   std::swap(state.position, position_);
   state.velocity = speed_[last];
   std::swap(speed_[0], speed_[last]);
   std::swap(acceleration_[0], acceleration_[last]);
   std::swap(power_[0], power_[last]);
+  if (contact_ && contact_->correct(inner.step, state)) take_slope(forces, inner.end, state, report);
 }
 
 /// Within a step what is not finite spreads from spring to spring: the particle where it began.
@@ -150,14 +161,15 @@ void DormandPrince::control(ForceModel& forces, const StepTimes& times, ClothSta
     const double h = ends ? left : control_.size();
     if (!ends && h < smallest_step * times.step) break;
     const double begin = times.begin + elapsed;
-    attempt(forces, state, {begin, ends ? times.end : begin + h, h}, report);
+    const StepTimes inner{begin, ends ? times.end : begin + h, h};
+    attempt(forces, state, inner, report);
     error = estimated_error(forces.system(), h);
     if (!(error.value <= 1)) {
       ++report.rejected_steps;
       control_.reject(h, error.value);
       continue;
     }
-    accept(h, state, work);
+    accept(forces, inner, state, work, report);
     control_.accept(h, error.value);
     ++report.inner_steps;
     if (ends) return;
@@ -180,17 +192,13 @@ IntegratorReport DormandPrince::step(ForceModel& forces, const StepTimes& times,
     acceleration_.fill(Vec3Field(size));
     holds_slope_ = false;
   }
-  if (!holds_slope_) {
-    position_ = state.position;
-    speed_[0] = state.velocity;
-    evaluate(forces, 0, times.begin, report);
-  }
+  if (!holds_slope_) take_slope(forces, times.begin, state, report);
   holds_slope_ = true;
   if (tolerance_ > 0) {
     control(forces, times, state, work, report);
   } else {
     attempt(forces, state, times, report);
-    accept(times.step, state, work);
+    accept(forces, times, state, work, report);
   }
   return report;
 }

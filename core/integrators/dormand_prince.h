@@ -42,6 +42,10 @@ class DormandPrince : public Integrator {
   explicit DormandPrince(double tolerance) : tolerance_(tolerance) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  bool set_inner_contact(InnerStepContact* contact) override {
+    contact_ = contact;
+    return true;
+  }
   void forget(Change change) override;
   IntegratorMemory remember() const override { return {.fields = {}, .numbers = control_.numbers()}; }
   /// The slope is a function of state and time: the next step takes it again.
@@ -53,15 +57,18 @@ class DormandPrince : public Integrator {
     int particle = 0;
   };
 
+  void take_slope(ForceModel& forces, double time, const ClothState& state, IntegratorReport& report);
   void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
   void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
-  void accept(double step, ClothState& state, Work& work);
+  void accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
+              IntegratorReport& report);
   int first_without_slope() const;
   LargestError estimated_error(const ClothSystem& system, double step) const;
   void control(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
                IntegratorReport& report);
 
   double tolerance_;
+  InnerStepContact* contact_ = nullptr;
   StepSizeControl control_;
   bool holds_slope_ = false;                         ///< the first stage is that of the present state
   std::array<Vec3Field, stage_count> speed_;         ///< m/s, slope of the position at each stage

@@ -66,6 +66,8 @@ class DriftConstraint {
   /// Called after the drift. Moves positions until they satisfy the constraint, changes the velocity by
   /// displacement / drift, and adds the constraint's part of the closing kick of `closing_kick` seconds.
   virtual void after_drift(double closing_kick, ClothState& state) = 0;
+  /// Contact has moved what the constraint held: the next kick is without its tensions.
+  virtual void forget_tensions() = 0;
   /// Adds that part again, to a velocity that is recomputed from that of the drift.
   virtual void close(ClothState& state) = 0;
   /// The changes of velocity in m/s in the last step: by before_kick() and after_drift(), and by the closing
@@ -73,6 +75,17 @@ class DriftConstraint {
   /// acted before all forces of the step and the closing change after them.
   virtual const Vec3Field* opening_change() const = 0;
   virtual const Vec3Field* closing_change() const = 0;
+};
+
+/// Contact of methods that divide a step into inner ones: it corrects the state at the end of each, so that
+/// cloth is not moved back at once from where it got to within a long step (contact/inner_contact.h).
+class InnerStepContact {
+ public:
+  virtual ~InnerStepContact() = default;
+  /// The state at the beginning of an inner step, before anything has changed it.
+  virtual void begin(const ClothState& state) = 0;
+  /// The state at the end of that step of `step` seconds. Returns whether it has been changed.
+  virtual bool correct(double step, ClothState& state) = 0;
 };
 
 class Integrator {
@@ -106,6 +119,10 @@ class Integrator {
   /// Makes every step enforce `constraint`; null: none. It must outlive its use. Returns false where the
   /// method cannot enforce it within a step; the caller must then enforce it after each step.
   virtual bool set_drift_constraint(DriftConstraint* /*constraint*/) { return false; }
+
+  /// Makes every inner step end with `contact`; null: none. It must outlive its use. Returns false where the
+  /// method does not divide its steps; the caller must then call for contact after each step.
+  virtual bool set_inner_contact(InnerStepContact* /*contact*/) { return false; }
 
   /// Whether the positions of a step are x' = x + h v' with the velocity v' at its end.
   virtual bool drifts_with_end_velocity() const { return false; }

@@ -301,6 +301,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
     const double end = n + 1 == substeps_ ? times.end : times.begin + (n + 1) * h;
     forces.update_external(state.position, end);
     ++report.force_evaluations;
+    if (contact_) contact_->begin(state);
     if (constraint_) constraint_->before_kick(h, h, state);
     const double changed = substep(forces, parts, h, n + 1 == substeps_, state.position, state.velocity);
     report.iterations += iterations_;
@@ -311,6 +312,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
 
     add_scaled(h, state.velocity, state.position);
     if (constraint_) constraint_->after_drift(0, state);
+    if (contact_ && contact_->correct(h, state) && constraint_) constraint_->forget_tensions();
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;

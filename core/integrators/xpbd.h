@@ -49,6 +49,10 @@ class Xpbd : public Integrator {
     constraint_ = constraint;
     return true;
   }
+  bool set_inner_contact(InnerStepContact* contact) override {
+    contact_ = contact;
+    return true;
+  }
 
  private:
   /// W = isotropic * I - along_normal * n n^T, in 1/kg; all 0 where pinned.
@@ -91,6 +95,7 @@ class Xpbd : public Integrator {
 
   int substeps_, iterations_;
   DriftConstraint* constraint_ = nullptr;
+  InnerStepContact* contact_ = nullptr;
   Visitor visitor_ = Visitor::one_by_one;
   bool has_others_ = false;  ///< elements beside springs
   ColouredSprings coloured_;

@@ -84,7 +84,7 @@ void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
 bool StepLimiter::move(ClothState& state) {
   if (!tensions_ || !opened_) {
     report_.excess = limiter_.excess(state.position);
-    if (tensions_ && holds_) std::fill(tension_.begin(), tension_.end(), 0.0), holds_ = false;
+    if (tensions_) forget_tensions();
     const bool is_small = limiter_.accepts(report_.excess) &&
                           (!tensions_ || report_.excess == 0 || report_.excess <= target_residual(state));
     if (is_small) return false;
@@ -163,6 +163,12 @@ void StepLimiter::close(ClothState& state) {
   size_like(state.position, closing_);
   closing_.fill(0);
   add_acceleration(*system_, closing_kick_, pull_, closing_);
+}
+
+void StepLimiter::forget_tensions() {
+  if (!holds_) return;
+  std::fill(tension_.begin(), tension_.end(), 0.0);
+  holds_ = false;
 }
 
 void StepLimiter::end_step(const ClothState& state) {

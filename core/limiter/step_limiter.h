@@ -28,6 +28,7 @@ class StepLimiter : public DriftConstraint {
   bool holds() const override;
   void before_kick(double kick, double drift, ClothState& state) override;
   void after_drift(double closing_kick, ClothState& state) override;
+  void forget_tensions() override;
   void close(ClothState& state) override;
   const Vec3Field* opening_change() const override { return changed_ ? &change_ : nullptr; }
   const Vec3Field* closing_change() const override { return closed_ ? &closing_ : nullptr; }

@@ -8,6 +8,11 @@ namespace cloth {
 /// Continuous contact does not follow what has diverged: it stays where it was, and the run stops.
 void Simulation::resolve_contact(const StepTimes& times) {
   run_.last_contact = {};
+  if (meets_contact_within_steps_) {
+    run_.last_contact = contact_->take_inner_report();
+    run_.ledger.contact += run_.last_contact.work;
+    return;
+  }
   if (contact_->is_continuous() && is_fast(kinetic_energy(system_, run_.state.velocity)) && has_diverged()) {
     run_.state.position = position_before_;
     return;

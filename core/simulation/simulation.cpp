@@ -189,6 +189,8 @@ void Simulation::choose_stepper() {
     integrator_->forget(Change::forces);
   stepper_kind_ = kind;
   limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
+  InnerStepContact* contact = contact_ ? contact_->within_steps(system_, run_.contact_memory) : nullptr;
+  meets_contact_within_steps_ = integrator_->set_inner_contact(contact) && contact;
 }
 
 std::optional<Divergence> Simulation::step() {

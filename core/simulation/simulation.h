@@ -229,6 +229,7 @@ class Simulation {
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::unique_ptr<ContactStage> contact_;
+  bool meets_contact_within_steps_ = false;  ///< the method asks contact itself, at the end of inner steps
   Vec3Field position_before_, velocity_before_;  ///< m, m/s, at the step's start, for contact
 
   std::function<bool()> stop_test_;

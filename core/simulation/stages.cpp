@@ -31,11 +31,13 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
                       100 * deformation.rate, how)};
 }
 
-StageInfo contact_stage(const Scene& scene) {
+/// `within_steps`: the method divides its steps.
+StageInfo contact_stage(const Scene& scene, bool within_steps) {
   if (auto absent = absent_stage("contact", scene, "obstacles")) return *absent;
   const std::string count =
       fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s");
-  if (!has_continuous_contact(scene)) return {"contact", true, count};
+  if (!has_continuous_contact(scene))
+    return {"contact", true, count + (within_steps ? ", at the end of every inner step" : "")};
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(), &moves);
   return {"contact", true,
           fmt::format("{}{}, without gaps, {} m thick", count,
@@ -90,7 +92,8 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   const std::unique_ptr<Integrator> integrator = make_integrator(scene.integrator);
   const bool limits_within = integrator->set_drift_constraint(nullptr);
   const bool limited = limiter_stage(scene, system).present;
-  const bool moved_later = contact_stage(scene).present || scene.self_contact || (!limits_within && limited);
+  const StageInfo contact = contact_stage(scene, integrator->set_inner_contact(nullptr));
+  const bool moved_later = contact.present || scene.self_contact || (!limits_within && limited);
   std::vector<StageInfo> stages;
   for (const ForceEntry& force : force_registry())
     for (StageInfo& stage : force.explain(scene, system)) stages.push_back(std::move(stage));
@@ -101,7 +104,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
            (method.keeps_force && moved_later ? ", one more after a step that the stages below changed"
                                               : "")});
   stages.push_back(limiter_stage(scene, system));
-  stages.push_back(contact_stage(scene));
+  stages.push_back(contact);
   stages.push_back(self_contact_stage(scene));
   return stages;
 }

@@ -78,8 +78,10 @@ class CellRun {
 
   void look_for_tunnelling() {
     if (tunnelling_ || has_continuous_contact(simulation_.scene())) return;
+    const IntegratorChoice& method = simulation_.scene().integrator;
+    const auto parts = method.method == "xpbd" ? static_cast<double>(method.substeps) : 1;
     tunnelling_ = find_tunnelling(simulation_.scene().obstacles, simulation_.system(), simulation_.state(),
-                                  simulation_.time_step());
+                                  simulation_.time_step() / parts);
     tunnelling_step_ = simulation_.state().step + 1;
   }
 

@@ -164,6 +164,26 @@ TEST_P(LongSteps, SolvedToTheirEndGainLessThanAHundredthOnTheWholeScene) {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, LongSteps, ::testing::Values("ball", "cube", "rectangle", "tablecloth"),
                          [](const auto& tested) { return tested.param; });
 
+/// Met once a step, after ten substeps through the obstacles, all of these diverged within a second.
+TEST_P(LongSteps, OfXpbdMeetObstaclesInEverySubstepSoThatFinerClothsStayWhole) {
+  Scene scene = builtin_scene(GetParam());
+  scene.cloth.rows = scene.cloth.columns = 65;
+  scene.integrator = {.method = "xpbd", .time_step = 1.0 / 60};
+  const ContactLedger ledger = ledger_of(scene, {}, 1);
+  EXPECT_GT(ledger.account.exchanged(), 0);
+  EXPECT_LT(ledger.gain, ledger.account.exchanged());
+  EXPECT_LT(ledger.work, 0);
+}
+
+/// Met once a record interval, these made 0.05 to 1.2 of the energy exchanged.
+TEST_P(LongSteps, OfErrorControlMeetObstaclesInEveryInnerStep) {
+  Scene scene = builtin_scene(GetParam());
+  scene.integrator = {.method = "dormand-prince", .time_step = 0.01};
+  const ContactLedger ledger = ledger_of(scene, {}, 1);
+  EXPECT_LT(ledger.account.share(), GetParam() == "tablecloth" ? 0.1 : 0.04);
+  EXPECT_LT(ledger.work, 0);
+}
+
 struct BuiltIn {
   std::string name;
   double part = 1;  ///< of its particles along an edge

@@ -62,16 +62,17 @@ void StiffContact::hold(const ClothSystem& system, Vec3Field& position) {
 }
 
 /// N; its normal component becomes the normal load of the particles in contact.
-void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, double weight, double time,
+void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                                  const Vec3Field& position) {
-  forces.update(position, time);
+  forces.update(position, step.end);
   const Vec3Field& force = forces.position_force();
   for (std::size_t i = 0; i < position.size(); ++i) {
     const Vec3 moved = position[i] - integrated_position_[i];
     residual_.set(i, system.pinned[i] ? Vec3::Zero()
-                                      : Vec3(system.mass[i] / (weight * weight) * moved -
+                                      : Vec3(system.mass[i] / (step.weight * step.weight) * moved -
                                              (force[i] - integrated_force_[i])));
   }
+  if (step.force) add_scaled(1, *step.force, residual_);
   for (HeldParticle& held : held_) held.normal_load = held.normal.dot(residual_[held.particle]);
 }
 
@@ -123,20 +124,20 @@ bool StiffContact::solve_along(const ClothSystem& system, const Vec3Field& posit
 }
 
 std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceModel& forces,
-                                              std::span<const Obstacle> obstacles, double weight, double time,
-                                              const Vec3Field& begin, Vec3Field& position) {
+                                              std::span<const Obstacle> obstacles, const LongStep& step,
+                                              Vec3Field& position) {
   if (residual_.size() != position.size())
     residual_ = direction_ = start_ = along_ = Vec3Field(position.size());
-  begin_solve(obstacles, begin, position.size());
+  begin_solve(obstacles, step.begin, position.size());
   integrated_position_ = position;
-  forces.update(integrated_position_, time);
+  forces.update(integrated_position_, step.end);
   integrated_force_ = forces.position_force();
   hold(system, position);
-  find_residual(system, forces, weight, time, position);
+  find_residual(system, forces, step, position);
   double first = 0;  // J, negative
   for (int n = 0; n < max_iterations; ++n) {
     release();
-    if (!find_direction(system, forces, weight, position)) break;
+    if (!find_direction(system, forces, step.weight, position)) break;
     start_ = position;
     sides_at_start_ = sides_;
     const double before = dot(direction_.flat(), residual_.flat());
@@ -148,7 +149,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
       sides_ = sides_at_start_;
       add_scaled(length, direction_, position);
       hold(system, position);
-      find_residual(system, forces, weight, time, position);
+      find_residual(system, forces, step, position);
       const double after = dot(direction_.flat(), residual_.flat());
       if (trial == max_trials || after <= -accepted_work * before) break;
       length *= 0.5;
@@ -156,9 +157,11 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
   }
   release();
   const Vec3Field& force = forces.position_force();
-  for (HeldParticle& held : held_)
-    held.normal_load =
-        std::max(0.0, weight * held.normal.dot(integrated_force_[held.particle] - force[held.particle]));
+  for (HeldParticle& held : held_) {
+    Vec3 load = integrated_force_[held.particle] - force[held.particle];
+    if (step.force) load += (*step.force)[held.particle];
+    held.normal_load = std::max(0.0, step.weight * held.normal.dot(load));
+  }
   return held_;
 }
 

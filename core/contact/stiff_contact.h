@@ -3,10 +3,13 @@
 // within the step, and so create energy. Instead contact becomes a constraint of the step's own equation.
 //
 // A step of an implicit method ends at the minimum x* of |x - x~|^2_M / (2 w^2) + V(x), w the weight of the
-// force in the step. With x outside the obstacles, and g the difference of that function's gradients at x and
-// x*,
+// force in the step. With x outside the obstacles, that function's gradient at x is
 //
-//     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) = sum of l n,    l >= 0, only where x is on a surface
+//     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) + r = sum of l n,    l >= 0, only where x is on a surface
+//
+// r is its gradient at x*: 0 of methods that solve the step, and of those that take a number of iterations
+// what is left (Integrator::force_left()), so that a step with contact is solved. Were that left out, the
+// shape that contact leads to would be held by forces that nothing has, and gain energy by them.
 //
 // so that the cloth around a contact deforms within the step, and l w is the normal impulse. Solved by
 // Newton's method with an active set: particles are constrained in the normal direction (as in Baraff and
@@ -27,13 +30,21 @@
 
 namespace cloth {
 
+/// The step that contact is a constraint of.
+struct LongStep {
+  double weight = 0;                 ///< s, w
+  double end = 0;                    ///< s, its time
+  const Vec3Field& begin;            ///< m, the positions
+  const Vec3Field* force = nullptr;  ///< N, r; null: 0
+};
+
 class StiffContact {
  public:
-  /// Moves `position`, the result of the step, out of the obstacles. `weight` in s. Returns the particles in
-  /// contact, in their order.
+  /// Moves `position`, the result of the step, out of the obstacles. Returns the particles in contact, in
+  /// their order.
   std::vector<HeldParticle> solve(const ClothSystem& system, ForceModel& forces,
-                                  std::span<const Obstacle> obstacles, double weight, double time,
-                                  const Vec3Field& begin, Vec3Field& position);
+                                  std::span<const Obstacle> obstacles, const LongStep& step,
+                                  Vec3Field& position);
 
  private:
   /// Of a particle and an obstacle, in one solve.
@@ -49,7 +60,7 @@ class StiffContact {
   std::optional<SurfacePoint> place_on(std::size_t obstacle, const Side& side, const Vec3& begin,
                                        const Vec3& point) const;
   void hold(const ClothSystem& system, Vec3Field& position);
-  void find_residual(const ClothSystem& system, ForceModel& forces, double weight, double time,
+  void find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                      const Vec3Field& position);
   void release();
   void keep_along_surfaces(Vec3Field& field) const;

@@ -105,6 +105,11 @@ class Integrator {
   /// Adds to `report`, which is that of open_step().
   virtual void close_step(ForceModel&, const StepTimes&, ClothState&, Work&, IntegratorReport& /*report*/) {}
 
+  /// Of methods that take a number of iterations instead of solving the equation of a step,
+  /// M (v' - v)/h = f(x', v'): the difference of its sides at the end of the last step, in N, zero on pins.
+  /// It must be called before the next one. Null: the method solves it, or has none.
+  virtual const Vec3Field* force_left(ForceModel&, const StepTimes&) { return nullptr; }
+
   /// Whether several steps in one call cost less than single steps, where the states in between are not
   /// needed.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }

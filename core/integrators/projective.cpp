@@ -28,25 +28,11 @@ ProjectiveMatrix::Coefficients coefficients_of(const NodeDamping& parts, double 
 
 }  // namespace
 
-/// r = M (v - v_n) - h f(x_n + h v, v), zero on pins.
+/// r at the present velocity.
 void Projective::find_residual(ForceModel& forces, const StepTimes& times, ClothState& state) {
-  const ClothSystem& system = forces.system();
-  const double h = times.step;
   state.position = start_position_;
-  add_scaled(h, state.velocity, state.position);
-  forces.update(state.position, times.end);
-  forces.force(state.position, state.velocity, force_);
-  const double* v[] = {state.velocity.x(), state.velocity.y(), state.velocity.z()};
-  const double* start[] = {start_velocity_.x(), start_velocity_.y(), start_velocity_.z()};
-  const double* f[] = {force_.x(), force_.y(), force_.z()};
-  double* r[] = {residual_.x(), residual_.y(), residual_.z()};
-  const double* mass = system.mass.data();
-  const double* inverse = system.inverse_mass.data();
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < residual_.size(); ++i) {
-      const double left = mass[i] * (v[axis][i] - start[axis][i]) - h * f[axis][i];
-      r[axis][i] = inverse[i] == 0 ? 0 : left;
-    }
+  add_scaled(times.step, state.velocity, state.position);
+  find_step_residual(forces, times, start_velocity_, state, force_, residual_);
 }
 
 /// Returns the largest change of a particle's speed, relative to the largest speed.
@@ -112,6 +98,7 @@ IntegratorReport Projective::step(ForceModel& forces, const StepTimes& times, Cl
     iterate(forces, times, state, report);
   state.position = start_position_;
   add_scaled(h, state.velocity, state.position);
+  left_.note(start_velocity_, state);
   if (forces.has_power()) {
     forces.update(state.position, times.end);
     ++report.force_evaluations;

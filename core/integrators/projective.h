@@ -29,6 +29,7 @@
 #include "integrators/acceleration.h"
 #include "integrators/integrator.h"
 #include "integrators/projective_matrix.h"
+#include "integrators/step_equation.h"
 
 namespace cloth {
 
@@ -38,6 +39,9 @@ class Projective : public Integrator {
       : iterations_(iterations), acceleration_(std::move(acceleration)) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  const Vec3Field* force_left(ForceModel& forces, const StepTimes& times) override {
+    return &left_.force_left(forces, times);
+  }
   bool drifts_with_end_velocity() const override { return true; }
 
  private:
@@ -53,6 +57,7 @@ class Projective : public Integrator {
   Vec3Field correction_;        ///< A^-1 r, m/s
   bool accelerated_ = false;    ///< the present velocity is a proposal, and
   Vec3Field plain_, proposal_;  ///< the plain iterate in its place
+  LeftStep left_;
 };
 
 }  // namespace cloth

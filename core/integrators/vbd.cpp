@@ -349,6 +349,7 @@ IntegratorReport Vbd::step(ForceModel& forces, const StepTimes& times, ClothStat
     report.failure = SolverFailure{last.failed, "the equation of a single particle has no finite solution"};
   const double fastest = largest_square(state.velocity);
   report.residual = fastest > 0 ? std::sqrt(last.change / fastest) : 0;
+  left_.note(start_velocity_, state);
   if (forces.has_power()) {
     forces.update(state.position, times.end);
     ++report.force_evaluations;

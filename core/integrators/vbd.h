@@ -40,6 +40,7 @@
 
 #include "cloth/particle_elements.h"
 #include "integrators/integrator.h"
+#include "integrators/step_equation.h"
 #include "kernels/particle_descent.h"
 
 namespace cloth {
@@ -62,6 +63,9 @@ class Vbd : public Integrator {
   Vbd(int iterations, bool accelerated) : iterations_(iterations), accelerated_(accelerated) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  const Vec3Field* force_left(ForceModel& forces, const StepTimes& times) override {
+    return &left_.force_left(forces, times);
+  }
   bool drifts_with_end_velocity() const override { return true; }
   std::string visits_text(const ForceModel& forces) override;
 
@@ -134,6 +138,7 @@ class Vbd : public Integrator {
   Vec3Field drag_;                            ///< kg^1/2, likewise: b b^T = along n n^T
   std::vector<Inertia> inertia_;
   Vec3Field start_position_, start_velocity_, predicted_;
+  LeftStep left_;
   Vec3Field before_, present_;  ///< velocities of the iterate before the last, and of the last
 };
 

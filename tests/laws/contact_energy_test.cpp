@@ -130,12 +130,11 @@ class LongSteps : public ::testing::TestWithParam<std::string> {};
 
 /// At steps far beyond the springs' oscillations a cloth relaxes through an obstacle within a step. Put out
 /// of it particle by particle it would be stretched anew each time, by more than all the energy exchanged.
-/// What the methods of few iterations leave unsolved of a step may come back as a part of it.
+/// What the methods of few iterations leave of a step is solved with contact, but for XPBD's one pass.
 TEST_P(LongSteps, OfContactParticleByParticleMakeNoEnergy) {
   for (const auto& [method, iterations, most] :
-       {LongStep{"implicit-euler"}, LongStep{"bdf2"}, LongStep{"projective", 60},
-        LongStep{"projective", 10, 0.75}, LongStep{"xpbd", 10}, LongStep{"xpbd", 1, 0.5},
-        LongStep{"vbd", 60}, LongStep{"vbd", 10, 0.75}})
+       {LongStep{"implicit-euler"}, LongStep{"bdf2"}, LongStep{"projective", 10},
+        LongStep{"xpbd", 10}, LongStep{"xpbd", 1, 0.5}, LongStep{"vbd", 10}})
     for (const double step : {0.01, 1.0 / 60}) {
       Scene scene = coarser(builtin_scene(GetParam()), 0.5);
       scene.integrator = {.method = method, .time_step = step};
@@ -151,7 +150,7 @@ TEST_P(LongSteps, OfContactParticleByParticleMakeNoEnergy) {
 }
 
 TEST_P(LongSteps, SolvedToTheirEndGainLessThanAHundredthOnTheWholeScene) {
-  for (const char* method : {"implicit-euler", "bdf2"})
+  for (const char* method : {"implicit-euler", "bdf2", "projective", "vbd"})
     for (const double step : {0.01, 1.0 / 60}) {
       Scene scene = builtin_scene(GetParam());
       scene.integrator = {.method = method, .time_step = step};

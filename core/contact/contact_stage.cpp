@@ -1,7 +1,6 @@
 #include "contact/contact_stage.h"
 
 #include "contact/continuous_contact.h"
-#include "contact/inner_contact.h"
 #include "contact/obstacle_contact.h"
 #include "contact/stiff_contact.h"
 
@@ -32,11 +31,6 @@ class ParticleContact : public ContactStage {
     return report;
   }
 
-  InnerStepContact* within_steps(const ClothSystem& system, ContactMemory& memory) override {
-    return &inner_.emplace(contact_, system, memory);
-  }
-  ContactReport take_inner_report() override { return inner_->take_report(); }
-
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override {
     contact_.append_marks(position, marks);
   }
@@ -44,7 +38,6 @@ class ParticleContact : public ContactStage {
  private:
   ObstacleContact contact_;
   StiffContact stiff_contact_;
-  std::optional<InnerContact> inner_;
   bool long_steps_;
 };
 

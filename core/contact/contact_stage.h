@@ -4,12 +4,13 @@
 //    obstacles at rest whose shape is a solid;
 //  - continuous (continuous_contact.h): where the scene has the block `contact` or `self_contact`, a moving
 //    obstacle or one whose shape is a surface of triangles.
+// Methods with MethodFacts::has_inner_steps meet contact of either kind at the end of every inner step, each
+// a step here.
 //
 // Cost per step, particle by particle: every free particle is tested against every obstacle, so that two
 // spheres cost two comparisons of squared distances per particle. If any particle is inside, all are tested a
 // second time while the state is corrected, and methods that keep the force (MethodFacts::keeps_force)
-// evaluate it once more. Methods that divide their steps do so at the end of every inner step
-// (inner_contact.h). Before that correction, implicit methods with long steps find the positions of the
+// evaluate it once more. Before that correction, implicit methods with long steps find the positions of the
 // particles inside by Newton's method: at most 12 linear solves over the whole cloth (stiff_contact.h).
 //
 // Cost per step, continuous: the cloth's bounds are computed, which is linear in particles; while an
@@ -56,11 +57,6 @@ class ContactStage {
 
   /// Appends the contacts of the last step; `position` is its result, in m.
   virtual void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const = 0;
-
-  /// Contact for methods that divide their steps, which takes the place of resolve(); null: it has none. The
-  /// arguments must outlive the stage. take_inner_report() says what it has done since the last call.
-  virtual InnerStepContact* within_steps(const ClothSystem&, ContactMemory&) { return nullptr; }
-  virtual ContactReport take_inner_report() { return {}; }
 
   virtual bool is_continuous() const { return false; }
 

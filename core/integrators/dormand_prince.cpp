@@ -112,7 +112,8 @@ void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState
   evaluate(forces, 0, time, report);
 }
 
-void DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
+/// Returns whether the step goes on.
+bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
                            IntegratorReport& report) {
   if (contact_) contact_->begin(state);
   for (int s = 0; s < last; ++s) work += inner.step * coupling[last][s] * power_[s];
@@ -121,7 +122,10 @@ void DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothStat
   std::swap(speed_[0], speed_[last]);
   std::swap(acceleration_[0], acceleration_[last]);
   std::swap(power_[0], power_[last]);
-  if (contact_ && contact_->correct(inner.step, state)) take_slope(forces, inner.end, state, report);
+  if (!contact_) return true;
+  const auto outcome = contact_->correct(inner, state);
+  if (outcome == InnerStepContact::Outcome::changed) take_slope(forces, inner.end, state, report);
+  return outcome != InnerStepContact::Outcome::ended;
 }
 
 /// Within a step what is not finite spreads from spring to spring: the particle where it began.
@@ -169,10 +173,10 @@ void DormandPrince::control(ForceModel& forces, const StepTimes& times, ClothSta
       control_.reject(h, error.value);
       continue;
     }
-    accept(forces, inner, state, work, report);
+    const bool goes_on = accept(forces, inner, state, work, report);
     control_.accept(h, error.value);
     ++report.inner_steps;
-    if (ends) return;
+    if (ends || !goes_on) return;
     elapsed += h;
   }
   report.failure = SolverFailure{

@@ -42,10 +42,7 @@ class DormandPrince : public Integrator {
   explicit DormandPrince(double tolerance) : tolerance_(tolerance) {}
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
-  bool set_inner_contact(InnerStepContact* contact) override {
-    contact_ = contact;
-    return true;
-  }
+  void set_inner_contact(InnerStepContact* contact) override { contact_ = contact; }
   void forget(Change change) override;
   IntegratorMemory remember() const override { return {.fields = {}, .numbers = control_.numbers()}; }
   /// The slope is a function of state and time: the next step takes it again.
@@ -60,7 +57,7 @@ class DormandPrince : public Integrator {
   void take_slope(ForceModel& forces, double time, const ClothState& state, IntegratorReport& report);
   void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
   void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
-  void accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
+  bool accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
               IntegratorReport& report);
   int first_without_slope() const;
   LargestError estimated_error(const ClothSystem& system, double step) const;

@@ -78,14 +78,16 @@ class DriftConstraint {
 };
 
 /// Contact of methods that divide a step into inner ones: it corrects the state at the end of each, so that
-/// cloth is not moved back at once from where it got to within a long step (contact/inner_contact.h).
+/// cloth is not moved back at once from where it got to within a long step (simulation/inner_contact.h).
 class InnerStepContact {
  public:
   virtual ~InnerStepContact() = default;
   /// The state at the beginning of an inner step, before anything has changed it.
   virtual void begin(const ClothState& state) = 0;
-  /// The state at the end of that step of `step` seconds. Returns whether it has been changed.
-  virtual bool correct(double step, ClothState& state) = 0;
+  enum class Outcome { unchanged, changed, ended };
+  /// The state at the end of that step. `ended`: the whole step ends there, and its state is not used but to
+  /// say why.
+  virtual Outcome correct(const StepTimes& inner, ClothState& state) = 0;
 };
 
 class Integrator {
@@ -125,9 +127,9 @@ class Integrator {
   /// method cannot enforce it within a step; the caller must then enforce it after each step.
   virtual bool set_drift_constraint(DriftConstraint* /*constraint*/) { return false; }
 
-  /// Makes every inner step end with `contact`; null: none. It must outlive its use. Returns false where the
-  /// method does not divide its steps; the caller must then call for contact after each step.
-  virtual bool set_inner_contact(InnerStepContact* /*contact*/) { return false; }
+  /// Makes every inner step end with `contact`; null: none. It must outlive its use. Of methods with
+  /// MethodFacts::has_inner_steps.
+  virtual void set_inner_contact(InnerStepContact* /*contact*/) {}
 
   /// Whether the positions of a step are x' = x + h v' with the velocity v' at its end.
   virtual bool drifts_with_end_velocity() const { return false; }

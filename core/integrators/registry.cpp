@@ -126,6 +126,7 @@ std::vector<Entry> explicit_methods() {
         .settings = MethodSettings::error_control,
         .keeps_force = true,
         .oscillator = {.divisors = {1, 2, 3, 4, 5, 5}},  // ... + z^5/120 + z^6/600
+        .has_inner_steps = true,
         .controls_error = true},
        [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<DormandPrince>(choice.tolerance);
@@ -196,6 +197,7 @@ std::vector<Entry> implicit_methods() {
         .settings = MethodSettings::xpbd,
         .oscillator = implicit_euler_step,
         .a_stable = true,
+        .has_inner_steps = true,
         .iterates_to_residual = false},
        [](const IntegratorChoice& choice) -> Stepper {
          return std::make_unique<Xpbd>(static_cast<int>(choice.substeps),

@@ -312,7 +312,11 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
 
     add_scaled(h, state.velocity, state.position);
     if (constraint_) constraint_->after_drift(0, state);
-    if (contact_ && contact_->correct(h, state) && constraint_) constraint_->forget_tensions();
+    if (contact_) {
+      const auto outcome = contact_->correct({end - h, end, h}, state);
+      if (outcome == InnerStepContact::Outcome::ended) break;
+      if (outcome == InnerStepContact::Outcome::changed && constraint_) constraint_->forget_tensions();
+    }
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;

@@ -49,10 +49,7 @@ class Xpbd : public Integrator {
     constraint_ = constraint;
     return true;
   }
-  bool set_inner_contact(InnerStepContact* contact) override {
-    contact_ = contact;
-    return true;
-  }
+  void set_inner_contact(InnerStepContact* contact) override { contact_ = contact; }
 
  private:
   /// W = isotropic * I - along_normal * n n^T, in 1/kg; all 0 where pinned.

@@ -40,6 +40,7 @@ struct MethodFacts {
   /// The weight of the forces in the equations that the method solves, divided by the step; none: it solves
   /// none.
   std::optional<double> stage_weight = {};
+  bool has_inner_steps = false;      ///< divides its steps, and meets contact at the end of each part
   bool controls_error = false;       ///< divides its steps where a tolerance is given
   bool may_heat = false;             ///< may gain energy slowly below its limit (simulation/automatic_step.h)
   bool bounds_jointly = false;       ///< springs and dampers share one bound, h^2 K + 2 h C < 4 m

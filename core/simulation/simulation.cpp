@@ -86,8 +86,9 @@ void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
   forces_->set_history(history, run_.state.position);
   make_limiter(limiter_ ? limiter_->tension() : std::vector<double>());
-  contact_ = make_contact_stage(scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
-                                run_.time_step > explicit_step_limit(scene_));
+  contact_ = make_contact_stage(
+      scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
+      run_.time_step > explicit_step_limit(scene_) && !facts_of(scene_.integrator.method).has_inner_steps);
   share_work();
   if (contact_) contact_->set_stop_test(stop_test_);
   elastic_scale_ = elastic_scale_of(system_);
@@ -189,8 +190,15 @@ void Simulation::choose_stepper() {
     integrator_->forget(Change::forces);
   stepper_kind_ = kind;
   limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
-  InnerStepContact* contact = contact_ ? contact_->within_steps(system_, run_.contact_memory) : nullptr;
-  meets_contact_within_steps_ = integrator_->set_inner_contact(contact) && contact;
+  inner_contact_.reset();
+  if (contact_ && facts_of(scene_.integrator.method).has_inner_steps)
+    inner_contact_.emplace(
+        [this](const StepTimes& times, const Vec3Field& position, const Vec3Field& velocity) {
+          const auto found = contact_of(times, position, velocity);
+          if (found && !found->acted && !found->interrupted) end_contact();
+          return found;
+        });
+  integrator_->set_inner_contact(inner_contact_ ? &*inner_contact_ : nullptr);
 }
 
 std::optional<Divergence> Simulation::step() {
@@ -205,6 +213,8 @@ std::optional<Divergence> Simulation::step() {
   if (has_continuous_contact() && stop_test_) {
     ledger_before_ = run_.ledger;
     if (limiter_) tension_before_ = limiter_->tension();
+    if (inner_contact_)
+      before_inner_steps_ = {contact_->poses(), run_.contact_memory, integrator_->remember()};
   }
   Work& work = run_.ledger.forces;
   const bool waits = has_continuous_contact() && !limiter_ && integrator_->waits_for_contact(*forces_);
@@ -252,6 +262,11 @@ void Simulation::take_back_step() {
   if (limiter_) limiter_->set_tension(tension_before_);
   run_.last_contact = {};
   integrator_->forget(Change::state);
+  if (inner_contact_) {
+    contact_->restore(before_inner_steps_.poses, run_.transitions, run_.thickness_transition);
+    run_.contact_memory = before_inner_steps_.contact;
+    integrator_->recall(before_inner_steps_.integrator);
+  }
   interrupted_ = true;
 }
 

@@ -24,6 +24,7 @@
 #include "measure/energy.h"
 #include "measure/probe_reader.h"
 #include "measure/strain.h"
+#include "simulation/inner_contact.h"
 #include "simulation/predicted_damping.h"
 #include "simulation/run_state.h"
 
@@ -195,6 +196,8 @@ class Simulation {
   void book_limiter();
   void note_breach(bool by_contact);
   void resolve_contact(const StepTimes& times);
+  std::optional<ContactReport> contact_of(const StepTimes& times, const Vec3Field& position_before,
+                                          const Vec3Field& velocity_before);
   void book_contact(const StepTimes& times);
   void end_contact();
   ObstacleTransitions find_transitions(const Scene& edited) const;
@@ -229,7 +232,7 @@ class Simulation {
   std::optional<StepLimiter> limiter_;
   bool limits_drift_ = false;  ///< the method asks the limiter itself, within the step
   std::unique_ptr<ContactStage> contact_;
-  bool meets_contact_within_steps_ = false;  ///< the method asks contact itself, at the end of inner steps
+  std::optional<InnerContact> inner_contact_;    ///< none: contact follows each step
   Vec3Field position_before_, velocity_before_;  ///< m, m/s, at the step's start, for contact
 
   std::function<bool()> stop_test_;
@@ -239,6 +242,11 @@ class Simulation {
   EnergyLedger ledger_before_;                          ///< at the begin of a step that may be taken back
   Quantities quantities_;
   ProbeReader probes_;
+  struct BeforeInnerSteps {
+    std::vector<Pose> poses;
+    ContactMemory contact;
+    IntegratorMemory integrator;
+  } before_inner_steps_;                ///< at the begin of a step that may be taken back
   std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
   std::optional<UnreachableRate> unreachable_;
   PullStrength strongest_pull_, pull_strength_;

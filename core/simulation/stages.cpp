@@ -31,18 +31,18 @@ StageInfo limiter_stage(const Scene& scene, const ClothSystem& system) {
                       100 * deformation.rate, how)};
 }
 
-/// `within_steps`: the method divides its steps.
-StageInfo contact_stage(const Scene& scene, bool within_steps) {
+StageInfo contact_stage(const Scene& scene) {
   if (auto absent = absent_stage("contact", scene, "obstacles")) return *absent;
   const std::string count =
       fmt::format("{} obstacle{}", scene.obstacles.size(), scene.obstacles.size() == 1 ? "" : "s");
-  if (!has_continuous_contact(scene))
-    return {"contact", true, count + (within_steps ? ", at the end of every inner step" : "")};
+  const char* when =
+      facts_of(scene.integrator.method).has_inner_steps ? ", at the end of every inner step" : "";
+  if (!has_continuous_contact(scene)) return {"contact", true, count + when};
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(), &moves);
   return {"contact", true,
-          fmt::format("{}{}, without gaps, {} m thick", count,
+          fmt::format("{}{}, without gaps, {} m thick{}", count,
                       moving > 0 ? fmt::format(" ({} moving)", moving) : "",
-                      scene.contact.value_or(ContactSettings{}).thickness)};
+                      scene.contact.value_or(ContactSettings{}).thickness, when)};
 }
 
 StageInfo self_contact_stage(const Scene& scene) {
@@ -92,7 +92,7 @@ std::vector<StageInfo> explain_stages(const Scene& scene) {
   const std::unique_ptr<Integrator> integrator = make_integrator(scene.integrator);
   const bool limits_within = integrator->set_drift_constraint(nullptr);
   const bool limited = limiter_stage(scene, system).present;
-  const StageInfo contact = contact_stage(scene, integrator->set_inner_contact(nullptr));
+  const StageInfo contact = contact_stage(scene);
   const bool moved_later = contact.present || scene.self_contact || (!limits_within && limited);
   std::vector<StageInfo> stages;
   for (const ForceEntry& force : force_registry())

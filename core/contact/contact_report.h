@@ -27,7 +27,8 @@ struct ContactReport {
   int held_back = 0;      ///< particles that did not reach their target position within the rounds
   double work = 0;        ///< J, given to the cloth by contact's impulses
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only of continuous contact
-  int rounds = 0;         ///< of continuous contact
+  bool long_step = false;       ///< springs and contact were solved for together, by continuous contact
+  int rounds = 0;               ///< of continuous contact
   int velocity_iterations = 0;  ///< of VelocitySolver
   std::size_t pairs = 0;        ///< pairs of near features in the last round
   std::optional<Pinch> pinch;

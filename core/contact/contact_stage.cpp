@@ -48,7 +48,7 @@ std::unique_ptr<ContactStage> make_contact_stage(const Scene& scene, const Cloth
                                                  const ThicknessTransition& thickness, double time,
                                                  bool long_steps) {
   if (has_continuous_contact(scene))
-    return std::make_unique<ContinuousContact>(scene, system, transitions, thickness, time);
+    return std::make_unique<ContinuousContact>(scene, system, transitions, thickness, time, long_steps);
   if (scene.obstacles.empty()) return nullptr;
   return std::make_unique<ParticleContact>(scene, long_steps);
 }

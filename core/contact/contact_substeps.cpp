@@ -43,7 +43,7 @@ void ContinuousContact::begin(const StepTimes& times) {
   part_ = note_still() ? 1 : 0;
   free_contains_contacts_ = false;
   radius_scale_.assign(position_.size(), 1.0);
-  touches_.clear();
+  touches_.clear(), loaded_.clear();
   substep_ = 0, operation_count_ = 0, has_moved_ = false;
   substeps_ = substeps_for(bodies_, paths_, mean_edge_);
   if (substeps_ > 1) whole_paths_ = paths_;
@@ -90,12 +90,52 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
 
 /// Whether anything is near enough in this step for contact to have work. A state that is not finite is left
 /// as it is: the run stops there.
-bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state) {
+bool ContinuousContact::is_near(const ContactStep& step, ClothState& state) {
   if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
   free_position_ = target_position_ = state.position;
   position_ = step.position_before;
   begin(step.times);
-  return substeps_ == 1 ? find_pairs() : may_come_near();
+  approach_position_ = state.position;
+  if (substeps_ > 1) return may_come_near();
+  if (!find_pairs()) return false;
+  if (long_steps_ && !step.integrator.velocity_follows_positions()) solve_long_step(step, state);
+  return true;
+}
+
+/// Leads the state to the solution of the step with the pairs' constraints, with the planes that separate
+/// them as the step begins; the rounds begin from there.
+void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& state) {
+  constraints_.clear();
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    constraints_.push_back(constraint_of(k, step.system, step.position_before));
+  const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
+                       step.integrator.force_left(step.forces, step.times)};
+  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, target_position_)) return;
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
+  state.position = free_position_ = target_position_;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    if (!(stiff_target_.loads()[c] > 0)) continue;
+    Touch& touch = loaded_.emplace_back();
+    touch.contact = constraints_[c];
+    touch.contact.friction = friction_of(pairs_[c]);
+    touch.obstacle = pairs_[c].obstacle;
+    touch.contact.normal_impulse = step.times.step * whole.weight * stiff_target_.loads()[c];
+    touch.contact.friction_impulse.setZero();
+    touch.velocity = velocity_of_far_side(c, step.times.step);
+  }
+  find_pairs();
+}
+
+/// Their impulses become estimates for the velocity solve, so that friction has them, and not a part of the
+/// velocities that it begins with.
+void ContinuousContact::take_loads(const ContactStep& step, ClothState& state) {
+  for (const Touch& touch : loaded_) {
+    ContactConstraint taken = touch.on_velocities(step.times.step);
+    taken.normal_impulse = -taken.normal_impulse;
+    apply_impulses(taken, step.system.inverse_mass, state.velocity);
+    touches_.push_back(touch);
+  }
 }
 
 ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& state) {
@@ -129,6 +169,8 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   report.contacts = count_touched();
   integrated_position_ = state.position;
   state.position = position_;
+  take_loads(step, state);
+  report.long_step = !loaded_.empty();
   solve_velocities(step, state, report);
   return report;
 }

@@ -68,13 +68,14 @@ double highest_obstacle_speed(const Scene& scene, const ObstacleTransitions& tra
 
 ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& system,
                                      ObstacleTransitions transitions, const ThicknessTransition& thickness,
-                                     double time)
+                                     double time, bool long_steps)
     : surface_(make_surface(system.size(), triangles_of(system))),
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
       transitions_(std::move(transitions)),
       close_pairs_(surface_, system.start, bodies_, scene.self_contact.has_value(),
                    skin_part * mean_edge(surface_, system.start)),
+      long_steps_(long_steps),
       mean_edge_(mean_edge(surface_, system.start)),
       thickness_transition_(thickness),
       full_thickness_(scene.contact.value_or(ContactSettings{}).thickness),
@@ -172,6 +173,12 @@ void ContinuousContact::separate_all() {
   in_shares(team_, pairs_.size(), least_pairs, separate_share);
 }
 
+double ContinuousContact::friction_of(const FeaturePair& pair) const {
+  if (pair.obstacle == FeaturePair::cloth_itself) return self_friction_;
+  const ObstacleBody& body = bodies_[at(pair.obstacle)];
+  return body.reflects ? 0 : body.friction;
+}
+
 /// The constraint at the end of the step, with the plane moved along with the obstacle.
 ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSystem& system,
                                                    const Vec3Field& from) const {
@@ -186,7 +193,7 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   if (is_staggered_ && (pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box) &&
       !moves(obstacles_[at(pair.obstacle)]))
     contact.bound = staggered(contact.bound, pair.feature);
-  contact.friction = self_friction_;
+  contact.friction = long_steps_ ? 0 : friction_of(pair);  // then it acts on velocities alone
   contact.rest = contact.point(from);
   if (pair.obstacle != FeaturePair::cloth_itself) {
     Vec3 point = s.far_point;
@@ -198,8 +205,6 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
       contact.rest += path.to().at(local) - path.from().at(local);
     }
     contact.bound += contact.normal.dot(point);
-    const ObstacleBody& body = bodies_[at(pair.obstacle)];
-    contact.friction = body.reflects ? 0 : body.friction;
   }
   contact.mobility = mobility_of(contact, system.inverse_mass);
   contact.normal_impulse = memory_[k].normal_impulse;
@@ -282,14 +287,20 @@ void ContinuousContact::keep_touches(double step) {
     }
     Touch& touch = touches_[at(memory.touch)];
     touch.contact = contact;
+    touch.contact.friction = friction_of(pairs_[constraint_pair_[c]]);
     touch.substep = substep_;
     touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
-    touch.velocity.setZero();
-    if (touch.obstacle == FeaturePair::cloth_itself || is_still_[at(touch.obstacle)]) continue;
-    const Vec3 local = poses_[at(touch.obstacle)].inverse(separations_[constraint_pair_[c]].far_point);
-    const PoseInterpolation& path = paths_[at(touch.obstacle)];
-    touch.velocity = (path.to().at(local) - path.from().at(local)) / step;
+    touch.velocity = velocity_of_far_side(constraint_pair_[c], step);
   }
+}
+
+/// m/s, of the obstacle at the contact, over `step` seconds.
+Vec3 ContinuousContact::velocity_of_far_side(std::size_t pair, double step) const {
+  const int obstacle = pairs_[pair].obstacle;
+  if (obstacle == FeaturePair::cloth_itself || is_still_[at(obstacle)]) return Vec3::Zero();
+  const Vec3 local = poses_[at(obstacle)].inverse(separations_[pair].far_point);
+  const PoseInterpolation& path = paths_[at(obstacle)];
+  return (path.to().at(local) - path.from().at(local)) / step;
 }
 
 int ContinuousContact::count_touched() const {

@@ -13,6 +13,7 @@
 #include "contact/close_pairs.h"
 #include "contact/contact_solver.h"
 #include "contact/contact_stage.h"
+#include "contact/stiff_target.h"
 #include "kernels/shared_job.h"
 
 namespace cloth {
@@ -30,7 +31,7 @@ class ContinuousContact : public ContactStage {
  public:
   /// The obstacles' poses are those at `time` (s).
   ContinuousContact(const Scene& scene, const ClothSystem& system, ObstacleTransitions transitions,
-                    const ThicknessTransition& thickness, double time);
+                    const ThicknessTransition& thickness, double time, bool long_steps);
   ContinuousContact(const ContinuousContact&) = delete;
   ContinuousContact& operator=(const ContinuousContact&) = delete;
 
@@ -72,7 +73,9 @@ class ContinuousContact : public ContactStage {
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
-  bool is_near(const ContactStep& step, const ClothState& state);
+  bool is_near(const ContactStep& step, ClothState& state);
+  void solve_long_step(const ContactStep& step, ClothState& state);
+  void take_loads(const ContactStep& step, ClothState& state);
   ContactReport resolve_near(const ContactStep& step, ClothState& state);
   void begin(const StepTimes& times);
   bool note_still();
@@ -88,6 +91,8 @@ class ContinuousContact : public ContactStage {
   void separate_all();
   void order_by_particles();
   void solve_target(const ClothSystem& system, const Vec3Field& from);
+  Vec3 velocity_of_far_side(std::size_t pair, double step) const;
+  double friction_of(const FeaturePair& pair) const;
   ContactConstraint constraint_of(std::size_t pair, const ClothSystem& system, const Vec3Field& from) const;
   double largest_violation() const;
   void keep_touches(double step);
@@ -134,6 +139,8 @@ class ContinuousContact : public ContactStage {
   SharedJob job_;               ///< a step near obstacles or itself
   WorkerTeam* team_ = nullptr;  ///< of this step
   std::function<bool()> stop_test_;
+  bool long_steps_ = false;  ///< contact and springs have to be solved together
+  StiffTarget stiff_target_;
   double mean_edge_ = 0;       ///< m, of the cloth at its start
   bool is_staggered_ = false;  ///< see stagger.h
   ThicknessTransition thickness_transition_;
@@ -160,7 +167,8 @@ class ContinuousContact : public ContactStage {
   Vec3Field free_position_;        ///< m, target without contact in this round
   Vec3Field target_position_;      ///< m, target with contact
   Vec3Field position_;             ///< m, reached so far
-  Vec3Field integrated_position_;  ///< m, where the integrator put the particles
+  Vec3Field integrated_position_;  ///< m, where the integrator put the particles, or those of StiffTarget
+  Vec3Field approach_position_;    ///< m, where the integrator put the particles
   std::vector<double> fraction_;
   std::vector<double>
       radius_scale_;   ///< of each capsule, larger each time that the capsule stopped its particle
@@ -174,6 +182,7 @@ class ContinuousContact : public ContactStage {
   std::vector<std::size_t> constraint_pair_;
   std::vector<std::size_t> first_of_particle_, ordered_;  ///< scratch
   std::vector<Touch> touches_;
+  std::vector<Touch> loaded_;                 ///< contacts of StiffTarget, with impulses of their loads
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round
   bool reached_bounds_ = false;               ///< a capsule stopped its particle in this round
   bool is_separated_ = false;                 ///< the separations are those of the present positions

@@ -92,35 +92,17 @@ void StiffContact::keep_along_surfaces(Vec3Field& field) const {
 bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                                   const Vec3Field& position) {
   constexpr double holding = 1e6;
-  const LinearisationWeights weights{.position = weight * weight, .velocity = 0, .clamped = true};
-  forces.linearise(position, weights, linearisation_);
+  Linearisation& matrix = solver_.linearise(system, forces, weight, position);
   for (const HeldParticle& held : held_) {
-    const SymmetricBlock node = linearisation_.nodes[held.particle];
-    linearisation_.nodes.add(held.particle,
-                             block_along(0, holding * (node.xx + node.yy + node.zz), held.normal));
+    const SymmetricBlock node = matrix.nodes[held.particle];
+    matrix.nodes.add(held.particle, block_along(0, holding * (node.xx + node.yy + node.zz), held.normal));
   }
   along_ = residual_;
   keep_along_surfaces(along_);
   for (double& value : along_.flat()) value *= -weight * weight;
-  const bool solved = solve_along(system, position, choose_linear_method(system, weights).method);
+  const bool solved = solver_.solve(system, position, along_, direction_);
   keep_along_surfaces(direction_);
   return solved;
-}
-
-/// direction = A^-1 along; false where that was not found.
-bool StiffContact::solve_along(const ClothSystem& system, const Vec3Field& position, LinearMethod method) {
-  constexpr double forcing = 0.01;
-  if (method == LinearMethod::cholesky) {
-    if (!factors_.factorise(system, linearisation_)) return false;
-    factors_.solve(along_, direction_);
-    return true;
-  }
-  if (method == LinearMethod::multigrid && multigrid_.prepare(system, linearisation_, position)) {
-    const LinearMap cycle = [this](const Vec3Field& in, Vec3Field& out) { multigrid_.precondition(in, out); };
-    if (gradients_.solve(system, linearisation_, cycle, along_, forcing, direction_).converged) return true;
-  }
-  jacobi_.prepare(system, linearisation_);
-  return gradients_.solve(system, linearisation_, jacobi_, along_, forcing, direction_).converged;
 }
 
 std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceModel& forces,

@@ -22,11 +22,9 @@
 #include <span>
 #include <vector>
 
+#include "contact/long_step_solver.h"
 #include "contact/obstacle_contact.h"
 #include "forces/force_model.h"
-#include "integrators/implicit/linear_choice.h"
-#include "integrators/implicit/linear_solver.h"
-#include "integrators/implicit/multigrid_solver.h"
 
 namespace cloth {
 
@@ -66,7 +64,6 @@ class StiffContact {
   void keep_along_surfaces(Vec3Field& field) const;
   bool find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                       const Vec3Field& position);
-  bool solve_along(const ClothSystem& system, const Vec3Field& position, LinearMethod method);
 
   Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
   Vec3Field residual_, direction_, start_, along_;
@@ -74,11 +71,7 @@ class StiffContact {
   std::span<const Obstacle> obstacles_;
   std::vector<Obstacle> reached_;             ///< grown by what is rounding
   std::vector<Side> sides_, sides_at_start_;  ///< of each particle, one after the other for each obstacle
-  Linearisation linearisation_;
-  CholeskyFactors factors_;
-  BlockJacobi jacobi_;
-  MultigridSolver multigrid_;
-  ConjugateGradients gradients_;
+  LongStepSolver solver_;
 };
 
 }  // namespace cloth

@@ -133,7 +133,7 @@ double ContinuousContact::approach_of(const Touch& touch, const ContactStep& ste
   const bool was_held = contact.any_of([&](std::size_t i) { return step.memory.held[i] != 0; });
   const double before = contact.normal.dot(contact.point(step.velocity_before) - touch.velocity);
   const double mean =
-      contact.normal.dot(contact.point(integrated_position_) - contact.rest) / step.times.step;
+      contact.normal.dot(contact.point(approach_position_) - contact.rest) / step.times.step;
   const double approach = was_held ? before : mean;
   const double least = std::max(2 * gravity_ * step.times.step, 4 * (before - mean));
   return approach < -least ? approach : 0;

@@ -183,6 +183,20 @@ TEST_P(LongSteps, OfErrorControlMeetObstaclesInEveryInnerStep) {
   EXPECT_LT(ledger.work, 0);
 }
 
+/// Moved in the norm of the masses from where such a step ended, cloths gained up to 87 % of the energy
+/// exchanged on `corner` and diverged on `spikes`.
+TEST(LongStepsWithoutGaps, OfMethodsThatSolveTheStepMakeNoEnergy) {
+  for (const char* name : {"corner", "spikes", "twist"})
+    for (const char* method : {"implicit-euler", "bdf2", "projective", "vbd"}) {
+      Scene scene = coarser(builtin_scene(name), 0.5);
+      scene.integrator = {.method = method, .time_step = 0.01};
+      const ContactLedger ledger = ledger_of(scene, {}, 0.6);
+      const std::string where = std::string(name) + ", " + method;
+      EXPECT_LT(ledger.gain, 0.05 * ledger.account.exchanged()) << where;
+      EXPECT_GT(ledger.account.exchanged(), 0.1) << where;
+    }
+}
+
 struct BuiltIn {
   std::string name;
   double part = 1;  ///< of its particles along an edge

@@ -1,0 +1,30 @@
+#include "contact/long_step_solver.h"
+
+namespace cloth {
+
+Linearisation& LongStepSolver::linearise(const ClothSystem& system, ForceModel& forces, double weight,
+                                         const Vec3Field& position) {
+  const LinearisationWeights weights{.position = weight * weight, .velocity = 0, .clamped = true};
+  method_ = choose_linear_method(system, weights).method;
+  forces.linearise(position, weights, linearisation_);
+  return linearisation_;
+}
+
+bool LongStepSolver::solve(const ClothSystem& system, const Vec3Field& position,
+                           const Vec3Field& right_hand_side, Vec3Field& solution) {
+  constexpr double forcing = 0.01;
+  if (method_ == LinearMethod::cholesky) {
+    if (!factors_.factorise(system, linearisation_)) return false;
+    factors_.solve(right_hand_side, solution);
+    return true;
+  }
+  if (method_ == LinearMethod::multigrid && multigrid_.prepare(system, linearisation_, position)) {
+    const LinearMap cycle = [this](const Vec3Field& in, Vec3Field& out) { multigrid_.precondition(in, out); };
+    if (gradients_.solve(system, linearisation_, cycle, right_hand_side, forcing, solution).converged)
+      return true;
+  }
+  jacobi_.prepare(system, linearisation_);
+  return gradients_.solve(system, linearisation_, jacobi_, right_hand_side, forcing, solution).converged;
+}
+
+}  // namespace cloth

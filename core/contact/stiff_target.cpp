@@ -1,0 +1,130 @@
+#include "contact/stiff_target.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cloth/sums.h"
+#include "geometry/at.h"
+
+namespace cloth {
+
+/// m, positive where the constraint is violated.
+double StiffTarget::missing(std::size_t contact, const Vec3Field& position) const {
+  const ContactConstraint& c = contacts_[contact];
+  return c.bound - c.normal.dot(c.point(position));
+}
+
+double StiffTarget::largest_missing(const Vec3Field& position) const {
+  double largest = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    if (contacts_[c].mobility > 0) largest = std::max(largest, missing(c, position));
+  return largest;
+}
+
+/// A penalty is ten times the stiffest block that it adds to, so that a few updates of the loads suffice.
+void StiffTarget::add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
+                                Linearisation& matrix) {
+  constexpr double part = 10;
+  const double square = weight * weight;
+  size_.resize(position.size());
+  for (std::size_t i = 0; i < size_.size(); ++i) {
+    const SymmetricBlock node = matrix.nodes[i];
+    size_[i] = system.pinned[i] ? 0 : (node.xx + node.yy + node.zz) / 3;
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const ContactConstraint& contact = contacts_[c];
+    double largest = 0, weights = 0;
+    for (std::size_t k = 0; k < at(contact.count); ++k) {
+      largest = std::max(largest, size_[at(contact.particle[k])]);
+      weights += std::abs(contact.weight[k]);
+    }
+    penalty_[c] = part * largest / square;
+    if (!(load_[c] + penalty_[c] * missing(c, position) > 0)) continue;
+    for (std::size_t k = 0; k < at(contact.count); ++k)
+      matrix.nodes.add(
+          at(contact.particle[k]),
+          block_along(0, square * penalty_[c] * weights * std::abs(contact.weight[k]), contact.normal));
+  }
+}
+
+/// What the forces, the inertia and the contacts together push the particles with.
+void StiffTarget::find_push(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                            const Vec3Field& position) {
+  forces.update(position, step.end);
+  const Vec3Field& force = forces.position_force();
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (system.pinned[i]) continue;
+    const Vec3 moved = position[i] - integrated_position_[i];
+    Vec3 push = force[i] - integrated_force_[i] - system.mass[i] / (step.weight * step.weight) * moved;
+    if (step.force) push -= (*step.force)[i];
+    push_.set(i, push);
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const double load = load_[c] + penalty_[c] * missing(c, position);
+    if (!(load > 0)) continue;
+    const ContactConstraint& contact = contacts_[c];
+    for (std::size_t k = 0; k < at(contact.count); ++k) {
+      const auto i = at(contact.particle[k]);
+      if (!system.pinned[i]) push_.add(i, contact.weight[k] * load * contact.normal);
+    }
+  }
+}
+
+bool StiffTarget::find_direction(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                                 const Vec3Field& position) {
+  add_penalties(system, step.weight, position, solver_.linearise(system, forces, step.weight, position));
+  find_push(system, forces, step, position);
+  right_ = push_;
+  for (double& value : right_.flat()) value *= step.weight * step.weight;
+  return solver_.solve(system, position, right_, direction_);
+}
+
+/// Along the direction, as far as what is left of the equation falls.
+void StiffTarget::move(const ClothSystem& system, ForceModel& forces, const LongStep& step, double before,
+                       Vec3Field& position) {
+  constexpr int most_trials = 6;
+  constexpr double accepted = 0.5;
+  start_ = position;
+  double length = 1;
+  for (int trial = 1;; ++trial) {
+    position = start_;
+    add_scaled(length, direction_, position);
+    find_push(system, forces, step, position);
+    if (trial == most_trials || dot(direction_.flat(), push_.flat()) >= -accepted * before) return;
+    length *= 0.5;
+  }
+}
+
+void StiffTarget::update_loads(const Vec3Field& position) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    load_[c] = contacts_[c].mobility > 0 ? std::max(0.0, load_[c] + penalty_[c] * missing(c, position)) : 0;
+}
+
+bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
+                        std::span<const ContactConstraint> contacts, const LongStep& step,
+                        Vec3Field& position) {
+  constexpr int most_iterations = 20;
+  constexpr double least_work = 1e-3;     // of the first iteration's, and
+  constexpr double least_missing = 0.01;  // of the first violation: ends below both
+  contacts_ = contacts;
+  const double first_missing = largest_missing(position);
+  if (!(first_missing > 0)) return false;
+  if (push_.size() != position.size()) push_ = direction_ = right_ = Vec3Field(position.size());
+  integrated_position_ = position;
+  forces.update(position, step.end);
+  integrated_force_ = forces.position_force();
+  load_.assign(contacts.size(), 0.0);
+  penalty_.assign(contacts.size(), 0.0);
+  double first = 0;  // J
+  for (int n = 0; n < most_iterations; ++n) {
+    if (!find_direction(system, forces, step, position)) break;
+    const double before = dot(direction_.flat(), push_.flat());
+    if (n == 0) first = before;
+    if (before <= least_work * first && largest_missing(position) <= least_missing * first_missing) break;
+    move(system, forces, step, before, position);
+    update_loads(position);
+  }
+  return true;
+}
+
+}  // namespace cloth

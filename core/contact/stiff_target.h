@@ -1,0 +1,53 @@
+// Continuous contact after steps that are long compared with the springs' oscillations. To move particles to
+// the positions that are nearest to the integrator's in the norm of the masses would stretch springs that
+// have relaxed through obstacles within the step (as contact/stiff_contact.h says). Contact is then given the
+// positions x of the step with contact instead of x*, where the method ended,
+//
+//     M (x - x*)/w^2 - (f(x) - f(x*)) + r = sum of l a,    l >= 0, l = 0 where a . x > bound
+//
+// with w and r as in LongStep and a . x >= bound the constraints of near pairs. Newton's method with
+// augmented Lagrangian penalties for the loads l (Hestenes 1969, Powell 1969). In its matrix the penalty of a
+// constraint of several particles is bounded by one for each, so that it keeps its pattern.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contact/contact_solver.h"
+#include "contact/long_step_solver.h"
+#include "contact/stiff_contact.h"
+
+namespace cloth {
+
+class StiffTarget {
+ public:
+  /// `position`: x* in, x out. Returns whether x* violates a constraint; else it stays.
+  bool solve(const ClothSystem& system, ForceModel& forces, std::span<const ContactConstraint> contacts,
+             const LongStep& step, Vec3Field& position);
+
+  /// N, l of each contact of the last solve() that returned true.
+  const std::vector<double>& loads() const { return load_; }
+
+ private:
+  double missing(std::size_t contact, const Vec3Field& position) const;
+  double largest_missing(const Vec3Field& position) const;
+  void add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
+                     Linearisation& matrix);
+  void find_push(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                 const Vec3Field& position);
+  bool find_direction(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                      const Vec3Field& position);
+  void move(const ClothSystem& system, ForceModel& forces, const LongStep& step, double before,
+            Vec3Field& position);
+  void update_loads(const Vec3Field& position);
+
+  std::span<const ContactConstraint> contacts_;
+  Vec3Field integrated_position_, integrated_force_;  ///< m, N
+  Vec3Field push_;                                    ///< N, what is left of the equation, 0 on pins
+  Vec3Field direction_, right_, start_;
+  std::vector<double> load_, penalty_;  ///< N, N/m, of each contact
+  std::vector<double> size_;            ///< kg, of each particle's block
+  LongStepSolver solver_;
+};
+
+}  // namespace cloth

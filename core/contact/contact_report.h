@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "forces/force.h"
 #include "geometry/vec3_field.h"
 
 namespace cloth {
@@ -27,7 +28,10 @@ struct ContactReport {
   int held_back = 0;      ///< particles that did not reach their target position within the rounds
   double work = 0;        ///< J, given to the cloth by contact's impulses
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only of continuous contact
-  bool long_step = false;       ///< springs and contact were solved for together, by continuous contact
+  /// Where continuous contact has solved for springs and contact together: Integrator::correct_work() at the
+  /// velocities of that solution. At those after friction, which changes velocities abruptly, the power of
+  /// dampers for as long as the step is would be more than they take.
+  std::optional<Work> force_work;
   int rounds = 0;               ///< of continuous contact
   int velocity_iterations = 0;  ///< of VelocitySolver
   std::size_t pairs = 0;        ///< pairs of near features in the last round

@@ -43,7 +43,7 @@ void ContinuousContact::begin(const StepTimes& times) {
   part_ = note_still() ? 1 : 0;
   free_contains_contacts_ = false;
   radius_scale_.assign(position_.size(), 1.0);
-  touches_.clear(), loaded_.clear();
+  touches_.clear(), loaded_.clear(), force_work_.reset();
   substep_ = 0, operation_count_ = 0, has_moved_ = false;
   substeps_ = substeps_for(bodies_, paths_, mean_edge_);
   if (substeps_ > 1) whole_paths_ = paths_;
@@ -114,6 +114,7 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
   state.position = free_position_ = target_position_;
+  force_work_ = step.integrator.correct_work(step.forces, step.times, state);
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     if (!(stiff_target_.loads()[c] > 0)) continue;
     Touch& touch = loaded_.emplace_back();
@@ -163,14 +164,14 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   if (end != RoundsEnd::arrived) report.pinch = pinch(step.system);
   report.exhausted = end == RoundsEnd::exhausted;
   if (substeps_ > 1) drop_superseded_touches(step.position_before, duration);
-  if (!has_moved_ && touches_.empty()) return report;
+  if (!has_moved_ && touches_.empty() && loaded_.empty()) return report;
   report.acted = true;
+  report.force_work = force_work_;
   report.pairs = pairs_.size() + waiting_.size();
-  report.contacts = count_touched();
   integrated_position_ = state.position;
   state.position = position_;
   take_loads(step, state);
-  report.long_step = !loaded_.empty();
+  report.contacts = count_touched();
   solve_velocities(step, state, report);
   return report;
 }

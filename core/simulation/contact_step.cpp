@@ -40,10 +40,8 @@ void Simulation::book_contact(const StepTimes& times) {
   run_.ledger.contact += run_.last_contact.work;
   run_.contact_impulse += run_.last_contact.impulse;
   if (inner_contact_) return;
-  // After a long step friction changes velocities abruptly, and the power of dampers at these, for as long as
-  // the step is, would be more than they take: the work stays that of the velocities that they acted at.
   const Work change = integrator_->correct_work(*forces_, times, run_.state);
-  if (!run_.last_contact.long_step) run_.ledger.forces += change;
+  run_.ledger.forces += run_.last_contact.force_work.value_or(change);
 }
 
 /// What was lent to impulses of which none came back.

@@ -86,9 +86,10 @@ void Simulation::assemble() {
   forces_ = std::make_unique<ForceModel>(scene_, system_);
   forces_->set_history(history, run_.state.position);
   make_limiter(limiter_ ? limiter_->tension() : std::vector<double>());
-  contact_ = make_contact_stage(
-      scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
-      run_.time_step > explicit_step_limit(scene_) && !facts_of(scene_.integrator.method).has_inner_steps);
+  const MethodFacts& method = facts_of(scene_.integrator.method);
+  const bool long_steps = method.a_stable && !method.has_inner_steps;
+  contact_ = make_contact_stage(scene_, system_, run_.transitions, run_.thickness_transition, run_.state.time,
+                                long_steps && run_.time_step > explicit_step_limit(scene_));
   share_work();
   if (contact_) contact_->set_stop_test(stop_test_);
   elastic_scale_ = elastic_scale_of(system_);

@@ -101,7 +101,7 @@ TEST(StiffTarget, SolvesTheStepWithLoadsThatPushWhereTheClothIsAndNowhereElse) {
       EXPECT_LT(result.left, by_three ? 0.4 : 0.1) << where;  // penalties bound those of three
       EXPECT_LT(result.missing, 1e-4) << where;
       EXPECT_LE(result.pull, 0) << where;
-      EXPECT_LT(result.idle, 0.1) << where;
+      EXPECT_LT(result.idle, by_three ? 0.5 : 1e-9) << where;
       EXPECT_GT(result.loaded, 0) << where;
     }
 }

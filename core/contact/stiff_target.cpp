@@ -5,6 +5,7 @@
 
 #include "cloth/sums.h"
 #include "geometry/at.h"
+#include "integrators/integrator.h"
 
 namespace cloth {
 
